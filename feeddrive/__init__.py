@@ -1,0 +1,1 @@
+"""feeddrive: a control plant of machine-tool ball-screw feed drives that closes the loop with measured data."""

@@ -1,0 +1,17 @@
+"""Type names shared by the package."""
+
+from __future__ import annotations
+
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray: TypeAlias = NDArray[np.float64]
+"""Array of SI values in double precision."""
+
+BoolArray: TypeAlias = NDArray[np.bool_]
+"""Mask over samples."""
+
+Expression: TypeAlias = Any
+"""A CasADi SX or MX expression, or a number; casadi ships no type information."""
