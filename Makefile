@@ -1,0 +1,67 @@
+# A fresh machine needs Python 3.11 or newer and make; every target sets up what it uses.
+# Overridable: PYTHON (interpreter for .venv), WORKERS (test processes), TESTS (what `make test` runs).
+
+VENV := .venv
+BIN := $(VENV)/bin
+WORKERS ?= 2
+TESTS ?= tests
+
+# The first interpreter that is new enough; asked only when .venv has to be made.
+PYTHON ?= $(shell for name in python3.11 python3 python3.12 python3.13 python; do \
+	if $$name -c 'import sys; sys.exit(sys.version_info < (3, 11))' >/dev/null 2>&1; then echo $$name; break; fi; done)
+
+# Each test process has one core: threaded linear algebra would only make them wait for each other.
+ONE_THREAD := OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 MKL_NUM_THREADS=1
+PYTEST := $(ONE_THREAD) $(BIN)/python -m pytest -n $(WORKERS) --dist worksteal
+PIP_INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check
+
+.DEFAULT_GOAL := help
+.DELETE_ON_ERROR:
+.PHONY: help demo test recovery bench lint types format develop clean
+
+help: ## show this list
+	@echo "make TARGET, where TARGET is"
+	@sed -n 's/^\([a-z]*\):.*## \(.*\)/  \1	\2/p' $(MAKEFILE_LIST) | expand -t 14
+
+demo: $(VENV)/.installed ## install, then diagnose a shipped machine; ends with the path of the report
+	$(BIN)/feeddrive demo
+
+test: $(VENV)/.developing ## all tests
+	$(PYTEST) $(TESTS)
+
+recovery: $(VENV)/.developing ## only the tests that plant an effect and must find it
+	$(PYTEST) tests/recovery
+
+bench: $(VENV)/.developing ## timings beside those of other programs
+	@for script in benchmarks/[!_]*.py; do echo "== $$script"; $(ONE_THREAD) $(BIN)/python "$$script" || exit 1; done
+
+lint: $(VENV)/.developing ## style and layout of the code
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+
+types: $(VENV)/.developing ## strict type check of the package
+	$(BIN)/mypy
+
+format: $(VENV)/.developing ## mend style and layout
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+
+develop: $(VENV)/.developing ## set up .venv for working on feeddrive
+
+clean: ## remove .venv, builds and caches
+	rm -rf $(VENV) build dist .hypothesis .mypy_cache .pytest_cache .ruff_cache
+	find feeddrive tests benchmarks scenarios docs -name __pycache__ -type d -prune -exec rm -rf {} +
+
+# A stamp is touched only after its step has succeeded, so that a broken set-up is begun again.
+$(VENV)/.created:
+	@test -n "$(PYTHON)" || { echo "error: no Python 3.11 or newer found; name one: make PYTHON=/path/to/python" >&2; exit 1; }
+	$(PYTHON) -m venv --clear $(VENV)
+	@touch $@
+
+$(VENV)/.installed: $(VENV)/.created pyproject.toml
+	$(PIP_INSTALL) -e .
+	@touch $@
+
+$(VENV)/.developing: $(VENV)/.created pyproject.toml
+	$(PIP_INSTALL) -e '.[dev]'
+	@touch $(VENV)/.installed $@
