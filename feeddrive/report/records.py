@@ -1,0 +1,119 @@
+"""The search and the data of the report as HTML: what was tried, notes on the recordings, reproducibility."""
+
+from __future__ import annotations
+
+from importlib.metadata import PackageNotFoundError, version
+
+import numpy as np
+
+from feeddrive.diagnose.result import Diagnosis, FileStamp, JudgedRecording, Trial
+from feeddrive.report.markup import Cell, bullets, catalogue_name, number, paragraph, section, table, text, words
+from feeddrive.report.people import fixed, share_text, significant, with_unit
+from feeddrive.report.words import effect_words, plain
+
+_MOST_TRIALS = 8
+
+
+def tried_section(diagnosis: Diagnosis, pictures: str) -> str:
+    """What was refused and why, and the gains of each round."""
+    return section("What was tried and not taken", _refused(diagnosis), pictures, _trials(diagnosis.trials))
+
+
+def _refused(diagnosis: Diagnosis) -> str:
+    """Refused candidates with their reasons."""
+    rows = [
+        [Cell(f"{text(effect_words(one.name))}<br>{catalogue_name(one.name)}"), words(one.reason)]
+        for one in diagnosis.refused
+    ]
+    return table([words("Effect"), words("Why not")], rows) if rows else ""
+
+
+def _trials(trials: tuple[Trial, ...]) -> str:
+    """Gains of the best candidates of each round."""
+    if not trials:
+        return ""
+    heads = [number("Round"), words("Candidate"), number("gain"), number("standard error"), words("")]
+    rows = [
+        [number(str(one.round)), Cell(catalogue_name(one.name)), number(_percent(one.gain)),
+         number(_percent(one.standard_error)), words("taken" if one.taken else "")]
+        for kept in _best_by_round(trials)
+        for one in kept
+    ]  # fmt: skip
+    note = f"The {_MOST_TRIALS} best candidates of each round; the figure tells what the gain is."
+    return table(heads, rows, "dense") + paragraph(note, "note")
+
+
+def _best_by_round(trials: tuple[Trial, ...]) -> list[list[Trial]]:
+    """The best candidates of each round, the one taken first."""
+    rounds = sorted({trial.round for trial in trials})
+    ranked = sorted(trials, key=lambda one: (not one.taken, -one.gain if np.isfinite(one.gain) else np.inf))
+    return [[one for one in ranked if one.round == number][:_MOST_TRIALS] for number in rounds]
+
+
+def _percent(share: float) -> str:
+    """A gain with two decimals, so that a column of gains lines up."""
+    return with_unit(fixed(100.0 * share, 2), "%")
+
+
+def simulation_section(diagnosis: Diagnosis) -> str:
+    """Closed-loop simulation error, where there is one."""
+    run = diagnosis.simulation
+    if run is None:
+        return ""
+    heads = [words("Channel"), number("before"), number("after")]
+    rows = [[words(plain(run.channel)), number(share_text(run.before)), number(share_text(run.after))]]
+    note = "The closed loop simulated from the setpoint alone with the declared controller; relative, unfiltered."
+    return section("Closed-loop simulation error", table(heads, rows), paragraph(note, "note"))
+
+
+def recordings_section(diagnosis: Diagnosis) -> str:
+    """The judged recordings with what was left out, notes and re-homed effects."""
+    heads = [words("Judged recording"), number("duration"), number("samples"), words("Channels, part used")]
+    rows = [_recording_row(recording) for recording in diagnosis.recordings]
+    notes = bullets(diagnosis.notes) if diagnosis.notes else ""
+    return section("The recordings", table(heads, rows) if rows else "", notes, _rehomed(diagnosis.rehomed))
+
+
+def _recording_row(recording: JudgedRecording) -> list[Cell]:
+    """Length of a recording and the part of it that was used."""
+    duration = float(recording.time[-1] - recording.time[0]) if recording.time.size else 0.0
+    used = [
+        f"{plain(one.name)} {share_text(float(np.mean(np.isfinite(one.measured - one.before))))}"
+        for one in recording.channels
+        if one.measured.size
+    ]
+    return [words(recording.name), number(with_unit(significant(duration), "s")), number(str(recording.time.size)),
+            words(", ".join(used))]  # fmt: skip
+
+
+def _rehomed(names: tuple[str, ...]) -> str:
+    """What was re-homed, in a sentence."""
+    if not names:
+        return ""
+    return paragraph(
+        f"Re-homed on the first 15 % of a recording whose encoder zero differs: {', '.join(names)}. "
+        "Errors are taken on the rest."
+    )
+
+
+def stamp_section(diagnosis: Diagnosis) -> str:
+    """Version, plant and files, so that the result can be had again."""
+    who = paragraph(f"feeddrive {program_version()}, plant {diagnosis.plant}.")
+    heads = [words("Use"), words("File"), words("SHA-256")]
+    rows = [_stamp_row("fitted", one) for one in diagnosis.fit]
+    rows += [_stamp_row("judged", one) for one in diagnosis.validate]
+    alone = "" if diagnosis.validate else paragraph("Judged on the last part of each fitted file.", "note")
+    return section("To reproduce this", who, table(heads, rows, "dense") if rows else "", alone)
+
+
+def _stamp_row(use: str, stamp: FileStamp) -> list[Cell]:
+    """One file."""
+    return [words(use), words(stamp.file), Cell(f'<code class="hash">{text(stamp.sha256)}</code>')]
+
+
+def program_version() -> str:
+    """Version of the installed package; a checkout that was not installed says so."""
+    try:
+        return version("feeddrive")
+    except PackageNotFoundError:
+        return "(not installed)"

@@ -1,0 +1,134 @@
+"""The findings of the report as HTML: verdict, errors, effects, ambiguity, what is unexplained."""
+
+from __future__ import annotations
+
+import math
+
+from feeddrive.diagnose.result import ChannelResult, Diagnosis, EffectResult, ErrorFigures, Unexplained
+from feeddrive.report.markup import (
+    Cell,
+    bullets,
+    catalogue_name,
+    number,
+    paragraph,
+    section,
+    table,
+    text,
+    words,
+)
+from feeddrive.report.parameters import parameter_text
+from feeddrive.report.people import DASH, Scale, scale_for_error, share_text, significant, with_unit
+from feeddrive.report.verdict import is_noise, verdict_sentences
+from feeddrive.report.words import effect_words, joined, plain, variable_words
+
+
+def verdict_section(diagnosis: Diagnosis) -> str:
+    """The verdict in a box, the main finding in bold."""
+    first, *others = verdict_sentences(diagnosis)
+    clean = diagnosis.channels and all(is_noise(channel) for channel in diagnosis.channels)
+    lines = "".join(paragraph(sentence) for sentence in others)
+    return f'<div class="verdict{" clean" if clean else ""}">{paragraph(first, "main")}{lines}</div>\n'
+
+
+def error_section(diagnosis: Diagnosis) -> str:
+    """Error before and after for each channel."""
+    if not diagnosis.channels:
+        return ""
+    heads = [words("Channel"), words("Band"), words("")]
+    heads += [number(one) for one in ("rms", "largest", "relative", "sensor noise", "rms / noise")]
+    rows = [row for channel in diagnosis.channels for row in _error_rows(channel, diagnosis.nothing_missing)]
+    note = (
+        "Taken on data that were not fitted, inside the band. Relative: rms error over rms of the measured signal; for "
+        "the table position, over the rms of its difference from lead × motor angle."
+    )
+    return section("Error before and after", table(heads, rows, "pairs"), paragraph(note, "note"))
+
+
+def _error_rows(channel: ChannelResult, nothing_missing: bool) -> list[list[Cell]]:
+    """One row before and one after, only one where both are the same plant."""
+    scale = scale_for_error(channel.unit)
+    low, high = channel.band_hz
+    band = f"{significant(low)} to {significant(high)} Hz"
+    name = Cell(f"<b>{text(plain(channel.name))}</b>")
+    if nothing_missing:
+        return [[name, words(band), words("declared plant"), *_errors(channel, channel.before, scale)]]
+    gain = channel.before.rms / channel.after.rms if channel.after.rms > 0.0 else math.nan
+    better = words(f"rms {significant(gain, 2)} times smaller") if gain >= 1.05 else words("")
+    return [
+        [name, words(band), words("before"), *_errors(channel, channel.before, scale)],
+        [better, words(""), words("after"), *_errors(channel, channel.after, scale)],
+    ]
+
+
+def _errors(channel: ChannelResult, figures: ErrorFigures, scale: Scale) -> list[Cell]:
+    """The figures of one row."""
+    noise = channel.noise_rms if channel.noise_rms > 0.0 else math.nan
+    shown = [with_unit(significant(one * scale.factor), scale.unit) for one in (figures.rms, figures.max)]
+    noise_text = with_unit(significant(noise * scale.factor), scale.unit) if math.isfinite(noise) else DASH
+    return [*map(number, shown), number(share_text(figures.relative)), number(noise_text),
+            number(significant(figures.rms / noise))]  # fmt: skip
+
+
+def effects_section(diagnosis: Diagnosis) -> str:
+    """Each effect with parameters, what it explains, whether it carries, evidence and reading."""
+    if not diagnosis.effects:
+        return section("Effects found", paragraph("None: no effect was added to the declared plant."))
+    channels = [channel.name for channel in diagnosis.channels]
+    heads = [words("Effect"), words("Parameter"), number("value"), number("95 % interval"), words("Explains"),
+             words("Carries over")]  # fmt: skip
+    rows = [row for effect in diagnosis.effects for row in _effect_rows(effect, channels)]
+    stories = "".join(_story(effect) for effect in diagnosis.effects)
+    note = paragraph("Carries over: it also lowers the error on data not fitted.", "note")
+    return section("Effects found", table(heads, rows, "effects"), note, f"<dl>{stories}</dl>" if stories else "")
+
+
+def _effect_rows(effect: EffectResult, channels: list[str]) -> list[list[Cell]]:
+    """One row per parameter; the name and the shares stand in the first."""
+    texts = [parameter_text(key, parameter) for key, parameter in effect.parameters.items()]
+    cells = [[words(one.name), number(one.value), number(one.interval or DASH)] for one in texts]
+    cells = cells or [[words(DASH), words(""), words("")]]
+    name = Cell(f"<b>{text(effect_words(effect.name))}</b><br>{catalogue_name(effect.name)}")
+    ordered = sorted(effect.explains, key=lambda one: channels.index(one) if one in channels else len(channels))
+    shares = [f"{text(plain(one))} {text(share_text(effect.explains[one]))}" for one in ordered]
+    first = [name, *cells[0], Cell("<br>".join(shares) or DASH), words("yes" if effect.carries else "no")]
+    return [first, *([words(""), *row, words(""), words("")] for row in cells[1:])]
+
+
+def _story(effect: EffectResult) -> str:
+    """Evidence and physical reading of an effect."""
+    if not (effect.evidence or effect.reading):
+        return ""
+    reading = f" <i>{text(effect.reading)}</i>" if effect.reading else ""
+    return f"<dt>{text(effect_words(effect.name))}</dt><dd>{text(effect.evidence)}{reading}</dd>\n"
+
+
+def ambiguous_section(diagnosis: Diagnosis) -> str:
+    """Sets of effects that these data cannot tell apart."""
+    lines = [joined([f"{effect_words(name)} ({name})" for name in names]) for names in diagnosis.ambiguous]
+    if not lines:
+        return ""
+    note = "Each of a set explains these data within 5 % of the same error. The one with fewest parameters was taken."
+    return section("What these data cannot tell apart", bullets(lines), paragraph(note, "note"))
+
+
+def unexplained_section(diagnosis: Diagnosis) -> str:
+    """What is left above noise, and on what it depends."""
+    if not diagnosis.unexplained:
+        return section("What is unexplained", paragraph("Nothing above the sensor noise."))
+    heads = [words("Channel"), number("share of the signal's square"), words("Depends on")]
+    rows = [
+        [words(plain(name)), number(share_text(one.share)), words(_dependences(one))]
+        for name, one in diagnosis.unexplained.items()
+    ]
+    note = "The share in brackets is the part of the unexplained square that a curve over this variable takes away."
+    shown = any(one.depends_on for one in diagnosis.unexplained.values())
+    return section("What is unexplained", table(heads, rows), paragraph(note, "note") if shown else "")
+
+
+def _dependences(unexplained: Unexplained) -> str:
+    """The variables that what is left depends on."""
+    texts = []
+    for one in unexplained.depends_on:
+        period = f", period {one.period}" if one.period else ""
+        texts.append(f"{variable_words(one.variable)} ({share_text(one.share)}{period})")
+    return joined(texts) or "none of the measured variables"
