@@ -53,12 +53,14 @@ def _bars(axes: Axes, places: list[int], percents: list[float], colours: list[st
     axes.barh(places, finite, color=colours, height=0.62)
     if any(errors):
         axes.errorbar(finite, places, xerr=errors, fmt="none", ecolor="#333333", elinewidth=0.9, capsize=2)
-    reach = max([*finite, 1e-9])
+    left = min([0.0, *(value - error for value, error in zip(finite, errors, strict=True))])
+    right = max([1e-9, *(value + error for value, error in zip(finite, errors, strict=True))])
+    span = right - left
     for place, value, error in zip(places, percents, errors, strict=True):
         if math.isfinite(value):
-            end = max(value, 0.0) + error + 0.02 * reach
+            end = max(value + error, 0.0) + 0.02 * span
             axes.text(end, place, share_text(value / 100.0), va="center", fontsize=8.5)
-    axes.set_xlim(min(0.0, 1.1 * min(finite)), 1.32 * reach + max(errors))
+    axes.set_xlim(left - 0.03 * span * (left < 0.0), right + 0.3 * span)
 
 
 def _names_at_left(axes: Axes, places: list[int], names: list[str], shown: bool) -> None:

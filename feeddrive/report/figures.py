@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import contextlib
-import os
 from collections.abc import Iterator
 from pathlib import Path
 
 from feeddrive.diagnose.result import Diagnosis
-from feeddrive.errors import InputError
+from feeddrive.files import write_bytes_atomically
 from feeddrive.report.drawing import RenderedFigure, ReportFigure, render
 from feeddrive.report.figure_dependence import dependence_figure
 from feeddrive.report.figure_effects import curve_figures, explains_figure, trials_figure
@@ -56,22 +54,5 @@ def save_figures(diagnosis: Diagnosis, folder: Path, rendered: tuple[RenderedFig
     figures = render_figures(diagnosis) if rendered is None else rendered
     paths = [folder / f"{figure.stem}.png" for figure in figures]
     for path, figure in zip(paths, figures, strict=True):
-        write_whole(path, figure.png)
+        write_bytes_atomically(path, figure.png)
     return paths
-
-
-def write_whole(path: Path, content: bytes) -> None:
-    """Write a file so that a reader sees the old one or the new one, never a part.
-
-    Raises:
-        InputError: the file cannot be written.
-    """
-    part = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        part.write_bytes(content)
-        part.replace(path)
-    except OSError as error:
-        with contextlib.suppress(OSError):
-            part.unlink(missing_ok=True)
-        raise InputError(f"cannot be written ({error.strerror})", str(path), "choose a folder you can write") from error

@@ -5,8 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from feeddrive.diagnose.result import Diagnosis
+from feeddrive.files import write_text_atomically
 from feeddrive.report.drawing import RenderedFigure
-from feeddrive.report.figures import render_figures, write_whole
+from feeddrive.report.figures import render_figures
 from feeddrive.report.markup import figure, paragraph, section, text
 from feeddrive.report.people import share_text
 from feeddrive.report.records import recordings_section, simulation_section, stamp_section, tried_section
@@ -33,7 +34,7 @@ def write_report(diagnosis: Diagnosis, path: Path, rendered: tuple[RenderedFigur
         InputError: the file cannot be written.
     """
     figures = render_figures(diagnosis) if rendered is None else rendered
-    write_whole(path, report_page(diagnosis, figures).encode("utf-8"))
+    write_text_atomically(path, report_page(diagnosis, figures))
 
 
 def report_page(diagnosis: Diagnosis, figures: tuple[RenderedFigure, ...]) -> str:

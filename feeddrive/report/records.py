@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from importlib.metadata import PackageNotFoundError, version
-
 import numpy as np
 
+from feeddrive import __version__
 from feeddrive.diagnose.result import Diagnosis, FileStamp, JudgedRecording, Trial
 from feeddrive.report.markup import Cell, bullets, catalogue_name, number, paragraph, section, table, text, words
 from feeddrive.report.people import fixed, share_text, significant, with_unit
@@ -98,7 +97,7 @@ def _rehomed(names: tuple[str, ...]) -> str:
 
 def stamp_section(diagnosis: Diagnosis) -> str:
     """Version, plant and files, so that the result can be had again."""
-    who = paragraph(f"feeddrive {program_version()}, plant {diagnosis.plant}.")
+    who = paragraph(f"feeddrive {__version__}, plant {diagnosis.plant}.")
     heads = [words("Use"), words("File"), words("SHA-256")]
     rows = [_stamp_row("fitted", one) for one in diagnosis.fit]
     rows += [_stamp_row("judged", one) for one in diagnosis.validate]
@@ -109,11 +108,3 @@ def stamp_section(diagnosis: Diagnosis) -> str:
 def _stamp_row(use: str, stamp: FileStamp) -> list[Cell]:
     """One file."""
     return [words(use), words(stamp.file), Cell(f'<code class="hash">{text(stamp.sha256)}</code>')]
-
-
-def program_version() -> str:
-    """Version of the installed package; a checkout that was not installed says so."""
-    try:
-        return version("feeddrive")
-    except PackageNotFoundError:
-        return "(not installed)"

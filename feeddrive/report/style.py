@@ -23,7 +23,7 @@ td { border-bottom: 1px solid #e6e6e6; padding: 5px 10px 5px 0; vertical-align: 
 th.number, td.number { text-align: right; padding-left: 8px; overflow-wrap: normal; }
 td.number { white-space: nowrap; }
 .pairs tbody tr:nth-child(odd) td { border-bottom-color: #f3f3f3; }
-.effects td:nth-child(2) { white-space: nowrap; }
+.effects td:nth-child(2), .effects td:nth-child(5) { white-space: nowrap; }
 .dense { font-size: 13px; } .dense td { padding-top: 2px; padding-bottom: 2px; }
 code { font: 12.5px/1.4 "DejaVu Sans Mono", Consolas, Menlo, monospace; color: #3a3a3a; }
 code.hash { font-size: 10.5px; }
