@@ -50,7 +50,7 @@ develop: $(VENV)/.developing ## set up .venv for working on feeddrive
 
 clean: ## remove .venv, builds and caches
 	rm -rf $(VENV) build dist .hypothesis .mypy_cache .pytest_cache .ruff_cache
-	find feeddrive tests benchmarks scenarios docs -name __pycache__ -type d -prune -exec rm -rf {} +
+	find . -path ./.git -prune -o -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # A stamp is touched only after its step has succeeded, so that a broken set-up is begun again.
 $(VENV)/.created:

@@ -11,6 +11,7 @@ from feeddrive.errors import InputError
 
 _PACKAGE = Path(__file__).resolve().parent
 _SUFFIX = ".toml"
+_MAPPING = "_map.toml"
 
 
 def plants_folder() -> Path:
@@ -32,12 +33,13 @@ def scenarios_folder() -> Path:
 
 
 def shipped_plants() -> list[Path]:
-    """Plant files that come with feeddrive, in the order of their names.
+    """Plant files that come with feeddrive, in the order of their names; mappings (`*_map.toml`) lie beside them.
 
     Raises:
         InputError: the installation holds no plants.
     """
-    return sorted(plants_folder().glob(f"*{_SUFFIX}"))
+    found = sorted(plants_folder().glob(f"*{_SUFFIX}"))
+    return [path for path in found if not path.name.endswith(_MAPPING)]
 
 
 def shipped_scenarios() -> list[Path]:

@@ -16,7 +16,7 @@ from feeddrive.errors import InputError
 def library(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A checkout with two plants and one scenario with its data; the working folder is elsewhere and empty."""
     package = tmp_path / "checkout" / "feeddrive"
-    for name in ("plants/bench_axis.toml", "plants/light_axis.toml", "plants/notes.txt"):
+    for name in ("plants/bench_axis.toml", "plants/light_axis.toml", "plants/bench_map.toml", "plants/notes.txt"):
         _touch(package.parent / name)
     for name in ("scenarios/warm_up.toml", "scenarios/bode.py", "scenarios/demo/measured.csv.gz"):
         _touch(package.parent / name)
