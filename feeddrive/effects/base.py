@@ -1,0 +1,250 @@
+"""What every physical effect answers: its kind, port, parameters, states, law and signature.
+
+An effect is written once, as a CasADi expression; simulation, linearisation, fitting and export all evaluate that one.
+Effects of a kind meet in one law per port (see `feeddrive.plant.equations`), because they do not simply add.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from enum import StrEnum
+from typing import ClassVar, Self
+
+from feeddrive.errors import InputError
+from feeddrive.typing import Expression
+
+
+class Kind(StrEnum):
+    """How an effect enters the plant; the plant evaluates the kinds in this order."""
+
+    CHAIN = "chain"
+    TRAVEL = "travel"
+    TRANSMISSION = "transmission"
+    FRICTION = "friction"
+    SOURCE = "source"
+    TIMING = "timing"
+    SENSOR = "sensor"
+
+
+class Port(StrEnum):
+    """Where an effect acts."""
+
+    MOTOR = "motor"
+    SCREW = "screw"
+    TRANSMISSION = "transmission"
+    TABLE = "table"
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One parameter of an effect.
+
+    Attributes:
+        key: name in plant files, reports and `diagnosis.json`.
+        unit: SI unit; "1" for none.
+        minimum: lower end of the physical range [unit].
+        maximum: upper end of the physical range [unit].
+        size: a size at which the effect is typically of interest [unit]; steps of fits are taken from it.
+        default: value used where a file gives none; None if it must be given.
+        table: whether the value is a list of numbers.
+    """
+
+    key: str
+    unit: str
+    minimum: float = float("-inf")
+    maximum: float = float("inf")
+    size: float = 1.0
+    default: float | None = None
+    table: bool = False
+
+
+Value = float | tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Position and velocity at a port, as CasADi expressions or arrays: [m] and [m/s], or [rad] and [rad/s] at a shaft.
+
+    `time` counts from the start of the recording [s].
+    """
+
+    position: Expression
+    velocity: Expression
+    time: Expression = 0.0
+
+
+@dataclass(frozen=True)
+class Signature:
+    """Where an effect shows in a residual.
+
+    Attributes:
+        channels: residual channels, the clearest first.
+        variable: the measured variable whose function it is.
+        confused_with: effects that can look alike, and need not be told apart by every recording.
+    """
+
+    channels: tuple[str, ...]
+    variable: str
+    confused_with: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Effect:
+    """One physical effect with its values.
+
+    Attributes:
+        values: parameter key to SI value.
+        port: where it acts.
+        label: unique name inside a plant; the effect's name, numbered where it occurs more than once.
+    """
+
+    name: ClassVar[str] = ""
+    kind: ClassVar[Kind]
+    ports: ClassVar[tuple[Port, ...]]
+    parameters: ClassVar[tuple[Parameter, ...]] = ()
+    signature: ClassVar[Signature]
+    repeatable: ClassVar[bool] = False
+
+    values: Mapping[str, Value] = field(default_factory=dict)
+    port: Port = Port.TABLE
+    label: str = ""
+
+    @classmethod
+    def of(cls, port: Port | None = None, **values: Value) -> Self:
+        """The effect with its values in SI units, checked against the physical range.
+
+        Args:
+            port: where it acts; the first possible port if not given.
+            values: parameter key to SI value.
+
+        Raises:
+            InputError: unknown or missing key, a value outside its physical range, or a port it cannot act at.
+        """
+        chosen = cls.ports[0] if port is None else port
+        if chosen not in cls.ports:
+            raise InputError(f"{cls.name} cannot act at port {chosen}", cls.name, f"use one of {', '.join(cls.ports)}")
+        return cls(values=cls.complete(values), port=chosen, label=cls.name)
+
+    @classmethod
+    def complete(cls, values: Mapping[str, Value]) -> dict[str, Value]:
+        """Values with defaults filled in, each inside its physical range.
+
+        Raises:
+            InputError: unknown or missing key, or a value outside its physical range.
+        """
+        known = {parameter.key: parameter for parameter in cls.parameters}
+        for key in values:
+            if key not in known:
+                raise InputError(f"unknown key {key!r}", cls.name, f"known are {', '.join(known)}")
+        result: dict[str, Value] = {}
+        for key, parameter in known.items():
+            value = values.get(key, parameter.default)
+            if value is None:
+                raise InputError(f"{key} is missing", cls.name, f"give it in {parameter.unit}")
+            for number in value if isinstance(value, tuple) else (value,):
+                if not parameter.minimum <= number <= parameter.maximum:
+                    span = f"{parameter.minimum:g} to {parameter.maximum:g} {parameter.unit}"
+                    raise InputError(f"{key} = {number:g} {parameter.unit} is outside its range", cls.name, f"use {span}")
+            result[key] = value
+        return result
+
+    def with_values(self, **values: Value) -> Self:
+        """The same effect with some values replaced, not checked against the range (fits may touch its edge)."""
+        return replace(self, values={**self.values, **values})
+
+    @classmethod
+    def parameter(cls, key: str) -> Parameter:
+        """The parameter with that key."""
+        return next(parameter for parameter in cls.parameters if parameter.key == key)
+
+
+class ChainEffect(Effect):
+    """An effect that changes a value of the linear chain."""
+
+    kind = Kind.CHAIN
+
+    def chain(self, chain: dict[str, Expression], p: Mapping[str, Expression]) -> dict[str, Expression]:
+        """The chain's parameters [SI] with this effect in."""
+        raise NotImplementedError
+
+
+class TravelEffect(Effect):
+    """An effect that adds delta [m] to the nut stretch e = r phi + delta - x."""
+
+    kind = Kind.TRAVEL
+    ports = (Port.TRANSMISSION,)
+
+    def travel(self, angle: Expression, position: Expression, time: Expression, p: Mapping[str, Expression]) -> Expression:
+        """Travel deviation delta [m] at screw angle [rad], table position [m] and time [s]."""
+        raise NotImplementedError
+
+
+class TransmissionEffect(Effect):
+    """An effect that fills a slot of the one spring law of the transmission."""
+
+    kind = Kind.TRANSMISSION
+    ports = (Port.TRANSMISSION,)
+
+    def free_play(self, p: Mapping[str, Expression]) -> Expression:
+        """Total free play [m] that it adds; gaps add."""
+        return 0.0
+
+
+class FrictionEffect(Effect):
+    """An effect that fills a slot of the one friction law of its port.
+
+    The law: (level0 * factors + increments) * shape + viscous0 * viscous factors + viscous increments.
+    """
+
+    kind = Kind.FRICTION
+
+    def level(self, motion: Motion, p: Mapping[str, Expression]) -> Expression:
+        """Coulomb level that it adds [N, or N m at a shaft]."""
+        return 0.0
+
+    def level_factor(self, motion: Motion, p: Mapping[str, Expression]) -> Expression:
+        """Factor on the declared Coulomb level."""
+        return 1.0
+
+    def viscous(self, motion: Motion, p: Mapping[str, Expression]) -> Expression:
+        """Speed-dependent force that it adds [N, or N m at a shaft]."""
+        return 0.0
+
+    def viscous_factor(self, motion: Motion, p: Mapping[str, Expression]) -> Expression:
+        """Factor on the declared speed-dependent force."""
+        return 1.0
+
+
+class BristleEffect(FrictionEffect):
+    """A friction effect with a bristle deflection as its state, in place of the tanh shape of its port."""
+
+    def deflection_rate(self, z: Expression, motion: Motion, level: Expression, p: Mapping[str, Expression]) -> Expression:
+        """Rate of the bristle deflection [m/s]."""
+        raise NotImplementedError
+
+    def force(
+        self, z: Expression, rate: Expression, motion: Motion, level: Expression, p: Mapping[str, Expression]
+    ) -> Expression:
+        """Friction force of the bristle [N]."""
+        raise NotImplementedError
+
+
+class SourceEffect(Effect):
+    """An effect that adds a force or torque, positive when it resists + motion."""
+
+    kind = Kind.SOURCE
+
+    def force(self, motion: Motion, p: Mapping[str, Expression]) -> Expression:
+        """Force [N] at the table or torque [N m] at a shaft; positive resists + motion."""
+        raise NotImplementedError
+
+
+class TimingEffect(Effect):
+    """A delay between what is recorded and what acts."""
+
+    kind = Kind.TIMING
+
+    def delay(self, p: Mapping[str, Expression]) -> Expression:
+        """Delay of the acting motor torque [s]."""
+        raise NotImplementedError

@@ -1,0 +1,57 @@
+"""Every effect by its name."""
+
+from __future__ import annotations
+
+import difflib
+
+from feeddrive.effects.backlash import Backlash
+from feeddrive.effects.base import Effect
+from feeddrive.effects.constant_force import ConstantForce
+from feeddrive.effects.coulomb_asymmetry import CoulombAsymmetry
+from feeddrive.effects.drive_delay import DriveDelay
+from feeddrive.effects.friction_deviation import FrictionDeviation
+from feeddrive.effects.friction_vs_position import FrictionVsPosition
+from feeddrive.effects.guide_friction import GuideFriction
+from feeddrive.effects.lead_error_periodic import LeadErrorPeriodic
+from feeddrive.effects.payload import Payload
+from feeddrive.effects.presliding import Presliding
+from feeddrive.effects.shaft_drag import BearingDrag, NutDrag
+from feeddrive.effects.stribeck import Stribeck
+from feeddrive.effects.torque_ripple import TorqueRipple
+from feeddrive.effects.viscous_asymmetry import ViscousAsymmetry
+from feeddrive.errors import InputError
+
+EFFECTS: dict[str, type[Effect]] = {
+    effect.name: effect
+    for effect in (
+        GuideFriction,
+        NutDrag,
+        BearingDrag,
+        CoulombAsymmetry,
+        ViscousAsymmetry,
+        Stribeck,
+        Presliding,
+        FrictionVsPosition,
+        FrictionDeviation,
+        TorqueRipple,
+        ConstantForce,
+        Backlash,
+        LeadErrorPeriodic,
+        Payload,
+        DriveDelay,
+    )
+}
+"""Effect name to class."""
+
+
+def find_effect(name: str, where: str = "") -> type[Effect]:
+    """The effect of that name.
+
+    Raises:
+        InputError: no such effect; names the nearest.
+    """
+    if name in EFFECTS:
+        return EFFECTS[name]
+    near = difflib.get_close_matches(name, EFFECTS, n=1, cutoff=0.4)
+    mend = f"did you mean {near[0]}?" if near else f"known are {', '.join(EFFECTS)}"
+    raise InputError(f"unknown effect {name!r}", where, mend)

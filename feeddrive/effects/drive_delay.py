@@ -1,0 +1,31 @@
+"""Motor torque that acts later than recorded.
+
+    T_acting(t) = T_recorded(t - d)
+
+| symbol | key | meaning | unit |
+|---|---|---|---|
+| d | delay | negative where the recording itself is late | s |
+
+The held torque is shifted in time as it is, not by a rational approximation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+
+from feeddrive.effects.base import Parameter, Port, Signature, TimingEffect
+from feeddrive.typing import Expression
+
+
+class DriveDelay(TimingEffect):
+    """Delay between recorded and acting torque."""
+
+    name = "drive_delay"
+    ports = (Port.MOTOR,)
+    parameters = (Parameter("delay", "s", -0.1, 0.1, size=1e-4),)
+    signature = Signature(("motor_torque",), "rate of the torque", ("payload",))
+
+    def delay(self, p: Mapping[str, Expression]) -> Expression:
+        """Delay [s]."""
+        return p["delay"]

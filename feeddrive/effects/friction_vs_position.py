@@ -1,0 +1,56 @@
+"""Coulomb level that depends on where the table is.
+
+    level = Fc + peak exp(-((x - centre) / half_width)^2) + table(x)
+
+| symbol | key | meaning | unit |
+|---|---|---|---|
+| peak | peak | level above the stroke's median, at the centre | N |
+| centre | centre | where it is highest (or lowest) | m |
+| half_width | half_width | distance at which it has fallen to 1/e | m |
+| table | position, delta_force | any further curve, linear between the positions, constant outside | m, N |
+
+Either the bump or the table may be left out. Dissipative while the level stays positive.
+Source: rail straightness and preload change along the stroke; no law, a shape.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+
+import casadi as ca
+
+from feeddrive.effects.base import FrictionEffect, Motion, Parameter, Port, Signature
+from feeddrive.typing import Expression
+
+
+class FrictionVsPosition(FrictionEffect):
+    """Coulomb level over the stroke, as a bump, a table, or both."""
+
+    name = "friction_vs_position"
+    ports = (Port.TABLE,)
+    parameters = (
+        Parameter("peak", "N", size=10.0, default=0.0),
+        Parameter("centre", "m", size=0.1, default=0.0),
+        Parameter("half_width", "m", 1e-6, 10.0, size=0.05, default=1.0),
+        Parameter("position", "m", size=0.1, default=0.0, table=True),
+        Parameter("delta_force", "N", size=10.0, default=0.0, table=True),
+    )
+    signature = Signature(("motor_torque", "table_position"), "table_position", ("friction_deviation",))
+
+    def level(self, motion: Motion, p: Mapping[str, Expression]) -> Expression:
+        """Level that it adds [N]."""
+        x = motion.position
+        bump = p["peak"] * ca.exp(-(((x - p["centre"]) / p["half_width"]) ** 2))
+        return bump + interpolate(x, p["position"], p["delta_force"])
+
+
+def interpolate(x: Expression, nodes: Expression, levels: Expression) -> Expression:
+    """Linear interpolation between nodes, constant outside; nodes ascending, shapes (k,) and (k,)."""
+    if not hasattr(nodes, "numel") or nodes.numel() == 1:
+        return levels
+    result = levels[0]
+    for i in range(nodes.numel() - 1):
+        slope = (levels[i + 1] - levels[i]) / (nodes[i + 1] - nodes[i])
+        result = result + slope * (ca.fmin(ca.fmax(x, nodes[i]), nodes[i + 1]) - nodes[i])
+    return result

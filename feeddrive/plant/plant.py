@@ -1,0 +1,116 @@
+"""The plant: a linear chain and a list of effects at its ports."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+from feeddrive.effects.base import BristleEffect, ChainEffect, Effect, TravelEffect, TransmissionEffect, Value
+from feeddrive.errors import InputError
+from feeddrive.plant.chain import Chain
+
+
+@dataclass(frozen=True)
+class Sensor:
+    """A declared sensor: the channel that it writes, its kind, where it sits, its resolution [channel unit], or 0."""
+
+    channel: str
+    kind: str
+    at: str
+    resolution: float = 0.0
+
+
+@dataclass(frozen=True)
+class PositionVelocityController:
+    """Cascade of a position and a velocity gain, its output held over the sample.
+
+        u = K_vel (K_pos (x_set - x) - v),  |u| <= limit,  T = gain u
+
+    Attributes:
+        position_gain: K_pos [1/s].
+        velocity_gain: K_vel [V s/m], or in whatever unit the output has.
+        output_limit: limit of u [V].
+        torque_per_output: motor torque per output [N m/V].
+    """
+
+    position_gain: float
+    velocity_gain: float
+    output_limit: float
+    torque_per_output: float
+
+
+@dataclass(frozen=True)
+class Plant:
+    """A feed drive: everything a simulation, a linearisation or a fit needs.
+
+    Attributes:
+        name: of the machine.
+        chain: linear chain with its values, SI.
+        effects: declared friction and whatever was found, each with its values.
+        torque_limit: of the motor [N m]; infinite if not declared.
+        sensors: declared sensors.
+        controller: the controller that drives the axis, where declared.
+        origins: value key to the source written in the plant file.
+    """
+
+    name: str
+    chain: Chain
+    effects: tuple[Effect, ...] = ()
+    torque_limit: float = float("inf")
+    sensors: tuple[Sensor, ...] = ()
+    controller: PositionVelocityController | None = None
+    origins: Mapping[str, str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self._refuse_what_cannot_compose()
+        object.__setattr__(self, "effects", _labelled(self.effects))
+
+    def with_effects(self, *effects: Effect) -> Plant:
+        """The plant with further effects.
+
+        Raises:
+            InputError: an effect that cannot act in this structure, or two that cannot act together.
+        """
+        return replace(self, effects=(*self.effects, *effects))
+
+    def effect_values(self) -> dict[str, Value]:
+        """Parameters of the effects, named `label.key`, SI."""
+        return {f"{effect.label}.{key}": value for effect in self.effects for key, value in effect.values.items()}
+
+    def chain_values(self) -> dict[str, float]:
+        """Values of the chain with the chain effects in, SI."""
+        values = dict(self.chain.values)
+        for effect in self.effects:
+            if isinstance(effect, ChainEffect):
+                values = effect.chain(values, effect.values)
+        return values
+
+    def _refuse_what_cannot_compose(self) -> None:
+        bristles = [effect.name for effect in self.effects if isinstance(effect, BristleEffect)]
+        if len(bristles) > 1:
+            raise InputError(f"two bristles at one port: {' and '.join(bristles)}", self.name, "keep one of them")
+        for effect in self.effects:
+            if isinstance(effect, TransmissionEffect) and not self.chain.elastic:
+                mend = 'use structure = "three_inertias" with the stiffness of the transmission'
+                raise InputError(f"{effect.name} needs an elastic transmission, the structure is rigid", self.name, mend)
+
+    def effects_of(self, kind: type[Effect]) -> tuple[Effect, ...]:
+        """The effects of one class."""
+        return tuple(effect for effect in self.effects if isinstance(effect, kind))
+
+    @property
+    def has_travel(self) -> bool:
+        """Whether travel errors act."""
+        return any(isinstance(effect, TravelEffect) for effect in self.effects)
+
+
+def _labelled(effects: tuple[Effect, ...]) -> tuple[Effect, ...]:
+    """The effects with unique labels: name, name_2, name_3."""
+    seen: Counter[str] = Counter()
+    result = []
+    for effect in effects:
+        seen[effect.name] += 1
+        label = effect.name if seen[effect.name] == 1 else f"{effect.name}_{seen[effect.name]}"
+        result.append(replace(effect, label=label))
+    return tuple(result)

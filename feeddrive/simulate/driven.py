@@ -1,0 +1,198 @@
+"""The load side driven by the measured motor motion: what torque and table position the plant expects."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import casadi as ca
+import numpy as np
+from scipy.interpolate import make_interp_spline
+
+from feeddrive.effects.base import Effect
+from feeddrive.plant.chain import symbolic
+from feeddrive.plant.equations import (
+    chain_symbols,
+    effect_forces,
+    parameter_symbols,
+    parameter_values,
+    travel_deviation,
+)
+from feeddrive.plant.plant import Plant
+from feeddrive.simulate.loop import Loop, loop_of
+from feeddrive.simulate.step import Layout, StepModel, driven_step
+from feeddrive.typing import FloatArray
+
+
+@dataclass(frozen=True)
+class MotorMotion:
+    """Motor motion on a grid with `substeps` steps per sample.
+
+    Attributes:
+        time: grid [s], shape (m,).
+        angle, speed: on the grid [rad, rad/s].
+        acceleration: at the samples [rad/s^2], shape (n,).
+        substeps: grid steps per sample.
+    """
+
+    time: FloatArray
+    angle: FloatArray
+    speed: FloatArray
+    acceleration: FloatArray
+    substeps: int
+
+    @property
+    def samples(self) -> slice:
+        """The samples within the grid."""
+        return slice(None, None, self.substeps)
+
+
+@dataclass(frozen=True)
+class LoadMotion:
+    """What the plant does when its motor moves as given, at the samples, shape (n,).
+
+    Attributes:
+        motor_angle, motor_speed: as given [rad, rad/s].
+        screw_angle, screw_speed: [rad, rad/s].
+        table_position, table_velocity: [m, m/s].
+        torque: motor torque needed, without timing effects [N m].
+        correction: last Newton correction of the effect forces, largest over the run [N or N m].
+    """
+
+    time: FloatArray
+    motor_angle: FloatArray
+    motor_speed: FloatArray
+    screw_angle: FloatArray
+    screw_speed: FloatArray
+    table_position: FloatArray
+    table_velocity: FloatArray
+    torque: FloatArray
+    correction: float
+
+
+def motor_motion(time: FloatArray, angle: FloatArray, substeps: int = 1) -> MotorMotion:
+    """Speed and acceleration of a sampled angle by a quintic spline through the samples.
+
+    Args:
+        time: sample times, evenly spaced [s], shape (n,).
+        angle: motor angle [rad], shape (n,).
+        substeps: grid steps per sample.
+
+    Returns:
+        The motion.
+    """
+    # about the start of the record, so that the spline's conditioning does not depend on the clock
+    spline = make_interp_spline(time - time[0], angle, k=5)
+    fine = np.linspace(0.0, time[-1] - time[0], (len(time) - 1) * substeps + 1)
+    return MotorMotion(fine, spline(fine), spline(fine, 1), spline(time - time[0], 2), substeps)
+
+
+def simulate_driven(plant: Plant, motion: MotorMotion) -> LoadMotion:
+    """Load side and motor torque of the plant for a given motor motion, starting at rest without stretch.
+
+    Args:
+        plant: with its values.
+        motion: of the motor.
+
+    Returns:
+        The motion of screw and table and the motor torque, at the samples.
+    """
+    machine = _machine(_structure_key(plant), _Holder(plant))
+    memory = np.zeros(machine.model.layout.memory)
+    free = machine.model.layout.coordinates
+    if free:
+        r = plant.chain.radius
+        memory[:free] = [motion.angle[0], r * motion.angle[0]]
+        memory[free : 2 * free] = [motion.speed[0], r * motion.speed[0]]
+    step = motion.time[1] - motion.time[0]
+    inputs = np.column_stack(
+        [motion.angle[:-1], motion.speed[:-1], motion.angle[1:], motion.speed[1:], motion.time[:-1]]
+    )
+    states, correction = machine.loop(memory, inputs, machine.model.constants(plant, step))
+    full = np.vstack([memory, states])[motion.samples]
+    return _load_motion(plant, machine, motion, full, float(np.max(correction, initial=0.0)))
+
+
+@dataclass(frozen=True)
+class _Machine:
+    """What one structure needs to be simulated: the step model, its loop and the outputs."""
+
+    model: StepModel
+    loop: Loop
+    outputs: ca.Function
+
+
+class _Holder:
+    """Carries a plant past the cache, whose key is the structure alone."""
+
+    def __init__(self, plant: Plant) -> None:
+        self.plant = plant
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Holder)
+
+    def __hash__(self) -> int:
+        return 0
+
+
+def _structure_key(plant: Plant) -> tuple[object, ...]:
+    """What makes two plants the same equations: chain, and per effect its name, port and table lengths."""
+    return (plant.chain.structure, *(_effect_key(effect) for effect in plant.effects))
+
+
+def _effect_key(effect: Effect) -> tuple[object, ...]:
+    lengths = tuple(len(value) if isinstance(value, tuple) else 1 for value in effect.values.values())
+    return (effect.name, str(effect.port), effect.label, lengths)
+
+
+@lru_cache(maxsize=256)
+def _machine(key: tuple[object, ...], holder: _Holder) -> _Machine:
+    plant = holder.plant
+    model = driven_step(plant)
+    memory, inputs, time, constants = (ca.SX.sym("a", model.function.size1_in(i)) for i in range(4))
+    after, correction = model.function(memory, inputs, time, constants)
+    step = ca.Function("feeddrive_step", [memory, ca.vertcat(inputs, time), constants], [after, correction])
+    return _Machine(model, loop_of(step), _outputs(plant, model.layout))
+
+
+def _outputs(plant: Plant, layout: Layout) -> ca.Function:
+    """(memory, theta, theta', theta'', t, parameters) -> [phi, phi', x, x', motor torque].
+
+    The torque is the motor's row of M q'' + C q' + K q = T + f.
+    """
+    symbols = parameter_symbols(plant)
+    p = chain_symbols(plant, symbols)
+    memory = ca.SX.sym("memory", layout.memory)
+    theta, speed, acceleration, time = (ca.SX.sym(name) for name in ("theta", "speed", "acceleration", "time"))
+    free = layout.coordinates
+    if plant.chain.elastic:
+        q = ca.vertcat(theta, memory[:free])
+        rate = ca.vertcat(speed, memory[free : 2 * free])
+        row = acceleration
+    else:
+        ratio = plant.chain.motor(p)[0]
+        q, rate, row = theta / ratio, speed / ratio, acceleration / ratio
+    z = memory[layout.states : layout.states + layout.bristles]
+    force = effect_forces(plant, symbols, q, rate, z, time).on_coordinates[0]
+    mass, damping, stiffness = (symbolic(m(p)) for m in (plant.chain.mass, plant.chain.damping, plant.chain.stiffness))
+    on_motor = mass[0, 0] * row + ca.mtimes(damping[0, :], rate) + ca.mtimes(stiffness[0, :], q) - force
+    torque = on_motor / plant.chain.motor(p)[0]
+    screw, table = ca.horzcat(*plant.chain.screw(p)), ca.horzcat(*plant.chain.table(p))
+    phi, x = ca.mtimes(screw, q), ca.mtimes(table, q)
+    if not plant.chain.elastic:
+        x = x + travel_deviation(plant, symbols, phi, x, time)
+    result = ca.vertcat(phi, ca.mtimes(screw, rate), x, ca.mtimes(table, rate), torque)
+    return ca.Function("outputs", [memory, theta, speed, acceleration, time, symbols.vector], [result])
+
+
+def _load_motion(
+    plant: Plant, machine: _Machine, motion: MotorMotion, memory: FloatArray, correction: float
+) -> LoadMotion:
+    at = motion.samples
+    time, angle, speed = motion.time[at], motion.angle[at], motion.speed[at]
+    mapped = machine.outputs.map(len(time))
+    rows = [row.reshape(1, -1) for row in (angle, speed, motion.acceleration, time)]
+    values = np.array(mapped(memory.T, *rows, parameter_values(plant)))
+    phi, screw_speed, x, velocity, torque = values
+    return LoadMotion(time, angle, speed, phi, screw_speed, x, velocity, torque, correction)
+

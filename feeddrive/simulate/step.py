@@ -1,0 +1,264 @@
+"""One step of a plant as a CasADi function: exact linear chain, effect forces on Radau nodes.
+
+At the two Radau nodes the coordinates follow exactly from the state at the start, the input and the node forces; the
+node forces follow from the coordinates through the effects. The small system for node forces and bristle deflections
+is solved by Newton with the exact Jacobian.
+
+    s_i = E_i s_0 + I_i w + sum_j W_ij f_j,     f_i = f(q_i, q_i', z_i, t_i),     z_i = z_0 + h sum_j a_ij z_j'
+
+The last Newton correction is handed out, so that no trajectory is wrong in silence.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import casadi as ca
+import numpy as np
+
+from feeddrive.plant.equations import (
+    Symbols,
+    bristle_count,
+    chain_symbols,
+    effect_forces,
+    parameter_symbols,
+    parameter_values,
+)
+from feeddrive.plant.plant import Plant
+from feeddrive.simulate.propagators import (
+    HERMITE_BASIS,
+    NODE_BASIS,
+    NODES,
+    RADAU,
+    basis_propagators,
+    monomial_propagators,
+)
+from feeddrive.typing import Expression, FloatArray
+
+NEWTON_ITERATIONS = 3
+"""Corrections per step; quadratic from the last step's forces, the third is the check."""
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Sizes of a step: free coordinates, states, effect forces that are not identically zero, bristles, inputs."""
+
+    driven: bool
+    coordinates: int
+    states: int
+    forced: tuple[int, ...]
+    bristles: int
+    inputs: int
+
+    @property
+    def memory(self) -> int:
+        """Length of what is carried from step to step: states, bristles, last node forces."""
+        return self.states + self.bristles + len(self.forced)
+
+
+@dataclass(frozen=True)
+class StepModel:
+    """A step function and the constants that it needs for given values.
+
+    `function` maps (memory, inputs, time, constants) to (memory after, last Newton correction).
+    """
+
+    plant: Plant
+    layout: Layout
+    function: ca.Function
+
+    def constants(self, plant: Plant, step: float) -> FloatArray:
+        """Propagators for the plant's values and the step [s], then step and parameters; shape (k,)."""
+        return np.concatenate([_propagators(plant, self.layout, step), [step], parameter_values(plant)])
+
+
+def driven_step(plant: Plant) -> StepModel:
+    """The step of the load side with the motor angle prescribed as a cubic per step.
+
+    Inputs per step: theta and theta' at its start, theta and theta' at its end [rad, rad/s].
+    """
+    return _build(plant, driven=True)
+
+
+def torque_step(plant: Plant) -> StepModel:
+    """The step of the whole plant with motor torque [N m] and cutting force [N] held over the step."""
+    return _build(plant, driven=False)
+
+
+def _build(plant: Plant, driven: bool) -> StepModel:
+    symbols = parameter_symbols(plant)
+    layout = _layout(plant, symbols, driven)
+    memory = ca.SX.sym("memory", layout.memory)
+    inputs = ca.SX.sym("inputs", layout.inputs)
+    time = ca.SX.sym("time")
+    shapes = _propagator_shapes(layout)
+    flat = ca.SX.sym("propagators", sum(rows * columns for rows, columns in shapes))
+    step = ca.SX.sym("step")
+    blocks = _unflatten(flat, shapes)
+    after, correction = _newton(plant, symbols, layout, memory, inputs, time, step, blocks)
+    constants = ca.vertcat(flat, step, symbols.vector)
+    function = ca.Function(
+        "step", [memory, inputs, time, constants], [after, correction], ["memory", "inputs", "time", "constants"],
+        ["after", "correction"],
+    )  # fmt: skip
+    return StepModel(plant, layout, function)
+
+
+def _layout(plant: Plant, symbols: Symbols, driven: bool) -> Layout:
+    n = len(plant.chain.coordinates)
+    q, rate = ca.SX.sym("q", n), ca.SX.sym("rate", n)
+    z, time = ca.SX.sym("z", bristle_count(plant)), ca.SX.sym("time")
+    forces = effect_forces(plant, symbols, q, rate, z, time).on_coordinates
+    first = 1 if driven else 0
+    forced = tuple(i for i in range(first, n) if not forces[i].is_zero())
+    free = n - first
+    return Layout(driven, free, 2 * free, forced, bristle_count(plant), 4 if driven else 2)
+
+
+def _newton(
+    plant: Plant, symbols: Symbols, layout: Layout, memory: Expression, inputs: Expression, time: Expression,
+    step: Expression, blocks: list[Expression],
+) -> tuple[Expression, Expression]:  # fmt: skip
+    """Memory after the step and the size of the last correction of the node forces."""
+    m, nz = len(layout.forced), layout.bristles
+    start, z0, last = memory[: layout.states], memory[layout.states : layout.states + nz], memory[layout.states + nz :]
+    unknown = ca.SX.sym("unknown", 2 * (m + nz))
+    states = _node_states(layout, start, inputs, unknown[: 2 * m], blocks)
+    forces, rates = [], []
+    for i, node in enumerate(NODES):
+        q, rate = _coordinates(plant, symbols, layout, states[i], inputs, node, step)
+        z = unknown[2 * m + i * nz : 2 * m + (i + 1) * nz]
+        found = effect_forces(plant, symbols, q, rate, z, time + node * step)
+        forces.append(found.on_coordinates[list(layout.forced)])
+        rates.append(found.bristle_rates)
+    residual = [unknown[i * m : (i + 1) * m] - forces[i] for i in range(2)]
+    for i in range(2):
+        z = unknown[2 * m + i * nz : 2 * m + (i + 1) * nz]
+        residual.append(z - z0 - step * (RADAU[i, 0] * rates[0] + RADAU[i, 1] * rates[1]))
+    guess = ca.vertcat(last, last, z0, z0)
+    correct = _newton_correction(ca.vertcat(*residual), unknown)
+    change = ca.SX.zeros(unknown.numel(), 1)
+    for _ in range(NEWTON_ITERATIONS):
+        (change,) = ca.substitute([correct], [unknown], [guess])
+        guess = guess - change
+    (end,) = ca.substitute([states[1]], [unknown], [guess])
+    after = ca.vertcat(end, guess[2 * m + nz :], guess[m : 2 * m])
+    largest = ca.mmax(ca.fabs(change[: 2 * m])) if m else ca.SX(0)
+    return after, largest
+
+
+def _newton_correction(residual: Expression, unknown: Expression) -> Expression:
+    """J^-1 r by elimination without pivoting: the diagonal of J is 1 plus dissipation."""
+    n = unknown.numel()
+    if n == 0:
+        return ca.SX.zeros(0, 1)
+    rows = ca.horzcat(ca.jacobian(residual, unknown), residual)
+    rows = ca.SX(rows)
+    for column in range(n):
+        for row in range(column + 1, n):
+            if not rows[row, column].is_zero():
+                rows[row, :] -= rows[row, column] / rows[column, column] * rows[column, :]
+    solution = ca.SX.zeros(n, 1)
+    for row in reversed(range(n)):
+        known = sum((rows[row, k] * solution[k] for k in range(row + 1, n)), start=ca.SX(0))
+        solution[row] = (rows[row, n] - known) / rows[row, row]
+    return solution
+
+
+def _node_states(
+    layout: Layout, start: Expression, inputs: Expression, forces: Expression, blocks: list[Expression]
+) -> list[Expression]:
+    m = len(layout.forced)
+    states = []
+    for i in range(2):
+        exponential, from_input, from_first, from_second = blocks[4 * i : 4 * i + 4]
+        state = ca.mtimes(exponential, start) + ca.mtimes(from_input, inputs)
+        state += ca.mtimes(from_first, forces[:m]) + ca.mtimes(from_second, forces[m:])
+        states.append(state)
+    return states
+
+
+def _coordinates(
+    plant: Plant, symbols: Symbols, layout: Layout, state: Expression, inputs: Expression, node: float, step: Expression
+) -> tuple[Expression, Expression]:
+    """q and q' of the whole chain at a node."""
+    half = layout.coordinates
+    if not layout.driven:
+        return state[:half], state[half:]
+    powers = node ** np.arange(4)
+    slopes = np.concatenate([[0.0], np.arange(1, 4) * node ** np.arange(3)])
+    scaled = ca.vertcat(inputs[0], step * inputs[1], inputs[2], step * inputs[3])
+    theta = ca.mtimes(ca.DM(HERMITE_BASIS @ powers).T, scaled)
+    theta_rate = ca.mtimes(ca.DM(HERMITE_BASIS @ slopes).T, scaled) / step
+    if not plant.chain.elastic:
+        ratio = plant.chain.motor(chain_symbols(plant, symbols))[0]
+        return theta / ratio, theta_rate / ratio
+    return ca.vertcat(theta, state[:half]), ca.vertcat(theta_rate, state[half:])
+
+
+def _propagator_shapes(layout: Layout) -> list[tuple[int, int]]:
+    n, m = layout.states, len(layout.forced)
+    return [(n, n), (n, layout.inputs), (n, m), (n, m)] * 2
+
+
+def _unflatten(flat: Expression, shapes: list[tuple[int, int]]) -> list[Expression]:
+    blocks, at = [], 0
+    for rows, columns in shapes:
+        blocks.append(ca.reshape(flat[at : at + rows * columns], rows, columns))
+        at += rows * columns
+    return blocks
+
+
+def _propagators(plant: Plant, layout: Layout, step: float) -> FloatArray:
+    """The blocks of `_propagator_shapes`, column-major, for the plant's present values."""
+    p = plant.chain_values()
+    mass, damping, stiffness = (
+        np.array(matrix(p), dtype=float)
+        for matrix in (plant.chain.mass, plant.chain.damping, plant.chain.stiffness)
+    )
+    first = 1 if layout.driven else 0
+    free = slice(first, None)
+    inverse = np.linalg.inv(mass[free, free]) if layout.coordinates else np.zeros((0, 0))
+    a = _state_matrix(inverse, damping[free, free], stiffness[free, free])
+    force = _force_matrix(inverse, [i - first for i in layout.forced])
+    blocks: list[FloatArray] = []
+    for node in NODES:
+        exponential, on_force = monomial_propagators(a, force, step, 1, node)
+        on_nodes = basis_propagators(on_force, NODE_BASIS)
+        from_input = _input_propagator(plant, layout, a, inverse, damping, stiffness, step, node)
+        blocks += [exponential, from_input, on_nodes[0], on_nodes[1]]
+    return np.concatenate([block.ravel(order="F") for block in blocks])
+
+
+def _input_propagator(
+    plant: Plant, layout: Layout, a: FloatArray, inverse: FloatArray, damping: FloatArray, stiffness: FloatArray,
+    step: float, node: float,
+) -> FloatArray:  # fmt: skip
+    n = layout.coordinates
+    if not layout.driven:
+        p = plant.chain_values()
+        columns = np.column_stack([plant.chain.motor(p), plant.chain.table(p)])  # virtual work: force = L' torque
+        held = np.vstack([np.zeros((n, 2)), inverse @ columns])
+        return monomial_propagators(a, held, step, 0, node)[1][0]
+    zeros = np.zeros((n, 1))
+    by_angle = np.vstack([zeros, -inverse @ stiffness[1:, :1]])
+    by_speed = np.vstack([zeros, -inverse @ damping[1:, :1]])
+    slopes = np.zeros_like(HERMITE_BASIS)
+    slopes[:, :3] = HERMITE_BASIS[:, 1:] * np.arange(1, 4) / step
+    angle = basis_propagators(monomial_propagators(a, by_angle, step, 3, node)[1], HERMITE_BASIS)
+    speed = basis_propagators(monomial_propagators(a, by_speed, step, 3, node)[1], slopes)
+    response: FloatArray = (angle + speed)[:, :, 0].T
+    return response * np.array([1.0, step, 1.0, step])
+
+
+def _state_matrix(inverse: FloatArray, damping: FloatArray, stiffness: FloatArray) -> FloatArray:
+    n = len(inverse)
+    return np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ stiffness, -inverse @ damping]])
+
+
+def _force_matrix(inverse: FloatArray, forced: list[int]) -> FloatArray:
+    n = len(inverse)
+    return np.vstack([np.zeros((n, len(forced))), inverse[:, forced]])
+
+
+__all__ = ["Layout", "StepModel", "driven_step", "torque_step"]
