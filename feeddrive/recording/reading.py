@@ -1,0 +1,104 @@
+"""Reading a recording: open, understand, convert, check, and say what was found."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from feeddrive.errors import InputError
+from feeddrive.recording.channels import Heading, read_heading
+from feeddrive.recording.checks import check_alive, check_finite, check_length
+from feeddrive.recording.csv_file import Layout, Table, read_table
+from feeddrive.recording.findings import sample_notes
+from feeddrive.recording.foreign import mapped_columns, table_variables
+from feeddrive.recording.mapping import FileMapping, read_mapping
+from feeddrive.recording.mat_file import read_variables
+from feeddrive.recording.opening import FileContent, decode, open_file
+from feeddrive.recording.recording import Recording
+from feeddrive.recording.time_checks import check_time, clock_notes, mean_sample_time
+from feeddrive.typing import FloatArray
+
+
+def read_recording(path: Path, mapping: Path | None = None, *, decimal: str | None = None) -> Recording:
+    """Read and check a recording.
+
+    Args:
+        path: .csv or .csv.gz with headings `name [unit]`, or with a mapping a .mat or foreign text file.
+        mapping: mapping file; None for files with canonical headings.
+        decimal: "." or ","; None to let the file tell.
+
+    Raises:
+        InputError: the file cannot be used; one line with file, row, column, reason and mend.
+    """
+    path = Path(path)
+    if decimal not in (None, ".", ","):
+        raise InputError(f"{decimal!r} is not a decimal sign", "--decimal", "write . or ,")
+    known = read_mapping(Path(mapping)) if mapping is not None else None
+    content = open_file(path)
+    if known is not None:
+        columns, first_row, notes = _foreign(content, known, decimal)
+    else:
+        columns, first_row, notes = _canonical(content, decimal)
+    return _checked(content, columns, first_row, notes)
+
+
+def _canonical(content: FileContent, decimal: str | None) -> tuple[dict[str, FloatArray], int, tuple[str, ...]]:
+    """Return the columns of a file with canonical headings, the row they begin in, and notes."""
+    where = str(content.path)
+    if content.path.suffix == ".mat":
+        held = ", ".join(list(read_variables(content))[:12])
+        raise InputError(f"a .mat file has no units (it holds {held})", where, "name its mapping file by --map")
+    table, notes = _table(content, Layout(decimal=decimal))
+    headings = [read_heading(name, where) for name in table.names]
+    _refuse_repeated(headings, where)
+    if "time" not in {heading.channel for heading in headings}:
+        mend = 'add a column "time [s]", or name a mapping with sample_time'
+        raise InputError("there is no time column", where, mend)
+    columns = {}
+    for index, heading in enumerate(headings):
+        column = table.values[:, index].copy()
+        columns[heading.channel] = heading.conversion.apply(column)
+    return columns, table.first_row, notes
+
+
+def _foreign(
+    content: FileContent, mapping: FileMapping, decimal: str | None
+) -> tuple[dict[str, FloatArray], int, tuple[str, ...]]:
+    """Return the columns of a foreign file, the row they begin in (1 in a .mat file), and notes."""
+    where = str(content.path)
+    said = f"read through the mapping {mapping.name}"
+    if content.path.suffix == ".mat":
+        return mapped_columns(read_variables(content), mapping, where), 1, (said,)
+    layout = mapping.layout
+    chosen = Layout(layout.header_row, layout.first_row, layout.separator, decimal or layout.decimal)
+    table, notes = _table(content, chosen)
+    return mapped_columns(table_variables(table), mapping, where), table.first_row, (said, *notes)
+
+
+def _table(content: FileContent, layout: Layout) -> tuple[Table, tuple[str, ...]]:
+    text, said = decode(content)
+    table = read_table(text, layout, str(content.path))
+    return table, (*said, *table.notes)
+
+
+def _refuse_repeated(headings: list[Heading], where: str) -> None:
+    seen: set[str] = set()
+    for heading in headings:
+        if heading.channel in seen:
+            raise InputError(f'two columns "{heading.channel}"', where, "keep one of them")
+        seen.add(heading.channel)
+
+
+def _checked(content: FileContent, columns: dict[str, FloatArray], first_row: int, notes: tuple[str, ...]) -> Recording:
+    """Check the columns and make the recording."""
+    where = str(content.path)
+    check_length(columns["time"].size, where)
+    for name, samples in columns.items():
+        check_finite(samples, name, first_row, where)
+    time = columns.pop("time")
+    if not columns:
+        raise InputError("there is no channel beside the time", where, 'add e.g. "motor_torque [N m]"')
+    check_time(time, first_row, where)
+    check_alive(columns, where)
+    sample_time = mean_sample_time(time)
+    found = (*notes, *clock_notes(time, sample_time), *sample_notes(columns))
+    return Recording(content.path.name, time, columns, sample_time, where, content.sha256, found)
