@@ -2,18 +2,20 @@
 
     dz/dt = v (1 - alpha(z, v) s0 z / (level sign v)),   F = s0 z + s1 dz/dt
 
-alpha is 0 below the break-away deflection or when z and v disagree in sign, 1 in steady sliding, and a smooth step
-between.
+alpha is 1 without a break-away share (the bristle slips from the start: Dahl, LuGre). With one it is 0 below that
+share of the steady deflection or when z and v disagree in sign, 1 in steady sliding, and a smooth step between.
 
 | symbol | key | meaning | unit |
 |---|---|---|---|
 | s0 | stiffness | bristle stiffness | N/m |
 | s1 | damping | bristle damping | N s/m |
+| b | break_away | deflection at which slip begins, over the steady one; 0 for none | 1 |
 | z | (state) | bristle deflection, 0 at the start | m |
 
-It sticks, and does not drift under vibration below break-away. Dissipative while s1 <= 4 s0 level / (s0 |v|) (Barahanov
+With a break-away share it sticks, and does not drift under vibration; without, it drifts slowly. Dissipative while s1 <= 4 s0 level / (s0 |v|) (Barahanov
 and Ortega); the damping here is small.
-Source: Dupont, Hayward, Armstrong, Altpeter, IEEE Trans. Automat. Contr. 47 (2002) 787, eqs. (8)-(12).
+Source: Dupont, Hayward, Armstrong, Altpeter, IEEE Trans. Automat. Contr. 47 (2002) 787, eqs. (8)-(12);
+Canudas de Wit, Olsson, Astrom, Lischinsky, IEEE Trans. Automat. Contr. 40 (1995) 419.
 """
 
 from __future__ import annotations
@@ -26,10 +28,6 @@ import casadi as ca
 from feeddrive.effects.base import BristleEffect, Motion, Parameter, Port, Signature
 from feeddrive.typing import Expression
 
-BREAK_AWAY_SHARE = 0.7
-"""Break-away deflection over steady-state deflection; between here and 1 the bristle begins to slip."""
-
-
 class Presliding(BristleEffect):
     """Elasto-plastic bristle."""
 
@@ -38,6 +36,7 @@ class Presliding(BristleEffect):
     parameters = (
         Parameter("stiffness", "N/m", 1e2, 1e12, size=1e7),
         Parameter("damping", "N s/m", 0.0, 1e8, size=1e3, default=0.0),
+        Parameter("break_away", "1", 0.0, 0.98, size=0.1, default=0.0),
     )
     signature = Signature(("table_position", "motor_torque"), "displacement since reversal", ("backlash", "stribeck"))
 
@@ -45,7 +44,7 @@ class Presliding(BristleEffect):
         """Rate of the bristle deflection [m/s]."""
         v = motion.velocity
         share = p["stiffness"] * z / level  # z over its steady-state value, with sign
-        return v - _slipping(ca.fabs(share), share * v) * ca.fabs(v) * share
+        return v - _slipping(ca.fabs(share), share * v, p["break_away"]) * ca.fabs(v) * share
 
     def force(
         self, z: Expression, rate: Expression, motion: Motion, level: Expression, p: Mapping[str, Expression]
@@ -54,7 +53,8 @@ class Presliding(BristleEffect):
         return p["stiffness"] * z + p["damping"] * rate
 
 
-def _slipping(share: Expression, agreement: Expression) -> Expression:
-    """alpha: share of the motion that slips, from |z|/z_ss and the sign of z v."""
-    inside = ca.fmin(ca.fmax((share - BREAK_AWAY_SHARE) / (1 - BREAK_AWAY_SHARE), 0), 1)
-    return ca.if_else(agreement > 0, 0.5 - 0.5 * ca.cos(ca.pi * inside), 0)
+def _slipping(share: Expression, agreement: Expression, break_away: Expression) -> Expression:
+    """alpha: share of the motion that slips, from |z|/z_ss, the sign of z v, and where slip begins."""
+    inside = ca.fmin(ca.fmax((share - break_away) / (1 - break_away), 0), 1)
+    elastoplastic = ca.if_else(agreement > 0, 0.5 - 0.5 * ca.cos(ca.pi * inside), 0)
+    return ca.if_else(break_away > 0, elastoplastic, 1)

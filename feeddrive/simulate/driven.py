@@ -105,12 +105,22 @@ def simulate_driven(plant: Plant, motion: MotorMotion) -> LoadMotion:
         memory[:free] = [motion.angle[0], r * motion.angle[0]]
         memory[free : 2 * free] = [motion.speed[0], r * motion.speed[0]]
     step = motion.time[1] - motion.time[0]
+    # the acceleration is known at the samples only, and only there is the torque read
+    acceleration = np.zeros(len(motion.time))
+    acceleration[motion.samples] = motion.acceleration
     inputs = np.column_stack(
-        [motion.angle[:-1], motion.speed[:-1], motion.angle[1:], motion.speed[1:], motion.time[:-1]]
+        [motion.angle[:-1], motion.speed[:-1], motion.angle[1:], motion.speed[1:], motion.time[:-1], acceleration[1:]]
     )
-    states, correction = machine.loop(memory, inputs, machine.model.constants(plant, step))
-    full = np.vstack([memory, states])[motion.samples]
-    return _load_motion(plant, machine, motion, full, float(np.max(correction, initial=0.0)))
+    constants = machine.model.constants(plant, step)
+    _, extra = machine.loop(memory, inputs, constants)
+    first = machine.outputs(memory, motion.angle[0], motion.speed[0], acceleration[0], 0.0, parameter_values(plant))
+    values = np.vstack([np.array(first).ravel(), extra[:, 1:]])[motion.samples]
+    phi, screw_speed, x, velocity, torque = np.ascontiguousarray(values.T)
+    at = motion.samples
+    return LoadMotion(
+        motion.time[at], motion.angle[at], motion.speed[at], phi, screw_speed, x, velocity, torque,
+        float(np.max(extra[:, 0], initial=0.0)),
+    )  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -149,10 +159,19 @@ def _effect_key(effect: Effect) -> tuple[object, ...]:
 def _machine(key: tuple[object, ...], holder: _Holder) -> _Machine:
     plant = holder.plant
     model = driven_step(plant)
+    outputs = _outputs(plant, model.layout)
     memory, inputs, time, constants = (ca.SX.sym("a", model.function.size1_in(i)) for i in range(4))
+    acceleration = ca.SX.sym("acceleration")
     after, correction = model.function(memory, inputs, time, constants)
-    step = ca.Function("feeddrive_step", [memory, ca.vertcat(inputs, time), constants], [after, correction])
-    return _Machine(model, loop_of(step), _outputs(plant, model.layout))
+    count = outputs.size1_in(5)
+    duration, parameters = constants[-count - 1], constants[-count:]
+    read = outputs(after, inputs[2], inputs[3], acceleration, time + duration, parameters)
+    step = ca.Function(
+        "feeddrive_step",
+        [memory, ca.vertcat(inputs, time, acceleration), constants],
+        [after, ca.vertcat(correction, read)],
+    )
+    return _Machine(model, loop_of(step), outputs)
 
 
 def _outputs(plant: Plant, layout: Layout) -> ca.Function:
@@ -183,16 +202,3 @@ def _outputs(plant: Plant, layout: Layout) -> ca.Function:
         x = x + travel_deviation(plant, symbols, phi, x, time)
     result = ca.vertcat(phi, ca.mtimes(screw, rate), x, ca.mtimes(table, rate), torque)
     return ca.Function("outputs", [memory, theta, speed, acceleration, time, symbols.vector], [result])
-
-
-def _load_motion(
-    plant: Plant, machine: _Machine, motion: MotorMotion, memory: FloatArray, correction: float
-) -> LoadMotion:
-    at = motion.samples
-    time, angle, speed = motion.time[at], motion.angle[at], motion.speed[at]
-    mapped = machine.outputs.map(len(time))
-    rows = [row.reshape(1, -1) for row in (angle, speed, motion.acceleration, time)]
-    values = np.array(mapped(memory.T, *rows, parameter_values(plant)))
-    phi, screw_speed, x, velocity, torque = values
-    return LoadMotion(time, angle, speed, phi, screw_speed, x, velocity, torque, correction)
-

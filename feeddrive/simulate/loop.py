@@ -22,7 +22,7 @@ import numpy as np
 from feeddrive.typing import FloatArray
 
 Loop = Callable[[FloatArray, FloatArray, FloatArray], tuple[FloatArray, FloatArray]]
-"""(memory (m,), inputs (n, k), constants (c,)) -> memory after every step (n, m), second output per step (n,)."""
+"""(memory (m,), inputs (n, k), constants (c,)) -> memory after every step (n, m), what else it returns (n, e)."""
 
 FLAGS = ("-O2", "-ffp-contract=off", "-fPIC", "-shared")
 """No fused or reordered arithmetic: the compiled numbers are those of the virtual machine."""
@@ -31,13 +31,14 @@ CHUNK = 512
 """Steps per call of the virtual machine."""
 
 DRIVER = """
-void feeddrive_loop(long long n, long long inputs, long long memory, double *state, const double *input,
+void feeddrive_loop(long long n, long long inputs, long long memory, long long extras, double *state,
+                    const double *input,
                     const double *constants, double *states, double *extra, long long *iw, double *w,
                     const double **arg, double **res) {
   for (long long i = 0; i < n; ++i) {
     double *out = states + i * memory;
     arg[0] = state; arg[1] = input + i * inputs; arg[2] = constants;
-    res[0] = out; res[1] = extra + i;
+    res[0] = out; res[1] = extra + i * extras;
     feeddrive_step(arg, res, iw, w, 0);
     state = out;
   }
@@ -49,7 +50,7 @@ def loop_of(step: ca.Function) -> Loop:
     """The fastest loop over `step` that this machine offers.
 
     Args:
-        step: function (memory, inputs, constants) -> (memory after, scalar), named "feeddrive_step".
+        step: function (memory, inputs, constants) -> (memory after, extra outputs), named "feeddrive_step".
 
     Returns:
         The loop.
@@ -75,6 +76,7 @@ def find_compiler() -> str | None:
 
 def interpreted_loop(step: ca.Function) -> Loop:
     """The loop in CasADi's virtual machine."""
+    extras = step.size1_out(1)
     chunk = step.mapaccum("chunk", CHUNK)
     start = ca.MX.sym("memory", step.size1_in(0))
     fed = ca.MX.sym("inputs", step.size1_in(1), CHUNK)
@@ -83,7 +85,7 @@ def interpreted_loop(step: ca.Function) -> Loop:
 
     def run(memory: FloatArray, inputs: FloatArray, constants: FloatArray) -> tuple[FloatArray, FloatArray]:
         n = len(inputs)
-        states, extra = np.empty((n, len(memory))), np.empty(n)
+        states, extra = np.empty((n, len(memory))), np.empty((n, extras))
         state = memory
         for at in range(0, n, CHUNK):
             part = inputs[at : at + CHUNK]
@@ -91,7 +93,7 @@ def interpreted_loop(step: ca.Function) -> Loop:
             padded = part if short == CHUNK else np.vstack([part, np.repeat(part[-1:], CHUNK - short, axis=0)])
             after, more = wrapped(state, padded.T, constants)
             states[at : at + short] = np.array(after).T[:short]
-            extra[at : at + short] = np.array(more).ravel()[:short]
+            extra[at : at + short] = np.array(more).T[:short]
             state = states[at + short - 1]
         return states, extra
 
@@ -132,18 +134,18 @@ def _compile(source: str, compiler: str, library: Path) -> None:
 def _compiled_loop(step: ca.Function, library: ctypes.CDLL) -> Loop:
     function = library.feeddrive_loop
     integer, pointer = ctypes.c_longlong, ctypes.c_void_p
-    function.argtypes = [integer, integer, integer, *[pointer] * 9]
+    function.argtypes = [integer] * 4 + [pointer] * 9
     function.restype = None
 
     def run(memory: FloatArray, inputs: FloatArray, constants: FloatArray) -> tuple[FloatArray, FloatArray]:
         start, fed, fixed = (np.ascontiguousarray(array, dtype=float) for array in (memory, inputs, constants))
         n = len(fed)
-        states, extra = np.empty((n, len(start))), np.empty(n)
+        states, extra = np.empty((n, len(start))), np.empty((n, step.size1_out(1)))
         integers = np.empty(step.sz_iw() + 1, dtype=np.int64)
         reals = np.empty(step.sz_w() + 1)
         arguments, results = (ctypes.c_void_p * (step.sz_arg() + 1))(), (ctypes.c_void_p * (step.sz_res() + 1))()
         function(
-            n, fed.shape[1], len(start), start.ctypes.data, fed.ctypes.data, fixed.ctypes.data, states.ctypes.data,
+            n, fed.shape[1], len(start), extra.shape[1], start.ctypes.data, fed.ctypes.data, fixed.ctypes.data, states.ctypes.data,
             extra.ctypes.data, integers.ctypes.data, reals.ctypes.data, ctypes.addressof(arguments),
             ctypes.addressof(results),
         )  # fmt: skip
