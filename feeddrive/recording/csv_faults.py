@@ -39,9 +39,16 @@ def _fault_of_row(line: str, separator: str, names: tuple[str, ...], where: str)
 def _fault_of_cell(cell: str, where: str) -> InputError | None:
     if not cell:
         return InputError("the cell is empty", where, "fill the cell or remove the row")
-    try:
-        float(cell)
-    except ValueError:
+    if not is_number(cell):
         shown = cell if len(cell) <= 40 else cell[:37] + "..."
         return InputError(f'"{shown}" is not a number', where, "write a plain decimal number")
     return None
+
+
+def is_number(cell: str) -> bool:
+    """Tell whether a cell with a decimal point is a number, NaN and infinity among them."""
+    try:
+        float(cell)
+    except ValueError:
+        return False
+    return True

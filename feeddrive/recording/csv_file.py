@@ -49,31 +49,55 @@ class Table:
     notes: tuple[str, ...]
 
 
-def read_table(text: str, layout: Layout, where: str) -> Table:
-    """Read a text table.
+@dataclass(frozen=True)
+class TextTable:
+    """A text table whose header is understood and whose numbers are still text.
+
+    Attributes:
+        names: column headings as written.
+        body: rows of numbers, lines ended by \\n.
+        separator: one of `,` `;` tab.
+        first_row: row in the file of the first row of the body, 1 for the first.
+        where: file name for messages.
+    """
+
+    names: tuple[str, ...]
+    body: str
+    separator: str
+    first_row: int
+    where: str
+
+    def numbers(self, decimal: str | None) -> Table:
+        """Return the table with its numbers; decimal is `.` or `,`, None to let the file tell.
+
+        Raises:
+            InputError: no rows, undecidable decimal sign, blank row, row of another length, a cell that is no number.
+        """
+        if not self.body:
+            raise InputError("there is a header and no row of numbers", self.where, "record again or name another file")
+        columns = len(self.names)
+        body, notes = _with_decimal_points(self.body, self.separator, columns, decimal, self.first_row, self.where)
+        values = _numbers(body, self.separator, self.names, self.first_row, self.where)
+        if self.separator != ",":
+            notes = (f"columns are separated by {_SEPARATOR_NAMES[self.separator]}", *notes)
+        return Table(self.names, values, self.first_row, notes)
+
+
+def find_table(text: str, layout: Layout, where: str) -> TextTable:
+    """Find header, separator and rows of a text table.
 
     Args:
         text: content of the file, lines ended by \\n.
         layout: what is known beforehand.
         where: file name for messages.
-
-    Raises:
-        InputError: header only, undecidable decimal sign, blank row, row of another length, a cell that is no number.
     """
     lines = text.split("\n")
     header = _header_index(lines, layout)
     first = layout.first_row - 1 if layout.first_row is not None else header + 1
     body = "\n".join(lines[first:]).rstrip().replace('"', "")
-    if not body:
-        raise InputError("there is a header and no row of numbers", where, "record again or name another file")
-    sample = lines[header] if header >= 0 else body.split("\n", 1)[0]
+    sample = lines[header] if 0 <= header < len(lines) else body.split("\n", 1)[0]
     separator = layout.separator or _separator(sample)
-    names = _names(sample, separator, header >= 0)
-    body, notes = _with_decimal_points(body, separator, len(names), layout.decimal, first + 1, where)
-    values = _numbers(body, separator, names, first + 1, where)
-    if separator != ",":
-        notes = (f"columns are separated by {_SEPARATOR_NAMES.get(separator, separator)}", *notes)
-    return Table(names, values, first + 1, notes)
+    return TextTable(_names(sample, separator, header >= 0), body, separator, first + 1, where)
 
 
 def _header_index(lines: list[str], layout: Layout) -> int:

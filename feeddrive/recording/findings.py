@@ -33,7 +33,7 @@ def quantisation_step(samples: FloatArray) -> float:
     """Return the step that samples, (n,), move in, or 0 if they have none: median of the smallest differences."""
     differences = np.diff(np.unique(samples))
     # Rounding errors of a unit conversion split equal values.
-    differences = differences[differences > 1e-12 * np.max(np.abs(samples), initial=0.0)]
+    differences = differences[differences > 1e-10 * np.max(np.abs(samples), initial=0.0)]
     if differences.size < _FEWEST_LEVELS:
         return 0.0
     smallest = differences[differences < 1.5 * differences.min()]  # two steps would be 2.0

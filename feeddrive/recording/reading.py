@@ -7,7 +7,8 @@ from pathlib import Path
 from feeddrive.errors import InputError
 from feeddrive.recording.channels import Heading, read_heading
 from feeddrive.recording.checks import check_alive, check_finite, check_length
-from feeddrive.recording.csv_file import Layout, Table, read_table
+from feeddrive.recording.csv_faults import is_number
+from feeddrive.recording.csv_file import Layout, TextTable, find_table
 from feeddrive.recording.findings import sample_notes
 from feeddrive.recording.foreign import mapped_columns, table_variables
 from feeddrive.recording.mapping import FileMapping, read_mapping
@@ -47,17 +48,30 @@ def _canonical(content: FileContent, decimal: str | None) -> tuple[dict[str, Flo
     if content.path.suffix == ".mat":
         held = ", ".join(list(read_variables(content))[:12])
         raise InputError(f"a .mat file has no units (it holds {held})", where, "name its mapping file by --map")
-    table, notes = _table(content, Layout(decimal=decimal))
-    headings = [read_heading(name, where) for name in table.names]
-    _refuse_repeated(headings, where)
-    if "time" not in {heading.channel for heading in headings}:
-        mend = 'add a column "time [s]", or name a mapping with sample_time'
-        raise InputError("there is no time column", where, mend)
+    text_table, said = _table(content, Layout())
+    headings = _headings(text_table, where)
+    table = text_table.numbers(decimal)
     columns = {}
     for index, heading in enumerate(headings):
         column = table.values[:, index].copy()
         columns[heading.channel] = heading.conversion.apply(column)
-    return columns, table.first_row, notes
+    return columns, table.first_row, (*said, *table.notes)
+
+
+def _headings(table: TextTable, where: str) -> list[Heading]:
+    """Return the headings of a file with canonical channels."""
+    if all(is_number(name) for name in table.names):
+        mend = f'put one above the numbers, e.g. "time [s]{table.separator}motor_torque [N m]"'
+        raise InputError("there is no header row", where, mend)
+    headings = [read_heading(name, where) for name in table.names]
+    seen: set[str] = set()
+    for heading in headings:
+        if heading.channel in seen:
+            raise InputError(f'two columns "{heading.channel}"', where, "keep one of them")
+        seen.add(heading.channel)
+    if "time" not in seen:
+        raise InputError("there is no time column", where, 'add "time [s]", or name a mapping with sample_time')
+    return headings
 
 
 def _foreign(
@@ -68,24 +82,16 @@ def _foreign(
     said = f"read through the mapping {mapping.name}"
     if content.path.suffix == ".mat":
         return mapped_columns(read_variables(content), mapping, where), 1, (said,)
-    layout = mapping.layout
-    chosen = Layout(layout.header_row, layout.first_row, layout.separator, decimal or layout.decimal)
-    table, notes = _table(content, chosen)
-    return mapped_columns(table_variables(table), mapping, where), table.first_row, (said, *notes)
+    text_table, encoding = _table(content, mapping.layout)
+    table = text_table.numbers(decimal or mapping.layout.decimal)
+    notes = (said, *encoding, *table.notes)
+    return mapped_columns(table_variables(table), mapping, where), table.first_row, notes
 
 
-def _table(content: FileContent, layout: Layout) -> tuple[Table, tuple[str, ...]]:
+def _table(content: FileContent, layout: Layout) -> tuple[TextTable, tuple[str, ...]]:
+    """Find the table of a text file; the second result are notes on its encoding."""
     text, said = decode(content)
-    table = read_table(text, layout, str(content.path))
-    return table, (*said, *table.notes)
-
-
-def _refuse_repeated(headings: list[Heading], where: str) -> None:
-    seen: set[str] = set()
-    for heading in headings:
-        if heading.channel in seen:
-            raise InputError(f'two columns "{heading.channel}"', where, "keep one of them")
-        seen.add(heading.channel)
+    return find_table(text, layout, str(content.path)), said
 
 
 def _checked(content: FileContent, columns: dict[str, FloatArray], first_row: int, notes: tuple[str, ...]) -> Recording:

@@ -102,8 +102,8 @@ def _refuse_two_rates(time: FloatArray, where: str) -> None:
 
 def _written_step(time: FloatArray) -> float:
     """Return the last digit that the time stamps are written with [s]; 0 if they have more than nine decimals."""
-    part = time[: 2 * _PARTS]
+    rounding = 1e-12 * np.maximum(1.0, np.abs(time))
     for decimals in range(10):
-        if bool(np.all(np.abs(np.round(part, decimals) - part) < 1e-12 * np.maximum(1.0, np.abs(part)))):
+        if bool(np.all(np.abs(np.round(time, decimals) - time) < rounding)):
             return float(10.0**-decimals)
     return 0.0
