@@ -1,0 +1,164 @@
+"""Coordinates in which an effect's parameters are fitted: scaled, logarithmic, or a sine's two components.
+
+Fits run in coordinates of size about one, so that one step length and one damping serve all of them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from feeddrive.effects.base import Effect, Value
+from feeddrive.plant.plant import Plant
+from feeddrive.typing import FloatArray
+
+ORDER_SIZE = 0.01
+"""Change of an order that shows over a stroke of some revolutions."""
+
+
+@dataclass(frozen=True)
+class Linear:
+    """value = size * coordinate."""
+
+    key: str
+    size: float
+
+    def read(self, effect: Effect) -> list[float]:
+        """Coordinates of the effect's values."""
+        value = effect.values[self.key]
+        return [number / self.size for number in (value if isinstance(value, tuple) else (value,))]
+
+    def write(self, effect: Effect, coordinates: Sequence[float]) -> dict[str, Value]:
+        """Values of the coordinates."""
+        parameter = effect.parameter(self.key)
+        numbers = [min(max(c * self.size, parameter.minimum), parameter.maximum) for c in coordinates]
+        return {self.key: tuple(numbers) if isinstance(effect.values[self.key], tuple) else numbers[0]}
+
+
+@dataclass(frozen=True)
+class Logarithmic:
+    """value = exp(coordinate)."""
+
+    key: str
+
+    def read(self, effect: Effect) -> list[float]:
+        """Coordinates of the effect's values."""
+        return [math.log(_number(effect, self.key))]
+
+    def write(self, effect: Effect, coordinates: Sequence[float]) -> dict[str, Value]:
+        """Values of the coordinates."""
+        parameter = effect.parameter(self.key)
+        value = math.exp(min(max(coordinates[0], -700.0), 700.0))
+        return {self.key: min(max(value, parameter.minimum), parameter.maximum)}
+
+
+@dataclass(frozen=True)
+class Sine:
+    """amplitude and phase as the two components of the sine."""
+
+    size: float
+
+    def read(self, effect: Effect) -> list[float]:
+        """Coordinates of the effect's values."""
+        amplitude, phase = _number(effect, "amplitude"), _number(effect, "phase")
+        return [amplitude * math.cos(phase) / self.size, amplitude * math.sin(phase) / self.size]
+
+    def write(self, effect: Effect, coordinates: Sequence[float]) -> dict[str, Value]:
+        """Values of the coordinates."""
+        a, b = coordinates
+        return {"amplitude": self.size * math.hypot(a, b), "phase": math.atan2(b, a)}
+
+
+Coordinate = Linear | Logarithmic | Sine
+
+LOGARITHMIC = {("stribeck", "velocity"), ("presliding", "stiffness"), ("friction_vs_position", "half_width")}
+"""Parameters known to a factor before they are known at all."""
+
+FIXED = {("presliding", "break_away"), ("friction_vs_position", "position")}
+"""Parameters that choose the form of a law; they are tried, not fitted."""
+
+
+def coordinates_of(effect: Effect, plant: Plant) -> list[Coordinate]:
+    """The coordinates in which the effect is fitted, for the form that its values choose."""
+    if {"amplitude", "phase"} <= set(effect.values):
+        return [Sine(effect.parameter("amplitude").size), Linear("order", ORDER_SIZE)]
+    result: list[Coordinate] = []
+    for parameter in effect.parameters:
+        pair = (effect.name, parameter.key)
+        if pair in FIXED or parameter.key in _unused(effect, plant):
+            continue
+        if pair in LOGARITHMIC:
+            result.append(Logarithmic(parameter.key))
+        else:
+            result.append(Linear(parameter.key, parameter.size))
+    return result
+
+
+def _unused(effect: Effect, plant: Plant) -> set[str]:
+    """Parameters without effect in the form that the values choose."""
+    if effect.name == "friction_vs_position":
+        as_table = isinstance(effect.values["position"], tuple)
+        return {"peak", "centre", "half_width"} if as_table else {"delta_force"}
+    if effect.name == "friction_deviation":
+        declared = [e for e in plant.effects if e.port == effect.port and e.name != effect.name]
+        return {
+            f"{kind}_factor" for kind in ("coulomb", "viscous") if not any(e.values.get(kind, 0.0) for e in declared)
+        }
+    return set()
+
+
+def read_coordinates(effects: Sequence[Effect], plant: Plant) -> FloatArray:
+    """All coordinates of the effects in one vector."""
+    values = [c for effect in effects for coordinate in coordinates_of(effect, plant) for c in coordinate.read(effect)]
+    return np.array(values, dtype=float)
+
+
+def write_coordinates(effects: Sequence[Effect], plant: Plant, vector: FloatArray) -> list[Effect]:
+    """The effects with the values of the vector."""
+    result, at = [], 0
+    for effect in effects:
+        changed: Effect = effect
+        for coordinate in coordinates_of(effect, plant):
+            count = len(coordinate.read(effect))
+            changed = changed.with_values(**coordinate.write(effect, [float(c) for c in vector[at : at + count]]))
+            at += count
+        result.append(changed)
+    return result
+
+
+def spread_to_values(
+    effects: Sequence[Effect], plant: Plant, vector: FloatArray, covariance: FloatArray
+) -> list[dict[str, FloatArray]]:
+    """Standard deviation of every fitted value, by the exact slope of the coordinates; a list entry per effect."""
+    step = 1e-6
+    base = _flat(write_coordinates(effects, plant, vector))
+    slopes: Callable[[int], FloatArray] = lambda i: (  # noqa: E731
+        _flat(write_coordinates(effects, plant, vector + step * np.eye(len(vector))[i])) - base
+    ) / step
+    jacobian = np.column_stack([slopes(i) for i in range(len(vector))])
+    deviation = np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", jacobian, covariance, jacobian), 0.0))
+    result, at = [], 0
+    for effect in effects:
+        found: dict[str, FloatArray] = {}
+        for key, value in effect.values.items():
+            count = len(value) if isinstance(value, tuple) else 1
+            found[key] = deviation[at : at + count]
+            at += count
+        result.append(found)
+    return result
+
+
+def _flat(effects: Sequence[Effect]) -> FloatArray:
+    numbers: list[float] = []
+    for effect in effects:
+        for value in effect.values.values():
+            numbers += list(value) if isinstance(value, tuple) else [float(value)]
+    return np.array(numbers)
+
+
+def _number(effect: Effect, key: str) -> float:
+    value = effect.values[key]
+    return float(value[0]) if isinstance(value, tuple) else float(value)

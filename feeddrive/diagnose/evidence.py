@@ -1,0 +1,119 @@
+"""A recording made ready for comparison: motor motion, measured channels in the band, and which samples count."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from feeddrive.diagnose.band import END_CUT, Band, comparison_band, held, white_noise
+from feeddrive.errors import InputError
+from feeddrive.plant.plant import Plant
+from feeddrive.recording import Recording
+from feeddrive.simulate.driven import MotorMotion, motor_motion
+from feeddrive.typing import BoolArray, FloatArray
+
+PREDICTED = ("motor_torque", "table_position")
+"""Channels that are predicted from the measured motor motion."""
+
+SHORTEST = 3.0
+"""Shortest recording [s] that leaves something between the cut ends."""
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """One recording, ready for comparison.
+
+    Attributes:
+        recording: as read.
+        motion: of the motor.
+        band: of the comparison.
+        measured: channel to its series in the band, shape (n,), SI.
+        noise: channel to the rms of its sensor noise in the band.
+        counted: samples that count: not at the ends, and predictable; shape (n,).
+        fitted: samples that parameters are fitted on; the other counted ones are judged; shape (n,).
+    """
+
+    recording: Recording
+    motion: MotorMotion
+    band: Band
+    measured: dict[str, FloatArray]
+    noise: dict[str, float]
+    counted: BoolArray
+    fitted: BoolArray
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Channels that are compared."""
+        return tuple(self.measured)
+
+    @property
+    def fit_rows(self) -> BoolArray:
+        """Samples that count and are fitted."""
+        return self.counted & self.fitted
+
+    @property
+    def judged_rows(self) -> BoolArray:
+        """Samples that count and are not fitted."""
+        return self.counted & ~self.fitted
+
+    def thinned(self, rows: BoolArray) -> BoolArray:
+        """Of these samples, those that carry all that is in the band."""
+        comb = np.zeros(len(rows), dtype=bool)
+        comb[:: self.band.thinning] = True
+        return rows & comb
+
+    def where_predictable(self, predictable: BoolArray) -> Evidence:
+        """The evidence without the samples that cannot be predicted."""
+        return replace(self, counted=self.counted & predictable)
+
+
+def prepare(recording: Recording, plant: Plant, share: float) -> Evidence:
+    """Evidence of a recording, its first `share` fitted and the rest judged.
+
+    Args:
+        recording: with motor_torque or table_position beside the motor angle.
+        plant: whose lead and band apply.
+        share: 1 to fit on all of it, 0 to judge on all of it.
+
+    Raises:
+        InputError: too short, or channels that are needed are missing.
+    """
+    recording = _with_motor_angle(recording, plant)
+    measured_names = [name for name in PREDICTED if name in recording]
+    if "motor_torque" not in measured_names:
+        mend = "record the motor torque, or the current and a torque constant in the mapping file"
+        raise InputError("no channel motor_torque", recording.name, mend)
+    if recording.duration < SHORTEST:
+        mend = f"record at least {SHORTEST:g} s"
+        raise InputError(f"the recording lasts {recording.duration:.3g} s, too short to compare", recording.name, mend)
+    rate = 1 / recording.sample_time
+    band = comparison_band(plant, rate)
+    time = recording.sample_time * np.arange(len(recording))
+    raw = {name: recording[name] for name in measured_names}
+    acting = {**raw, "motor_torque": held(raw["motor_torque"])}
+    counted = (time >= END_CUT) & (time <= time[-1] - END_CUT)
+    return Evidence(
+        recording,
+        motor_motion(time, recording["motor_angle"]),
+        band,
+        {name: band.filter(series) for name, series in acting.items()},
+        {name: white_noise(series, rate) * band.noise_gain for name, series in raw.items()},
+        counted,
+        time < share * time[-1] if share < 1 else np.ones(len(time), dtype=bool),
+    )
+
+
+def _with_motor_angle(recording: Recording, plant: Plant) -> Recording:
+    """The recording with a motor angle: where there is no motor encoder, the table stands in for it."""
+    if "motor_angle" in recording:
+        return recording
+    if "table_position" not in recording:
+        raise InputError("neither motor_angle nor table_position", recording.name, "record one of them")
+    if plant.chain.elastic:
+        mend = 'record the motor angle, or declare the plant with structure = "rigid"'
+        raise InputError("no channel motor_angle, and the plant is elastic", recording.name, mend)
+    channels = dict(recording.channels)
+    channels["motor_angle"] = channels.pop("table_position") / plant.chain.radius
+    note = "no motor encoder: the motor angle is taken from the table position"
+    return replace(recording, channels=channels, notes=(*recording.notes, note))

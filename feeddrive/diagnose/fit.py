@@ -1,0 +1,155 @@
+"""Least squares on all channels at once, each weighted by its sensor noise, with the zero of a linear scale left free.
+
+    r_c = (measured_c - predicted_c) / noise_c      in the band, table position less its mean per recording
+
+The Jacobian comes from simulations at slightly changed coordinates; the loop over samples is compiled and exact, so the
+differences are smooth. Levenberg-Marquardt; the blocks that cross-validation and intervals need come with the result.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from feeddrive.diagnose.coordinates import read_coordinates, write_coordinates
+from feeddrive.diagnose.evidence import Evidence
+from feeddrive.diagnose.prediction import Predictor
+from feeddrive.effects.base import Effect
+from feeddrive.plant.plant import Plant
+from feeddrive.typing import BoolArray, FloatArray
+
+DIFFERENCE = 1e-4
+"""Step of the differences in coordinates of size one."""
+
+ENOUGH = 1e-4
+"""A step that lowers the squared error by less than this share ends the fit."""
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A fitted set of effects.
+
+    Attributes:
+        effects: with fitted values, in the order given.
+        residual: weighted, at the thinned fitted samples of all channels and recordings, shape (m,).
+        jacobian: of the prediction in fit coordinates, weighted alike, shape (m, k).
+        coordinates: shape (k,).
+    """
+
+    effects: tuple[Effect, ...]
+    residual: FloatArray
+    jacobian: FloatArray
+    coordinates: FloatArray
+
+    @property
+    def squared_error(self) -> float:
+        """Sum of the weighted squared residuals; infinite where the plant could not be simulated."""
+        total = float(self.residual @ self.residual)
+        return total if np.isfinite(total) else float("inf")
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Declared plant, recordings, and what predicts them."""
+
+    plant: Plant
+    evidence: tuple[Evidence, ...]
+    predictor: Predictor
+
+    def weighted(self, series: dict[str, FloatArray], evidence: Evidence, rows: BoolArray) -> FloatArray:
+        """Channels of one recording at some samples, over their noise, one after the other."""
+        parts = []
+        for name in evidence.channels:
+            part = series[name][rows] / evidence.noise[name]
+            parts.append(part - np.mean(part) if name == "table_position" else part)
+        return np.concatenate(parts)
+
+    def predicted(self, effects: Sequence[Effect]) -> FloatArray:
+        """Weighted prediction at the fitted samples of all recordings."""
+        plant = self.plant.with_effects(*effects)
+        return np.concatenate(
+            [self.weighted(self.predictor.predict(plant, e), e, e.thinned(e.fit_rows)) for e in self.evidence]
+        )
+
+    def measured(self) -> FloatArray:
+        """Weighted measurement at the fitted samples of all recordings."""
+        return np.concatenate([self.weighted(e.measured, e, e.thinned(e.fit_rows)) for e in self.evidence])
+
+    def residual(self, effects: Sequence[Effect]) -> FloatArray:
+        """Weighted residual at the fitted samples of all recordings."""
+        return self.measured() - self.predicted(effects)
+
+    def jacobian(self, effects: Sequence[Effect], free: Sequence[bool], base: FloatArray) -> FloatArray:
+        """Slope of the prediction with the coordinates of the free effects."""
+        moved = [effect for effect, is_free in zip(effects, free, strict=True) if is_free]
+        vector = read_coordinates(moved, self.plant)
+        columns = []
+        for i in range(len(vector)):
+            step = np.zeros(len(vector))
+            step[i] = DIFFERENCE
+            changed = _placed(effects, free, write_coordinates(moved, self.plant, vector + step))
+            columns.append((self.predicted(changed) - base) / DIFFERENCE)
+        return np.column_stack(columns) if columns else np.zeros((len(base), 0))
+
+
+def fit(problem: Problem, effects: Sequence[Effect], free: Sequence[bool] | None = None, iterations: int = 12) -> Fit:
+    """Fit the free effects by Levenberg-Marquardt, starting from their values.
+
+    Args:
+        problem: what is fitted to what.
+        effects: beyond the declared ones; the others keep their values.
+        free: which are fitted; all if None.
+        iterations: at most.
+
+    Returns:
+        The fit, its Jacobian taken at the end.
+    """
+    chosen = [True] * len(effects) if free is None else list(free)
+    measured = problem.measured()
+    current = list(effects)
+    predicted = problem.predicted(current)
+    residual = measured - predicted
+    damping = 1e-6
+    jacobian = problem.jacobian(current, chosen, predicted)
+    for _ in range(iterations):
+        if jacobian.shape[1] == 0 or not np.all(np.isfinite(jacobian)):
+            break
+        step_found, gain = False, 0.0
+        for _ in range(5):
+            trial = _stepped(problem, current, chosen, jacobian, residual, damping)
+            trial_predicted = problem.predicted(trial)
+            trial_residual = measured - trial_predicted
+            before, after = residual @ residual, trial_residual @ trial_residual
+            if np.isfinite(after) and after < before:
+                step_found, gain = True, (before - after) / before
+                break
+            damping = max(damping * 30, 1e-4)
+        if not step_found:
+            break
+        damping = max(damping * 0.1, 1e-9)
+        current, residual = trial, trial_residual
+        jacobian = problem.jacobian(current, chosen, trial_predicted)
+        if gain < ENOUGH:
+            break
+    moved = [effect for effect, is_free in zip(current, chosen, strict=True) if is_free]
+    return Fit(tuple(current), residual, jacobian, read_coordinates(moved, problem.plant))
+
+
+def _stepped(
+    problem: Problem, effects: Sequence[Effect], free: Sequence[bool], jacobian: FloatArray, residual: FloatArray,
+    damping: float,
+) -> list[Effect]:  # fmt: skip
+    normal = jacobian.T @ jacobian
+    scale = np.diag(normal).copy()
+    scale[scale <= 0] = 1.0
+    step = np.linalg.lstsq(normal + damping * np.diag(scale), jacobian.T @ residual, rcond=1e-14)[0]
+    moved = [effect for effect, is_free in zip(effects, free, strict=True) if is_free]
+    vector = read_coordinates(moved, problem.plant) + step
+    return _placed(effects, free, write_coordinates(moved, problem.plant, vector))
+
+
+def _placed(effects: Sequence[Effect], free: Sequence[bool], moved: Sequence[Effect]) -> list[Effect]:
+    rest = iter(moved)
+    return [next(rest) if is_free else effect for effect, is_free in zip(effects, free, strict=True)]

@@ -1,0 +1,47 @@
+"""Periodogram over an angle: which orders per revolution a residual holds."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.signal import find_peaks
+
+from feeddrive.typing import FloatArray
+
+BINS_PER_TURN = 256
+"""Angle bins per revolution; the highest order is a quarter of it."""
+
+OVERSAMPLING = 8
+"""Zero padding, so that a peak is met to an eighth of the resolution."""
+
+
+def strongest_orders(angle: FloatArray, residual: FloatArray, count: int = 2) -> list[float]:
+    """Orders per revolution of the largest peaks.
+
+    The residual is averaged per angle bin first, so that rests and slow strokes do not weigh by their duration.
+
+    Args:
+        angle: shape (n,) [rad].
+        residual: shape (n,).
+        count: how many.
+
+    Returns:
+        Orders, the strongest first; empty if the angle covers less than two revolutions.
+    """
+    bins = np.floor(angle * BINS_PER_TURN / (2 * np.pi)).astype(int)
+    bins -= bins.min()
+    size = int(bins.max()) + 1
+    turns = size / BINS_PER_TURN
+    if turns < 2:
+        return []
+    samples = np.bincount(bins, minlength=size)
+    mean = np.bincount(bins, weights=residual - np.mean(residual), minlength=size) / np.maximum(samples, 1)
+    window = np.where(samples > 0, 1.0, 0.0)
+    padded = OVERSAMPLING * size
+    spectrum = np.abs(np.fft.rfft(mean * window, padded))
+    orders = np.arange(len(spectrum)) * BINS_PER_TURN / padded
+    # below two periods in the travel a sine is a trend
+    allowed = (orders > 2 / turns) & (orders < BINS_PER_TURN / 4)
+    spectrum = np.where(allowed, spectrum, 0.0)
+    peaks, _ = find_peaks(spectrum, distance=OVERSAMPLING)
+    best = peaks[np.argsort(spectrum[peaks])[::-1][:count]]
+    return [float(orders[i]) for i in best]

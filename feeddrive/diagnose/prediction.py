@@ -1,0 +1,77 @@
+"""What a plant predicts for a recording, in the band: motor torque and table position from the motor motion alone."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from dataclasses import dataclass, field, replace
+from threading import Lock
+
+import numpy as np
+from scipy.ndimage import shift
+
+from feeddrive.diagnose.evidence import Evidence
+from feeddrive.effects.base import ChainEffect, Effect, Motion, Port, SourceEffect, TimingEffect
+from feeddrive.plant.plant import Plant
+from feeddrive.simulate.driven import LoadMotion, simulate_driven
+from feeddrive.typing import FloatArray
+
+REMEMBERED = 24
+"""Load-side simulations kept; effects at the motor alone need none of their own."""
+
+
+@dataclass
+class Predictor:
+    """Predicts recordings, and remembers what the load side did.
+
+    Not a frozen record: it is a cache.
+    """
+
+    _runs: OrderedDict[object, LoadMotion] = field(default_factory=OrderedDict)
+    _lock: Lock = field(default_factory=Lock)
+
+    def load_motion(self, plant: Plant, evidence: Evidence) -> LoadMotion:
+        """Motion of the load side, without what acts at the motor alone."""
+        bare = replace(plant, effects=tuple(effect for effect in plant.effects if not _at_motor_alone(effect)))
+        key = (id(evidence.motion), _values_key(bare))
+        with self._lock:
+            if key in self._runs:
+                self._runs.move_to_end(key)
+                return self._runs[key]
+        run = simulate_driven(bare, evidence.motion)
+        with self._lock:
+            self._runs[key] = run
+            while len(self._runs) > REMEMBERED:
+                self._runs.popitem(last=False)
+        return run
+
+    def predict(self, plant: Plant, evidence: Evidence) -> dict[str, FloatArray]:
+        """Channel to predicted series in the band, shape (n,), SI."""
+        run = self.load_motion(plant, evidence)
+        raw = {"motor_torque": run.torque + motor_sources(plant, run), "table_position": run.table_position}
+        delay = sum(effect.delay(effect.values) for effect in plant.effects if isinstance(effect, TimingEffect))
+        result = {name: evidence.band.filter(raw[name]) for name in evidence.channels}
+        if delay:
+            # what acts at t was recorded at t - delay, so the recorded torque is the acting one seen early
+            samples = delay / evidence.recording.sample_time
+            result["motor_torque"] = shift(result["motor_torque"], -samples, order=5, mode="nearest")
+        return result
+
+
+def motor_sources(plant: Plant, run: LoadMotion) -> FloatArray:
+    """Torque that the sources at the motor ask for [N m], shape (n,)."""
+    motion = Motion(run.motor_angle, run.motor_speed, run.time)
+    total = np.zeros(len(run.time))
+    for effect in plant.effects:
+        if isinstance(effect, SourceEffect) and effect.port == Port.MOTOR:
+            total += np.asarray(effect.force(motion, effect.values), dtype=float).ravel()
+    return total
+
+
+def _at_motor_alone(effect: Effect) -> bool:
+    """Whether the load side does not notice the effect when the motor motion is given."""
+    return isinstance(effect, TimingEffect) or (isinstance(effect, SourceEffect) and effect.port == Port.MOTOR)
+
+
+def _values_key(plant: Plant) -> object:
+    effects = tuple((e.name, str(e.port), tuple(e.values.items())) for e in plant.effects)
+    return (tuple(plant.chain_values().items()), effects, any(isinstance(e, ChainEffect) for e in plant.effects))

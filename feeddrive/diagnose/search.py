@@ -1,0 +1,224 @@
+"""The search: add the effect that lowers the error on data not fitted the most, until none pays; then drop what does not.
+
+Every round starts each candidate from values read off the residual, refines it on all channels, and compares it by
+blocked cross-validation. The best few are refitted together with what was found before.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from feeddrive.diagnose.candidates import CANDIDATES, Candidate, Scene, scene_of
+from feeddrive.diagnose.cross_validation import Comparison, block_errors, block_numbers, compare
+from feeddrive.diagnose.fit import Fit, Problem, fit
+from feeddrive.diagnose.predictability import predictable_samples
+from feeddrive.diagnose.result import Trial
+from feeddrive.effects.base import Effect
+from feeddrive.effects.catalogue import EFFECTS
+from feeddrive.errors import InputError
+from feeddrive.typing import FloatArray
+
+MOST_EFFECTS = 8
+"""Rounds at most; an axis that lacks more needs another declaration."""
+
+FINALISTS = 3
+"""Candidates of a round that are refitted together with what was found before."""
+
+WORKERS = 2
+"""Candidates tried at the same time; the loop over samples runs outside Python's lock."""
+
+
+@dataclass(frozen=True)
+class Attempt:
+    """A candidate refined in one round, against the same recordings without it.
+
+    Attributes:
+        name: effect name.
+        fit: of all free effects.
+        comparison: against the effects found before.
+        problem: recordings with the samples that this candidate can predict.
+        errors: squared error per block, left out of the fit, shape (blocks,).
+    """
+
+    name: str
+    fit: Fit
+    comparison: Comparison
+    problem: Problem
+    errors: FloatArray
+
+
+@dataclass(frozen=True)
+class Search:
+    """What the search found, and everything that it tried."""
+
+    problem: Problem
+    fit: Fit
+    trials: tuple[Trial, ...]
+    rounds: tuple[tuple[Attempt, ...], ...]
+    impossible: dict[str, str]
+
+
+def search(problem: Problem, said: Callable[[str], None] = lambda text: None) -> Search:
+    """Find the effects that the declared plant lacks.
+
+    Args:
+        problem: declared plant and recordings.
+        said: told what is going on, for a progress display.
+
+    Returns:
+        The effects found, fitted together, and the ledger of the search.
+    """
+    found = fit(problem, ())
+    trials: list[Trial] = []
+    rounds: list[tuple[Attempt, ...]] = []
+    impossible: dict[str, str] = {}
+    while len(found.effects) < MOST_EFFECTS:
+        said(f"round {len(rounds) + 1}: {len(found.effects)} effects so far")
+        scene = scene_of(problem, found.effects)
+        attempts = _round(scene, found, impossible)
+        rounds.append(tuple(attempts))
+        winner = attempts[0] if attempts and attempts[0].comparison.pays else None
+        trials += [_trial(len(rounds), attempt, attempt is winner) for attempt in attempts]
+        if winner is None:
+            break
+        problem, found = winner.problem, winner.fit
+        found = _without_idle(problem, found)
+    return Search(problem, found, tuple(trials), tuple(rounds), impossible)
+
+
+def _trial(number: int, attempt: Attempt, taken: bool) -> Trial:
+    return Trial(number, attempt.name, attempt.comparison.gain, attempt.comparison.standard_error, taken)
+
+
+def _round(scene: Scene, found: Fit, impossible: dict[str, str]) -> list[Attempt]:
+    """All candidates of one round, the best first."""
+    ready = []
+    for candidate in CANDIDATES:
+        if _already(candidate.name, found.effects):
+            continue
+        reason = candidate.needs(scene)
+        if reason:
+            impossible[candidate.name] = reason
+        else:
+            ready.append(candidate)
+    with ThreadPoolExecutor(WORKERS) as pool:
+        groups = pool.map(lambda candidate: _alone(scene, candidate), ready)
+        alone = [attempt for group in groups for attempt in group]
+        alone.sort(key=lambda attempt: attempt.comparison.gain, reverse=True)
+        best = _best_per_name(alone)
+        if found.effects:
+            finalists = [attempt for attempt in best[:FINALISTS] if attempt.comparison.gain > 0]
+            joint = list(pool.map(lambda attempt: _together(attempt, found), finalists))
+            best = _best_per_name(sorted([*joint, *best[len(finalists) :]], key=lambda a: -a.comparison.gain))
+    return best
+
+
+def _already(name: str, effects: Sequence[Effect]) -> bool:
+    return any(effect.name == name for effect in effects) and not EFFECTS[name].repeatable
+
+
+def _best_per_name(attempts: Sequence[Attempt]) -> list[Attempt]:
+    best: dict[str, Attempt] = {}
+    for attempt in attempts:
+        best.setdefault(attempt.name, attempt)
+    return list(best.values())
+
+
+def _alone(scene: Scene, candidate: Candidate) -> list[Attempt]:
+    """Each form of a candidate, refined while what was found before stays as it is."""
+    attempts = []
+    for starts in candidate.forms(scene):
+        try:
+            attempts.append(_refined(scene, candidate.name, starts))
+        except InputError:  # cannot act together with what was found, or cannot be simulated
+            continue
+    return attempts
+
+
+def _refined(scene: Scene, name: str, starts: Sequence[Effect]) -> Attempt:
+    before = scene.found
+    problem = with_predictable(scene.problem, (*before, starts[0]))
+    start = starts[0] if len(starts) == 1 else min(starts, key=lambda s: _after_one_step(problem, (*before, s)))
+    result = fit(problem, (*before, start), [False] * len(before) + [True])
+    if not (np.isfinite(result.squared_error) and np.all(np.isfinite(result.jacobian))):
+        raise InputError(f"{name} could not be simulated", name)
+    problem = with_predictable(scene.problem, result.effects)
+    return _attempt(problem, name, result, before)
+
+
+def _after_one_step(problem: Problem, effects: Sequence[Effect]) -> float:
+    """Squared error after one step of the fit; ranks starts."""
+    return fit(problem, effects, [False] * (len(effects) - 1) + [True], iterations=1).squared_error
+
+
+def _together(attempt: Attempt, found: Fit) -> Attempt:
+    result = fit(attempt.problem, attempt.fit.effects)
+    return _attempt(attempt.problem, attempt.name, result, found.effects)
+
+
+def _attempt(problem: Problem, name: str, result: Fit, before: Sequence[Effect]) -> Attempt:
+    """Compare a fit with the effects before it, both on the same samples and both with their own effects free."""
+    blocks = block_numbers(problem)
+    if len(blocks) != len(result.residual):
+        result = fit(problem, result.effects, _free(result, before), iterations=0)
+    reference = _reference(problem, before, result)
+    without = block_errors(reference.residual, reference.jacobian, blocks)
+    errors = block_errors(result.residual, result.jacobian, blocks)
+    return Attempt(name, result, compare(without, errors), problem, errors)
+
+
+def _free(result: Fit, before: Sequence[Effect]) -> list[bool]:
+    """Which effects a fit had free: the last alone, or all."""
+    joint = result.effects[: len(before)] != tuple(before)
+    return [joint] * len(before) + [True] * (len(result.effects) - len(before))
+
+
+def _reference(problem: Problem, before: Sequence[Effect], result: Fit) -> Fit:
+    joint = result.effects[: len(before)] != tuple(before)
+    return fit(problem, before, [joint] * len(before), iterations=0)
+
+
+def with_predictable(problem: Problem, effects: Sequence[Effect]) -> Problem:
+    """The problem without the samples that a plant with these effects cannot predict."""
+    plant = problem.plant.with_effects(*effects)
+    kept = tuple(e.where_predictable(predictable_samples(plant, e)) for e in problem.evidence)
+    if any(not e.fit_rows.any() for e in kept):
+        return problem
+    return replace(problem, evidence=kept)
+
+
+def _without_idle(problem: Problem, found: Fit) -> Fit:
+    """The fit without effects that no longer pay once the others are there."""
+    if len(found.effects) < 2:
+        return found
+    blocks = block_numbers(problem)
+    errors = block_errors(found.residual, found.jacobian, blocks)
+    for i in range(len(found.effects) - 1):
+        rest = fit(problem, found.effects[:i] + found.effects[i + 1 :], iterations=4)
+        gain = compare(block_errors(rest.residual, rest.jacobian, blocks), errors)
+        if not gain.pays:
+            return _without_idle(problem, fit(problem, rest.effects))
+    return found
+
+
+def standard_deviations(fitted: Fit, blocks: FloatArray) -> FloatArray:
+    """Covariance of the fit coordinates where residuals are coloured; shape (k, k).
+
+    Scores are summed over neighbouring blocks before they are squared (Newey and West over blocks), so that correlation
+    of any form inside a block, and across one border, is counted.
+    Source: Newey and West, Econometrica 55 (1987) 703; Liang and Zeger, Biometrika 73 (1986) 13.
+    """
+    scores = fitted.jacobian * fitted.residual[:, None]
+    count = int(blocks.max(initial=0)) + 1
+    sums = np.zeros((count, scores.shape[1]))
+    np.add.at(sums, blocks, scores)
+    neighbours = sums[1:].T @ sums[:-1]
+    middle = sums.T @ sums + 0.5 * (neighbours + neighbours.T)
+    normal = fitted.jacobian.T @ fitted.jacobian
+    inverse = np.linalg.pinv(normal, rcond=1e-14)
+    covariance: FloatArray = inverse @ middle @ inverse
+    return covariance
