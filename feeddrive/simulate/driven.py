@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 
 import casadi as ca
 import numpy as np
 from scipy.interpolate import make_interp_spline
 
-from feeddrive.effects.base import Effect
 from feeddrive.plant.chain import symbolic
 from feeddrive.plant.equations import (
     chain_symbols,
@@ -21,6 +19,7 @@ from feeddrive.plant.equations import (
 from feeddrive.plant.plant import Plant
 from feeddrive.simulate.loop import Loop, loop_of
 from feeddrive.simulate.step import Layout, StepModel, driven_step
+from feeddrive.simulate.structure import per_structure
 from feeddrive.typing import FloatArray
 
 
@@ -97,7 +96,7 @@ def simulate_driven(plant: Plant, motion: MotorMotion) -> LoadMotion:
     Returns:
         The motion of screw and table and the motor torque, at the samples.
     """
-    machine = _machine(_structure_key(plant), _Holder(plant))
+    machine = _machine(plant)
     memory = np.zeros(machine.model.layout.memory)
     free = machine.model.layout.coordinates
     if free:
@@ -132,32 +131,8 @@ class _Machine:
     outputs: ca.Function
 
 
-class _Holder:
-    """Carries a plant past the cache, whose key is the structure alone."""
-
-    def __init__(self, plant: Plant) -> None:
-        self.plant = plant
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Holder)
-
-    def __hash__(self) -> int:
-        return 0
-
-
-def _structure_key(plant: Plant) -> tuple[object, ...]:
-    """What makes two plants the same equations: chain, and per effect its name, port and table lengths."""
-    return (plant.chain.structure, *(_effect_key(effect) for effect in plant.effects))
-
-
-def _effect_key(effect: Effect) -> tuple[object, ...]:
-    lengths = tuple(len(value) if isinstance(value, tuple) else 1 for value in effect.values.values())
-    return (effect.name, str(effect.port), effect.label, lengths)
-
-
-@lru_cache(maxsize=256)
-def _machine(key: tuple[object, ...], holder: _Holder) -> _Machine:
-    plant = holder.plant
+@per_structure
+def _machine(plant: Plant) -> _Machine:
     model = driven_step(plant)
     outputs = _outputs(plant, model.layout)
     memory, inputs, time, constants = (ca.SX.sym("a", model.function.size1_in(i)) for i in range(4))

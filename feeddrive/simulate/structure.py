@@ -1,0 +1,58 @@
+"""One machine per structure: plants that differ in values alone share their equations and their compiled loop."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import lru_cache
+from typing import Concatenate, ParamSpec, TypeVar
+
+from feeddrive.effects.base import Effect
+from feeddrive.plant.plant import Plant
+
+Options = ParamSpec("Options")
+Machine = TypeVar("Machine")
+
+
+class _Holder:
+    """Carries a plant past the cache, whose key is the structure alone."""
+
+    def __init__(self, plant: Plant) -> None:
+        self.plant = plant
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Holder)
+
+    def __hash__(self) -> int:
+        return 0
+
+
+def per_structure(
+    build: Callable[Concatenate[Plant, Options], Machine],
+) -> Callable[Concatenate[Plant, Options], Machine]:
+    """`build`, run once per structure of plant and further options; it must not use the plant's values.
+
+    Args:
+        build: maker of a machine from a plant and hashable options.
+
+    Returns:
+        The same maker with a memory.
+    """
+
+    @lru_cache(maxsize=256)
+    def cached(key: tuple[object, ...], holder: _Holder, *args: Options.args, **kwargs: Options.kwargs) -> Machine:
+        return build(holder.plant, *args, **kwargs)
+
+    def machine(plant: Plant, /, *args: Options.args, **kwargs: Options.kwargs) -> Machine:
+        return cached(structure_key(plant), _Holder(plant), *args, **kwargs)
+
+    return machine
+
+
+def structure_key(plant: Plant) -> tuple[object, ...]:
+    """What makes two plants the same equations: chain, and per effect its name, port and table lengths."""
+    return (plant.chain.structure, *(_effect_key(effect) for effect in plant.effects))
+
+
+def _effect_key(effect: Effect) -> tuple[object, ...]:
+    lengths = tuple(len(value) if isinstance(value, tuple) else 1 for value in effect.values.values())
+    return (effect.name, str(effect.port), effect.label, lengths)
