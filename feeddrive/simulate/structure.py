@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import lru_cache
-from typing import Concatenate, ParamSpec, TypeVar
+from typing import TypeVar, TypeVarTuple
 
 from feeddrive.effects.base import Effect
 from feeddrive.plant.plant import Plant
 
-Options = ParamSpec("Options")
+Options = TypeVarTuple("Options")
 Machine = TypeVar("Machine")
 
 
@@ -26,9 +26,7 @@ class _Holder:
         return 0
 
 
-def per_structure(
-    build: Callable[Concatenate[Plant, Options], Machine],
-) -> Callable[Concatenate[Plant, Options], Machine]:
+def per_structure(build: Callable[[Plant, *Options], Machine]) -> Callable[[Plant, *Options], Machine]:
     """`build`, run once per structure of plant and further options; it must not use the plant's values.
 
     Args:
@@ -39,11 +37,11 @@ def per_structure(
     """
 
     @lru_cache(maxsize=256)
-    def cached(key: tuple[object, ...], holder: _Holder, *args: Options.args, **kwargs: Options.kwargs) -> Machine:
-        return build(holder.plant, *args, **kwargs)
+    def cached(key: tuple[object, ...], holder: _Holder, options: tuple[*Options]) -> Machine:
+        return build(holder.plant, *options)
 
-    def machine(plant: Plant, /, *args: Options.args, **kwargs: Options.kwargs) -> Machine:
-        return cached(structure_key(plant), _Holder(plant), *args, **kwargs)
+    def machine(plant: Plant, *options: *Options) -> Machine:
+        return cached(structure_key(plant), _Holder(plant), options)
 
     return machine
 
