@@ -1,0 +1,225 @@
+"""Reading one table of a plant file: quantities with unit, source and tolerance, and nothing unknown."""
+
+from __future__ import annotations
+
+import difflib
+import tomllib
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from feeddrive.effects.base import Value
+from feeddrive.errors import InputError
+from feeddrive.quantity import parse
+
+_TABLE_KEYS = ("value", "source", "tolerance")
+
+
+@dataclass
+class Origins:
+    """Where the values come from, gathered while a file is read: value key to source."""
+
+    found: dict[str, str] = field(default_factory=dict)
+
+    def note(self, key: str, source: str, tolerance: str) -> None:
+        """Remember the source of a value and how well it is known; a value without either is not noted."""
+        spread = f"± {tolerance.removeprefix('±').strip()}" if tolerance else ""
+        text = ", ".join(part for part in (source, spread) if part)
+        if text:
+            self.found[key] = text
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table of a plant file.
+
+    Attributes:
+        entries: what stands in it.
+        where: file and table, for messages.
+        origins: gathers the sources.
+        source: of every value that names none itself.
+    """
+
+    entries: Mapping[str, Any]
+    where: str
+    origins: Origins
+    source: str = ""
+
+    def place(self, key: str) -> str:
+        """File, table and key, for messages."""
+        return f"{self.where}.{key}"
+
+    def refuse_unknown(self, known: Iterable[str], elsewhere: Mapping[str, str] | None = None) -> None:
+        """Refuse keys that are not among `known`.
+
+        Args:
+            known: keys that may stand here.
+            elsewhere: keys that mean something under other circumstances, to what is to be done then.
+
+        Raises:
+            InputError: unknown key; names the nearest known one.
+        """
+        known = tuple(known)
+        for key in self.entries:
+            if key not in known:
+                mend = (elsewhere or {}).get(key) or nearest(key, known)
+                raise InputError(f'unknown key "{key}"', self.where, mend)
+
+    def quantity(self, key: str, unit: str, origin: str) -> float:
+        """A value in SI.
+
+        Args:
+            key: in this table.
+            unit: SI unit.
+            origin: key under which its source is noted.
+
+        Raises:
+            InputError: missing, without unit, of another dimension, or not a number.
+        """
+        written = self._written(key, origin, unit)
+        if isinstance(written, list):
+            raise InputError("is a list, one value is needed", self.place(key), f'write e.g. {key} = "1 {unit}"')
+        return parse(written, unit, self.place(key))
+
+    def quantities(self, key: str, unit: str, origin: str) -> Value:
+        """A value in SI, or a list of them as a tuple.
+
+        Raises:
+            InputError: as `quantity`, and an empty list.
+        """
+        written = self._written(key, origin, unit)
+        if not isinstance(written, list):
+            return parse(written, unit, self.place(key))
+        if not written:
+            raise InputError("is an empty list", self.place(key), f'write e.g. {key} = ["1 {unit}"]')
+        return tuple(parse(item, unit, f"{self.place(key)}[{i}]") for i, item in enumerate(written))
+
+    def text(self, key: str, default: str | None = None) -> str:
+        """A text.
+
+        Raises:
+            InputError: missing without a default, empty, or not a text.
+        """
+        value = self.entries.get(key, default)
+        if value is None:
+            raise InputError("is missing", self.place(key), f'write {key} = "..."')
+        if not isinstance(value, str) or (key in self.entries and not value.strip()):
+            raise InputError(f"{value!r} is not a text", self.place(key), f'write {key} = "..."')
+        return value
+
+    def choice(self, key: str, allowed: Iterable[str], default: str | None = None) -> str:
+        """One of some words.
+
+        Raises:
+            InputError: as `text`, and a word that is not among them.
+        """
+        allowed = tuple(allowed)
+        if key not in self.entries and default is None:
+            raise InputError("is missing", self.place(key), f"write one of {', '.join(allowed)}")
+        value = self.text(key, default)
+        if value not in allowed:
+            raise InputError(f'"{value}" is not possible', self.place(key), nearest(value, allowed))
+        return value
+
+    def table(self, key: str) -> Table:
+        """A table inside this one; an empty one where there is none.
+
+        Raises:
+            InputError: not a table.
+        """
+        entries = self.entries.get(key, {})
+        if not isinstance(entries, dict):
+            raise InputError("is not a table", self._below(key), f"write it as [{key}]")
+        return self._inner(entries, self._below(key))
+
+    def tables(self, key: str) -> list[Table]:
+        """The tables of an array `[[key]]`; none where there is none.
+
+        Raises:
+            InputError: not an array of tables.
+        """
+        listed = self.entries.get(key, [])
+        if not isinstance(listed, list) or not all(isinstance(entries, dict) for entries in listed):
+            raise InputError("is not a list of tables", self._below(key), f"write each as [[{key}]]")
+        return [self._inner(entries, f"{self._below(key)} {i}") for i, entries in enumerate(listed, 1)]
+
+    def _below(self, key: str) -> str:
+        return f"{self.where}, {key}"
+
+    def _inner(self, entries: Mapping[str, Any], where: str) -> Table:
+        table = Table(entries, where, self.origins, self.source)
+        return Table(entries, where, self.origins, table.text("source", self.source))
+
+    def _written(self, key: str, origin: str, unit: str) -> object:
+        """What is written for a value, its source noted."""
+        if key not in self.entries:
+            raise InputError("is missing", self.place(key), f'write {key} = "... {unit}"'.replace(" 1", ""))
+        written = self.entries[key]
+        if not isinstance(written, dict):
+            self.origins.note(origin, self.source, "")
+            return written
+        inner = Table(written, self.place(key), self.origins)
+        inner.refuse_unknown(_TABLE_KEYS)
+        if "value" not in written:
+            raise InputError("has no value", self.place(key), f'write {key} = {{ value = "... {unit}" }}')
+        tolerance = inner.text("tolerance", "")
+        _check_tolerance(tolerance, unit, inner.place("tolerance"))
+        self.origins.note(origin, inner.text("source", self.source), tolerance)
+        return written["value"]
+
+
+def read_toml(path: Path, kind: str) -> dict[str, Any]:
+    """Parse a TOML file; a byte order mark is passed over.
+
+    Args:
+        path: of the file.
+        kind: what it is, for messages, such as "plant file".
+
+    Raises:
+        InputError: not found, not readable, not UTF-8, or not TOML (with line and column).
+    """
+    where = str(path)
+    try:
+        return parse_toml(path.read_text(encoding="utf-8-sig"), where)
+    except (FileNotFoundError, NotADirectoryError):
+        raise InputError(f"no such {kind}", where, "check the name and the folder") from None
+    except IsADirectoryError:
+        raise InputError(f"is a folder, not a {kind}", where, "name a file in it") from None
+    except OSError as error:
+        raise InputError(f"cannot be read ({error.strerror})", where, "check the permissions of the file") from None
+    except UnicodeDecodeError:
+        raise InputError("is not a text in UTF-8", where, "save it as UTF-8") from None
+
+
+def parse_toml(text: str, where: str) -> dict[str, Any]:
+    """Parse TOML text.
+
+    Raises:
+        InputError: not TOML (with line and column).
+    """
+    parse_text: Callable[[str], dict[str, Any]] = tomllib.loads
+    try:
+        return parse_text(text)
+    except (ValueError, RecursionError) as error:  # a plain ValueError: an integer beyond Python's digit limit
+        raise InputError(f"is not TOML: {error}", where, "correct that line") from None
+
+
+def nearest(word: str, known: Iterable[str]) -> str:
+    """The mend for an unknown word: the nearest known one, or all of them where none is near."""
+    known = tuple(known)
+    near = difflib.get_close_matches(word, known, n=1, cutoff=0.5)
+    return f'did you mean "{near[0]}"?' if near else f"known are {', '.join(known)}"
+
+
+def _check_tolerance(tolerance: str, unit: str, where: str) -> None:
+    """Refuse a tolerance that is neither a share nor in the unit of its value."""
+    if not tolerance:
+        return
+    number = tolerance.removeprefix("±").strip()
+    try:
+        size = parse(number, "1", where)
+    except InputError:
+        size = parse(number, unit, where)
+    if size < 0:
+        raise InputError(f"{tolerance} is negative", where, 'write e.g. tolerance = "5 %"')

@@ -1,0 +1,63 @@
+"""What a plant file declares around the mechanics: sensors and the controller."""
+
+from __future__ import annotations
+
+from feeddrive.errors import InputError
+from feeddrive.plant.entries import Table
+from feeddrive.plant.plant import PositionVelocityController, Sensor
+from feeddrive.recording.channels import channel_unit
+
+SENSOR_KINDS = ("encoder", "scale", "tachometer", "current")
+SENSOR_PLACES = ("motor", "screw", "table")
+_SENSOR_KEYS = ("channel", "kind", "at", "resolution", "source")
+_CONTROLLER_UNITS = {
+    "position_gain": "1/s",
+    "velocity_gain": "V s/m",
+    "output_limit": "V",
+    "torque_per_output": "N m/V",
+}
+
+
+def read_sensors(top: Table) -> tuple[Sensor, ...]:
+    """The declared sensors of a plant file, resolutions in the SI unit of their channel.
+
+    Raises:
+        InputError: unknown key, channel, kind or place, a negative resolution, or a channel declared twice.
+    """
+    sensors: list[Sensor] = []
+    for table in top.tables("sensor"):
+        sensor = _sensor(table)
+        if any(sensor.channel == other.channel for other in sensors):
+            raise InputError(f"{sensor.channel} is declared twice", table.where, "keep one of them")
+        sensors.append(sensor)
+    return tuple(sensors)
+
+
+def _sensor(table: Table) -> Sensor:
+    table.refuse_unknown(_SENSOR_KEYS)
+    channel = table.text("channel")
+    unit = channel_unit(channel, table.place("channel"))
+    resolution = 0.0
+    if "resolution" in table.entries:
+        resolution = table.quantity("resolution", unit, f"{channel}.resolution")
+    if resolution < 0:
+        raise InputError("the resolution is negative", table.place("resolution"), "write it positive")
+    return Sensor(channel, table.choice("kind", SENSOR_KINDS), table.choice("at", SENSOR_PLACES), resolution)
+
+
+def read_controller(top: Table) -> PositionVelocityController | None:
+    """The declared controller of a plant file, SI; None where there is none.
+
+    Raises:
+        InputError: unknown key or kind, a value missing, without unit, or not above zero.
+    """
+    if "controller" not in top.entries:
+        return None
+    table = top.table("controller")
+    table.choice("kind", ("position_velocity",))
+    table.refuse_unknown(("kind", "source", *_CONTROLLER_UNITS))
+    values = {key: table.quantity(key, unit, f"controller.{key}") for key, unit in _CONTROLLER_UNITS.items()}
+    for key, value in values.items():
+        if value <= 0:
+            raise InputError(f"{value:g} is not above zero", table.place(key), "write a positive value")
+    return PositionVelocityController(**values)
