@@ -1,0 +1,210 @@
+"""The plant as an ordinary differential equation, and linearised exactly about a moving point.
+
+    x' = f(x, u, p),  y = g(x, p),  A = df/dx, B = df/du, C = dg/dx, D = 0
+
+x: coordinates, their rates, bristle deflections. u: motor torque [N m], cutting force on the table, along + motion [N].
+y: motor angle [rad], motor speed [rad/s], table position [m], table velocity [m/s].
+
+At rest the slope of tanh (level over smoothing velocity) is many thousand times that of sliding friction and swamps
+everything, so the point moves unless asked otherwise.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import casadi as ca
+import control
+import numpy as np
+
+from feeddrive.effects.backlash import Backlash
+from feeddrive.effects.base import BristleEffect, Effect, Motion
+from feeddrive.errors import InputError
+from feeddrive.plant.chain import symbolic
+from feeddrive.plant.equations import (
+    bristle_count,
+    chain_symbols,
+    effect_forces,
+    friction_level,
+    parameter_symbols,
+    parameter_values,
+)
+from feeddrive.plant.plant import Plant
+from feeddrive.typing import Expression, FloatArray
+
+INPUTS = ("motor_torque", "cutting_force")
+OUTPUTS = ("motor_angle", "motor_speed", "table_position", "table_velocity")
+MOVING = 0.05
+"""Velocity of the point about which is linearised by default [m/s]."""
+
+_NAMES = {
+    "motor": ("motor_angle", "motor_speed"),
+    "screw": ("screw_angle", "screw_speed"),
+    "table": ("table_position", "table_velocity"),
+}
+_START_STRETCH = 1e-6  # beyond the free play [m]: Newton must start on a flank, inside the gap there is no slope
+_NEWTON_STEPS = 30
+_ROUNDING = 1e-12  # of the largest spring force: what the difference of two positions leaves
+
+
+@dataclass(frozen=True)
+class SteadyMotion:
+    """Motion at constant velocity.
+
+    Attributes:
+        state: x in the order of `state_names`.
+        torque: motor torque that keeps it up [N m].
+    """
+
+    state: FloatArray
+    torque: float
+
+
+def state_names(plant: Plant) -> tuple[str, ...]:
+    """Names of the states: positions, rates, bristle deflections."""
+    pairs = [_NAMES[coordinate] for coordinate in plant.chain.coordinates]
+    bristles = [f"bristle_{i}" if i else "bristle" for i in range(bristle_count(plant))]
+    return (*(pair[0] for pair in pairs), *(pair[1] for pair in pairs), *bristles)
+
+
+def ode(plant: Plant) -> ca.Function:
+    """The equations of motion as a function (x, u, p) -> (xdot, y).
+
+    Args:
+        plant: its structure and effects; its values come in through p. Timing effects are not in it.
+
+    Returns:
+        CasADi function with inputs `x`, `u`, `p` and outputs `xdot`, `y`, all SI columns; rows of x are named by
+        `state_names`, of u by `INPUTS`, of y by `OUTPUTS`, of p by the keys of `ode_parameters`.
+    """
+    n, symbols = len(plant.chain.coordinates), parameter_symbols(plant)
+    x = ca.SX.sym("x", 2 * n + bristle_count(plant))
+    u = ca.SX.sym("u", len(INPUTS))
+    q, rate, z = x[:n], x[n : 2 * n], x[2 * n :]
+    p = chain_symbols(plant, symbols)
+    motor, table = symbolic([plant.chain.motor(p)]), symbolic([plant.chain.table(p)])
+    forces = effect_forces(plant, symbols, q, rate, z, 0.0)
+    linear = symbolic(plant.chain.damping(p)) @ rate + symbolic(plant.chain.stiffness(p)) @ q
+    pushed = motor.T * u[0] + table.T * u[1] + forces.on_coordinates - linear
+    acceleration = ca.inv_minor(symbolic(plant.chain.mass(p))) @ pushed
+    xdot = ca.vertcat(rate, acceleration, forces.bristle_rates)
+    y = ca.vertcat(motor @ q, motor @ rate, table @ q, table @ rate)
+    return ca.Function("ode", [x, u, symbols.vector], [xdot, y], ["x", "u", "p"], ["xdot", "y"])
+
+
+def ode_parameters(plant: Plant) -> dict[str, float]:
+    """Name to SI value of every row of p in `ode`, in their order."""
+    return dict(zip(parameter_symbols(plant).names, parameter_values(plant), strict=True))
+
+
+def steady_motion(plant: Plant, velocity: float = MOVING, position: float = 0.0) -> SteadyMotion:
+    """The state in which the plant moves at constant velocity, its springs and bristles loaded by friction.
+
+    Args:
+        plant: the machine.
+        velocity: of the table [m/s].
+        position: of the table [m].
+
+    Raises:
+        InputError: no such state is found, for instance inside a free play that nothing loads.
+    """
+    if not (math.isfinite(velocity) and math.isfinite(position)):
+        raise InputError("velocity and position must be finite numbers", plant.name, "give e.g. 0.05 m/s at 0 m")
+    side = -1.0 if velocity < 0 else 1.0
+    for flank in (side, -side):
+        found = _solve(plant, velocity, position, flank)
+        if found is not None:
+            return found
+    raise InputError(f"no steady motion at {velocity:g} m/s", plant.name, "choose another velocity or position")
+
+
+def state_space(plant: Plant, velocity: float = MOVING, position: float = 0.0) -> control.StateSpace:
+    """The plant linearised exactly about a steady motion.
+
+    By default the point moves: at rest the slope of the friction swamps everything (see the module). Where a delay
+    (`drive_delay`) is declared it is not in the result, since it is no finite state space.
+
+    Args:
+        plant: the machine.
+        velocity: of the table at the point [m/s].
+        position: of the table at the point [m].
+
+    Returns:
+        State space with named states, inputs (`INPUTS`) and outputs (`OUTPUTS`), SI.
+
+    Raises:
+        InputError: no steady motion is found there.
+    """
+    function, point = ode(plant), steady_motion(plant, velocity, position)
+    x, u, p = (ca.SX.sym(name, function.size1_in(name)) for name in ("x", "u", "p"))
+    xdot, y = function(x, u, p)
+    pairs = [(xdot, x), (xdot, u), (y, x), (y, u)]
+    jacobians = ca.Function("jacobians", [x, u, p], [ca.jacobian(of, to) for of, to in pairs])
+    at = jacobians(point.state, [point.torque, 0.0], parameter_values(plant))
+    matrices = [np.array(matrix.full()) for matrix in at]
+    return control.ss(*matrices, states=list(state_names(plant)), inputs=list(INPUTS), outputs=list(OUTPUTS))
+
+
+def _solve(plant: Plant, velocity: float, position: float, flank: float) -> SteadyMotion | None:
+    """Newton from one flank of the free play: positions but that of the table, torque and bristles are unknown."""
+    function, n = ode(plant), len(plant.chain.coordinates)
+    unknown = ca.SX.sym("unknown", n + bristle_count(plant))
+    x = _moving_state(plant, velocity, position, unknown)
+    xdot, _ = function(x, ca.vertcat(unknown[n - 1], 0), parameter_values(plant))
+    residual = ca.vertcat(symbolic(plant.chain.mass(plant.chain_values())) @ xdot[n : 2 * n], xdot[2 * n :])
+    newton = ca.Function("newton", [unknown], [residual, ca.jacobian(residual, unknown)])
+    values = _start(plant, velocity, position, flank)
+    for _ in range(_NEWTON_STEPS):
+        error, slope = (np.array(part.full()) for part in newton(values))
+        if not (np.isfinite(error).all() and np.isfinite(slope).all()):
+            return None
+        if np.max(np.abs(error)) <= _tolerance(plant, values):
+            return SteadyMotion(_state_at(x, unknown, values), float(values[n - 1]))
+        if velocity == 0:
+            slope[:, n:] = 0.0  # at rest any deflection is steady: the bristles stay unloaded
+        values = values - _scaled_solution(slope, error[:, 0])
+    return None
+
+
+def _moving_state(plant: Plant, velocity: float, position: float, unknown: Expression) -> Expression:
+    """x with the table at `position` and every coordinate at the rate that belongs to `velocity`."""
+    r, n = plant.chain.radius, len(plant.chain.coordinates)
+    rates = [velocity if coordinate == "table" else velocity / r for coordinate in plant.chain.coordinates]
+    unknowns = [unknown[i] for i in range(unknown.numel())]  # a slice of length zero is not empty in CasADi
+    return ca.vertcat(*unknowns[: n - 1], position, *rates, *unknowns[n:])
+
+
+def _start(plant: Plant, velocity: float, position: float, flank: float) -> FloatArray:
+    widths = [effect.values["width"] for effect in plant.effects if isinstance(effect, Backlash)]
+    play = float(np.sum(np.array(widths, dtype=float)))
+    angle = (position + flank * (0.5 * play + _START_STRETCH)) / plant.chain.radius
+    bristles = [_sliding_deflection(plant, bristle, velocity, position) for bristle in plant.effects_of(BristleEffect)]
+    return np.array([angle] * (len(plant.chain.coordinates) - 1) + [0.0] + bristles)
+
+
+def _sliding_deflection(plant: Plant, bristle: Effect, velocity: float, position: float) -> float:
+    """Deflection of a bristle that slides [m]; a smaller one may stick, where Newton finds no slope."""
+    symbols = parameter_symbols(plant)
+    level = friction_level(plant, symbols, bristle.port, Motion(ca.SX(position), ca.SX(velocity)))
+    deflection = np.sign(velocity) * level / symbols.effects[bristle.label]["stiffness"]
+    return float(ca.Function("deflection", [symbols.vector], [deflection])(parameter_values(plant)))
+
+
+def _tolerance(plant: Plant, values: FloatArray) -> float:
+    """Residual force [N or N m] that rounding leaves."""
+    stiffness = np.max(np.abs(np.array(plant.chain.stiffness(plant.chain_values()), dtype=float)))
+    return float(1e-9 + _ROUNDING * stiffness * (np.max(np.abs(values[:-1]), initial=0.0) * plant.chain.radius + 1e-3))
+
+
+def _state_at(x: Expression, unknown: Expression, values: FloatArray) -> FloatArray:
+    state: FloatArray = np.array(ca.Function("state", [unknown], [x])(values).full())[:, 0]
+    return state
+
+
+def _scaled_solution(slope: FloatArray, error: FloatArray) -> FloatArray:
+    """Least-squares solution with columns of like size; a bristle at rest has no slope and stays."""
+    size = np.max(np.abs(slope), axis=0)
+    size[size == 0] = 1.0
+    solution: FloatArray = np.linalg.lstsq(slope / size, error, rcond=None)[0] / size
+    return solution

@@ -1,0 +1,74 @@
+"""Natural frequencies, damping ratios and mode shapes of the linear chain.
+
+    (K - w^2 M) a = 0,   zeta = a' C a / (2 w a' M a)
+
+All coordinates are counted in table travel (angles times r = lead / 2 pi), so that a shape compares motor, screw and
+table. Friction is not in it: at rest its slope would swamp everything.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import eigh, null_space
+
+from feeddrive.plant.plant import Plant
+from feeddrive.typing import FloatArray
+
+
+@dataclass(frozen=True)
+class Modes:
+    """Modes in ascending order of frequency.
+
+    Attributes:
+        frequencies: undamped natural frequencies [Hz], shape (k,); 0 where the whole axis moves freely.
+        damping: damping ratios of the chain's dampers, from the undamped shapes [1], shape (k,); 0 for a free motion.
+        shapes: columns are modes, rows coordinates of the chain as table travel, largest entry 1, shape (n, k).
+        poles: exact poles of the damped chain with positive imaginary part, and real ones [1/s], ascending in size.
+    """
+
+    frequencies: FloatArray
+    damping: FloatArray
+    shapes: FloatArray
+    poles: tuple[complex, ...]
+
+
+def free_modes(plant: Plant) -> Modes:
+    """Modes with the motor free to turn; the first is the motion of the whole axis."""
+    return _modes(plant, np.eye(len(plant.chain.coordinates)))
+
+
+def braked_modes(plant: Plant) -> Modes:
+    """Modes with the motor held; none where the structure is rigid."""
+    motor = np.array([plant.chain.motor(plant.chain_values())], dtype=float)
+    return _modes(plant, null_space(motor))
+
+
+def _modes(plant: Plant, basis: FloatArray) -> Modes:
+    """Modes of the motions q = S B eta, with S from table travel to coordinates and B a basis."""
+    values = plant.chain_values()
+    travel = np.diag([1.0 if name == "table" else 1 / plant.chain.radius for name in plant.chain.coordinates])
+    into = travel @ basis
+    matrices = (plant.chain.mass(values), plant.chain.damping(values), plant.chain.stiffness(values))
+    M, C, K = (into.T @ np.array(matrix, dtype=float) @ into for matrix in matrices)
+    if basis.shape[1] == 0:
+        return Modes(np.zeros(0), np.zeros(0), np.zeros((basis.shape[0], 0)), ())
+    squared, vectors = eigh(K, M)
+    # What rounding leaves of a free motion: w^2 far below the largest one.
+    squared[np.abs(squared) <= 1e-9 * np.max(np.abs(squared))] = 0.0
+    omega = np.sqrt(squared)
+    dissipated = np.einsum("ik,ij,jk->k", vectors, C, vectors)  # eigh scales to a' M a = 1
+    damping = np.divide(dissipated, 2 * omega, out=np.zeros_like(omega), where=omega > 0)
+    shapes = basis @ vectors
+    largest = shapes[np.argmax(np.abs(shapes), axis=0), np.arange(shapes.shape[1])]
+    return Modes(omega / (2 * math.pi), damping, shapes / largest, _poles(M, C, K))
+
+
+def _poles(M: FloatArray, C: FloatArray, K: FloatArray) -> tuple[complex, ...]:
+    n = len(M)
+    system = np.block([[np.zeros((n, n)), np.eye(n)], [-np.linalg.solve(M, K), -np.linalg.solve(M, C)]])
+    poles = np.linalg.eigvals(system)
+    poles[np.abs(poles) <= 1e-6 * np.max(np.abs(poles))] = 0.0  # a free motion's double pole, as rounding leaves it
+    return tuple(sorted((complex(pole) for pole in poles if pole.imag >= 0), key=abs))
