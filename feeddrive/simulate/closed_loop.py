@@ -73,9 +73,7 @@ def simulate_closed_loop(
     command = _from_motor if _reads_motor(plant) else _from_table
     start = initial_state(plant, initial_position, initial_velocity)
     run = run_samples(plant, command, settings, time, setpoint, start, 0.0, substeps)
-    return ClosedLoopRun(
-        run.time, run.torque, run.output, run.position, run.velocity, run.motor_angle, run.correction
-    )
+    return ClosedLoopRun(run.time, run.torque, run.output, run.position, run.velocity, run.motor_angle, run.correction)
 
 
 def _reads_motor(plant: Plant) -> bool:

@@ -1,70 +1,33 @@
 """A plant whose motor torque is held over every sample: one macro step per sample, and the run under a given torque.
 
-A macro step asks a command for the torque of its sample and then takes a few steps of the plant with it. A drive delay
-d = k T + f lets the torque of k + 1 samples ago act for the first f of the sample, and that of k samples ago for the
-rest; the sample is split there, so that the shifted torque is exact.
-
-| symbol | meaning | unit |
-|---|---|---|
-| T, d | sample time, delay of the drive | s |
-| k, f | whole samples in d, and what is left | 1, s |
+A macro step asks a command for the torque of its sample and then takes a few steps of the plant with it.
 """
 
 from __future__ import annotations
 
-import math
-import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import casadi as ca
 import numpy as np
 
-from feeddrive.effects.base import TimingEffect
-from feeddrive.errors import InputError, ValidityWarning
+from feeddrive.errors import InputError
 from feeddrive.plant.equations import chain_symbols, parameter_symbols, parameter_values, travel_deviation
 from feeddrive.plant.plant import Plant
 from feeddrive.simulate.loop import Loop, loop_of
 from feeddrive.simulate.step import Layout, StepModel, torque_step
 from feeddrive.simulate.structure import per_structure
+from feeddrive.simulate.timing import Timing, timing_of
 from feeddrive.typing import Expression, FloatArray
 
-SUBSTEPS = 4
-"""Steps per sample: position within 1 nm of the exact motion on bench axes at 1 kHz."""
-
-SPLIT = 1e-9
-"""Part of a sample below which the rest of a delay counts as none."""
+SUBSTEPS = 8
+"""Steps per sample: an axis with tanh friction at 1 kHz is within 1 nm of the exact motion (4 steps: 1.5 nm)."""
 
 Command = Callable[[Expression, Expression, Expression], tuple[Expression, Expression]]
 """(what is fed at the sample, readings, settings) -> (controller output, motor torque [N m]).
 
 The readings: motor angle [rad], motor speed [rad/s], table position [m], table velocity [m/s].
 """
-
-
-@dataclass(frozen=True)
-class Timing:
-    """How the held torque meets the samples; `late` and `split` change the equations, `fraction` is a value.
-
-    Attributes:
-        substeps: plant steps per sample, and per part of it where the delay splits it.
-        late: whole samples of delay.
-        fraction: the rest of the delay, as part of a sample; 0 where there is none.
-    """
-
-    substeps: int
-    late: int
-    fraction: float
-
-    @property
-    def parts(self) -> tuple[float, ...]:
-        """Parts of a sample with one torque each."""
-        return (self.fraction, 1 - self.fraction) if self.fraction else (1.0,)
-
-    @property
-    def past(self) -> int:
-        """Torques of earlier samples that may still act."""
-        return self.late + len(self.parts) - 1
 
 
 @dataclass(frozen=True)
@@ -178,18 +141,6 @@ def run_samples(
     return SampledRun(time, output, torque, angle, position, velocity, float(correction.max()))
 
 
-def timing_of(plant: Plant, sample: float, substeps: int) -> Timing:
-    """Delay of the plant's drive in samples of `sample` [s]; a negative one warns and counts as none."""
-    delay = float(sum(effect.delay(effect.values) for effect in plant.effects if isinstance(effect, TimingEffect)))
-    if delay < 0:
-        text = f"{plant.name}: a drive delay of {delay:g} s cannot be simulated, torque would act before its command; 0 is used"
-        warnings.warn(text, ValidityWarning, stacklevel=4)
-        delay = 0.0
-    late = math.floor(delay / sample + SPLIT)
-    fraction = delay / sample - late
-    return Timing(substeps, late, fraction if fraction > SPLIT else 0.0)
-
-
 def initial_state(plant: Plant, position: float, velocity: float) -> FloatArray:
     """Coordinates and rates [SI] with the table at `position` [m] and `velocity` [m/s] and no stretch anywhere."""
     symbols = parameter_symbols(plant)
@@ -217,9 +168,7 @@ def constants_of(
 
 
 @per_structure
-def sampled_plant(
-    plant: Plant, command: Command, settings: int, substeps: int, late: int, parts: int
-) -> SampledPlant:
+def sampled_plant(plant: Plant, command: Command, settings: int, substeps: int, late: int, parts: int) -> SampledPlant:
     """The macro step of a plant under a command with so many settings, and its loop; arguments as in `Timing`."""
     model = torque_step(plant)
     size, count = model.layout.memory, model.function.size1_in(3)

@@ -1,0 +1,60 @@
+"""When the torque of a sample acts: a drive delay d = k T + f, T the sample time, in whole samples and the rest.
+
+The torque of k + 1 samples ago acts for the first f of a sample, and that of k samples ago for the rest; the sample is
+split there, so that the shifted torque is exact.
+
+| symbol | meaning | unit |
+|---|---|---|
+| T, d | sample time, delay of the drive | s |
+| k, f | whole samples in d, and what is left | 1, s |
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from dataclasses import dataclass
+
+from feeddrive.effects.base import TimingEffect
+from feeddrive.errors import ValidityWarning
+from feeddrive.plant.plant import Plant
+
+SPLIT = 1e-9
+"""Part of a sample below which the rest of a delay counts as none."""
+
+
+@dataclass(frozen=True)
+class Timing:
+    """How the held torque meets the samples; `late` and `split` change the equations, `fraction` is a value.
+
+    Attributes:
+        substeps: plant steps per sample, and per part of it where the delay splits it.
+        late: whole samples of delay.
+        fraction: the rest of the delay, as part of a sample; 0 where there is none.
+    """
+
+    substeps: int
+    late: int
+    fraction: float
+
+    @property
+    def parts(self) -> tuple[float, ...]:
+        """Parts of a sample with one torque each."""
+        return (self.fraction, 1 - self.fraction) if self.fraction else (1.0,)
+
+    @property
+    def past(self) -> int:
+        """Torques of earlier samples that may still act."""
+        return self.late + len(self.parts) - 1
+
+
+def timing_of(plant: Plant, sample: float, substeps: int) -> Timing:
+    """Delay of the plant's drive in samples of `sample` [s]; a negative one warns and counts as none."""
+    delay = float(sum(effect.delay(effect.values) for effect in plant.effects if isinstance(effect, TimingEffect)))
+    if delay < 0:
+        text = f"{plant.name}: torque cannot act before its command; the drive delay of {delay:g} s is taken as 0"
+        warnings.warn(text, ValidityWarning, stacklevel=4)
+        delay = 0.0
+    late = math.floor(delay / sample + SPLIT)
+    fraction = delay / sample - late
+    return Timing(substeps, late, fraction if fraction > SPLIT else 0.0)
