@@ -13,7 +13,7 @@ import numpy as np
 
 from feeddrive.diagnose.evidence import Evidence
 from feeddrive.diagnose.fit import Problem
-from feeddrive.diagnose.periodogram import strongest_orders
+from feeddrive.diagnose.periodogram import sine_at, strongest_orders
 from feeddrive.diagnose.position_curve import bump_of, friction_over_position
 from feeddrive.effects.backlash import Backlash
 from feeddrive.effects.base import Effect, Port
@@ -36,9 +36,6 @@ TABLE_NODES = 12
 
 LEAST_TURNS = 2.0
 """Revolutions that must be travelled before a periodic effect can be told from a trend."""
-
-SMALLEST_START = 1e-3
-"""Amplitudes start at this share of their typical size, so that phases have a meaning."""
 
 
 @dataclass(frozen=True)
@@ -65,11 +62,19 @@ class Scene:
 
 @dataclass(frozen=True)
 class Candidate:
-    """An effect to try: `forms` are started separately, each a list of values of which the best is refined."""
+    """An effect to try.
+
+    Attributes:
+        name: effect name.
+        forms: started separately, each a list of values of which the best is refined.
+        needs: why the recordings cannot show it, or an empty text.
+        scanned: whether the starts are compared as they are; otherwise after one step of the fit.
+    """
 
     name: str
     forms: Callable[[Scene], list[list[Effect]]]
     needs: Callable[[Scene], str]
+    scanned: bool = False
 
 
 def scene_of(problem: Problem, found: Sequence[Effect]) -> Scene:
@@ -181,20 +186,22 @@ def _backlash(scene: Scene) -> list[list[Effect]]:
 def _ripple(scene: Scene) -> list[list[Effect]]:
     at = scene.longest
     rows = scene.problem.evidence[at].fit_rows
-    orders = strongest_orders(scene.runs[at].motor_angle[rows], scene.residuals[at]["motor_torque"][rows])
-    amplitude = SMALLEST_START * TorqueRipple.parameter("amplitude").size
-    return [[TorqueRipple.of(amplitude=amplitude, order=order, phase=0.0)] for order in orders]
+    angle, residual = scene.runs[at].motor_angle[rows], scene.residuals[at]["motor_torque"][rows]
+    return [[TorqueRipple.of(**_sine(angle, residual, order))] for order in strongest_orders(angle, residual)]
 
 
 def _lead_error(scene: Scene) -> list[list[Effect]]:
     at = scene.longest
     rows = scene.problem.evidence[at].fit_rows
-    residual = scene.residuals[at].get("table_position")
-    if residual is None:
+    if "table_position" not in scene.residuals[at]:
         return []
-    orders = strongest_orders(scene.runs[at].screw_angle[rows], residual[rows])
-    amplitude = SMALLEST_START * LeadErrorPeriodic.parameter("amplitude").size
-    return [[LeadErrorPeriodic.of(amplitude=amplitude, order=order, phase=0.0)] for order in orders]
+    angle, residual = scene.runs[at].screw_angle[rows], scene.residuals[at]["table_position"][rows]
+    return [[LeadErrorPeriodic.of(**_sine(angle, residual, order))] for order in strongest_orders(angle, residual)]
+
+
+def _sine(angle: FloatArray, residual: FloatArray, order: float) -> dict[str, float]:
+    amplitude, phase = sine_at(angle, residual, order)
+    return {"amplitude": amplitude, "order": order, "phase": phase}
 
 
 def _over_position(scene: Scene) -> list[list[Effect]]:
@@ -221,11 +228,11 @@ CANDIDATES: tuple[Candidate, ...] = (
     Candidate("coulomb_asymmetry", _plain(CoulombAsymmetry.of(delta_force=0.0)), _friction),
     Candidate("viscous_asymmetry", _plain(ViscousAsymmetry.of(delta_viscous=0.0)), _friction),
     Candidate("stribeck", _stribeck, _friction),
-    Candidate("presliding", _presliding, lambda scene: _friction(scene) or _reversals(scene)),
+    Candidate("presliding", _presliding, lambda scene: _friction(scene) or _reversals(scene), scanned=True),
     Candidate("friction_vs_position", _over_position, _friction),
     Candidate("torque_ripple", _ripple, _turns),
     Candidate("lead_error_periodic", _lead_error, _lead),
-    Candidate("backlash", _backlash, _gap),
+    Candidate("backlash", _backlash, _gap, scanned=True),
     Candidate("payload", _plain(Payload.of(mass=0.0)), _nothing),
     Candidate("drive_delay", _plain(DriveDelay.of(delay=0.0)), _nothing),
 )

@@ -43,8 +43,8 @@ class Comparison:
 LEAST_GAIN = 0.005
 """Least share of the squared error that an effect must take away; the largest seen on null recordings is 0.001."""
 
-SIGNIFICANCE = 2.5
-"""Gain over its standard error that is asked for, a dozen candidates being tried."""
+SIGNIFICANCE = 1.0
+"""Gain over its standard error that is asked for: the one-standard-error rule (Breiman et al., 1984, section 3.4.3)."""
 
 
 def block_numbers(problem: Problem) -> FloatArray:
@@ -74,12 +74,13 @@ def block_errors(residual: FloatArray, jacobian: FloatArray, blocks: FloatArray)
     if jacobian.shape[1]:
         scale = np.linalg.norm(jacobian, axis=0)
         scaled = jacobian / np.where(scale > 0, scale, 1.0)
-        normal, gradient = scaled.T @ scaled, scaled.T @ residual
+        normal = scaled.T @ scaled
         for fold in range(FOLDS):
             rows = blocks % FOLDS == fold
             part = scaled[rows]
             rest = normal - part.T @ part
-            move = np.linalg.lstsq(rest, gradient - part.T @ residual[rows], rcond=1e-12)[0]
+            # at the fit J'r = 0; a fit that stopped early is taken as it is, not as it might have become
+            move = -np.linalg.lstsq(rest, part.T @ residual[rows], rcond=1e-12)[0]
             left_out[rows] = residual[rows] - part @ move
     return np.bincount(blocks, weights=left_out**2, minlength=count)
 

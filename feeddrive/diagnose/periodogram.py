@@ -14,7 +14,7 @@ OVERSAMPLING = 8
 """Zero padding, so that a peak is met to an eighth of the resolution."""
 
 
-def strongest_orders(angle: FloatArray, residual: FloatArray, count: int = 2) -> list[float]:
+def strongest_orders(angle: FloatArray, residual: FloatArray, count: int = 3) -> list[float]:
     """Orders per revolution of the largest peaks.
 
     The residual is averaged per angle bin first, so that rests and slow strokes do not weigh by their duration.
@@ -34,10 +34,12 @@ def strongest_orders(angle: FloatArray, residual: FloatArray, count: int = 2) ->
     if turns < 2:
         return []
     samples = np.bincount(bins, minlength=size)
-    mean = np.bincount(bins, weights=residual - np.mean(residual), minlength=size) / np.maximum(samples, 1)
-    window = np.where(samples > 0, 1.0, 0.0)
+    filled = np.flatnonzero(samples)
+    mean = np.bincount(bins, weights=residual - np.mean(residual), minlength=size)[filled] / samples[filled]
+    # at speed whole bins are jumped over; left at zero they would put a comb of false orders into the spectrum
+    even = np.interp(np.arange(size), filled, mean)
     padded = OVERSAMPLING * size
-    spectrum = np.abs(np.fft.rfft(mean * window, padded))
+    spectrum = np.abs(np.fft.rfft(even * np.hanning(size), padded))
     orders = np.arange(len(spectrum)) * BINS_PER_TURN / padded
     # below two periods in the travel a sine is a trend
     allowed = (orders > 2 / turns) & (orders < BINS_PER_TURN / 4)
@@ -45,3 +47,10 @@ def strongest_orders(angle: FloatArray, residual: FloatArray, count: int = 2) ->
     peaks, _ = find_peaks(spectrum, distance=OVERSAMPLING)
     best = peaks[np.argsort(spectrum[peaks])[::-1][:count]]
     return [float(orders[i]) for i in best]
+
+
+def sine_at(angle: FloatArray, residual: FloatArray, order: float) -> tuple[float, float]:
+    """Amplitude and phase of the sine of this order that fits best: residual = A sin(order angle + phase) + constant."""
+    columns = np.column_stack([np.sin(order * angle), np.cos(order * angle), np.ones(len(angle))])
+    a, b, _ = np.linalg.lstsq(columns, residual, rcond=None)[0]
+    return float(np.hypot(a, b)), float(np.arctan2(b, a))

@@ -76,7 +76,7 @@ def search(problem: Problem, said: Callable[[str], None] = lambda text: None) ->
     trials: list[Trial] = []
     rounds: list[tuple[Attempt, ...]] = []
     impossible: dict[str, str] = {}
-    while len(found.effects) < MOST_EFFECTS:
+    while len(rounds) < MOST_EFFECTS:
         said(f"round {len(rounds) + 1}: {len(found.effects)} effects so far")
         scene = scene_of(problem, found.effects)
         attempts = _round(scene, found, impossible)
@@ -85,8 +85,10 @@ def search(problem: Problem, said: Callable[[str], None] = lambda text: None) ->
         trials += [_trial(len(rounds), attempt, attempt is winner) for attempt in attempts]
         if winner is None:
             break
-        problem, found = winner.problem, winner.fit
-        found = _without_idle(problem, found)
+        count = len(found.effects)
+        problem, found = winner.problem, _without_idle(winner.problem, winner.fit)
+        if len(found.effects) <= count:  # the new one only took the place of an old one
+            break
     return Search(problem, found, tuple(trials), tuple(rounds), impossible)
 
 
@@ -133,16 +135,16 @@ def _alone(scene: Scene, candidate: Candidate) -> list[Attempt]:
     attempts = []
     for starts in candidate.forms(scene):
         try:
-            attempts.append(_refined(scene, candidate.name, starts))
+            attempts.append(_refined(scene, candidate, starts))
         except InputError:  # cannot act together with what was found, or cannot be simulated
             continue
     return attempts
 
 
-def _refined(scene: Scene, name: str, starts: Sequence[Effect]) -> Attempt:
-    before = scene.found
+def _refined(scene: Scene, candidate: Candidate, starts: Sequence[Effect]) -> Attempt:
+    name, before = candidate.name, scene.found
     problem = with_predictable(scene.problem, (*before, starts[0]))
-    start = starts[0] if len(starts) == 1 else min(starts, key=lambda s: _after_one_step(problem, (*before, s)))
+    start = starts[0] if len(starts) == 1 else min(starts, key=lambda s: _start_error(problem, (*before, s), candidate))
     result = fit(problem, (*before, start), [False] * len(before) + [True])
     if not (np.isfinite(result.squared_error) and np.all(np.isfinite(result.jacobian))):
         raise InputError(f"{name} could not be simulated", name)
@@ -150,9 +152,10 @@ def _refined(scene: Scene, name: str, starts: Sequence[Effect]) -> Attempt:
     return _attempt(problem, name, result, before)
 
 
-def _after_one_step(problem: Problem, effects: Sequence[Effect]) -> float:
-    """Squared error after one step of the fit; ranks starts."""
-    return fit(problem, effects, [False] * (len(effects) - 1) + [True], iterations=1).squared_error
+def _start_error(problem: Problem, effects: Sequence[Effect], candidate: Candidate) -> float:
+    """Squared error that ranks a start: as it is, or after one step of the fit."""
+    frozen = [False] * (len(effects) - 1)
+    return fit(problem, effects, [*frozen, not candidate.scanned], iterations=1).squared_error
 
 
 def _together(attempt: Attempt, found: Fit) -> Attempt:

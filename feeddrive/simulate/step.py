@@ -121,19 +121,21 @@ def _newton(
 ) -> tuple[Expression, Expression]:  # fmt: skip
     """Memory after the step and the size of the last correction of the node forces."""
     m, nz = len(layout.forced), layout.bristles
-    start, z0, last = memory[: layout.states], memory[layout.states : layout.states + nz], memory[layout.states + nz :]
+    start = _part(memory, 0, layout.states)
+    z0 = _part(memory, layout.states, nz)
+    last = _part(memory, layout.states + nz, m)
     unknown = ca.SX.sym("unknown", 2 * (m + nz))
-    states = _node_states(layout, start, inputs, unknown[: 2 * m], blocks)
+    states = _node_states(layout, start, inputs, _part(unknown, 0, 2 * m), blocks)
     forces, rates = [], []
     for i, node in enumerate(NODES):
         q, rate = _coordinates(plant, symbols, layout, states[i], inputs, node, step)
-        z = unknown[2 * m + i * nz : 2 * m + (i + 1) * nz]
+        z = _part(unknown, 2 * m + i * nz, nz)
         found = effect_forces(plant, symbols, q, rate, z, time + node * step)
-        forces.append(found.on_coordinates[list(layout.forced)])
+        forces.append(ca.reshape(found.on_coordinates[list(layout.forced)], m, 1))
         rates.append(found.bristle_rates)
-    residual = [unknown[i * m : (i + 1) * m] - forces[i] for i in range(2)]
+    residual = [_part(unknown, i * m, m) - forces[i] for i in range(2)]
     for i in range(2):
-        z = unknown[2 * m + i * nz : 2 * m + (i + 1) * nz]
+        z = _part(unknown, 2 * m + i * nz, nz)
         residual.append(z - z0 - step * (RADAU[i, 0] * rates[0] + RADAU[i, 1] * rates[1]))
     guess = ca.vertcat(last, last, z0, z0)
     correct = _newton_correction(ca.vertcat(*residual), unknown)
@@ -142,9 +144,14 @@ def _newton(
         (change,) = ca.substitute([correct], [unknown], [guess])
         guess = guess - change
     (end,) = ca.substitute([states[1]], [unknown], [guess])
-    after = ca.vertcat(end, guess[2 * m + nz :], guess[m : 2 * m])
+    after = ca.vertcat(end, _part(guess, 2 * m + nz, nz), _part(guess, m, m))
     largest = ca.mmax(ca.fabs(change[: 2 * m])) if m else ca.SX(0)
     return after, largest
+
+
+def _part(column: Expression, start: int, count: int) -> Expression:
+    """Rows of a column; a column of no rows where count is 0, which slicing would turn into a row."""
+    return ca.reshape(column[start : start + count], count, 1)
 
 
 def _newton_correction(residual: Expression, unknown: Expression) -> Expression:
@@ -173,7 +180,7 @@ def _node_states(
     for i in range(2):
         exponential, from_input, from_first, from_second = blocks[4 * i : 4 * i + 4]
         state = ca.mtimes(exponential, start) + ca.mtimes(from_input, inputs)
-        state += ca.mtimes(from_first, forces[:m]) + ca.mtimes(from_second, forces[m:])
+        state += ca.mtimes(from_first, _part(forces, 0, m)) + ca.mtimes(from_second, _part(forces, m, m))
         states.append(state)
     return states
 
