@@ -1,0 +1,81 @@
+"""What the commands that answer with tables share: tables or JSON, on the terminal or into a file."""
+
+from __future__ import annotations
+
+import io
+import json
+import sys
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.console import Console, RenderableType
+from rich.table import Table
+
+from feeddrive.errors import ValidityWarning
+from feeddrive.files import write_text_atomically
+
+JsonOption = Annotated[bool, typer.Option("--json", help="JSON in place of tables; SI units.")]
+OutOption = Annotated[Path | None, typer.Option("--out", help="File to write to, in place of the terminal.")]
+
+_WIDTH = 120
+"""Of tables in a file or a pipe, in letters."""
+
+
+def table(title: str, headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Table:
+    """A table with a title; every cell is text."""
+    made = Table(title=title, title_justify="left", title_style="bold")
+    for heading in headings:
+        made.add_column(heading, overflow="fold")
+    for row in rows:
+        made.add_row(*row)
+    return made
+
+
+def deliver(content: dict[str, Any], tables: Sequence[RenderableType], as_json: bool, out: Path | None) -> None:
+    """Show the content, or write it to a file.
+
+    Args:
+        content: for JSON.
+        tables: the same for people.
+        as_json: whether JSON is wanted.
+        out: file; the terminal if None.
+
+    Raises:
+        InputError: the file cannot be written.
+    """
+    text = json.dumps(content, indent=2, ensure_ascii=False) + "\n" if as_json else None
+    if out is not None:
+        write_text_atomically(out, text or _as_text(tables))
+    elif text is not None:
+        typer.echo(text, nl=False)
+    else:
+        width = None if sys.stdout.isatty() else _WIDTH
+        _print(Console(markup=False, highlight=False, emoji=False, width=width), tables)
+
+
+@contextmanager
+def warnings_as_lines() -> Iterator[None]:
+    """Tell what leaves the range of its formula in one line each, on stderr."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", ValidityWarning)
+        yield
+    for warning in caught:
+        if issubclass(warning.category, ValidityWarning):
+            typer.echo(f"warning: {warning.message}", err=True)
+        else:
+            warnings.warn_explicit(warning.message, warning.category, warning.filename, warning.lineno)
+
+
+def _as_text(tables: Sequence[RenderableType]) -> str:
+    buffer = io.StringIO()
+    _print(Console(file=buffer, markup=False, highlight=False, emoji=False, width=_WIDTH), tables)
+    return buffer.getvalue()
+
+
+def _print(console: Console, tables: Sequence[RenderableType]) -> None:
+    for shown in tables:
+        console.print(shown)
