@@ -13,7 +13,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feeddrive.diagnose.candidates import CANDIDATES, Candidate, Scene, scene_of
-from feeddrive.diagnose.cross_validation import Comparison, block_errors, block_numbers, compare
+from feeddrive.diagnose.cross_validation import LEAST_GAIN, Comparison, block_errors, block_numbers, compare
+from feeddrive.diagnose.coordinates import read_coordinates
 from feeddrive.diagnose.fit import Fit, Problem, fit
 from feeddrive.diagnose.predictability import predictable_samples
 from feeddrive.diagnose.result import Trial
@@ -27,6 +28,9 @@ MOST_EFFECTS = 8
 
 FINALISTS = 3
 """Candidates of a round that are refitted together with what was found before."""
+
+TIE = 0.05
+"""Share of the squared error by which a simpler candidate may be worse, if the difference is not significant."""
 
 WORKERS = 2
 """Candidates tried at the same time; the loop over samples runs outside Python's lock."""
@@ -81,7 +85,7 @@ def search(problem: Problem, said: Callable[[str], None] = lambda text: None) ->
         scene = scene_of(problem, found.effects)
         attempts = _round(scene, found, impossible)
         rounds.append(tuple(attempts))
-        winner = attempts[0] if attempts and attempts[0].comparison.pays else None
+        winner = _simplest_of_the_best(attempts)
         trials += [_trial(len(rounds), attempt, attempt is winner) for attempt in attempts]
         if winner is None:
             break
@@ -90,6 +94,20 @@ def search(problem: Problem, said: Callable[[str], None] = lambda text: None) ->
         if len(found.effects) <= count:  # the new one only took the place of an old one
             break
     return Search(problem, found, tuple(trials), tuple(rounds), impossible)
+
+
+def _simplest_of_the_best(attempts: Sequence[Attempt]) -> Attempt | None:
+    """The best attempt, or one with fewer parameters that cannot be told from it; None if the best does not pay."""
+    if not attempts or not attempts[0].comparison.pays:
+        return None
+    best = attempts[0]
+    tied = [best]
+    for other in attempts[1:]:
+        if other.comparison.pays and len(other.errors) == len(best.errors):
+            better = compare(other.errors, best.errors)
+            if better.gain < max(LEAST_GAIN, min(2 * better.standard_error, TIE)):
+                tied.append(other)
+    return min(tied, key=lambda a: len(read_coordinates(a.fit.effects[-1:], a.problem.plant)))
 
 
 def _trial(number: int, attempt: Attempt, taken: bool) -> Trial:
@@ -207,21 +225,3 @@ def _without_idle(problem: Problem, found: Fit) -> Fit:
             return _without_idle(problem, fit(problem, rest.effects))
     return found
 
-
-def standard_deviations(fitted: Fit, blocks: FloatArray) -> FloatArray:
-    """Covariance of the fit coordinates where residuals are coloured; shape (k, k).
-
-    Scores are summed over neighbouring blocks before they are squared (Newey and West over blocks), so that correlation
-    of any form inside a block, and across one border, is counted.
-    Source: Newey and West, Econometrica 55 (1987) 703; Liang and Zeger, Biometrika 73 (1986) 13.
-    """
-    scores = fitted.jacobian * fitted.residual[:, None]
-    count = int(blocks.max(initial=0)) + 1
-    sums = np.zeros((count, scores.shape[1]))
-    np.add.at(sums, blocks, scores)
-    neighbours = sums[1:].T @ sums[:-1]
-    middle = sums.T @ sums + 0.5 * (neighbours + neighbours.T)
-    normal = fitted.jacobian.T @ fitted.jacobian
-    inverse = np.linalg.pinv(normal, rcond=1e-14)
-    covariance: FloatArray = inverse @ middle @ inverse
-    return covariance

@@ -1,0 +1,19 @@
+"""`feeddrive demo`: the main job on a shipped machine and a shipped recording."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def command(
+    out: Annotated[Path, typer.Option("--out", help="Folder for the report.")] = Path("feeddrive-demo"),
+) -> None:
+    """Diagnose a shipped machine from a shipped recording, and say where the report is."""
+    from feeddrive.cli.diagnosing import Job, run_job
+    from feeddrive.files import find_plant, find_scenario_file
+
+    recording = find_scenario_file("recordings/demo.csv.gz")
+    run_job(Job(find_plant("bench_axis"), (recording,), (), out))

@@ -1,0 +1,213 @@
+"""The main job: from a plant and recordings to the effects that the plant lacks, judged on data not fitted."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from feeddrive.diagnose.ambiguity import ambiguous_sets
+from feeddrive.diagnose.candidates import CANDIDATES
+from feeddrive.diagnose.cross_validation import LEAST_GAIN
+from feeddrive.diagnose.evidence import Evidence, prepare
+from feeddrive.diagnose.fit import Fit, Problem
+from feeddrive.diagnose.judge import Judged, Share, channel_results, judged_recordings, prepared_for_judging, share_of
+from feeddrive.diagnose.physical_reading import physical_reading
+from feeddrive.diagnose.prediction import Predictor
+from feeddrive.diagnose.rehoming import rehomed_plant
+from feeddrive.diagnose.result import (
+    ChannelResult,
+    Diagnosis,
+    EffectResult,
+    FileStamp,
+    ParameterResult,
+    RefusedEffect,
+    SimulationResult,
+)
+from feeddrive.diagnose.search import Search, search
+from feeddrive.diagnose.simulation import simulation_error
+from feeddrive.diagnose.uncertainty import half_widths
+from feeddrive.diagnose.unexplained import unexplained
+from feeddrive.effects.base import Effect
+from feeddrive.errors import InputError
+from feeddrive.plant.plant import Plant
+from feeddrive.recording import Recording, check_against_lead
+from feeddrive.typing import FloatArray
+
+Said = Callable[[str], None]
+
+
+def diagnose(
+    plant: Plant,
+    recordings: Sequence[Recording],
+    validation: Sequence[Recording] = (),
+    split: float = 0.75,
+    simulate: bool = False,
+    said: Said = lambda text: None,
+) -> tuple[Diagnosis, tuple[Effect, ...]]:
+    """Find what the plant lacks.
+
+    Args:
+        plant: as declared.
+        recordings: fitted; without `validation` their last part is kept for judging.
+        validation: judged only.
+        split: share of each recording that is fitted where there is no `validation`.
+        simulate: add the closed-loop simulation error, where the controller is declared.
+        said: told what is going on.
+
+    Returns:
+        The diagnosis, and the effects to add to the plant.
+
+    Raises:
+        InputError: recordings that cannot be used with this plant.
+    """
+    for recording in (*recordings, *validation):
+        check_against_lead(recording, plant.chain.values["lead"], recording.name)
+    if not 0.2 <= split <= 0.95:
+        raise InputError(f"--split is {split:g}", "", "use a share between 0.2 and 0.95, such as 0.75")
+    fitted = tuple(prepare(recording, plant, 1.0 if validation else split) for recording in recordings)
+    problem = Problem(plant, fitted, Predictor())
+    found = search(problem, said)
+    said("judging on data not fitted")
+    judged, rehomed = _judged(found, [prepare(recording, plant, 0.0) for recording in validation] or list(fitted))
+    channels = channel_results(found.problem, judged)
+    series = judged_recordings(found.problem, judged)
+    effects = found.fit.effects
+    shares = [share_of(found.problem, judged, effects, i) for i in range(len(effects))]
+    simulation = simulation_error(plant, plant.with_effects(*effects), judged) if simulate else None
+    result = Diagnosis(
+        plant=plant.name,
+        fit=_stamps(recordings),
+        validate=_stamps(validation or recordings),
+        channels=channels,
+        effects=_effect_results(found, shares, channels),
+        refused=_refused(found),
+        ambiguous=ambiguous_sets(found, judged),
+        rehomed=rehomed,
+        unexplained={channel.name: unexplained(channel, series) for channel in channels},
+        trials=found.trials,
+        recordings=series,
+        simulation=simulation,
+        notes=_notes(recordings, validation, found, fitted, simulate, simulation),
+    )
+    return result, effects
+
+
+def _judged(found: Search, evidence: Sequence[Evidence]) -> tuple[list[Judged], tuple[str, ...]]:
+    """The recordings to judge on, their position-locked effects re-homed where the encoder's zero differs."""
+    declared = found.problem.plant
+    after = declared.with_effects(*found.fit.effects)
+    judged, rehomed = [], []
+    for one in evidence:
+        homed = rehomed_plant(found.problem, found.fit.effects, one)
+        if homed is None:
+            judged.append(prepared_for_judging(one, declared, after))
+        else:
+            judged.append(prepared_for_judging(homed.evidence, declared, homed.plant))
+            rehomed.append(f"{one.recording.name}: {homed.statement}")
+    return judged, tuple(rehomed)
+
+
+def _effect_results(
+    found: Search, shares: Sequence[Share], channels: Sequence[ChannelResult]
+) -> tuple[EffectResult, ...]:
+    widths = half_widths(found.problem, found.fit)
+    results = []
+    for effect, share, width in zip(found.fit.effects, shares, widths, strict=True):
+        results.append(
+            EffectResult(
+                effect.name,
+                _parameters(effect, width),
+                share.explains,
+                share.carries,
+                _evidence(effect, share, found.fit),
+                physical_reading(effect),
+            )
+        )
+    return tuple(results)
+
+
+def _parameters(effect: Effect, width: dict[str, FloatArray]) -> dict[str, ParameterResult]:
+    """Values and intervals in SI; the summary of a tabulated curve is read off the table."""
+    result: dict[str, ParameterResult] = {}
+    if effect.name == "friction_deviation":
+        result["port"] = ParameterResult(str(effect.port), "")
+    for key, value in effect.values.items():
+        unit = effect.parameter(key).unit
+        if isinstance(value, tuple):
+            spans = [(v - w, v + w) for v, w in zip(value, width[key], strict=True)]
+            result[key] = ParameterResult(list(value), unit, None if not np.any(width[key]) else spans)
+        else:
+            half = float(width[key][0])
+            result[key] = ParameterResult(value, unit, (value - half, value + half) if half > 0 else None)
+    if effect.name == "friction_vs_position":
+        result.update(_curve_and_bump(effect))
+    return result
+
+
+def _curve_and_bump(effect: Effect) -> dict[str, ParameterResult]:
+    """The form that was not fitted: a table of a bump, or peak, centre and half width of a table."""
+    position, level = effect.values["position"], effect.values["delta_force"]
+    if isinstance(position, tuple) and isinstance(level, tuple):
+        x, force = np.array(position), np.array(level)
+        above = force - np.median(force)
+        top = int(np.argmax(np.abs(above)))
+        wide = np.abs(above) > np.abs(above[top]) / np.e
+        half = max(0.5 * float(np.ptp(x[wide])), float(np.min(np.diff(x))))
+        summary = {"peak": (float(above[top]), "N"), "centre": (float(x[top]), "m"), "half_width": (half, "m")}
+        return {key: ParameterResult(value, unit) for key, (value, unit) in summary.items()}
+    peak, centre, width = (float(effect.values[key]) for key in ("peak", "centre", "half_width"))  # type: ignore[arg-type]
+    x = centre + width * np.linspace(-2.5, 2.5, 11)
+    force = peak * np.exp(-(((x - centre) / width) ** 2))
+    return {"position": ParameterResult(x.tolist(), "m"), "delta_force": ParameterResult(force.tolist(), "N")}
+
+
+def _evidence(effect: Effect, share: Share, fitted: Fit) -> str:
+    channels = ", ".join(f"{value:.1%} of {name}" for name, value in share.explains.items() if value > 0.001)
+    seen = f"Explains {channels} on data not fitted" if channels else "Explains nothing on the judged data"
+    more = "" if share.carries else "; it does not carry to them"
+    return f"{seen}{more}. It shows as a function of {effect.signature.variable}."
+
+
+def _refused(found: Search) -> tuple[RefusedEffect, ...]:
+    """Candidates that were not taken, with the reason: the recording cannot show them, or they did not pay."""
+    taken = {effect.name for effect in found.fit.effects}
+    best = {trial.name: trial for trial in found.trials}  # the last round counts: everything else was in by then
+    refused = []
+    for candidate in CANDIDATES:
+        if candidate.name in taken:
+            continue
+        if candidate.name in found.impossible:
+            refused.append(RefusedEffect(candidate.name, found.impossible[candidate.name]))
+        elif candidate.name in best:
+            trial = best[candidate.name]
+            refused.append(RefusedEffect(candidate.name, _why_not(trial.gain, trial.standard_error)))
+        else:
+            refused.append(RefusedEffect(candidate.name, "it could not be fitted to these recordings"))
+    return tuple(refused)
+
+
+def _why_not(gain: float, error: float) -> str:
+    if gain <= 0:
+        return "it does not lower the error on data not fitted"
+    if gain <= LEAST_GAIN:
+        return f"it lowers the squared error on data not fitted by {gain:.2%}, less than the {LEAST_GAIN:.1%} asked for"
+    return f"it lowers the squared error by {gain:.2%}, within the scatter of the blocks ({error:.2%}), or others did better"
+
+
+def _notes(
+    recordings: Sequence[Recording], validation: Sequence[Recording], found: Search, fitted: Sequence[Evidence],
+    asked: bool, simulation: SimulationResult | None,
+) -> tuple[str, ...]:  # fmt: skip
+    notes = [f"{recording.name}: {note}" for recording in (*recordings, *validation) for note in recording.notes]
+    for before, after in zip(fitted, found.problem.evidence, strict=True):
+        lost = float(np.sum(before.counted & ~after.counted)) * before.recording.sample_time
+        if lost > 0:
+            notes.append(f"{before.recording.name}: {lost:.1f} s are left out: with free play the motion is chaotic there")
+    if asked and simulation is None:
+        notes.append("no closed-loop simulation: the plant file declares no controller, or the recording has no setpoint")
+    return tuple(notes)
+
+
+def _stamps(recordings: Sequence[Recording]) -> tuple[FileStamp, ...]:
+    return tuple(FileStamp(recording.source or recording.name, recording.sha256) for recording in recordings)

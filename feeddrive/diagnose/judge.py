@@ -1,0 +1,151 @@
+"""Judging on data that were not fitted: error before and after, what each effect explains, and whether it carries."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from feeddrive.diagnose.cross_validation import BLOCK, Comparison, compare
+from feeddrive.diagnose.evidence import Evidence
+from feeddrive.diagnose.fit import Problem, fit
+from feeddrive.diagnose.predictability import predictable_samples
+from feeddrive.diagnose.result import ChannelResult, ChannelSeries, JudgedRecording, error_figures
+from feeddrive.effects.base import Effect
+from feeddrive.plant.plant import Plant
+from feeddrive.recording import CHANNEL_UNITS
+from feeddrive.typing import FloatArray
+
+
+@dataclass(frozen=True)
+class Judged:
+    """One recording, judged: the evidence, and the plants before and after for it."""
+
+    evidence: Evidence
+    before: Plant
+    after: Plant
+
+
+def prepared_for_judging(evidence: Evidence, before: Plant, after: Plant) -> Judged:
+    """The recording without the samples that the plant cannot predict, both plants on the same samples."""
+    kept = evidence.where_predictable(predictable_samples(after, evidence))
+    return Judged(kept if kept.judged_rows.any() else evidence, before, after)
+
+
+def error_series(problem: Problem, plant: Plant, evidence: Evidence) -> dict[str, FloatArray]:
+    """Channel to measured less predicted over the judged samples, the zero of the scale taken out; NaN elsewhere."""
+    predicted = problem.predictor.predict(plant, evidence)
+    rows = evidence.judged_rows
+    result = {}
+    for name in evidence.channels:
+        error = np.where(rows, evidence.measured[name] - predicted[name], np.nan)
+        result[name] = error - np.nanmean(error) if name == "table_position" else error
+    return result
+
+
+def channel_results(problem: Problem, judged: Sequence[Judged]) -> tuple[ChannelResult, ...]:
+    """Error of every channel before and after, all judged recordings together."""
+    results = []
+    for name in judged[0].evidence.channels:
+        parts = [j for j in judged if name in j.evidence.channels]
+        before = np.concatenate([error_series(problem, j.before, j.evidence)[name] for j in parts])
+        after = np.concatenate([error_series(problem, j.after, j.evidence)[name] for j in parts])
+        reference = np.concatenate([_reference(name, j) for j in parts])
+        scale = float(np.sqrt(np.mean(reference**2)))
+        noise = float(np.sqrt(np.mean([j.evidence.noise[name] ** 2 for j in parts])))
+        band = (0.0, parts[0].evidence.band.edge)
+        figures = error_figures(before, scale), error_figures(after, scale)
+        results.append(ChannelResult(name, CHANNEL_UNITS[name], band, noise, *figures))
+    return tuple(results)
+
+
+def _reference(name: str, judged: Judged) -> FloatArray:
+    """What a relative error refers to: the torque itself; for the table its motion beyond lead / 2 pi times the motor's."""
+    evidence = judged.evidence
+    rows = evidence.judged_rows
+    if name != "table_position":
+        return evidence.measured[name][rows]
+    geared = judged.before.chain.radius * evidence.band.filter(evidence.recording["motor_angle"])
+    beyond = (evidence.measured[name] - geared)[rows]
+    return beyond - beyond.mean()
+
+
+def squared_blocks(problem: Problem, plant_of: Sequence[tuple[Plant, Evidence]]) -> FloatArray:
+    """Noise-weighted squared error per block of the judged samples, all recordings one after the other."""
+    sums = []
+    for plant, evidence in plant_of:
+        errors = error_series(problem, plant, evidence)
+        rows = np.flatnonzero(evidence.judged_rows)
+        blocks = (rows * evidence.recording.sample_time / BLOCK).astype(int)
+        total = np.zeros(int(blocks.max()) + 1)
+        for name, error in errors.items():
+            total += np.bincount(blocks, weights=(error[rows] / evidence.noise[name]) ** 2, minlength=len(total))
+        sums.append(total[total > 0])
+    return np.concatenate(sums)
+
+
+@dataclass(frozen=True)
+class Share:
+    """What one effect does on data not fitted: per channel 1 - (rms with / rms without)^2, and the weighted comparison."""
+
+    explains: dict[str, float]
+    comparison: Comparison
+
+    @property
+    def carries(self) -> bool:
+        """Whether the effect lowers the error there, beyond the scatter of the blocks."""
+        return self.comparison.gain > 0 and self.comparison.gain > self.comparison.standard_error
+
+
+def share_of(problem: Problem, judged: Sequence[Judged], effects: Sequence[Effect], index: int) -> Share:
+    """What the effect at `index` explains, all other effects refitted without it."""
+    rest = [*effects[:index], *effects[index + 1 :]]
+    refitted = fit(problem, rest, iterations=4).effects if rest else ()
+    without = problem.plant.with_effects(*refitted)
+    explains = {}
+    for name in judged[0].evidence.channels:
+        lacking = _pooled(problem, [(without, j.evidence) for j in judged], name)
+        having = _pooled(problem, [(j.after, j.evidence) for j in judged], name)
+        explains[name] = 1 - having / lacking
+    before = squared_blocks(problem, [(without, j.evidence) for j in judged])
+    after = squared_blocks(problem, [(j.after, j.evidence) for j in judged])
+    return Share(explains, compare(before, after))
+
+
+def _pooled(problem: Problem, pairs: Sequence[tuple[Plant, Evidence]], name: str) -> float:
+    errors = np.concatenate([error_series(problem, plant, evidence)[name] for plant, evidence in pairs])
+    return float(np.nansum(errors**2))
+
+
+def judged_recordings(problem: Problem, judged: Sequence[Judged]) -> tuple[JudgedRecording, ...]:
+    """The series behind `prediction.csv` and the figures; left-out samples are NaN."""
+    result = []
+    for j in judged:
+        evidence, run = j.evidence, problem.predictor.load_motion(j.after, j.evidence)
+        rows = evidence.judged_rows
+        before, after = (error_series(problem, plant, evidence) for plant in (j.before, j.after))
+        first, last = np.flatnonzero(rows)[[0, -1]]
+        part = slice(first, last + 1)
+        series = tuple(
+            ChannelSeries(
+                name,
+                CHANNEL_UNITS[name],
+                np.where(rows, evidence.measured[name], np.nan)[part],
+                (evidence.measured[name] - before[name])[part],
+                (evidence.measured[name] - after[name])[part],
+            )
+            for name in evidence.channels
+        )
+        variables = {
+            "table_velocity": run.table_velocity[part],
+            "table_position": run.table_position[part],
+            "motor_angle": run.motor_angle[part],
+        }
+        result.append(JudgedRecording(evidence.recording.name, evidence.recording.time[part], series, variables))
+    return tuple(result)
+
+
+def whole(evidence: Evidence) -> Evidence:
+    """The same recording with all of it judged."""
+    return replace(evidence, fitted=np.zeros(len(evidence.fitted), dtype=bool))

@@ -1,0 +1,119 @@
+"""What a sign and a size mean on a machine: one sentence per effect."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+
+from feeddrive.effects.base import Effect, Value
+
+
+def physical_reading(effect: Effect) -> str:
+    """The physical reading of an effect's sign and size."""
+    return READINGS[effect.name](effect.values) if effect.name in READINGS else ""
+
+
+def _signed(value: Value, positive: str, negative: str) -> str:
+    return positive if isinstance(value, float | int) and value > 0 else negative
+
+
+def _coulomb_asymmetry(v: Mapping[str, Value]) -> str:
+    return _signed(
+        v["delta_force"],
+        "Friction is higher when the table moves in + direction: a one-sided preload, wiper or cover.",
+        "Friction is higher when the table moves in - direction: a one-sided preload, wiper or cover.",
+    )
+
+
+def _viscous_asymmetry(v: Mapping[str, Value]) -> str:
+    return _signed(
+        v["delta_viscous"],
+        "Drag rises faster with speed in + direction.",
+        "Drag rises faster with speed in - direction, and more slowly in + direction.",
+    )
+
+
+def _stribeck(v: Mapping[str, Value]) -> str:
+    return _signed(
+        v["delta_force"],
+        "Friction is higher near rest than in motion: mixed lubrication below the Stribeck velocity.",
+        "Friction is lower near rest than the declared Coulomb level: the level was read at speed and does not hold below "
+        "the Stribeck velocity.",
+    )
+
+
+def _presliding(v: Mapping[str, Value]) -> str:
+    return "After a reversal the friction builds up over micrometres of travel, as an elastic contact before break-away."
+
+
+def _friction_vs_position(v: Mapping[str, Value]) -> str:
+    if isinstance(v["position"], tuple):
+        return "Friction changes along the stroke: rail straightness, alignment of screw and guide, or a cover."
+    return _signed(
+        v["peak"],
+        "A tight place on the stroke: alignment, a damaged rail or a cover that rubs.",
+        "A loose place on the stroke: wear, or a rail that gives way.",
+    )
+
+
+def _friction_deviation(v: Mapping[str, Value]) -> str:
+    coulomb = v["coulomb_factor"]
+    return _signed(
+        coulomb - 1 if isinstance(coulomb, float) else 0.0,
+        "The declared Coulomb friction is too low for this machine: more preload, drier seals, or a cold start.",
+        "The declared Coulomb friction is too high for this machine: run in, less preload, or warm.",
+    )
+
+
+def _torque_ripple(v: Mapping[str, Value]) -> str:
+    order = v["order"]
+    near = isinstance(order, float) and math.isclose(order, round(order), abs_tol=0.02) and round(order) > 0
+    cause = "cogging, pole pairs, or current offset" if near else "not an integer: rolling elements or a gear"
+    return f"Locked to the motor angle, {order:.4g} periods per revolution ({cause})."
+
+
+def _constant_force(v: Mapping[str, Value]) -> str:
+    return _signed(
+        v["force"],
+        "A force pulls the table in - direction: gravity, a counterbalance, a cable, or an offset of the drive.",
+        "A force pulls the table in + direction: gravity, a counterbalance, a cable, or an offset of the drive.",
+    )
+
+
+def _backlash(v: Mapping[str, Value]) -> str:
+    return "Free play between screw and table: a worn nut, a loose bearing or coupling."
+
+
+def _lead_error(v: Mapping[str, Value]) -> str:
+    return f"Travel error locked to the screw angle, {v['order']:.4g} periods per revolution: wobble, or pitch error."
+
+
+def _payload(v: Mapping[str, Value]) -> str:
+    return _signed(
+        v["mass"], "The table is heavier than declared.", "The table is lighter than declared, or an inertia is."
+    )
+
+
+def _drive_delay(v: Mapping[str, Value]) -> str:
+    return _signed(
+        v["delay"],
+        "The torque acts later than it is recorded: current loop and dead time.",
+        "The torque is recorded later than it acts: the channel is filtered or sampled late.",
+    )
+
+
+READINGS: dict[str, Callable[[Mapping[str, Value]], str]] = {
+    "coulomb_asymmetry": _coulomb_asymmetry,
+    "viscous_asymmetry": _viscous_asymmetry,
+    "stribeck": _stribeck,
+    "presliding": _presliding,
+    "friction_vs_position": _friction_vs_position,
+    "friction_deviation": _friction_deviation,
+    "torque_ripple": _torque_ripple,
+    "constant_force": _constant_force,
+    "backlash": _backlash,
+    "lead_error_periodic": _lead_error,
+    "payload": _payload,
+    "drive_delay": _drive_delay,
+}
+"""Effect name to the reading of its values."""

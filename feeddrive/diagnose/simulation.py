@@ -1,0 +1,41 @@
+"""Closed-loop simulation error, where the controller is declared: what the fitted plant does on its own."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from feeddrive.diagnose.judge import Judged
+from feeddrive.diagnose.result import SimulationResult
+from feeddrive.plant.plant import Plant
+from feeddrive.simulate.closed_loop import simulate_closed_loop
+from feeddrive.typing import FloatArray
+
+
+def simulation_error(before: Plant, after: Plant, judged: Sequence[Judged]) -> SimulationResult | None:
+    """Relative error of the simulated motor torque, unfiltered, over the judged samples; None without a controller."""
+    usable = [j for j in judged if "setpoint" in j.evidence.recording]
+    if before.controller is None or not usable:
+        return None
+    errors = [_relative(plant, usable) for plant in (before, after)]
+    return SimulationResult("motor_torque", *errors)
+
+
+def _relative(plant: Plant, judged: Sequence[Judged]) -> float:
+    missed, measured = 0.0, 0.0
+    for j in judged:
+        recording, rows = j.evidence.recording, j.evidence.judged_rows
+        time = recording.sample_time * np.arange(len(recording))
+        position, speed = _start(j)
+        run = simulate_closed_loop(plant, time, recording["setpoint"], position, speed)
+        error: FloatArray = (recording["motor_torque"] - run.torque)[rows]
+        missed += float(error @ error)
+        measured += float(np.sum(recording["motor_torque"][rows] ** 2))
+    return float(np.sqrt(missed / measured))
+
+
+def _start(j: Judged) -> tuple[float, float]:
+    """Table position [m] and velocity [m/s] that the recording starts from."""
+    r = j.before.chain.radius
+    return r * float(j.evidence.motion.angle[0]), r * float(j.evidence.motion.speed[0])
