@@ -34,6 +34,9 @@ from feeddrive.typing import FloatArray
 TABLE_NODES = 12
 """Nodes of a tabulated friction curve over the stroke."""
 
+LEAST_CURVE = 0.002
+"""Share of the torque residual's square that must follow the position before a table is tried."""
+
 LEAST_TURNS = 2.0
 """Revolutions that must be travelled before a periodic effect can be told from a trend."""
 
@@ -187,7 +190,8 @@ def _ripple(scene: Scene) -> list[list[Effect]]:
     at = scene.longest
     rows = scene.problem.evidence[at].fit_rows
     angle, residual = scene.runs[at].motor_angle[rows], scene.residuals[at]["motor_torque"][rows]
-    return [[TorqueRipple.of(**_sine(angle, residual, order))] for order in strongest_orders(angle, residual)]
+    orders = strongest_orders(angle, residual, _highest_order(scene, at))
+    return [[TorqueRipple.of(**_sine(angle, residual, order)) for order in orders]] if orders else []
 
 
 def _lead_error(scene: Scene) -> list[list[Effect]]:
@@ -196,7 +200,14 @@ def _lead_error(scene: Scene) -> list[list[Effect]]:
     if "table_position" not in scene.residuals[at]:
         return []
     angle, residual = scene.runs[at].screw_angle[rows], scene.residuals[at]["table_position"][rows]
-    return [[LeadErrorPeriodic.of(**_sine(angle, residual, order))] for order in strongest_orders(angle, residual)]
+    orders = strongest_orders(angle, residual, _highest_order(scene, at))
+    return [[LeadErrorPeriodic.of(**_sine(angle, residual, order)) for order in orders]] if orders else []
+
+
+def _highest_order(scene: Scene, at: int) -> float:
+    """Order whose frequency meets half the sample rate at the highest speed; above it a sampled sine is another one."""
+    fastest = float(np.abs(scene.runs[at].motor_speed).max())
+    return float(np.pi / scene.problem.evidence[at].recording.sample_time / fastest)
 
 
 def _sine(angle: FloatArray, residual: FloatArray, order: float) -> dict[str, float]:
@@ -217,6 +228,10 @@ def _over_position(scene: Scene) -> list[list[Effect]]:
     bumps: list[Effect] = [
         FrictionVsPosition.of(peak=peak, centre=centre, half_width=width) for peak, centre, width in bump_of(curve)
     ]
+    torque = scene.residuals[at]["motor_torque"][rows]
+    follows = float(np.sum(curve.samples * (radius * curve.force) ** 2)) / float(np.sum(torque**2))
+    if follows < LEAST_CURVE:
+        return [bumps]
     nodes = np.linspace(curve.position[0], curve.position[-1], TABLE_NODES)
     table = FrictionVsPosition.of(position=tuple(nodes.tolist()), delta_force=tuple([0.0] * TABLE_NODES))
     return [bumps, [table]]

@@ -35,7 +35,11 @@ class Linear:
         """Values of the coordinates."""
         parameter = effect.parameter(self.key)
         numbers = [min(max(c * self.size, parameter.minimum), parameter.maximum) for c in coordinates]
-        return {self.key: tuple(numbers) if isinstance(effect.values[self.key], tuple) else numbers[0]}
+        if not isinstance(effect.values[self.key], tuple):
+            return {self.key: numbers[0]}
+        # a curve over the stroke is about its mean: a level of its own would be that of the declared friction
+        mean = sum(numbers) / len(numbers)
+        return {self.key: tuple(number - mean for number in numbers)}
 
 
 @dataclass(frozen=True)

@@ -94,7 +94,10 @@ class Problem:
         return np.column_stack(columns) if columns else np.zeros((len(base), 0))
 
 
-def fit(problem: Problem, effects: Sequence[Effect], free: Sequence[bool] | None = None, iterations: int = 12) -> Fit:
+def fit(
+    problem: Problem, effects: Sequence[Effect], free: Sequence[bool] | None = None, iterations: int = 12,
+    error_only: bool = False,
+) -> Fit:  # fmt: skip
     """Fit the free effects by Levenberg-Marquardt, starting from their values.
 
     Args:
@@ -102,6 +105,7 @@ def fit(problem: Problem, effects: Sequence[Effect], free: Sequence[bool] | None
         effects: beyond the declared ones; the others keep their values.
         free: which are fitted; all if None.
         iterations: at most.
+        error_only: leave out the Jacobian, where only the error of the values as they are is asked for.
 
     Returns:
         The fit, its Jacobian taken at the end.
@@ -112,6 +116,8 @@ def fit(problem: Problem, effects: Sequence[Effect], free: Sequence[bool] | None
     predicted = problem.predicted(current)
     residual = measured - predicted
     damping = 1e-6
+    if error_only:
+        return Fit(tuple(current), residual, np.zeros((len(residual), 0)), np.zeros(0))
     jacobian = problem.jacobian(current, chosen, predicted)
     for _ in range(iterations):
         if jacobian.shape[1] == 0 or not np.all(np.isfinite(jacobian)):

@@ -95,7 +95,7 @@ class Share:
     @property
     def carries(self) -> bool:
         """Whether the effect lowers the error there, beyond the scatter of the blocks."""
-        return self.comparison.gain > 0 and self.comparison.gain > self.comparison.standard_error
+        return bool(self.comparison.gain > 0 and self.comparison.gain > self.comparison.standard_error)
 
 
 def share_of(problem: Problem, judged: Sequence[Judged], effects: Sequence[Effect], index: int) -> Share:

@@ -10,11 +10,16 @@ from feeddrive.typing import FloatArray
 BINS_PER_TURN = 256
 """Angle bins per revolution; the highest order is a quarter of it."""
 
+LEAST_PERIODS = 5
+"""Periods in the travel below which a sine is a trend over the stroke."""
+
 OVERSAMPLING = 8
 """Zero padding, so that a peak is met to an eighth of the resolution."""
 
 
-def strongest_orders(angle: FloatArray, residual: FloatArray, count: int = 3) -> list[float]:
+def strongest_orders(
+    angle: FloatArray, residual: FloatArray, highest: float = BINS_PER_TURN / 4, count: int = 3
+) -> list[float]:
     """Orders per revolution of the largest peaks.
 
     The residual is averaged per angle bin first, so that rests and slow strokes do not weigh by their duration.
@@ -22,6 +27,7 @@ def strongest_orders(angle: FloatArray, residual: FloatArray, count: int = 3) ->
     Args:
         angle: shape (n,) [rad].
         residual: shape (n,).
+        highest: order up to which peaks count.
         count: how many.
 
     Returns:
@@ -41,8 +47,7 @@ def strongest_orders(angle: FloatArray, residual: FloatArray, count: int = 3) ->
     padded = OVERSAMPLING * size
     spectrum = np.abs(np.fft.rfft(even * np.hanning(size), padded))
     orders = np.arange(len(spectrum)) * BINS_PER_TURN / padded
-    # below two periods in the travel a sine is a trend
-    allowed = (orders > 2 / turns) & (orders < BINS_PER_TURN / 4)
+    allowed = (orders > LEAST_PERIODS / turns) & (orders < min(highest, BINS_PER_TURN / 4))
     spectrum = np.where(allowed, spectrum, 0.0)
     peaks, _ = find_peaks(spectrum, distance=OVERSAMPLING)
     best = peaks[np.argsort(spectrum[peaks])[::-1][:count]]

@@ -32,6 +32,21 @@ FINALISTS = 3
 TIE = 0.05
 """Share of the squared error by which a simpler candidate may be worse, if the difference is not significant."""
 
+SUPERADDITIVE = 1.5
+"""Gain of two effects together over the sum of their gains alone, from which they are said to hide each other."""
+
+PAIRS_FITTED = 2
+"""Pairs of effects that mask each other, fitted where they promise more than the best single one."""
+
+FIT_ITERATIONS = 12
+"""Steps of a candidate's fit at most."""
+
+PROMISE = 0.001
+"""Share of the squared error that the first step of a fit must take away for the fit to go on."""
+
+HOPELESS_ITERATIONS = 3
+"""Steps for a candidate none of whose scanned starts is better than nothing."""
+
 WORKERS = 2
 """Candidates tried at the same time; the loop over samples runs outside Python's lock."""
 
@@ -86,11 +101,15 @@ def search(problem: Problem, said: Callable[[str], None] = lambda text: None) ->
         attempts = _round(scene, found, impossible)
         rounds.append(tuple(attempts))
         winner = _simplest_of_the_best(attempts)
+        pair = _masked_pair(attempts, found, winner)
+        if pair is not None:
+            winner, attempts = pair, [pair, *attempts]
         trials += [_trial(len(rounds), attempt, attempt is winner) for attempt in attempts]
         if winner is None:
             break
         count = len(found.effects)
         problem, found = winner.problem, _without_idle(winner.problem, winner.fit)
+        said(f"found so far: {', '.join(effect.name for effect in found.effects)}")
         if len(found.effects) <= count:  # the new one only took the place of an old one
             break
     return Search(problem, found, tuple(trials), tuple(rounds), impossible)
@@ -108,6 +127,52 @@ def _simplest_of_the_best(attempts: Sequence[Attempt]) -> Attempt | None:
             if better.gain < max(LEAST_GAIN, min(2 * better.standard_error, TIE)):
                 tied.append(other)
     return min(tied, key=lambda a: len(read_coordinates(a.fit.effects[-1:], a.problem.plant)))
+
+
+def _masked_pair(attempts: Sequence[Attempt], found: Fit, winner: Attempt | None) -> Attempt | None:
+    """Two candidates that hide each other, as a rise with speed hides a drop of the level: together worth much more.
+
+    Much more than the best single one, and than the sum of what they are worth alone. Pairs are ranked by one linear step from the Jacobians at hand, at no simulation; the best are fitted.
+    """
+    least = winner.comparison.gain if winner is not None else 0.0
+    usable = [a for a in attempts if a.comparison.gain > -0.1 and len(a.fit.effects) == len(found.effects) + 1]
+    ranked = []
+    for i, first in enumerate(usable):
+        for second in usable[i + 1 :]:
+            linear = _linear_pair(first, second, found)
+            alone = max(first.comparison.gain, 0.0) + max(second.comparison.gain, 0.0)
+            if linear is not None and linear.pays and linear.gain > max(SUPERADDITIVE * alone, least):
+                ranked.append((linear.gain, first, second))
+    ranked.sort(key=lambda entry: -entry[0])
+    for _, first, second in ranked[:PAIRS_FITTED]:
+        problem = first.problem
+        try:
+            result = fit(problem, (*found.effects, first.fit.effects[-1], second.fit.effects[-1]))
+        except InputError:
+            continue
+        pair = _attempt(problem, f"{first.name} with {second.name}", result, found.effects)
+        if pair.comparison.pays and pair.comparison.gain > least:
+            return pair
+    return None
+
+
+def _linear_pair(first: Attempt, second: Attempt, found: Fit) -> Comparison | None:
+    """Gain of both candidates together by one linear step; None where they count other samples."""
+    rows = {len(part.residual) for part in (first.fit, second.fit, found)}
+    if len(rows) != 1:
+        return None
+    columns = _own_columns(first), _own_columns(second)
+    jacobian = np.hstack([found.jacobian, *columns])
+    blocks = block_numbers(first.problem)
+    step = np.linalg.lstsq(jacobian, first.fit.residual, rcond=1e-10)[0]
+    together = block_errors(first.fit.residual - jacobian @ step, jacobian, blocks)
+    return compare(block_errors(found.residual, found.jacobian, blocks), together)
+
+
+def _own_columns(attempt: Attempt) -> FloatArray:
+    """Columns of the Jacobian that belong to the candidate itself."""
+    own = len(read_coordinates(attempt.fit.effects[-1:], attempt.problem.plant))
+    return attempt.fit.jacobian[:, attempt.fit.jacobian.shape[1] - own :]
 
 
 def _trial(number: int, attempt: Attempt, taken: bool) -> Trial:
@@ -150,8 +215,10 @@ def _best_per_name(attempts: Sequence[Attempt]) -> list[Attempt]:
 
 def _alone(scene: Scene, candidate: Candidate) -> list[Attempt]:
     """Each form of a candidate, refined while what was found before stays as it is."""
-    attempts = []
+    attempts: list[Attempt] = []
     for starts in candidate.forms(scene):
+        if candidate.scanned and attempts and attempts[0].comparison.gain < LEAST_GAIN:
+            break  # another form of a law that does not pay at all is not worth its simulations
         try:
             attempts.append(_refined(scene, candidate, starts))
         except InputError:  # cannot act together with what was found, or cannot be simulated
@@ -160,20 +227,21 @@ def _alone(scene: Scene, candidate: Candidate) -> list[Attempt]:
 
 
 def _refined(scene: Scene, candidate: Candidate, starts: Sequence[Effect]) -> Attempt:
+    """The best start of one form, refined unless not even its first step promises anything."""
     name, before = candidate.name, scene.found
+    frozen = [False] * len(before)
     problem = with_predictable(scene.problem, (*before, starts[0]))
-    start = starts[0] if len(starts) == 1 else min(starts, key=lambda s: _start_error(problem, (*before, s), candidate))
-    result = fit(problem, (*before, start), [False] * len(before) + [True])
+    base = fit(problem, before, frozen, iterations=0).squared_error
+    first_steps = 0 if candidate.scanned else 1
+    tried = [fit(problem, (*before, start), [*frozen, True], first_steps, candidate.scanned) for start in starts]
+    result = min(tried, key=lambda attempt: attempt.squared_error)
+    promising = result.squared_error < (1 - PROMISE) * base
+    if promising or candidate.scanned:
+        steps = FIT_ITERATIONS if promising else HOPELESS_ITERATIONS
+        result = fit(problem, result.effects, [*frozen, True], steps)
     if not (np.isfinite(result.squared_error) and np.all(np.isfinite(result.jacobian))):
         raise InputError(f"{name} could not be simulated", name)
-    problem = with_predictable(scene.problem, result.effects)
-    return _attempt(problem, name, result, before)
-
-
-def _start_error(problem: Problem, effects: Sequence[Effect], candidate: Candidate) -> float:
-    """Squared error that ranks a start: as it is, or after one step of the fit."""
-    frozen = [False] * (len(effects) - 1)
-    return fit(problem, effects, [*frozen, not candidate.scanned], iterations=1).squared_error
+    return _attempt(with_predictable(scene.problem, result.effects), name, result, before)
 
 
 def _together(attempt: Attempt, found: Fit) -> Attempt:
