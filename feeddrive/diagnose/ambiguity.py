@@ -56,7 +56,7 @@ def _explains_the_same(search: Search, judged: Sequence[Judged], index: int, riv
     """Whether the rival does as well: the same on blocks left out, and within 5 % on the judged data."""
     problem, found = search.problem, search.fit
     effects = [*found.effects[:index], rival.fit.effects[-1], *found.effects[index + 1 :]]
-    swapped = fit(problem, effects)
+    swapped = fit(problem, effects, iterations=4)
     if not _as_good(problem, found, swapped):
         return False
     plant = problem.plant.with_effects(*swapped.effects)

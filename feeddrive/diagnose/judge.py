@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from feeddrive.diagnose.cross_validation import BLOCK, Comparison, compare
+from feeddrive.diagnose.cross_validation import BLOCK, LEAST_GAIN, Comparison, compare
 from feeddrive.diagnose.evidence import Evidence
 from feeddrive.diagnose.fit import Problem, fit
 from feeddrive.diagnose.predictability import predictable_samples
@@ -94,14 +94,14 @@ class Share:
 
     @property
     def carries(self) -> bool:
-        """Whether the effect lowers the error there, beyond the scatter of the blocks."""
-        return bool(self.comparison.gain > 0 and self.comparison.gain > self.comparison.standard_error)
+        """Whether the effect lowers the squared error there by as much as is asked of a new effect."""
+        return self.comparison.gain > LEAST_GAIN
 
 
 def share_of(problem: Problem, judged: Sequence[Judged], effects: Sequence[Effect], index: int) -> Share:
     """What the effect at `index` explains, all other effects refitted without it."""
     rest = [*effects[:index], *effects[index + 1 :]]
-    refitted = fit(problem, rest, iterations=4).effects if rest else ()
+    refitted = fit(problem, rest, iterations=2).effects if rest else ()
     without = problem.plant.with_effects(*refitted)
     explains = {}
     for name in judged[0].evidence.channels:

@@ -15,7 +15,7 @@ from feeddrive.plant.plant import Plant
 from feeddrive.simulate.driven import LoadMotion, simulate_driven
 from feeddrive.typing import FloatArray
 
-REMEMBERED = 24
+REMEMBERED = 48
 """Load-side simulations kept; effects at the motor alone need none of their own."""
 
 

@@ -79,7 +79,7 @@ class RefusedEffect:
 
 @dataclass(frozen=True)
 class Dependence:
-    """A measured variable on which the unexplained part depends; period in the variable's own unit, if it is periodic."""
+    """A measured variable on which the unexplained part depends; period in the variable's unit, if periodic."""
 
     variable: str
     share: float
@@ -88,7 +88,7 @@ class Dependence:
 
 @dataclass(frozen=True)
 class Unexplained:
-    """What is left of a channel above its noise: its share of the measured signal's square, and what it depends on."""
+    """What is left of a channel above its noise: its share of the measured signal's square, what it depends on."""
 
     share: float
     depends_on: tuple[Dependence, ...] = ()

@@ -38,6 +38,12 @@ SUPERADDITIVE = 1.5
 PAIRS_FITTED = 2
 """Pairs of effects that mask each other, fitted where they promise more than the best single one."""
 
+JOINT_ITERATIONS = 4
+"""Steps of a joint fit inside the search; what is left is polished at its end."""
+
+CLEARLY_NEEDED = 0.1
+"""Share of the squared error that an effect must bring, by one linear step, not to be refitted without it."""
+
 FIT_ITERATIONS = 12
 """Steps of a candidate's fit at most."""
 
@@ -112,6 +118,7 @@ def search(problem: Problem, said: Callable[[str], None] = lambda text: None) ->
         said(f"found so far: {', '.join(effect.name for effect in found.effects)}")
         if len(found.effects) <= count:  # the new one only took the place of an old one
             break
+    found = fit(problem, found.effects)
     return Search(problem, found, tuple(trials), tuple(rounds), impossible)
 
 
@@ -245,7 +252,7 @@ def _refined(scene: Scene, candidate: Candidate, starts: Sequence[Effect]) -> At
 
 
 def _together(attempt: Attempt, found: Fit) -> Attempt:
-    result = fit(attempt.problem, attempt.fit.effects)
+    result = fit(attempt.problem, attempt.fit.effects, iterations=JOINT_ITERATIONS)
     return _attempt(attempt.problem, attempt.name, result, found.effects)
 
 
@@ -287,9 +294,21 @@ def _without_idle(problem: Problem, found: Fit) -> Fit:
     blocks = block_numbers(problem)
     errors = block_errors(found.residual, found.jacobian, blocks)
     for i in range(len(found.effects) - 1):
-        rest = fit(problem, found.effects[:i] + found.effects[i + 1 :], iterations=4)
+        if _cost_of_dropping(problem, found, i, blocks, errors) > CLEARLY_NEEDED:
+            continue
+        rest = fit(problem, found.effects[:i] + found.effects[i + 1 :], iterations=JOINT_ITERATIONS)
         gain = compare(block_errors(rest.residual, rest.jacobian, blocks), errors)
         if not gain.pays:
-            return _without_idle(problem, fit(problem, rest.effects))
+            return _without_idle(problem, fit(problem, rest.effects, iterations=JOINT_ITERATIONS))
     return found
 
+
+def _cost_of_dropping(problem: Problem, found: Fit, index: int, blocks: FloatArray, errors: FloatArray) -> float:
+    """Gain that the effect brings over a model without it, the others moved by one linear step only."""
+    rest = found.effects[:index] + found.effects[index + 1 :]
+    counts = [len(read_coordinates([effect], problem.plant)) for effect in found.effects]
+    start = sum(counts[:index])
+    jacobian = np.delete(found.jacobian, slice(start, start + counts[index]), axis=1)
+    residual = problem.residual(rest)
+    step = np.linalg.lstsq(jacobian, residual, rcond=1e-10)[0]
+    return compare(block_errors(residual - jacobian @ step, jacobian, blocks), errors).gain
