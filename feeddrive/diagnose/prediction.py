@@ -31,7 +31,7 @@ class Predictor:
 
     def load_motion(self, plant: Plant, evidence: Evidence) -> LoadMotion:
         """Motion of the load side, without what acts at the motor alone."""
-        bare = replace(plant, effects=tuple(effect for effect in plant.effects if not _at_motor_alone(effect)))
+        bare = _load_side(plant)
         key = (id(evidence.motion), _values_key(bare))
         with self._lock:
             if key in self._runs:
@@ -67,6 +67,12 @@ def motor_sources(plant: Plant, run: LoadMotion) -> FloatArray:
     return total
 
 
+def _load_side(plant: Plant) -> Plant:
+    """The plant as the load side sees it: chain effects in the chain's values, nothing that acts at the motor alone."""
+    kept = tuple(e for e in plant.effects if not (_at_motor_alone(e) or isinstance(e, ChainEffect)))
+    return replace(plant, chain=replace(plant.chain, values=plant.chain_values()), effects=kept)
+
+
 def _at_motor_alone(effect: Effect) -> bool:
     """Whether the load side does not notice the effect when the motor motion is given."""
     return isinstance(effect, TimingEffect) or (isinstance(effect, SourceEffect) and effect.port == Port.MOTOR)
@@ -74,4 +80,4 @@ def _at_motor_alone(effect: Effect) -> bool:
 
 def _values_key(plant: Plant) -> object:
     effects = tuple((e.name, str(e.port), tuple(e.values.items())) for e in plant.effects)
-    return (tuple(plant.chain_values().items()), effects, any(isinstance(e, ChainEffect) for e in plant.effects))
+    return (tuple(plant.chain.values.items()), effects)

@@ -18,7 +18,7 @@ from feeddrive.diagnose.coordinates import read_coordinates
 from feeddrive.diagnose.fit import Fit, Problem, fit
 from feeddrive.diagnose.predictability import predictable_samples
 from feeddrive.diagnose.result import Trial
-from feeddrive.effects.base import Effect
+from feeddrive.effects.base import Effect, TransmissionEffect
 from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.errors import InputError
 from feeddrive.typing import FloatArray
@@ -237,18 +237,31 @@ def _refined(scene: Scene, candidate: Candidate, starts: Sequence[Effect]) -> At
     """The best start of one form, refined unless not even its first step promises anything."""
     name, before = candidate.name, scene.found
     frozen = [False] * len(before)
-    problem = with_predictable(scene.problem, (*before, starts[0]))
+    jumps = isinstance(starts[0], TransmissionEffect)
+    problem = with_predictable(scene.problem, (*before, starts[0])) if jumps else scene.problem
     base = fit(problem, before, frozen, iterations=0).squared_error
-    first_steps = 0 if candidate.scanned else 1
-    tried = [fit(problem, (*before, start), [*frozen, True], first_steps, candidate.scanned) for start in starts]
+    free = [*frozen, True]
+    tried = [fit(problem, (*before, start), free, 0, error_only=candidate.scanned) for start in starts]
+    if not candidate.scanned:
+        tried = [_one_linear_step(attempt) for attempt in tried]
     result = min(tried, key=lambda attempt: attempt.squared_error)
     promising = result.squared_error < (1 - PROMISE) * base
     if promising or candidate.scanned:
         steps = FIT_ITERATIONS if promising else HOPELESS_ITERATIONS
-        result = fit(problem, result.effects, [*frozen, True], steps)
+        result = fit(problem, result.effects, free, steps)
     if not (np.isfinite(result.squared_error) and np.all(np.isfinite(result.jacobian))):
         raise InputError(f"{name} could not be simulated", name)
-    return _attempt(with_predictable(scene.problem, result.effects), name, result, before)
+    if jumps:
+        problem = with_predictable(scene.problem, result.effects)
+    return _attempt(problem, name, result, before)
+
+
+def _one_linear_step(fitted: Fit) -> Fit:
+    """The fit as one linear step would leave it, the values as they were; ranks starts at no simulation."""
+    if not np.all(np.isfinite(fitted.jacobian)):
+        return fitted
+    step = np.linalg.lstsq(fitted.jacobian, fitted.residual, rcond=1e-10)[0]
+    return replace(fitted, residual=fitted.residual - fitted.jacobian @ step)
 
 
 def _together(attempt: Attempt, found: Fit) -> Attempt:
