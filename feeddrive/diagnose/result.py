@@ -96,7 +96,7 @@ class Unexplained:
 
 @dataclass(frozen=True)
 class ChannelSeries:
-    """Band-limited series of one channel over one judged recording; left-out samples are NaN. Arrays have shape (n,)."""
+    """Band-limited series of one channel over one judged recording; left-out samples are NaN. Arrays: shape (n,)."""
 
     name: str
     unit: str

@@ -15,7 +15,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-
 from feeddrive.effects.base import Parameter, Signature, TransmissionEffect
 from feeddrive.typing import Expression
 

@@ -97,6 +97,8 @@ class Effect:
         values: parameter key to SI value.
         port: where it acts.
         label: unique name inside a plant; the effect's name, numbered where it occurs more than once.
+        repeatable: whether one search may find it more than once.
+        additive: whether a plant may hold more than one at a port, their sum or product having a meaning.
     """
 
     name: ClassVar[str] = ""
@@ -105,6 +107,7 @@ class Effect:
     parameters: ClassVar[tuple[Parameter, ...]] = ()
     signature: ClassVar[Signature]
     repeatable: ClassVar[bool] = False
+    additive: ClassVar[bool] = False
 
     values: Mapping[str, Value] = field(default_factory=dict)
     port: Port = Port.TABLE
@@ -145,7 +148,9 @@ class Effect:
             for number in value if isinstance(value, tuple) else (value,):
                 if not parameter.minimum <= number <= parameter.maximum:
                     span = f"{parameter.minimum:g} to {parameter.maximum:g} {parameter.unit}"
-                    raise InputError(f"{key} = {number:g} {parameter.unit} is outside its range", cls.name, f"use {span}")
+                    raise InputError(
+                        f"{key} = {number:g} {parameter.unit} is outside its range", cls.name, f"use {span}"
+                    )
             result[key] = value
         return result
 
@@ -175,7 +180,9 @@ class TravelEffect(Effect):
     kind = Kind.TRAVEL
     ports = (Port.TRANSMISSION,)
 
-    def travel(self, angle: Expression, position: Expression, time: Expression, p: Mapping[str, Expression]) -> Expression:
+    def travel(
+        self, angle: Expression, position: Expression, time: Expression, p: Mapping[str, Expression]
+    ) -> Expression:
         """Travel deviation delta [m] at screw angle [rad], table position [m] and time [s]."""
         raise NotImplementedError
 
@@ -219,7 +226,9 @@ class FrictionEffect(Effect):
 class BristleEffect(FrictionEffect):
     """A friction effect with a bristle deflection as its state, in place of the tanh shape of its port."""
 
-    def deflection_rate(self, z: Expression, motion: Motion, level: Expression, p: Mapping[str, Expression]) -> Expression:
+    def deflection_rate(
+        self, z: Expression, motion: Motion, level: Expression, p: Mapping[str, Expression]
+    ) -> Expression:
         """Rate of the bristle deflection [m/s]."""
         raise NotImplementedError
 

@@ -13,7 +13,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-
 from feeddrive.effects.base import Motion, Parameter, Port, Signature, SourceEffect
 from feeddrive.typing import Expression
 
@@ -25,6 +24,7 @@ class ConstantForce(SourceEffect):
     ports = (Port.TABLE,)
     parameters = (Parameter("force", "N", size=10.0),)
     signature = Signature(("motor_torque", "table_position"), "nothing: it is there always", ("coulomb_asymmetry",))
+    additive = True
 
     def force(self, motion: Motion, p: Mapping[str, Expression]) -> Expression:
         """Resisting force [N]."""

@@ -15,7 +15,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-
 from feeddrive.effects.base import FrictionEffect, Motion, Parameter, Port, Signature
 from feeddrive.effects.direction import forward
 from feeddrive.typing import Expression

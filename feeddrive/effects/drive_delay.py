@@ -13,7 +13,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-
 from feeddrive.effects.base import Parameter, Port, Signature, TimingEffect
 from feeddrive.typing import Expression
 

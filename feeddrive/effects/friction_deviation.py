@@ -14,7 +14,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-
 from feeddrive.effects.base import FrictionEffect, Motion, Parameter, Port, Signature
 from feeddrive.typing import Expression
 
@@ -32,6 +31,7 @@ class FrictionDeviation(FrictionEffect):
         ("motor_torque", "table_position"), "velocity", ("coulomb_asymmetry", "viscous_warmup", "stribeck")
     )
     repeatable = True
+    additive = True
 
     def level_factor(self, motion: Motion, p: Mapping[str, Expression]) -> Expression:
         """Factor on the Coulomb level."""

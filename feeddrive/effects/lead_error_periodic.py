@@ -16,7 +16,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-
 import casadi as ca
 
 from feeddrive.effects.base import Parameter, Signature, TravelEffect
@@ -34,7 +33,10 @@ class LeadErrorPeriodic(TravelEffect):
     )
     signature = Signature(("table_position",), "screw angle", ("torque_ripple",))
     repeatable = True
+    additive = True
 
-    def travel(self, angle: Expression, position: Expression, time: Expression, p: Mapping[str, Expression]) -> Expression:
+    def travel(
+        self, angle: Expression, position: Expression, time: Expression, p: Mapping[str, Expression]
+    ) -> Expression:
         """Travel deviation [m]."""
         return p["amplitude"] * ca.sin(p["order"] * angle + p["phase"])

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-
 from feeddrive.effects.base import ChainEffect, Parameter, Port, Signature
 from feeddrive.typing import Expression
 
@@ -25,6 +24,7 @@ class Payload(ChainEffect):
     signature = Signature(
         ("motor_torque", "table_position"), "table acceleration", ("inertia_deviation", "structural_mode")
     )
+    additive = True
 
     def chain(self, chain: dict[str, Expression], p: Mapping[str, Expression]) -> dict[str, Expression]:
         """The chain with the mass on the table."""

@@ -12,8 +12,8 @@ share of the steady deflection or when z and v disagree in sign, 1 in steady sli
 | b | break_away | deflection at which slip begins, over the steady one; 0 for none | 1 |
 | z | (state) | bristle deflection, 0 at the start | m |
 
-With a break-away share it sticks, and does not drift under vibration; without, it drifts slowly. Dissipative while s1 <= 4 s0 level / (s0 |v|) (Barahanov
-and Ortega); the damping here is small.
+With a break-away share it sticks, and does not drift under vibration; without, it drifts slowly. Dissipative while
+s1 <= 4 level / |v| (Barahanov and Ortega); the damping here is small.
 Source: Dupont, Hayward, Armstrong, Altpeter, IEEE Trans. Automat. Contr. 47 (2002) 787, eqs. (8)-(12);
 Canudas de Wit, Olsson, Astrom, Lischinsky, IEEE Trans. Automat. Contr. 40 (1995) 419.
 """
@@ -22,11 +22,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-
 import casadi as ca
 
 from feeddrive.effects.base import BristleEffect, Motion, Parameter, Port, Signature
 from feeddrive.typing import Expression
+
 
 class Presliding(BristleEffect):
     """Elasto-plastic bristle."""
@@ -40,7 +40,9 @@ class Presliding(BristleEffect):
     )
     signature = Signature(("table_position", "motor_torque"), "displacement since reversal", ("backlash", "stribeck"))
 
-    def deflection_rate(self, z: Expression, motion: Motion, level: Expression, p: Mapping[str, Expression]) -> Expression:
+    def deflection_rate(
+        self, z: Expression, motion: Motion, level: Expression, p: Mapping[str, Expression]
+    ) -> Expression:
         """Rate of the bristle deflection [m/s]."""
         v = motion.velocity
         share = p["stiffness"] * z / level  # z over its steady-state value, with sign

@@ -15,7 +15,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-
 import casadi as ca
 
 from feeddrive.effects.base import FrictionEffect, Motion, Parameter, Port, Signature

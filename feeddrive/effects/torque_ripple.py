@@ -16,7 +16,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-
 import casadi as ca
 
 from feeddrive.effects.base import Motion, Parameter, Port, Signature, SourceEffect
@@ -35,6 +34,7 @@ class TorqueRipple(SourceEffect):
     )
     signature = Signature(("motor_torque",), "motor_angle", ("lead_error_periodic",))
     repeatable = True
+    additive = True
 
     def force(self, motion: Motion, p: Mapping[str, Expression]) -> Expression:
         """Resisting torque [N m]."""

@@ -234,7 +234,8 @@ def _transmission_beyond_linear(
 ) -> Expression:
     """What the transmission does beyond k (r phi - x) + c (r phi' - x'), on the coordinates [theta, phi, x].
 
-    The travel deviation delta(phi) enters the stretch; by virtual work its reaction on the screw is F (r + d delta/d phi).
+    The travel deviation delta(phi) enters the stretch; by virtual work its reaction on the screw is
+    F (r + d delta/d phi).
     """
     if not plant.has_travel and not plant.effects_of(TransmissionEffect):
         return ca.SX.zeros(3, 1)
@@ -281,5 +282,3 @@ def spring_force(
     beyond = ca.fabs(stretch) - 0.5 * play
     contact = ca.fmin(ca.fmax(beyond / CONTACT_SMOOTHING, 0), 1)
     return p["axial_stiffness"] * ca.sign(stretch) * ca.fmax(beyond, 0) + contact * p["axial_damping"] * rate
-
-

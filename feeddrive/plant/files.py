@@ -44,13 +44,11 @@ import warnings
 from itertools import pairwise
 from pathlib import Path
 
-from feeddrive.effects.base import Effect, FrictionEffect
+from feeddrive.effects.base import Effect
 from feeddrive.effects.catalogue import EFFECTS, find_effect
-from feeddrive.effects.guide_friction import GuideFriction
-from feeddrive.effects.shaft_drag import ShaftDrag
-from feeddrive.effects.viscous_asymmetry import ViscousAsymmetry
 from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.plant.chain import CHAINS, Chain, ChainValue, Rigid
+from feeddrive.plant.composition import refuse_what_cannot_compose
 from feeddrive.plant.effect_text import plant_text_with_effects
 from feeddrive.plant.entries import Origins, Table, nearest, read_toml
 from feeddrive.plant.equipment import read_controller, read_sensors
@@ -95,15 +93,18 @@ def read_plant(path: Path) -> Plant:
     chain = _chain(top)
     motor = top.table("motor")
     limit = _positive(motor, "torque_limit", "N m", "torque_limit") if "torque_limit" in motor.entries else float("inf")
+    effects = _effects(top)
+    refuse_what_cannot_compose(effects, chain.elastic, top.where)
     plant = Plant(
         name=top.text("name", path.stem),
         chain=chain,
-        effects=_effects(top),
+        effects=effects,
         torque_limit=limit,
         sensors=read_sensors(top),
         controller=read_controller(top),
         origins=top.origins.found,
     )
+    _refuse_moving_mass(plant, str(path))
     _warn_of_unusual(chain, str(path))
     return plant
 
@@ -177,7 +178,6 @@ def _effects(top: Table) -> tuple[Effect, ...]:
         name = table.text("name")
         label = _label(name, effects)
         effects.append(_effect(Table(table.entries, f"{table.where} ({name})", table.origins, table.source), label))
-    _refuse_friction_without_level(effects, top.where)
     return tuple(effects)
 
 
@@ -222,15 +222,12 @@ def _refuse_bad_curve(effect: Effect, where: str) -> None:
         raise InputError("position does not ascend", where, "write the positions in ascending order, none twice")
 
 
-def _refuse_friction_without_level(effects: list[Effect], where: str) -> None:
-    """Refuse an effect on the Coulomb level of a port that declares no friction: it would act on nothing."""
-    declared = {effect.port for effect in effects if isinstance(effect, GuideFriction | ShaftDrag)}
-    for effect in effects:
-        free = not isinstance(effect, FrictionEffect) or isinstance(effect, ViscousAsymmetry)
-        if not free and effect.port not in declared:
-            needed = "guide_friction" if effect.port == "table" else "nut_drag or bearing_drag"
-            what = f"{effect.name} acts on the friction of port {effect.port}, which declares none"
-            raise InputError(what, where, f"add {needed}")
+def _refuse_moving_mass(plant: Plant, where: str) -> None:
+    """Refuse a payload that takes away the whole table; here and not in `Plant`, for a fit may pass through it."""
+    mass = plant.chain_values()["table_mass"]
+    if mass <= 0:
+        what = f"table mass with the payload is {format_quantity(mass, 'kg')}"
+        raise InputError(what, where, "write a payload that leaves it above zero")
 
 
 def _warn_of_unusual(chain: Chain, where: str) -> None:

@@ -6,9 +6,9 @@ from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from feeddrive.effects.base import BristleEffect, ChainEffect, Effect, TravelEffect, TransmissionEffect, Value
-from feeddrive.errors import InputError
+from feeddrive.effects.base import ChainEffect, Effect, TravelEffect, Value
 from feeddrive.plant.chain import Chain
+from feeddrive.plant.composition import refuse_what_cannot_compose
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ class Plant:
     origins: Mapping[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        self._refuse_what_cannot_compose()
+        refuse_what_cannot_compose(self.effects, self.chain.elastic, self.name)
         object.__setattr__(self, "effects", _labelled(self.effects))
 
     def with_effects(self, *effects: Effect) -> Plant:
@@ -85,15 +85,6 @@ class Plant:
             if isinstance(effect, ChainEffect):
                 values = effect.chain(values, effect.values)
         return values
-
-    def _refuse_what_cannot_compose(self) -> None:
-        bristles = [effect.name for effect in self.effects if isinstance(effect, BristleEffect)]
-        if len(bristles) > 1:
-            raise InputError(f"two bristles at one port: {' and '.join(bristles)}", self.name, "keep one of them")
-        for effect in self.effects:
-            if isinstance(effect, TransmissionEffect) and not self.chain.elastic:
-                mend = 'use structure = "three_inertias" with the stiffness of the transmission'
-                raise InputError(f"{effect.name} needs an elastic transmission, the structure is rigid", self.name, mend)
 
     def effects_of(self, kind: type[Effect]) -> tuple[Effect, ...]:
         """The effects of one class."""

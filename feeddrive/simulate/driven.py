@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import casadi as ca
@@ -21,6 +22,9 @@ from feeddrive.simulate.loop import Loop, loop_of
 from feeddrive.simulate.step import Layout, StepModel, driven_step
 from feeddrive.simulate.structure import per_structure
 from feeddrive.typing import FloatArray
+
+PASSES = 3
+"""For the table position at the start; travel per length is below 1e-3, so each gains three digits."""
 
 
 @dataclass(frozen=True)
@@ -100,9 +104,8 @@ def simulate_driven(plant: Plant, motion: MotorMotion) -> LoadMotion:
     memory = np.zeros(machine.model.layout.memory)
     free = machine.model.layout.coordinates
     if free:
-        r = plant.chain.radius
-        memory[:free] = [motion.angle[0], r * motion.angle[0]]
-        memory[free : 2 * free] = [motion.speed[0], r * motion.speed[0]]
+        start = machine.start(motion.angle[0], motion.speed[0], parameter_values(plant))
+        memory[: 2 * free] = np.array(start).ravel()
     step = motion.time[1] - motion.time[0]
     # the acceleration is known at the samples only, and only there is the torque read
     acceleration = np.zeros(len(motion.time))
@@ -124,11 +127,12 @@ def simulate_driven(plant: Plant, motion: MotorMotion) -> LoadMotion:
 
 @dataclass(frozen=True)
 class _Machine:
-    """What one structure needs to be simulated: the step model, its loop and the outputs."""
+    """What one structure needs to be simulated: the step model, its loop, the outputs and the start."""
 
     model: StepModel
     loop: Loop
     outputs: ca.Function
+    start: ca.Function
 
 
 @per_structure
@@ -146,7 +150,22 @@ def _machine(plant: Plant) -> _Machine:
         [memory, ca.vertcat(inputs, time, acceleration), constants],
         [after, ca.vertcat(correction, read)],
     )
-    return _Machine(model, loop_of(step), outputs)
+    return _Machine(model, loop_of(step), outputs, _start(plant))
+
+
+def _start(plant: Plant) -> ca.Function:
+    """(theta, theta', parameters) -> [phi, x, phi', x'] with no stretch anywhere, travel errors included."""
+    symbols = parameter_symbols(plant)
+    theta, speed, place = (ca.SX.sym(name) for name in ("theta", "speed", "place"))
+    r = chain_symbols(plant, symbols)["lead"] / (2 * math.pi)
+    delta = travel_deviation(plant, symbols, theta, place, ca.SX(0))
+    x = r * theta
+    for _ in range(PASSES):
+        (found,) = ca.substitute([delta], [place], [x])
+        x = r * theta + found
+    slopes = ca.substitute([ca.jacobian(delta, theta), ca.jacobian(delta, place)], [place], [x])
+    velocity = speed * (r + slopes[0]) / (1 - slopes[1])
+    return ca.Function("start", [theta, speed, symbols.vector], [ca.vertcat(theta, x, speed, velocity)])
 
 
 def _outputs(plant: Plant, layout: Layout) -> ca.Function:

@@ -81,7 +81,7 @@ def interpreted_loop(step: ca.Function) -> Loop:
     start = ca.MX.sym("memory", step.size1_in(0))
     fed = ca.MX.sym("inputs", step.size1_in(1), CHUNK)
     fixed = ca.MX.sym("constants", step.size1_in(2))
-    wrapped = ca.Function("loop", [start, fed, fixed], chunk(start, fed, ca.repmat(fixed, 1, CHUNK)))
+    wrapped = ca.Function("loop", [start, fed, fixed], list(chunk(start, fed, ca.repmat(fixed, 1, CHUNK))))
 
     def run(memory: FloatArray, inputs: FloatArray, constants: FloatArray) -> tuple[FloatArray, FloatArray]:
         n = len(inputs)
@@ -145,9 +145,9 @@ def _compiled_loop(step: ca.Function, library: ctypes.CDLL) -> Loop:
         reals = np.empty(step.sz_w() + 1)
         arguments, results = (ctypes.c_void_p * (step.sz_arg() + 1))(), (ctypes.c_void_p * (step.sz_res() + 1))()
         function(
-            n, fed.shape[1], len(start), extra.shape[1], start.ctypes.data, fed.ctypes.data, fixed.ctypes.data, states.ctypes.data,
-            extra.ctypes.data, integers.ctypes.data, reals.ctypes.data, ctypes.addressof(arguments),
-            ctypes.addressof(results),
+            n, fed.shape[1], len(start), extra.shape[1], start.ctypes.data, fed.ctypes.data, fixed.ctypes.data,
+            states.ctypes.data, extra.ctypes.data, integers.ctypes.data, reals.ctypes.data,
+            ctypes.addressof(arguments), ctypes.addressof(results),
         )  # fmt: skip
         return states, extra
 

@@ -5,7 +5,8 @@
     s(c h) = E(c) s(0) + sum_k P_k(c) w_k,   P_k(c) = h int_0^c exp(h A (c - tau)) B tau^k d tau
 
 E and P_k come together from one matrix exponential of the chain augmented by the monomials.
-Source: Van Loan, IEEE Trans. Automat. Contr. 23 (1978) 395; Hairer and Wanner, Solving ODEs II, section IV.5 (Radau IIA).
+Source: Van Loan, IEEE Trans. Automat. Contr. 23 (1978) 395; Hairer and Wanner, Solving ODEs II, section IV.5 (Radau
+IIA).
 """
 
 from __future__ import annotations
@@ -70,4 +71,5 @@ def basis_propagators(propagators: FloatArray, basis: FloatArray) -> FloatArray:
     Returns:
         Shape (functions, n, m).
     """
-    return np.einsum("fk,knm->fnm", basis, propagators)
+    responses: FloatArray = np.einsum("fk,knm->fnm", basis, propagators)
+    return responses

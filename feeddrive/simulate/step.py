@@ -25,35 +25,12 @@ from feeddrive.plant.equations import (
     parameter_values,
 )
 from feeddrive.plant.plant import Plant
-from feeddrive.simulate.propagators import (
-    HERMITE_BASIS,
-    NODE_BASIS,
-    NODES,
-    RADAU,
-    basis_propagators,
-    monomial_propagators,
-)
+from feeddrive.simulate.propagators import HERMITE_BASIS, NODES, RADAU
+from feeddrive.simulate.step_constants import Layout, propagator_shapes, step_propagators, unflatten
 from feeddrive.typing import Expression, FloatArray
 
 NEWTON_ITERATIONS = 3
 """Corrections per step; quadratic from the last step's forces, the third is the check."""
-
-
-@dataclass(frozen=True)
-class Layout:
-    """Sizes of a step: free coordinates, states, effect forces that are not identically zero, bristles, inputs."""
-
-    driven: bool
-    coordinates: int
-    states: int
-    forced: tuple[int, ...]
-    bristles: int
-    inputs: int
-
-    @property
-    def memory(self) -> int:
-        """Length of what is carried from step to step: states, bristles, last node forces."""
-        return self.states + self.bristles + len(self.forced)
 
 
 @dataclass(frozen=True)
@@ -69,7 +46,7 @@ class StepModel:
 
     def constants(self, plant: Plant, step: float) -> FloatArray:
         """Propagators for the plant's values and the step [s], then step and parameters; shape (k,)."""
-        return np.concatenate([_propagators(plant, self.layout, step), [step], parameter_values(plant)])
+        return np.concatenate([step_propagators(plant, self.layout, step), [step], parameter_values(plant)])
 
 
 def driven_step(plant: Plant) -> StepModel:
@@ -91,10 +68,10 @@ def _build(plant: Plant, driven: bool) -> StepModel:
     memory = ca.SX.sym("memory", layout.memory)
     inputs = ca.SX.sym("inputs", layout.inputs)
     time = ca.SX.sym("time")
-    shapes = _propagator_shapes(layout)
+    shapes = propagator_shapes(layout)
     flat = ca.SX.sym("propagators", sum(rows * columns for rows, columns in shapes))
     step = ca.SX.sym("step")
-    blocks = _unflatten(flat, shapes)
+    blocks = unflatten(flat, shapes)
     after, correction = _newton(plant, symbols, layout, memory, inputs, time, step, blocks)
     constants = ca.vertcat(flat, step, symbols.vector)
     function = ca.Function(
@@ -139,7 +116,7 @@ def _newton(
         residual.append(z - z0 - step * (RADAU[i, 0] * rates[0] + RADAU[i, 1] * rates[1]))
     guess = ca.vertcat(last, last, z0, z0)
     correct = _newton_correction(ca.vertcat(*residual), unknown)
-    change = ca.SX.zeros(unknown.numel(), 1)
+    change: Expression = ca.SX.zeros(unknown.numel(), 1)
     for _ in range(NEWTON_ITERATIONS):
         (change,) = ca.substitute([correct], [unknown], [guess])
         guess = guess - change
@@ -159,8 +136,7 @@ def _newton_correction(residual: Expression, unknown: Expression) -> Expression:
     n = unknown.numel()
     if n == 0:
         return ca.SX.zeros(0, 1)
-    rows = ca.horzcat(ca.jacobian(residual, unknown), residual)
-    rows = ca.SX(rows)
+    rows = ca.SX(ca.horzcat(ca.jacobian(residual, unknown), residual))
     for column in range(n):
         for row in range(column + 1, n):
             if not rows[row, column].is_zero():
@@ -201,71 +177,6 @@ def _coordinates(
         ratio = plant.chain.motor(chain_symbols(plant, symbols))[0]
         return theta / ratio, theta_rate / ratio
     return ca.vertcat(theta, state[:half]), ca.vertcat(theta_rate, state[half:])
-
-
-def _propagator_shapes(layout: Layout) -> list[tuple[int, int]]:
-    n, m = layout.states, len(layout.forced)
-    return [(n, n), (n, layout.inputs), (n, m), (n, m)] * 2
-
-
-def _unflatten(flat: Expression, shapes: list[tuple[int, int]]) -> list[Expression]:
-    blocks, at = [], 0
-    for rows, columns in shapes:
-        blocks.append(ca.reshape(flat[at : at + rows * columns], rows, columns))
-        at += rows * columns
-    return blocks
-
-
-def _propagators(plant: Plant, layout: Layout, step: float) -> FloatArray:
-    """The blocks of `_propagator_shapes`, column-major, for the plant's present values."""
-    p = plant.chain_values()
-    mass, damping, stiffness = (
-        np.array(matrix(p), dtype=float)
-        for matrix in (plant.chain.mass, plant.chain.damping, plant.chain.stiffness)
-    )
-    first = 1 if layout.driven else 0
-    free = slice(first, None)
-    inverse = np.linalg.inv(mass[free, free]) if layout.coordinates else np.zeros((0, 0))
-    a = _state_matrix(inverse, damping[free, free], stiffness[free, free])
-    force = _force_matrix(inverse, [i - first for i in layout.forced])
-    blocks: list[FloatArray] = []
-    for node in NODES:
-        exponential, on_force = monomial_propagators(a, force, step, 1, node)
-        on_nodes = basis_propagators(on_force, NODE_BASIS)
-        from_input = _input_propagator(plant, layout, a, inverse, damping, stiffness, step, node)
-        blocks += [exponential, from_input, on_nodes[0], on_nodes[1]]
-    return np.concatenate([block.ravel(order="F") for block in blocks])
-
-
-def _input_propagator(
-    plant: Plant, layout: Layout, a: FloatArray, inverse: FloatArray, damping: FloatArray, stiffness: FloatArray,
-    step: float, node: float,
-) -> FloatArray:  # fmt: skip
-    n = layout.coordinates
-    if not layout.driven:
-        p = plant.chain_values()
-        columns = np.column_stack([plant.chain.motor(p), plant.chain.table(p)])  # virtual work: force = L' torque
-        held = np.vstack([np.zeros((n, 2)), inverse @ columns])
-        return monomial_propagators(a, held, step, 0, node)[1][0]
-    zeros = np.zeros((n, 1))
-    by_angle = np.vstack([zeros, -inverse @ stiffness[1:, :1]])
-    by_speed = np.vstack([zeros, -inverse @ damping[1:, :1]])
-    slopes = np.zeros_like(HERMITE_BASIS)
-    slopes[:, :3] = HERMITE_BASIS[:, 1:] * np.arange(1, 4) / step
-    angle = basis_propagators(monomial_propagators(a, by_angle, step, 3, node)[1], HERMITE_BASIS)
-    speed = basis_propagators(monomial_propagators(a, by_speed, step, 3, node)[1], slopes)
-    response: FloatArray = (angle + speed)[:, :, 0].T
-    return response * np.array([1.0, step, 1.0, step])
-
-
-def _state_matrix(inverse: FloatArray, damping: FloatArray, stiffness: FloatArray) -> FloatArray:
-    n = len(inverse)
-    return np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ stiffness, -inverse @ damping]])
-
-
-def _force_matrix(inverse: FloatArray, forced: list[int]) -> FloatArray:
-    n = len(inverse)
-    return np.vstack([np.zeros((n, len(forced))), inverse[:, forced]])
 
 
 __all__ = ["Layout", "StepModel", "driven_step", "torque_step"]

@@ -92,10 +92,10 @@ def test_appended_effects_are_read_back_identically(tmp_path: Path) -> None:
         EFFECTS["torque_ripple"].of(amplitude=0.1 + 0.2, order=1 / 3, phase=-math.pi),
         EFFECTS["torque_ripple"].of(amplitude=1e-300, order=8.0, phase=0.0),
         EFFECTS["friction_vs_position"].of(position=(0.0, 0.1, 1 / 7), delta_force=(1e-7, -2 / 3, 5.0)),
-        EFFECTS["nut_drag"].of(coulomb=0.1, smoothing_speed=0.15, viscous=0.0123456789),
+        EFFECTS["constant_force"].of(force=0.0123456789),
         EFFECTS["backlash"].of(width=7.54113e-06),
     ]
-    remarks = ["found in motor_torque\nat 8 per revolution \x00", "", "a # remark", "another nut_drag", "ü"]
+    remarks = ["found in motor_torque\nat 8 per revolution \x00", "", "a # remark", "a counterbalance", "ü"]
     original = BENCH.read_text(encoding="utf-8").rstrip("\n")
     text = plant_text_with_effects(original, added, remarks)
     assert text.startswith(original)
