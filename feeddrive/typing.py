@@ -13,5 +13,8 @@ FloatArray: TypeAlias = NDArray[np.float64]
 BoolArray: TypeAlias = NDArray[np.bool_]
 """Mask over samples."""
 
+IntegerArray: TypeAlias = NDArray[np.int64]
+"""Indices over samples."""
+
 Expression: TypeAlias = Any
 """A CasADi SX or MX expression, or a number; casadi ships no type information."""

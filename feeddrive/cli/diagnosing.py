@@ -71,7 +71,9 @@ def _print_summary(result: Diagnosis, report: Path) -> None:
     console = Console(soft_wrap=True, highlight=False)
     for sentence in verdict_sentences(result):
         console.print(sentence, markup=False)
-    table = Table("channel", "error before", "after", "relative before", "after", "sensor noise", title="on data not fitted")
+    table = Table(
+        "channel", "error before", "after", "relative before", "after", "sensor noise", title="on data not fitted"
+    )
     for channel in result.channels:
         errors = [error_text(rms, channel.unit) for rms in (channel.before.rms, channel.after.rms, channel.noise_rms)]
         shares = [share_text(figures.relative) for figures in (channel.before, channel.after)]
@@ -83,5 +85,7 @@ def _print_summary(result: Diagnosis, report: Path) -> None:
         console.print(f"cannot be told apart by these recordings: {', '.join(names)}", markup=False)
     if result.simulation is not None:
         before, after = (share_text(e) for e in (result.simulation.before, result.simulation.after))
-        console.print(f"closed-loop simulation, {result.simulation.channel}, unfiltered: {before} before, {after} after")
+        console.print(
+            f"closed-loop simulation, {result.simulation.channel}, unfiltered: {before} before, {after} after"
+        )
     console.print(f"report: {report.resolve()}", markup=False)

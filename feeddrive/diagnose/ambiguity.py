@@ -1,13 +1,14 @@
-"""Effects that the recordings cannot tell apart: a rival in the place of an effect, with the same error on data not fitted."""
+"""Effects that cannot be told apart: a rival in an effect's place, with the same error on data not fitted."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
+from feeddrive.diagnose.attempt import Attempt
 from feeddrive.diagnose.cross_validation import LEAST_GAIN, block_errors, block_numbers, compare
 from feeddrive.diagnose.fit import Fit, Problem, fit
 from feeddrive.diagnose.judge import Judged, squared_blocks
-from feeddrive.diagnose.search import Attempt, Search
+from feeddrive.diagnose.search import Search
 from feeddrive.effects.base import Effect
 from feeddrive.effects.catalogue import EFFECTS
 
@@ -43,7 +44,7 @@ def _rivals(search: Search, effect: Effect) -> list[Attempt]:
     """Candidates that came near when the effect was taken, and those that its signature names."""
     for number, attempts in enumerate(search.rounds):
         taken = next((t for t in search.trials if t.round == number + 1 and t.taken), None)
-        if taken is None or taken.name != effect.name:
+        if taken is None or effect.name not in taken.name.split(" with "):
             continue
         others = [a for a in attempts if a.name != effect.name and a.comparison.pays]
         near = [a for a in others if a.comparison.gain > 0.5 * taken.gain or a.name in effect.signature.confused_with]
@@ -71,4 +72,3 @@ def _as_good(problem: Problem, found: Fit, swapped: Fit) -> bool:
     mine = block_errors(found.residual, found.jacobian, blocks)
     better = compare(its, mine)
     return better.gain < max(LEAST_GAIN, 2 * better.standard_error)
-

@@ -1,4 +1,4 @@
-"""The pass band in which plant and recording are compared, the hold of the torque, and the sensor noise inside the band.
+"""The band in which plant and recording are compared, the hold of the torque, and the sensor noise in the band.
 
 Measured and predicted series pass the same zero-phase filter (4th-order Butterworth, forward and backward).
 """

@@ -191,7 +191,7 @@ def _ripple(scene: Scene) -> list[list[Effect]]:
     rows = scene.problem.evidence[at].fit_rows
     angle, residual = scene.runs[at].motor_angle[rows], scene.residuals[at]["motor_torque"][rows]
     orders = strongest_orders(angle, residual, _highest_order(scene, at))
-    return [[TorqueRipple.of(**_sine(angle, residual, order)) for order in orders]] if orders else []
+    return [[_sine(TorqueRipple, angle, residual, order) for order in orders]] if orders else []
 
 
 def _lead_error(scene: Scene) -> list[list[Effect]]:
@@ -201,7 +201,7 @@ def _lead_error(scene: Scene) -> list[list[Effect]]:
         return []
     angle, residual = scene.runs[at].screw_angle[rows], scene.residuals[at]["table_position"][rows]
     orders = strongest_orders(angle, residual, _highest_order(scene, at))
-    return [[LeadErrorPeriodic.of(**_sine(angle, residual, order)) for order in orders]] if orders else []
+    return [[_sine(LeadErrorPeriodic, angle, residual, order) for order in orders]] if orders else []
 
 
 def _highest_order(scene: Scene, at: int) -> float:
@@ -210,9 +210,9 @@ def _highest_order(scene: Scene, at: int) -> float:
     return float(np.pi / scene.problem.evidence[at].recording.sample_time / fastest)
 
 
-def _sine(angle: FloatArray, residual: FloatArray, order: float) -> dict[str, float]:
+def _sine(kind: type[Effect], angle: FloatArray, residual: FloatArray, order: float) -> Effect:
     amplitude, phase = sine_at(angle, residual, order)
-    return {"amplitude": amplitude, "order": order, "phase": phase}
+    return kind.of(amplitude=amplitude, order=order, phase=phase)
 
 
 def _over_position(scene: Scene) -> list[list[Effect]]:

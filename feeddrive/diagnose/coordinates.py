@@ -6,7 +6,7 @@ Fits run in coordinates of size about one, so that one step length and one dampi
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -139,10 +139,8 @@ def spread_to_values(
     """Standard deviation of every fitted value, by the exact slope of the coordinates; a list entry per effect."""
     step = 1e-6
     base = _flat(write_coordinates(effects, plant, vector))
-    slopes: Callable[[int], FloatArray] = lambda i: (  # noqa: E731
-        _flat(write_coordinates(effects, plant, vector + step * np.eye(len(vector))[i])) - base
-    ) / step
-    jacobian = np.column_stack([slopes(i) for i in range(len(vector))])
+    moved = [_flat(write_coordinates(effects, plant, vector + step * unit)) for unit in np.eye(len(vector))]
+    jacobian = np.column_stack([(values - base) / step for values in moved])
     deviation = np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", jacobian, covariance, jacobian), 0.0))
     result, at = [], 0
     for effect in effects:

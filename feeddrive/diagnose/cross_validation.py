@@ -1,8 +1,8 @@
 """Error on blocks of time that were not fitted, without refitting for every block.
 
-The blocks are dealt to folds in turn, so that every fold sees strokes, reversals and chirps. Leaving fold k out moves the
-coordinates by d = -(H - H_k)^-1 g_k, with H = J'J, H_k and g_k = J_k' r_k from the fold alone; the error on the fold is
-that of r_k - J_k d. Exact for linear coordinates, and to second order otherwise.
+The blocks are dealt to folds in turn, so that every fold sees strokes, reversals and chirps. Leaving fold k out moves
+the coordinates by d = -(H - H_k)^-1 g_k, with H = J'J, H_k and g_k = J_k' r_k from the fold alone; the error on the
+fold is that of r_k - J_k d. Exact for linear coordinates, and to second order otherwise.
 Source: Stone, J. Roy. Statist. Soc. B 36 (1974) 111; Roberts et al., Ecography 40 (2017) 913 (blocks).
 """
 
@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from feeddrive.diagnose.fit import Problem
-from feeddrive.typing import FloatArray
+from feeddrive.typing import FloatArray, IntegerArray
 
 BLOCK = 0.5
 """Length of a block [s]: many correlation times of the band, and short against a stroke."""
@@ -47,7 +47,7 @@ SIGNIFICANCE = 1.0
 """Gain over its standard error that is asked for: the one-standard-error rule (Breiman et al., 1984, section 3.4.3)."""
 
 
-def block_numbers(problem: Problem) -> FloatArray:
+def block_numbers(problem: Problem) -> IntegerArray:
     """Block of every row of the residual, counted over all recordings; channels share their blocks. Shape (m,)."""
     numbers, first = [], 0
     for evidence in problem.evidence:
@@ -55,10 +55,10 @@ def block_numbers(problem: Problem) -> FloatArray:
         blocks = (rows * evidence.recording.sample_time / BLOCK).astype(int)
         numbers += [first + blocks] * len(evidence.channels)
         first += int(blocks.max(initial=0)) + 1
-    return np.concatenate(numbers)
+    return np.concatenate(numbers).astype(np.int64)
 
 
-def block_errors(residual: FloatArray, jacobian: FloatArray, blocks: FloatArray) -> FloatArray:
+def block_errors(residual: FloatArray, jacobian: FloatArray, blocks: IntegerArray) -> FloatArray:
     """Squared error of each block when its fold is not fitted.
 
     Args:
@@ -82,7 +82,8 @@ def block_errors(residual: FloatArray, jacobian: FloatArray, blocks: FloatArray)
             # at the fit J'r = 0; a fit that stopped early is taken as it is, not as it might have become
             move = -np.linalg.lstsq(rest, part.T @ residual[rows], rcond=1e-12)[0]
             left_out[rows] = residual[rows] - part @ move
-    return np.bincount(blocks, weights=left_out**2, minlength=count)
+    sums: FloatArray = np.bincount(blocks, weights=left_out**2, minlength=count).astype(np.float64)
+    return sums
 
 
 def compare(before: FloatArray, after: FloatArray) -> Comparison:

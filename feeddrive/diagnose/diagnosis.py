@@ -192,7 +192,8 @@ def _why_not(gain: float, error: float) -> str:
         return "it does not lower the error on data not fitted"
     if gain <= LEAST_GAIN:
         return f"it lowers the squared error on data not fitted by {gain:.2%}, less than the {LEAST_GAIN:.1%} asked for"
-    return f"it lowers the squared error by {gain:.2%}, within the scatter of the blocks ({error:.2%}), or others did better"
+    scatter = f"within the scatter of the blocks ({error:.2%}), or others did better"
+    return f"it lowers the squared error by {gain:.2%}, {scatter}"
 
 
 def _notes(
@@ -203,9 +204,13 @@ def _notes(
     for before, after in zip(fitted, found.problem.evidence, strict=True):
         lost = float(np.sum(before.counted & ~after.counted)) * before.recording.sample_time
         if lost > 0:
-            notes.append(f"{before.recording.name}: {lost:.1f} s are left out: with free play the motion is chaotic there")
+            notes.append(
+                f"{before.recording.name}: {lost:.1f} s are left out: with free play the motion is chaotic there"
+            )
     if asked and simulation is None:
-        notes.append("no closed-loop simulation: the plant file declares no controller, or the recording has no setpoint")
+        notes.append(
+            "no closed-loop simulation: the plant file declares no controller, or the recording has no setpoint"
+        )
     return tuple(notes)
 
 

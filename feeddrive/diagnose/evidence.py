@@ -89,7 +89,7 @@ def prepare(recording: Recording, plant: Plant, share: float) -> Evidence:
         raise InputError(f"the recording lasts {recording.duration:.3g} s, too short to compare", recording.name, mend)
     rate = 1 / recording.sample_time
     band = comparison_band(plant, rate)
-    time = recording.sample_time * np.arange(len(recording))
+    time: FloatArray = np.arange(len(recording), dtype=np.float64) * recording.sample_time
     raw = {name: recording[name] for name in measured_names}
     acting = {**raw, "motor_torque": held(raw["motor_torque"])}
     counted = (time >= END_CUT) & (time <= time[-1] - END_CUT)

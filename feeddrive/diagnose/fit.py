@@ -127,7 +127,7 @@ def fit(
             trial = _stepped(problem, current, chosen, jacobian, residual, damping)
             trial_predicted = problem.predicted(trial)
             trial_residual = measured - trial_predicted
-            before, after = residual @ residual, trial_residual @ trial_residual
+            before, after = float(residual @ residual), float(trial_residual @ trial_residual)
             if np.isfinite(after) and after < before:
                 step_found, gain = True, (before - after) / before
                 break

@@ -61,14 +61,16 @@ def channel_results(problem: Problem, judged: Sequence[Judged]) -> tuple[Channel
 
 
 def _reference(name: str, judged: Judged) -> FloatArray:
-    """What a relative error refers to: the torque itself; for the table its motion beyond lead / 2 pi times the motor's."""
+    """What a relative error refers to: the torque; for the table its motion beyond lead / 2 pi times the motor's."""
     evidence = judged.evidence
     rows = evidence.judged_rows
     if name != "table_position":
-        return evidence.measured[name][rows]
+        torque: FloatArray = evidence.measured[name][rows]
+        return torque
     geared = judged.before.chain.radius * evidence.band.filter(evidence.recording["motor_angle"])
     beyond = (evidence.measured[name] - geared)[rows]
-    return beyond - beyond.mean()
+    about_mean: FloatArray = beyond - beyond.mean()
+    return about_mean
 
 
 def squared_blocks(problem: Problem, plant_of: Sequence[tuple[Plant, Evidence]]) -> FloatArray:
@@ -87,7 +89,7 @@ def squared_blocks(problem: Problem, plant_of: Sequence[tuple[Plant, Evidence]])
 
 @dataclass(frozen=True)
 class Share:
-    """What one effect does on data not fitted: per channel 1 - (rms with / rms without)^2, and the weighted comparison."""
+    """What one effect does on data not fitted: 1 - (rms with / rms without)^2 per channel, and the comparison."""
 
     explains: dict[str, float]
     comparison: Comparison

@@ -55,7 +55,7 @@ def strongest_orders(
 
 
 def sine_at(angle: FloatArray, residual: FloatArray, order: float) -> tuple[float, float]:
-    """Amplitude and phase of the sine of this order that fits best: residual = A sin(order angle + phase) + constant."""
+    """Amplitude and phase of the best sine of this order: residual = A sin(order angle + phase) + constant."""
     columns = np.column_stack([np.sin(order * angle), np.cos(order * angle), np.ones(len(angle))])
     a, b, _ = np.linalg.lstsq(columns, residual, rcond=None)[0]
     return float(np.hypot(a, b)), float(np.arctan2(b, a))

@@ -37,13 +37,15 @@ def _stribeck(v: Mapping[str, Value]) -> str:
     return _signed(
         v["delta_force"],
         "Friction is higher near rest than in motion: mixed lubrication below the Stribeck velocity.",
-        "Friction is lower near rest than the declared Coulomb level: the level was read at speed and does not hold below "
-        "the Stribeck velocity.",
+        "Friction is lower near rest than the declared Coulomb level: the level was read at speed and does not hold "
+        "below the Stribeck velocity.",
     )
 
 
 def _presliding(v: Mapping[str, Value]) -> str:
-    return "After a reversal the friction builds up over micrometres of travel, as an elastic contact before break-away."
+    return (
+        "After a reversal the friction builds up over micrometres of travel, as an elastic contact before break-away."
+    )
 
 
 def _friction_vs_position(v: Mapping[str, Value]) -> str:

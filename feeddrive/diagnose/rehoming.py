@@ -41,7 +41,7 @@ class Rehomed:
 def rehomed_plant(problem: Problem, effects: Sequence[Effect], evidence: Evidence) -> Rehomed | None:
     """The plant with its periodic effects shifted to the recording's zero, or None where nothing is to be shifted.
 
-    Only whole recordings that were not fitted are looked at; a recording's own last part has the zero it was fitted with.
+    Only whole recordings that were not fitted are looked at; the last part of a fitted one has the same zero.
     """
     locked = [effect for effect in effects if "phase" in effect.values]
     if not locked or evidence.fitted.any():
@@ -65,7 +65,9 @@ def rehomed_plant(problem: Problem, effects: Sequence[Effect], evidence: Evidenc
         return None
     rest = replace(evidence, counted=evidence.counted & ~_first_part(evidence))
     names = ", ".join(sorted({effect.name for effect in locked}))
-    statement = f"{names} shifted by {np.degrees(found.x):.1f} degrees of the motor on the first 15 %; judged on the rest"
+    statement = (
+        f"{names} shifted by {np.degrees(found.x):.1f} degrees of the motor on the first 15 %; judged on the rest"
+    )
     return Rehomed(plant, rest, statement)
 
 

@@ -26,7 +26,7 @@ def _relative(plant: Plant, judged: Sequence[Judged]) -> float:
     missed, measured = 0.0, 0.0
     for j in judged:
         recording, rows = j.evidence.recording, j.evidence.judged_rows
-        time = recording.sample_time * np.arange(len(recording))
+        time: FloatArray = np.arange(len(recording), dtype=np.float64) * recording.sample_time
         position, speed = _start(j)
         run = simulate_closed_loop(plant, time, recording["setpoint"], position, speed)
         error: FloatArray = (recording["motor_torque"] - run.torque)[rows]

@@ -15,10 +15,10 @@ from scipy.stats import t as student
 from feeddrive.diagnose.coordinates import spread_to_values
 from feeddrive.diagnose.cross_validation import block_numbers
 from feeddrive.diagnose.fit import Fit, Problem
-from feeddrive.typing import FloatArray
+from feeddrive.typing import FloatArray, IntegerArray
 
 
-def coordinate_covariance(fitted: Fit, blocks: FloatArray) -> FloatArray:
+def coordinate_covariance(fitted: Fit, blocks: IntegerArray) -> FloatArray:
     """Covariance of the fit coordinates, shape (k, k)."""
     scores = fitted.jacobian * fitted.residual[:, None]
     sums = np.zeros((int(blocks.max(initial=0)) + 1, scores.shape[1]))
@@ -34,7 +34,7 @@ def coordinate_covariance(fitted: Fit, blocks: FloatArray) -> FloatArray:
     return covariance
 
 
-def informed_blocks(fitted: Fit, blocks: FloatArray) -> float:
+def informed_blocks(fitted: Fit, blocks: IntegerArray) -> float:
     """Number of blocks that carry the least known coordinate: (sum w)^2 / sum w^2 of their information."""
     count = int(blocks.max(initial=0)) + 1
     least = float(count)

@@ -1,0 +1,131 @@
+"""One candidate in one round: started, refined, and compared by blocked cross-validation."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from feeddrive.diagnose.candidates import Candidate, Scene
+from feeddrive.diagnose.cross_validation import LEAST_GAIN, Comparison, block_errors, block_numbers, compare
+from feeddrive.diagnose.fit import Fit, Problem, fit
+from feeddrive.diagnose.predictability import predictable_samples
+from feeddrive.effects.base import Effect, TransmissionEffect
+from feeddrive.errors import InputError
+from feeddrive.typing import FloatArray
+
+JOINT_ITERATIONS = 4
+"""Steps of a joint fit inside the search; what is left is polished at its end."""
+
+
+FIT_ITERATIONS = 12
+"""Steps of a candidate's fit at most."""
+
+
+PROMISE = 0.001
+"""Share of the squared error that the first step of a fit must take away for the fit to go on."""
+
+
+HOPELESS_ITERATIONS = 3
+"""Steps for a candidate none of whose scanned starts is better than nothing."""
+
+
+@dataclass(frozen=True)
+class Attempt:
+    """A candidate refined in one round, against the same recordings without it.
+
+    Attributes:
+        name: effect name.
+        fit: of all free effects.
+        comparison: against the effects found before.
+        problem: recordings with the samples that this candidate can predict.
+        errors: squared error per block, left out of the fit, shape (blocks,).
+    """
+
+    name: str
+    fit: Fit
+    comparison: Comparison
+    problem: Problem
+    errors: FloatArray
+
+
+def alone(scene: Scene, candidate: Candidate) -> list[Attempt]:
+    """Each form of a candidate, refined while what was found before stays as it is."""
+    attempts: list[Attempt] = []
+    for starts in candidate.forms(scene):
+        if candidate.scanned and attempts and attempts[0].comparison.gain < LEAST_GAIN:
+            break  # another form of a law that does not pay at all is not worth its simulations
+        try:
+            attempts.append(_refined(scene, candidate, starts))
+        except InputError:  # cannot act together with what was found, or cannot be simulated
+            continue
+    return attempts
+
+
+def _refined(scene: Scene, candidate: Candidate, starts: Sequence[Effect]) -> Attempt:
+    """The best start of one form, refined unless not even its first step promises anything."""
+    name, before = candidate.name, scene.found
+    frozen = [False] * len(before)
+    jumps = isinstance(starts[0], TransmissionEffect)
+    problem = with_predictable(scene.problem, (*before, starts[0])) if jumps else scene.problem
+    base = fit(problem, before, frozen, iterations=0).squared_error
+    free = [*frozen, True]
+    tried = [fit(problem, (*before, start), free, 0, error_only=candidate.scanned) for start in starts]
+    if not candidate.scanned:
+        tried = [_one_linear_step(attempt) for attempt in tried]
+    result = min(tried, key=lambda attempt: attempt.squared_error)
+    promising = result.squared_error < (1 - PROMISE) * base
+    if promising or candidate.scanned:
+        steps = FIT_ITERATIONS if promising else HOPELESS_ITERATIONS
+        result = fit(problem, result.effects, free, steps)
+    if not (np.isfinite(result.squared_error) and np.all(np.isfinite(result.jacobian))):
+        raise InputError(f"{name} could not be simulated", name)
+    if jumps:
+        problem = with_predictable(scene.problem, result.effects)
+    return compared(problem, name, result, before)
+
+
+def _one_linear_step(fitted: Fit) -> Fit:
+    """The fit as one linear step would leave it, the values as they were; ranks starts at no simulation."""
+    if not np.all(np.isfinite(fitted.jacobian)):
+        return fitted
+    step = np.linalg.lstsq(fitted.jacobian, fitted.residual, rcond=1e-10)[0]
+    return replace(fitted, residual=fitted.residual - fitted.jacobian @ step)
+
+
+def together(attempt: Attempt, found: Fit) -> Attempt:
+    """The candidate refitted together with what was found before."""
+    result = fit(attempt.problem, attempt.fit.effects, iterations=JOINT_ITERATIONS)
+    return compared(attempt.problem, attempt.name, result, found.effects)
+
+
+def compared(problem: Problem, name: str, result: Fit, before: Sequence[Effect]) -> Attempt:
+    """Compare a fit with the effects before it, both on the same samples and both with their own effects free."""
+    blocks = block_numbers(problem)
+    if len(blocks) != len(result.residual):
+        result = fit(problem, result.effects, _free(result, before), iterations=0)
+    reference = _reference(problem, before, result)
+    without = block_errors(reference.residual, reference.jacobian, blocks)
+    errors = block_errors(result.residual, result.jacobian, blocks)
+    return Attempt(name, result, compare(without, errors), problem, errors)
+
+
+def _free(result: Fit, before: Sequence[Effect]) -> list[bool]:
+    """Which effects a fit had free: the last alone, or all."""
+    joint = result.effects[: len(before)] != tuple(before)
+    return [joint] * len(before) + [True] * (len(result.effects) - len(before))
+
+
+def _reference(problem: Problem, before: Sequence[Effect], result: Fit) -> Fit:
+    joint = result.effects[: len(before)] != tuple(before)
+    return fit(problem, before, [joint] * len(before), iterations=0)
+
+
+def with_predictable(problem: Problem, effects: Sequence[Effect]) -> Problem:
+    """The problem without the samples that a plant with these effects cannot predict."""
+    plant = problem.plant.with_effects(*effects)
+    kept = tuple(e.where_predictable(predictable_samples(plant, e)) for e in problem.evidence)
+    if any(not e.fit_rows.any() for e in kept):
+        return problem
+    return replace(problem, evidence=kept)

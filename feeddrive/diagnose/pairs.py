@@ -1,0 +1,68 @@
+"""Two effects that hide each other: neither pays alone, together they do."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from feeddrive.diagnose.attempt import Attempt, compared
+from feeddrive.diagnose.coordinates import read_coordinates
+from feeddrive.diagnose.cross_validation import Comparison, block_errors, block_numbers, compare
+from feeddrive.diagnose.fit import Fit, fit
+from feeddrive.errors import InputError
+from feeddrive.typing import FloatArray
+
+SUPERADDITIVE = 1.5
+"""Gain of two effects together over the sum of their gains alone, from which they are said to hide each other."""
+
+
+PAIRS_FITTED = 2
+"""Pairs of effects that mask each other, fitted where they promise more than the best single one."""
+
+
+def masked_pair(attempts: Sequence[Attempt], found: Fit, winner: Attempt | None) -> Attempt | None:
+    """Two candidates that hide each other, as a rise with speed hides a drop of the level.
+
+    Together they are worth more than the best single one, and than the sum of what they are worth alone. Pairs are
+    ranked by one linear step from the Jacobians at hand, at no simulation; the best are fitted.
+    """
+    least = winner.comparison.gain if winner is not None else 0.0
+    usable = [a for a in attempts if a.comparison.gain > -0.1 and len(a.fit.effects) == len(found.effects) + 1]
+    ranked = []
+    for i, first in enumerate(usable):
+        for second in usable[i + 1 :]:
+            linear = _linear_pair(first, second, found)
+            alone = max(first.comparison.gain, 0.0) + max(second.comparison.gain, 0.0)
+            if linear is not None and linear.pays and linear.gain > max(SUPERADDITIVE * alone, least):
+                ranked.append((linear.gain, first, second))
+    ranked.sort(key=lambda entry: -entry[0])
+    for _, first, second in ranked[:PAIRS_FITTED]:
+        problem = first.problem
+        try:
+            result = fit(problem, (*found.effects, first.fit.effects[-1], second.fit.effects[-1]))
+        except InputError:
+            continue
+        pair = compared(problem, f"{first.name} with {second.name}", result, found.effects)
+        if pair.comparison.pays and pair.comparison.gain > least:
+            return pair
+    return None
+
+
+def _linear_pair(first: Attempt, second: Attempt, found: Fit) -> Comparison | None:
+    """Gain of both candidates together by one linear step; None where they count other samples."""
+    rows = {len(part.residual) for part in (first.fit, second.fit, found)}
+    if len(rows) != 1:
+        return None
+    columns = _own_columns(first), _own_columns(second)
+    jacobian = np.hstack([found.jacobian, *columns])
+    blocks = block_numbers(first.problem)
+    step = np.linalg.lstsq(jacobian, first.fit.residual, rcond=1e-10)[0]
+    together = block_errors(first.fit.residual - jacobian @ step, jacobian, blocks)
+    return compare(block_errors(found.residual, found.jacobian, blocks), together)
+
+
+def _own_columns(attempt: Attempt) -> FloatArray:
+    """Columns of the Jacobian that belong to the candidate itself."""
+    own = len(read_coordinates(attempt.fit.effects[-1:], attempt.problem.plant))
+    return attempt.fit.jacobian[:, attempt.fit.jacobian.shape[1] - own :]
