@@ -118,14 +118,14 @@ def close(key: str, found: Any, planted: Any) -> bool:
     """Whether a parameter is found as nearly as is asked for."""
     if isinstance(planted, str):
         return bool(found == planted)
-    difference = float(found) - float(planted)
+    difference: float = float(found) - float(planted)
     if key == "phase":
         return abs(math.remainder(difference, 2 * math.pi)) <= PHASE
     if key == "order":
-        return abs(difference) <= ORDER * planted
+        return abs(difference) <= ORDER * float(planted)
     if key == "centre":
         return abs(difference) <= POSITION
-    return abs(difference) <= SIZE * abs(planted)
+    return abs(difference) <= SIZE * abs(float(planted))
 
 
 def pair(axis: str, case: str) -> tuple[Recording, Recording]:
