@@ -34,7 +34,7 @@ from feeddrive.typing import FloatArray
 TABLE_NODES = 12
 """Nodes of a tabulated friction curve over the stroke."""
 
-LEAST_CURVE = 0.002
+LEAST_CURVE = 0.01
 """Share of the torque residual's square that must follow the position before a table is tried."""
 
 LEAST_TURNS = 2.0

@@ -13,6 +13,7 @@ from feeddrive.diagnose.fit import Problem, fit
 from feeddrive.diagnose.predictability import predictable_samples
 from feeddrive.diagnose.result import ChannelResult, ChannelSeries, JudgedRecording, error_figures
 from feeddrive.effects.base import Effect
+from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import CHANNEL_UNITS
 from feeddrive.typing import FloatArray
@@ -39,6 +40,9 @@ def error_series(problem: Problem, plant: Plant, evidence: Evidence) -> dict[str
     rows = evidence.judged_rows
     result = {}
     for name in evidence.channels:
+        if not np.all(np.isfinite(predicted[name])):
+            mend = "a bristle or a damper is too stiff for the sample time; check its value and unit"
+            raise InputError("the plant cannot be simulated with this motion", plant.name, mend)
         error = np.where(rows, evidence.measured[name] - predicted[name], np.nan)
         result[name] = error - np.nanmean(error) if name == "table_position" else error
     return result

@@ -12,8 +12,11 @@ from scipy.ndimage import shift
 from feeddrive.diagnose.evidence import Evidence
 from feeddrive.effects.base import ChainEffect, Effect, Motion, Port, SourceEffect, TimingEffect
 from feeddrive.plant.plant import Plant
-from feeddrive.simulate.driven import LoadMotion, simulate_driven
+from feeddrive.simulate.driven import LoadMotion, motor_motion, simulate_driven
 from feeddrive.typing import FloatArray
+
+FINER_STEPS = 4
+"""Steps a sample where one is not enough."""
 
 REMEMBERED = 48
 """Load-side simulations kept; effects at the motor alone need none of their own."""
@@ -37,7 +40,7 @@ class Predictor:
             if key in self._runs:
                 self._runs.move_to_end(key)
                 return self._runs[key]
-        run = simulate_driven(bare, evidence.motion)
+        run = _simulated(bare, evidence)
         with self._lock:
             self._runs[key] = run
             while len(self._runs) > REMEMBERED:
@@ -65,6 +68,16 @@ def motor_sources(plant: Plant, run: LoadMotion) -> FloatArray:
         if isinstance(effect, SourceEffect) and effect.port == Port.MOTOR:
             total += np.asarray(effect.force(motion, effect.values), dtype=float).ravel()
     return total
+
+
+def _simulated(plant: Plant, evidence: Evidence) -> LoadMotion:
+    """The driven simulation, with finer steps where one step a sample does not hold (very stiff bristles)."""
+    run = simulate_driven(plant, evidence.motion)
+    if np.all(np.isfinite(run.table_position)):
+        return run
+    samples = evidence.motion.samples
+    finer = motor_motion(evidence.motion.time[samples], evidence.motion.angle[samples], FINER_STEPS)
+    return simulate_driven(plant, finer)
 
 
 def _load_side(plant: Plant) -> Plant:

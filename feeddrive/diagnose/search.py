@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feeddrive.diagnose.attempt import JOINT_ITERATIONS, Attempt, alone, together
+from feeddrive.diagnose.attempt import JOINT_ITERATIONS, PROMISE, Attempt, alone, together
 from feeddrive.diagnose.candidates import CANDIDATES, Scene, scene_of
 from feeddrive.diagnose.coordinates import read_coordinates
 from feeddrive.diagnose.cross_validation import LEAST_GAIN, block_errors, block_numbers, compare
@@ -120,7 +120,7 @@ def _round(scene: Scene, found: Fit, impossible: dict[str, str]) -> list[Attempt
         attempts.sort(key=lambda attempt: attempt.comparison.gain, reverse=True)
         best = _best_per_name(attempts)
         if found.effects:
-            finalists = [attempt for attempt in best[:FINALISTS] if attempt.comparison.gain > 0]
+            finalists = [attempt for attempt in best[:FINALISTS] if attempt.comparison.gain > PROMISE]
             joint = list(pool.map(lambda attempt: together(attempt, found), finalists))
             best = _best_per_name(sorted([*joint, *best[len(finalists) :]], key=lambda a: -a.comparison.gain))
     return best

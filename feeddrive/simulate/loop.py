@@ -24,7 +24,7 @@ from feeddrive.typing import FloatArray
 Loop = Callable[[FloatArray, FloatArray, FloatArray], tuple[FloatArray, FloatArray]]
 """(memory (m,), inputs (n, k), constants (c,)) -> memory after every step (n, m), what else it returns (n, e)."""
 
-FLAGS = ("-O2", "-ffp-contract=off", "-fPIC", "-shared")
+FLAGS = ("-O1", "-ffp-contract=off", "-fPIC", "-shared")
 """No fused or reordered arithmetic: the compiled numbers are those of the virtual machine."""
 
 CHUNK = 512
