@@ -128,7 +128,7 @@ def test_effects_of_the_record(run: Run) -> None:
         assert low < parameter["value"] < high
 
 
-def prediction(run: Run) -> tuple[list[str], np.ndarray]:  # type: ignore[type-arg]
+def prediction(run: Run) -> tuple[list[str], np.ndarray]:
     """Header and numbers of prediction.csv; empty cells are NaN."""
     with (run.folder / "prediction.csv").open(encoding="utf-8", newline="") as file:
         head, *rows = csv.reader(file)

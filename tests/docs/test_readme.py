@@ -18,6 +18,8 @@ FIRST_LINES = 10
 DOES = re.compile(r"\b(simulat|diagnos|find|found|identif|compar)\w*", re.IGNORECASE)
 FOR_WHOM = re.compile(r"\b(engineer|builder|commission|tuning|drive|machine)\w*", re.IGNORECASE)
 
+NO_COMMANDS = ("python", "toml", "json", "csv")
+
 BLOCK = re.compile(r"^```(\w*)[^\n]*\n(.*?)^```", re.MULTILINE | re.DOTALL)
 LINK = re.compile(r"\]\(<?([^)\s>]+)")
 SOURCE = re.compile(r"""(?:src|href)=["']([^"']+)["']""")
@@ -55,15 +57,11 @@ def test_every_command_exists_with_its_options(text: str) -> None:
 
 def typed_commands(text: str) -> list[list[str]]:
     """Words of every line in a code block that starts with `feeddrive`, a prompt before it left out."""
-    found = []
-    for language, block in BLOCK.findall(text):
-        if language.lower() in ("python", "toml", "json", "csv"):
-            continue
-        for line in block.replace("\\\n", " ").splitlines():
-            words = line.strip().removeprefix("$").strip()
-            if words.startswith("feeddrive "):
-                found.append(shlex.split(words, comments=True))
-    return found
+    blocks = [block for language, block in BLOCK.findall(text) if language.lower() not in NO_COMMANDS]
+    indented = [line for line in BLOCK.sub("", text).splitlines() if line.startswith("    ")]
+    lines = "\n".join([*blocks, *indented]).replace("\\\n", " ").splitlines()
+    words = [line.strip().removeprefix("$").strip() for line in lines]
+    return [shlex.split(line, comments=True) for line in words if line.startswith("feeddrive ")]
 
 
 def test_every_relative_link_and_figure_exists(text: str) -> None:

@@ -32,6 +32,7 @@ KEYS = {
     "height": "peak",
     "width": "half_width",
     "bristle stiffness": "stiffness",
+    "backlash": "width",
 }
 
 # Asked for: error of the motor torque over its rms. The four cycles themselves repeat to 0.64 %.
@@ -55,9 +56,8 @@ def planted(folder: Path, case: str) -> dict[str, dict[str, Any]]:
     values = tomllib.loads((folder / "truth.toml").read_text(encoding="utf-8"))[case]
     if not EFFECTS[case]:
         return {}
-    # `width` is the full play in backlash, and the half width (1/e) of the bump.
-    keys = KEYS if case != "backlash" else {}
-    return {EFFECTS[case]: {keys.get(key, key): value for key, value in values.items()}}
+    # `width` is half the width (1/e) of the bump, and of no other case.
+    return {EFFECTS[case]: {KEYS.get(key, key): value for key, value in values.items()}}
 
 
 def test_recorded_drive(shared_data: Path) -> None:
