@@ -26,8 +26,8 @@ help: ## show this list
 demo: $(VENV)/.installed ## install, then diagnose a shipped machine; ends with the path of the report
 	$(BIN)/feeddrive demo
 
-test: $(VENV)/.developing ## all tests
-	$(PYTEST) $(TESTS)
+test: $(VENV)/.developing ## the tests, without the slow ones of `make recovery`
+	$(PYTEST) -m 'not slow' $(TESTS)
 
 recovery: $(VENV)/.developing ## only the tests that plant an effect and must find it
 	$(PYTEST) tests/recovery

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feeddrive.diagnose.candidates import Candidate, Scene
-from feeddrive.diagnose.cross_validation import LEAST_GAIN, Comparison, block_errors, block_numbers, compare
+from feeddrive.diagnose.cross_validation import LEAST_GAIN, Comparison, block_errors, block_numbers, compare, least_gain
 from feeddrive.diagnose.fit import Fit, Problem, fit
 from feeddrive.diagnose.predictability import predictable_samples
 from feeddrive.effects.base import Effect, TransmissionEffect
@@ -108,7 +108,7 @@ def compared(problem: Problem, name: str, result: Fit, before: Sequence[Effect])
     reference = _reference(problem, before, result)
     without = block_errors(reference.residual, reference.jacobian, blocks)
     errors = block_errors(result.residual, result.jacobian, blocks)
-    return Attempt(name, result, compare(without, errors), problem, errors)
+    return Attempt(name, result, compare(without, errors, least_gain(problem)), problem, errors)
 
 
 def _free(result: Fit, before: Sequence[Effect]) -> list[bool]:

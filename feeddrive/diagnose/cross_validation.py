@@ -29,22 +29,29 @@ class Comparison:
     Attributes:
         gain: share by which the second lowers the squared error of the first on data not fitted.
         standard_error: of the gain, from the blocks.
+        least: gain that is asked for.
     """
 
     gain: float
     standard_error: float
+    least: float
 
     @property
     def pays(self) -> bool:
-        """Whether the gain is large enough to add an effect: more than half a percent, and more than its noise."""
-        return self.gain > LEAST_GAIN and self.gain > SIGNIFICANCE * self.standard_error
+        """Whether the gain is large enough to add an effect: more than the least, and more than its noise."""
+        return self.gain > self.least and self.gain > SIGNIFICANCE * self.standard_error
 
 
 LEAST_GAIN = 0.005
 """Least share of the squared error that an effect must take away; the largest seen on null recordings is 0.001."""
 
-SIGNIFICANCE = 1.0
-"""Gain over its standard error that is asked for: the one-standard-error rule (Breiman et al., 1984, section 3.4.3)."""
+SIGNIFICANCE = 2.0
+"""Gain over its standard error that is asked for; twice the one-standard-error rule (Breiman et al., 1984, section
+3.4.3), because a dozen candidates are tried a round."""
+
+CHANCE = 30.0
+"""Degrees of freedom of the noise that the luckiest wrong candidate takes away: 2 ln K for the best of K = 10^4 trials
+(orders, places, velocities) and two for each of its parameters, with a margin."""
 
 
 def block_numbers(problem: Problem) -> IntegerArray:
@@ -86,10 +93,22 @@ def block_errors(residual: FloatArray, jacobian: FloatArray, blocks: IntegerArra
     return sums
 
 
-def compare(before: FloatArray, after: FloatArray) -> Comparison:
+def least_gain(problem: Problem) -> float:
+    """Gain that is asked for: half a percent, or more where the recordings are so short that chance does as much.
+
+    A band of width B over T seconds holds 2 B T independent values a channel, whatever the sample rate.
+    """
+    values = 0.0
+    for evidence in problem.evidence:
+        seconds = float(np.sum(evidence.fit_rows)) * evidence.recording.sample_time
+        values += 2 * evidence.band.edge * seconds * len(evidence.channels)
+    return max(LEAST_GAIN, CHANCE / values)
+
+
+def compare(before: FloatArray, after: FloatArray, least: float = LEAST_GAIN) -> Comparison:
     """Gain of one model over another from their block errors, both of shape (blocks,)."""
     lower = before - after
     total = float(before.sum())
     filled = lower[(before > 0) | (after > 0)]
     spread = float(np.std(filled, ddof=1)) * np.sqrt(len(filled)) if len(filled) > 1 else float("inf")
-    return Comparison(float(lower.sum()) / total, spread / total)
+    return Comparison(float(lower.sum()) / total, spread / total, least)

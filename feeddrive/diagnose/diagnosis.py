@@ -66,10 +66,11 @@ def diagnose(
     if not 0.2 <= split <= 0.95:
         raise InputError(f"--split is {split:g}", "", "use a share between 0.2 and 0.95, such as 0.75")
     fitted = tuple(prepare(recording, plant, 1.0 if validation else split) for recording in recordings)
+    kept_for_judging = [prepare(recording, plant, 0.0) for recording in validation] or list(fitted)
     problem = Problem(plant, fitted, Predictor())
     found = search(problem, said)
     said("judging on data not fitted")
-    judged, rehomed = _judged(found, [prepare(recording, plant, 0.0) for recording in validation] or list(fitted))
+    judged, rehomed = _judged(found, kept_for_judging)
     channels = channel_results(found.problem, judged)
     series = judged_recordings(found.problem, judged)
     effects = found.fit.effects

@@ -8,7 +8,7 @@ import numpy as np
 
 from feeddrive.diagnose.attempt import Attempt, compared
 from feeddrive.diagnose.coordinates import read_coordinates
-from feeddrive.diagnose.cross_validation import Comparison, block_errors, block_numbers, compare
+from feeddrive.diagnose.cross_validation import Comparison, block_errors, block_numbers, compare, least_gain
 from feeddrive.diagnose.fit import Fit, fit
 from feeddrive.errors import InputError
 from feeddrive.typing import FloatArray
@@ -59,7 +59,7 @@ def _linear_pair(first: Attempt, second: Attempt, found: Fit) -> Comparison | No
     blocks = block_numbers(first.problem)
     step = np.linalg.lstsq(jacobian, first.fit.residual, rcond=1e-10)[0]
     together = block_errors(first.fit.residual - jacobian @ step, jacobian, blocks)
-    return compare(block_errors(found.residual, found.jacobian, blocks), together)
+    return compare(block_errors(found.residual, found.jacobian, blocks), together, least_gain(first.problem))
 
 
 def _own_columns(attempt: Attempt) -> FloatArray:

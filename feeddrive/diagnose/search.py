@@ -15,7 +15,7 @@ import numpy as np
 from feeddrive.diagnose.attempt import JOINT_ITERATIONS, PROMISE, Attempt, alone, together
 from feeddrive.diagnose.candidates import CANDIDATES, Scene, scene_of
 from feeddrive.diagnose.coordinates import read_coordinates
-from feeddrive.diagnose.cross_validation import LEAST_GAIN, block_errors, block_numbers, compare
+from feeddrive.diagnose.cross_validation import LEAST_GAIN, block_errors, block_numbers, compare, least_gain
 from feeddrive.diagnose.fit import Fit, Problem, fit
 from feeddrive.diagnose.pairs import masked_pair
 from feeddrive.diagnose.result import Trial
@@ -147,7 +147,7 @@ def _without_idle(problem: Problem, found: Fit) -> Fit:
         if _cost_of_dropping(problem, found, i, blocks, errors) > CLEARLY_NEEDED:
             continue
         rest = fit(problem, found.effects[:i] + found.effects[i + 1 :], iterations=JOINT_ITERATIONS)
-        gain = compare(block_errors(rest.residual, rest.jacobian, blocks), errors)
+        gain = compare(block_errors(rest.residual, rest.jacobian, blocks), errors, least_gain(problem))
         if not gain.pays:
             return _without_idle(problem, fit(problem, rest.effects, iterations=JOINT_ITERATIONS))
     return found
