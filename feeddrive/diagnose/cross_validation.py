@@ -45,9 +45,9 @@ class Comparison:
 LEAST_GAIN = 0.005
 """Least share of the squared error that an effect must take away; the largest seen on null recordings is 0.001."""
 
-SIGNIFICANCE = 2.0
-"""Gain over its standard error that is asked for; twice the one-standard-error rule (Breiman et al., 1984, section
-3.4.3), because a dozen candidates are tried a round."""
+SIGNIFICANCE = 1.5
+"""Gain over its standard error that is asked for; the one-standard-error rule (Breiman et al., 1984, section
+3.4.3) and a half more, because a dozen candidates are tried a round."""
 
 CHANCE = 30.0
 """Degrees of freedom of the noise that the luckiest wrong candidate takes away: 2 ln K for the best of K = 10^4 trials
