@@ -23,6 +23,9 @@ from tests.generator.effects import (
 )
 from tests.generator.profile import Profile, train_profile, validate_profile
 
+SOFT_SPEED_GAIN = {"drive_delay": 0.7}
+"""Speed gain [N m s/rad] of cases whose delay would make the axis' own gain oscillate on the torsional mode."""
+
 SECONDS = {"bench": (12.0, 7.6), "light": (6.8, 6.0)}
 
 

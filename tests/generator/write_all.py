@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from tests.generator.axis import AXES, BENCH
-from tests.generator.cases import CASES, DEMO_EFFECTS, Case
+from tests.generator.cases import CASES, DEMO_EFFECTS, SOFT_SPEED_GAIN, Case
 from tests.generator.profile import train_profile
 from tests.generator.recording import simulate, write_csv
 
@@ -32,8 +32,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def write_case(case: Case) -> None:
     """Write the training and validation recording of one case."""
+    axis = AXES[case.axis]
+    gain = SOFT_SPEED_GAIN.get(case.name, axis.controller.speed_gain)
+    axis = dataclasses.replace(axis, controller=dataclasses.replace(axis.controller, speed_gain=gain))
     for part, profile, seed in zip(("train", "validate"), case.profiles(), case.seeds, strict=True):
-        data = simulate(AXES[case.axis], case.effects, profile, seed)
+        data = simulate(axis, case.effects, profile, seed)
         write_csv(DATA / case.axis / f"{case.name}_{part}.csv.gz", data)
 
 
