@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from feeddrive.diagnose.attempt import Attempt
-from feeddrive.diagnose.cross_validation import LEAST_GAIN, block_errors, block_numbers, compare
+from feeddrive.diagnose.cross_validation import LEAST_GAIN, block_numbers, compare_left_out, left_out_residual
 from feeddrive.diagnose.fit import Fit, Problem, fit
 from feeddrive.diagnose.judge import Judged, squared_blocks
 from feeddrive.diagnose.search import Search
@@ -68,7 +68,7 @@ def _explains_the_same(search: Search, judged: Sequence[Judged], index: int, riv
 
 def _as_good(problem: Problem, found: Fit, swapped: Fit) -> bool:
     blocks = block_numbers(problem)
-    its = block_errors(swapped.residual, swapped.jacobian, blocks)
-    mine = block_errors(found.residual, found.jacobian, blocks)
-    better = compare(its, mine)
+    its = left_out_residual(swapped.residual, swapped.jacobian, blocks)
+    mine = left_out_residual(found.residual, found.jacobian, blocks)
+    better = compare_left_out(its, mine, blocks, LEAST_GAIN)
     return better.gain < max(LEAST_GAIN, 2 * better.standard_error)

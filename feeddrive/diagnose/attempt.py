@@ -8,7 +8,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feeddrive.diagnose.candidates import Candidate, Scene
-from feeddrive.diagnose.cross_validation import LEAST_GAIN, Comparison, block_errors, block_numbers, compare, least_gain
+from feeddrive.diagnose.cross_validation import (
+    LEAST_GAIN,
+    Comparison,
+    block_numbers,
+    compare_left_out,
+    least_gain,
+    left_out_residual,
+)
 from feeddrive.diagnose.fit import Fit, Problem, fit
 from feeddrive.diagnose.predictability import predictable_samples
 from feeddrive.effects.base import Effect, TransmissionEffect
@@ -40,7 +47,7 @@ class Attempt:
         fit: of all free effects.
         comparison: against the effects found before.
         problem: recordings with the samples that this candidate can predict.
-        errors: squared error per block, left out of the fit, shape (blocks,).
+        errors: residual on blocks left out of the fit, weighted, shape (m,).
     """
 
     name: str
@@ -106,9 +113,9 @@ def compared(problem: Problem, name: str, result: Fit, before: Sequence[Effect])
     if len(blocks) != len(result.residual):
         result = fit(problem, result.effects, _free(result, before), iterations=0)
     reference = _reference(problem, before, result)
-    without = block_errors(reference.residual, reference.jacobian, blocks)
-    errors = block_errors(result.residual, result.jacobian, blocks)
-    return Attempt(name, result, compare(without, errors, least_gain(problem)), problem, errors)
+    without = left_out_residual(reference.residual, reference.jacobian, blocks)
+    errors = left_out_residual(result.residual, result.jacobian, blocks)
+    return Attempt(name, result, compare_left_out(without, errors, blocks, least_gain(problem)), problem, errors)
 
 
 def _free(result: Fit, before: Sequence[Effect]) -> list[bool]:

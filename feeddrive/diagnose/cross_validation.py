@@ -65,8 +65,8 @@ def block_numbers(problem: Problem) -> IntegerArray:
     return np.concatenate(numbers).astype(np.int64)
 
 
-def block_errors(residual: FloatArray, jacobian: FloatArray, blocks: IntegerArray) -> FloatArray:
-    """Squared error of each block when its fold is not fitted.
+def left_out_residual(residual: FloatArray, jacobian: FloatArray, blocks: IntegerArray) -> FloatArray:
+    """Residual of each block when its fold is not fitted.
 
     Args:
         residual: weighted, shape (m,).
@@ -74,9 +74,8 @@ def block_errors(residual: FloatArray, jacobian: FloatArray, blocks: IntegerArra
         blocks: block of every row, shape (m,).
 
     Returns:
-        One sum of squares per block number, shape (number of blocks,).
+        Weighted residual, shape (m,).
     """
-    count = int(blocks.max(initial=0)) + 1
     left_out = residual.copy()
     if jacobian.shape[1]:
         scale = np.linalg.norm(jacobian, axis=0)
@@ -89,8 +88,20 @@ def block_errors(residual: FloatArray, jacobian: FloatArray, blocks: IntegerArra
             # at the fit J'r = 0; a fit that stopped early is taken as it is, not as it might have become
             move = -np.linalg.lstsq(rest, part.T @ residual[rows], rcond=1e-12)[0]
             left_out[rows] = residual[rows] - part @ move
-    sums: FloatArray = np.bincount(blocks, weights=left_out**2, minlength=count).astype(np.float64)
-    return sums
+    return left_out
+
+
+def compare_left_out(before: FloatArray, after: FloatArray, blocks: IntegerArray, least: float) -> Comparison:
+    """Gain of one model over another from their residuals on blocks not fitted, all of shape (m,).
+
+    With d = before - after the gain is sum d^2 + 2 sum after d. Only the second part is chance: its block sums give the
+    standard error. A gain that comes from a few blocks, as that of a delay does from a chirp, is then not taken for
+    scatter.
+    """
+    total = float(before @ before)
+    chance = np.bincount(blocks, weights=2 * after * (before - after))
+    error = float(np.sqrt(chance @ chance))
+    return Comparison((total - float(after @ after)) / total, error / total, least)
 
 
 def least_gain(problem: Problem) -> float:

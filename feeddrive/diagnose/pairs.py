@@ -8,8 +8,15 @@ import numpy as np
 
 from feeddrive.diagnose.attempt import Attempt, compared
 from feeddrive.diagnose.coordinates import read_coordinates
-from feeddrive.diagnose.cross_validation import Comparison, block_errors, block_numbers, compare, least_gain
+from feeddrive.diagnose.cross_validation import (
+    Comparison,
+    block_numbers,
+    compare_left_out,
+    least_gain,
+    left_out_residual,
+)
 from feeddrive.diagnose.fit import Fit, fit
+from feeddrive.diagnose.materiality import is_material
 from feeddrive.errors import InputError
 from feeddrive.typing import FloatArray
 
@@ -44,7 +51,8 @@ def masked_pair(attempts: Sequence[Attempt], found: Fit, winner: Attempt | None)
         except InputError:
             continue
         pair = compared(problem, f"{first.name} with {second.name}", result, found.effects)
-        if pair.comparison.pays and pair.comparison.gain > least:
+        material = all(is_material(effect, problem.plant) for effect in result.effects[-2:])
+        if material and pair.comparison.pays and pair.comparison.gain > least:
             return pair
     return None
 
@@ -58,8 +66,9 @@ def _linear_pair(first: Attempt, second: Attempt, found: Fit) -> Comparison | No
     jacobian = np.hstack([found.jacobian, *columns])
     blocks = block_numbers(first.problem)
     step = np.linalg.lstsq(jacobian, first.fit.residual, rcond=1e-10)[0]
-    together = block_errors(first.fit.residual - jacobian @ step, jacobian, blocks)
-    return compare(block_errors(found.residual, found.jacobian, blocks), together, least_gain(first.problem))
+    together = left_out_residual(first.fit.residual - jacobian @ step, jacobian, blocks)
+    before = left_out_residual(found.residual, found.jacobian, blocks)
+    return compare_left_out(before, together, blocks, least_gain(first.problem))
 
 
 def _own_columns(attempt: Attempt) -> FloatArray:

@@ -15,8 +15,15 @@ import numpy as np
 from feeddrive.diagnose.attempt import JOINT_ITERATIONS, PROMISE, Attempt, alone, together
 from feeddrive.diagnose.candidates import CANDIDATES, Scene, scene_of
 from feeddrive.diagnose.coordinates import read_coordinates
-from feeddrive.diagnose.cross_validation import LEAST_GAIN, block_errors, block_numbers, compare, least_gain
+from feeddrive.diagnose.cross_validation import (
+    LEAST_GAIN,
+    block_numbers,
+    compare_left_out,
+    least_gain,
+    left_out_residual,
+)
 from feeddrive.diagnose.fit import Fit, Problem, fit
+from feeddrive.diagnose.materiality import is_material
 from feeddrive.diagnose.pairs import masked_pair
 from feeddrive.diagnose.result import Trial
 from feeddrive.effects.base import Effect
@@ -87,13 +94,14 @@ def search(problem: Problem, said: Callable[[str], None] = lambda text: None) ->
 
 def _simplest_of_the_best(attempts: Sequence[Attempt]) -> Attempt | None:
     """The best attempt, or one with fewer parameters that cannot be told from it; None if the best does not pay."""
+    attempts = [a for a in attempts if is_material(a.fit.effects[-1], a.problem.plant)]
     if not attempts or not attempts[0].comparison.pays:
         return None
     best = attempts[0]
     tied = [best]
     for other in attempts[1:]:
         if other.comparison.pays and len(other.errors) == len(best.errors):
-            better = compare(other.errors, best.errors)
+            better = compare_left_out(other.errors, best.errors, block_numbers(best.problem), LEAST_GAIN)
             if better.gain < max(LEAST_GAIN, min(2 * better.standard_error, TIE)):
                 tied.append(other)
     return min(tied, key=lambda a: len(read_coordinates(a.fit.effects[-1:], a.problem.plant)))
@@ -142,12 +150,13 @@ def _without_idle(problem: Problem, found: Fit) -> Fit:
     if len(found.effects) < 2:
         return found
     blocks = block_numbers(problem)
-    errors = block_errors(found.residual, found.jacobian, blocks)
+    errors = left_out_residual(found.residual, found.jacobian, blocks)
     for i in range(len(found.effects) - 1):
         if _cost_of_dropping(problem, found, i, blocks, errors) > CLEARLY_NEEDED:
             continue
         rest = fit(problem, found.effects[:i] + found.effects[i + 1 :], iterations=JOINT_ITERATIONS)
-        gain = compare(block_errors(rest.residual, rest.jacobian, blocks), errors, least_gain(problem))
+        without = left_out_residual(rest.residual, rest.jacobian, blocks)
+        gain = compare_left_out(without, errors, blocks, least_gain(problem))
         if not gain.pays:
             return _without_idle(problem, fit(problem, rest.effects, iterations=JOINT_ITERATIONS))
     return found
@@ -161,4 +170,5 @@ def _cost_of_dropping(problem: Problem, found: Fit, index: int, blocks: IntegerA
     jacobian = np.delete(found.jacobian, slice(start, start + counts[index]), axis=1)
     residual = problem.residual(rest)
     step = np.linalg.lstsq(jacobian, residual, rcond=1e-10)[0]
-    return compare(block_errors(residual - jacobian @ step, jacobian, blocks), errors).gain
+    without = left_out_residual(residual - jacobian @ step, jacobian, blocks)
+    return compare_left_out(without, errors, blocks, LEAST_GAIN).gain

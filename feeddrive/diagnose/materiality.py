@@ -1,0 +1,38 @@
+"""The physical minimum: what is too small for anyone to act on is no finding, however significant."""
+
+from __future__ import annotations
+
+from feeddrive.effects.base import Effect, Port
+from feeddrive.plant.plant import Plant
+
+LEAST_FACTOR = 0.02
+"""Deviation of a friction factor from 1; declared friction is never known better."""
+
+LEAST_FORCE_SHARE = 0.01
+"""A force over the declared Coulomb level of the guide."""
+
+LEAST_MASS_SHARE = 0.005
+"""A mass over the declared table mass."""
+
+FORCE_KEYS = ("delta_force", "force", "peak")
+"""Parameters that are forces at the table."""
+
+
+def is_material(effect: Effect, plant: Plant) -> bool:
+    """Whether an effect is of a size that matters on this plant."""
+    values = {key: value for key, value in effect.values.items() if isinstance(value, float)}
+    if effect.name == "friction_deviation":
+        return any(abs(values[key] - 1) >= LEAST_FACTOR for key in ("coulomb_factor", "viscous_factor"))
+    if effect.name == "payload":
+        return abs(values["mass"]) >= LEAST_MASS_SHARE * plant.chain.values["table_mass"]
+    forces = [abs(number) for key, value in effect.values.items() if key in FORCE_KEYS for number in _numbers(value)]
+    return not forces or max(forces) >= LEAST_FORCE_SHARE * _coulomb_level(plant)
+
+
+def _numbers(value: float | tuple[float, ...]) -> tuple[float, ...]:
+    return value if isinstance(value, tuple) else (value,)
+
+
+def _coulomb_level(plant: Plant) -> float:
+    declared = [effect.values.get("coulomb", 0.0) for effect in plant.effects if effect.port == Port.TABLE]
+    return sum(level for level in declared if isinstance(level, float))
