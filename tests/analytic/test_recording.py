@@ -22,7 +22,7 @@ from feeddrive.recording.findings import quantisation_step
 
 LEAD = 0.020
 RADIUS = LEAD / (2 * math.pi)
-EMPS = Path("/work/shared/data/emps/DATA_EMPS.mat")
+EMPS = Path(__file__).resolve().parents[3] / "shared" / "data" / "emps" / "DATA_EMPS.mat"
 EMPS_MAP = Path(__file__).resolve().parents[2] / "plants" / "emps_map.toml"
 
 
