@@ -1,0 +1,1 @@
+"""Controllers as drives have them, their filters and their linear loop."""
