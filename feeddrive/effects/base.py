@@ -66,12 +66,15 @@ Value = float | tuple[float, ...]
 class Motion:
     """Position and velocity at a port, as CasADi expressions or arrays: [m] and [m/s], or [rad] and [rad/s] at a shaft.
 
-    `time` counts from the start of the recording [s].
+    `time` counts from the start of the recording [s]. `force` is what the nut transmits to the table [N], positive when
+    it pushes the table along +; it is handed to friction at the screw and at the table, and 0 where it is not defined
+    (elsewhere, and in a rigid structure: an effect that reads it says so by `reads_force`).
     """
 
     position: Expression
     velocity: Expression
     time: Expression = 0.0
+    force: Expression = 0.0
 
 
 @dataclass(frozen=True)
@@ -99,6 +102,7 @@ class Effect:
         label: unique name inside a plant; the effect's name, numbered where it occurs more than once.
         repeatable: whether one search may find it more than once.
         additive: whether a plant may hold more than one at a port, their sum or product having a meaning.
+        reads_force: whether it reads `Motion.force`, so that a rigid structure cannot hold it.
     """
 
     name: ClassVar[str] = ""
@@ -108,6 +112,7 @@ class Effect:
     signature: ClassVar[Signature]
     repeatable: ClassVar[bool] = False
     additive: ClassVar[bool] = False
+    reads_force: ClassVar[bool] = False
 
     values: Mapping[str, Value] = field(default_factory=dict)
     port: Port = Port.TABLE
@@ -201,10 +206,16 @@ class TransmissionEffect(Effect):
 class FrictionEffect(Effect):
     """An effect that fills a slot of the one friction law of its port.
 
-    The law: (level0 * factors + increments) * shape + viscous0 * viscous factors + viscous increments.
+    The law: (level0 * factors + increments) * shape + viscous0 * viscous factors + viscous increments. Declared friction
+    carries level0, viscous0 and a shape; factors and increments of others apply to it.
     """
 
     kind = Kind.FRICTION
+    declared: ClassVar[bool] = False
+
+    def shape(self, motion: Motion, p: Mapping[str, Expression]) -> Expression:
+        """Direction of the Coulomb part of declared friction, smooth through zero velocity, -1 to 1 [1]."""
+        raise NotImplementedError
 
     def level(self, motion: Motion, p: Mapping[str, Expression]) -> Expression:
         """Coulomb level that it adds [N, or N m at a shaft]."""

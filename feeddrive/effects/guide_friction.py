@@ -16,6 +16,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+import casadi as ca
+
 from feeddrive.effects.base import FrictionEffect, Motion, Parameter, Port, Signature
 from feeddrive.typing import Expression
 
@@ -31,6 +33,11 @@ class GuideFriction(FrictionEffect):
         Parameter("viscous", "N s/m", 0.0, size=100.0, default=0.0),
     )
     signature = Signature(("motor_torque", "table_position"), "table_velocity", ("friction_deviation",))
+    declared = True
+
+    def shape(self, motion: Motion, p: Mapping[str, Expression]) -> Expression:
+        """tanh(v / v0)."""
+        return ca.tanh(motion.velocity / p["smoothing_velocity"])
 
     def level(self, motion: Motion, p: Mapping[str, Expression]) -> Expression:
         """Coulomb level [N]."""

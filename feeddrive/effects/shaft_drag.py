@@ -17,6 +17,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+import casadi as ca
+
 from feeddrive.effects.base import FrictionEffect, Motion, Parameter, Port, Signature
 from feeddrive.typing import Expression
 
@@ -34,6 +36,11 @@ class ShaftDrag(FrictionEffect):
         Parameter("viscous", "N m/(rad/s)^(2/3)", 0.0, size=0.02, default=0.0),
     )
     signature = Signature(("motor_torque", "table_position"), "motor_speed", ("friction_deviation",))
+    declared = True
+
+    def shape(self, motion: Motion, p: Mapping[str, Expression]) -> Expression:
+        """tanh(w / w0)."""
+        return ca.tanh(motion.velocity / p["smoothing_speed"])
 
     def level(self, motion: Motion, p: Mapping[str, Expression]) -> Expression:
         """Coulomb torque [N m]."""
