@@ -1,0 +1,112 @@
+"""The screw shaft of a ball screw: axial and torsional stiffness, mass, inertia.
+
+    k_BS = E A / l,   k_BS,T = G I_p / l,   A = pi d_s^2 / 4,   I_p = pi d_s^4 / 32
+
+| symbol | meaning | unit |
+|---|---|---|
+| d_s | diameter that is counted for stiffness: the root diameter where declared, otherwise the nominal one | m |
+| l | length under load | m |
+| A, I_p | section, second polar moment of area | m^2, m^4 |
+
+Source: paper 004, section 3 (formulas behind its k_BS and k_BS,T).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+from feeddrive.errors import InputError
+from feeddrive.parts.material import STEEL, ShaftMaterial
+from feeddrive.parts.values import PartValue, check_values
+
+
+@dataclass(frozen=True)
+class ScrewShaft:
+    """A screw shaft; places are counted from the fixed bearing at the motor's end.
+
+    Attributes:
+        lead: table travel per revolution [m].
+        diameter: nominal [m]; counted for mass and inertia, since the grooves are narrow (a bound from above).
+        length: fixed bearing to the far end [m].
+        stub: from the fixed bearing back to the coupling, under torque only [m].
+        root_diameter: counted for stiffness [m]; None for a solid shaft of the nominal diameter, which is too stiff by
+            the square (axial) and the fourth power (torsion) of nominal to root diameter.
+        material: of the shaft.
+
+    Raises:
+        InputError: a value that is not possible, or a root diameter above the nominal one.
+
+    Warns:
+        ValidityWarning: unusual value; the likeliest cause is a slip of its unit.
+    """
+
+    lead: float
+    diameter: float
+    length: float
+    stub: float = 0.0
+    root_diameter: float | None = None
+    material: ShaftMaterial = STEEL
+
+    values: ClassVar[tuple[PartValue, ...]] = (
+        PartValue("lead", "m", 1e-4, 0.5, usual=(1e-3, 0.08)),
+        PartValue("diameter", "m", 1e-3, 0.5, usual=(4e-3, 0.2)),
+        PartValue("length", "m", 0.005, 30.0, usual=(0.05, 12.0)),
+        PartValue("stub", "m", 0.0, 5.0, usual=(0.0, 0.5), default=0.0, open_ends=False),
+        PartValue("root_diameter", "m", 1e-3, 0.5, usual=(3e-3, 0.2)),
+    )
+
+    def __post_init__(self) -> None:
+        root = self.diameter if self.root_diameter is None else self.root_diameter
+        check_values("screw", self.values, {**vars(self), "root_diameter": root})
+        if root > self.diameter:
+            raise InputError("exceeds the nominal diameter", "screw.root_diameter", "check which is which")
+
+    @property
+    def travel_per_radian(self) -> float:
+        """L / 2 pi [m/rad]."""
+        return self.lead / (2.0 * math.pi)
+
+    @property
+    def stiffness_diameter(self) -> float:
+        """d_s, the diameter counted for stiffness [m]."""
+        return self.diameter if self.root_diameter is None else self.root_diameter
+
+    @property
+    def axial_rigidity(self) -> float:
+        """E A [N]: axial stiffness times length."""
+        return self.material.young * math.pi * self.stiffness_diameter**2 / 4.0
+
+    @property
+    def torsional_rigidity(self) -> float:
+        """G I_p [N m^2/rad]: torsional stiffness times length."""
+        return self.material.shear * math.pi * self.stiffness_diameter**4 / 32.0
+
+    def axial_stiffness(self, length: float) -> float:
+        """k_BS = E A / l of a piece under axial force [N/m]; infinite for no length."""
+        return self.axial_rigidity / length if length > 0.0 else math.inf
+
+    def torsional_stiffness(self, length: float) -> float:
+        """k_BS,T = G I_p / l of a piece under torque [N m/rad]; infinite for no length."""
+        return self.torsional_rigidity / length if length > 0.0 else math.inf
+
+    @property
+    def mass_per_length(self) -> float:
+        """rho pi d^2 / 4 [kg/m]."""
+        return self.material.density * math.pi * self.diameter**2 / 4.0
+
+    @property
+    def inertia_per_length(self) -> float:
+        """rho pi d^4 / 32 [kg m]."""
+        return self.material.density * math.pi * self.diameter**4 / 32.0
+
+    @property
+    def mass(self) -> float:
+        """Of the whole shaft, with the stub [kg]."""
+        return self.mass_per_length * (self.length + self.stub)
+
+    @property
+    def inertia(self) -> float:
+        """About its axis, of the whole shaft, with the stub [kg m^2]."""
+        return self.inertia_per_length * (self.length + self.stub)

@@ -1,0 +1,48 @@
+"""The coupling between motor (or gear) and screw: torsional stiffness, inertia of its two hubs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from feeddrive.parts.values import PartValue, check_values
+
+
+@dataclass(frozen=True)
+class Coupling:
+    """A torsionally elastic coupling.
+
+    Attributes:
+        torsional_stiffness: between the hubs [N m/rad].
+        inertia: of both hubs [kg m^2].
+        screw_side_share: share of the inertia in the hub on the screw.
+
+    Raises:
+        InputError: a value that is not possible.
+
+    Warns:
+        ValidityWarning: unusual value.
+    """
+
+    torsional_stiffness: float
+    inertia: float = 0.0
+    screw_side_share: float = 0.5
+
+    values: ClassVar[tuple[PartValue, ...]] = (
+        PartValue("torsional_stiffness", "N m/rad", 0.1, 1e9, usual=(10.0, 5e6)),
+        PartValue("inertia", "kg m^2", 0.0, 100.0, usual=(0.0, 0.2), default=0.0, open_ends=False),
+        PartValue("screw_side_share", "1", 0.0, 1.0, default=0.5, open_ends=False),
+    )
+
+    def __post_init__(self) -> None:
+        check_values("coupling", self.values, vars(self))
+
+    @property
+    def screw_hub_inertia(self) -> float:
+        """Of the hub that turns with the screw's end [kg m^2]."""
+        return self.inertia * self.screw_side_share
+
+    @property
+    def motor_hub_inertia(self) -> float:
+        """Of the hub that turns with the motor shaft [kg m^2]."""
+        return self.inertia * (1.0 - self.screw_side_share)

@@ -1,0 +1,72 @@
+"""The motor: rotor inertia, torque limit, shaft stiffness and holding brake."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from feeddrive.parts.values import PartValue, check_values
+
+
+@dataclass(frozen=True)
+class HoldingBrake:
+    """A brake that holds the rotor while the motor is off.
+
+    Attributes:
+        holding_torque: above which it slips [N m].
+        stiffness: of the closed brake between rotor and motor housing [N m/rad]; its backlash is not counted.
+
+    Raises:
+        InputError: a value that is not possible.
+
+    Warns:
+        ValidityWarning: unusual value.
+    """
+
+    holding_torque: float
+    stiffness: float
+
+    values: ClassVar[tuple[PartValue, ...]] = (
+        PartValue("holding_torque", "N m", 0.0, 1e6, usual=(0.05, 2e3)),
+        PartValue("stiffness", "N m/rad", 0.1, 1e10, usual=(10.0, 1e7)),
+    )
+
+    def __post_init__(self) -> None:
+        check_values("brake", self.values, vars(self))
+
+    def holds(self, torque: float) -> bool:
+        """Whether it stands a torque at the rotor [N m]."""
+        return abs(torque) <= self.holding_torque
+
+
+@dataclass(frozen=True)
+class Motor:
+    """A servo motor as a mechanical part.
+
+    Attributes:
+        rotor_inertia: with encoder and brake [kg m^2].
+        torque_limit: peak [N m].
+        shaft_stiffness: torsion from the rotor to the hub [N m/rad]; None for a rigid shaft.
+        brake: None where a stopped rotor is held ideally, by the servo's integral action or a rigid brake.
+
+    Raises:
+        InputError: a value that is not possible.
+
+    Warns:
+        ValidityWarning: unusual value.
+    """
+
+    rotor_inertia: float
+    torque_limit: float
+    shaft_stiffness: float | None = None
+    brake: HoldingBrake | None = None
+
+    values: ClassVar[tuple[PartValue, ...]] = (
+        PartValue("rotor_inertia", "kg m^2", 0.0, 100.0, usual=(1e-7, 1.0)),
+        PartValue("torque_limit", "N m", 0.0, 1e6, usual=(0.01, 5e3)),
+        PartValue("shaft_stiffness", "N m/rad", 0.1, 1e10, usual=(10.0, 1e7)),
+    )
+
+    def __post_init__(self) -> None:
+        given = {key: value for key, value in vars(self).items() if value is not None}
+        check_values("motor", tuple(value for value in self.values if value.key in given), given)

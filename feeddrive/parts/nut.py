@@ -1,0 +1,62 @@
+"""The nut: axial stiffness, and how it follows from a catalogue's value at another preload."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from feeddrive.parts.values import PartValue, check_values
+
+_CATALOGUE = (
+    PartValue("catalogue_stiffness", "N/m", 1e5, 1e11, usual=(1e7, 5e9)),
+    PartValue("catalogue_preload", "N", 0.0, 1e7, usual=(10.0, 1e5)),
+    PartValue("preload", "N", 0.0, 1e7, usual=(10.0, 1e5)),
+    PartValue("accuracy_factor", "1", 0.0, 1.0, usual=(0.4, 1.0), open_ends=False),
+)
+
+
+@dataclass(frozen=True)
+class Nut:
+    """A preloaded nut.
+
+    Attributes:
+        axial_stiffness: between screw and nut body, R_nu,ar of ISO 3408-4 [N/m].
+
+    Raises:
+        InputError: a value that is not possible.
+
+    Warns:
+        ValidityWarning: unusual value.
+    """
+
+    axial_stiffness: float
+
+    values: ClassVar[tuple[PartValue, ...]] = (PartValue("axial_stiffness", "N/m", 1e5, 1e11, usual=(1e7, 5e9)),)
+
+    def __post_init__(self) -> None:
+        check_values("nut", self.values, vars(self))
+
+
+def stiffness_at_preload(
+    catalogue_stiffness: float, catalogue_preload: float, preload: float, accuracy_factor: float
+) -> float:
+    """R_nu,ar = f_ar R_nu (F_pr / F_pr,cat)^(1/3): a nut's stiffness at the preload it is delivered with [N/m].
+
+    Args:
+        catalogue_stiffness: R_nu, theoretical, with the nut body [N/m].
+        catalogue_preload: preload or load that the catalogue states it for [N].
+        preload: of this nut [N].
+        accuracy_factor: f_ar, share of the theory that real balls and grooves reach; 1 where the catalogue's value
+            holds it already.
+
+    Raises:
+        InputError: a value that is not possible.
+
+    Validity: while the load leaves balls on both sides loaded. Source: ISO 3408-4 (symbols), Hertz contact (cube root).
+    """
+    given = {
+        "catalogue_stiffness": catalogue_stiffness, "catalogue_preload": catalogue_preload, "preload": preload,
+        "accuracy_factor": accuracy_factor,
+    }  # fmt: skip
+    check_values("nut", _CATALOGUE, given)
+    return float(accuracy_factor * catalogue_stiffness * (preload / catalogue_preload) ** (1.0 / 3.0))

@@ -1,0 +1,52 @@
+"""A belt or gear between motor and screw: ratio, stiffness, inertias.
+
+i = omega_motor / omega_screw,   T_screw = i T_motor,   J at screw = i^2 J at motor,   k at screw = i^2 k at motor
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from feeddrive.parts.values import PartValue, check_values
+
+
+@dataclass(frozen=True)
+class Transmission:
+    """A reduction without losses.
+
+    Attributes:
+        ratio: i, motor revolutions per screw revolution; above 1 slows down.
+        torsional_stiffness: of belt or teeth with the motor's wheel held, seen at the screw's wheel [N m/rad].
+        motor_wheel_inertia: turns with the motor [kg m^2].
+        screw_wheel_inertia: turns with the screw [kg m^2].
+
+    Raises:
+        InputError: a value that is not possible.
+
+    Warns:
+        ValidityWarning: unusual value.
+    """
+
+    ratio: float
+    torsional_stiffness: float
+    motor_wheel_inertia: float = 0.0
+    screw_wheel_inertia: float = 0.0
+
+    values: ClassVar[tuple[PartValue, ...]] = (
+        PartValue("ratio", "1", 1e-3, 1e3, usual=(0.25, 20.0)),
+        PartValue("torsional_stiffness", "N m/rad", 0.1, 1e10, usual=(10.0, 1e7)),
+        PartValue("motor_wheel_inertia", "kg m^2", 0.0, 100.0, usual=(0.0, 1.0), default=0.0, open_ends=False),
+        PartValue("screw_wheel_inertia", "kg m^2", 0.0, 100.0, usual=(0.0, 1.0), default=0.0, open_ends=False),
+    )
+
+    def __post_init__(self) -> None:
+        check_values("transmission", self.values, vars(self))
+
+    def at_screw(self, at_motor: float) -> float:
+        """A stiffness [N m/rad] or inertia [kg m^2] of the motor's side as the screw feels it."""
+        return at_motor * self.ratio**2
+
+    def at_motor(self, at_screw: float) -> float:
+        """A stiffness [N m/rad] or inertia [kg m^2] of the screw's side as the motor feels it."""
+        return at_screw / self.ratio**2
