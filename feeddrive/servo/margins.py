@@ -1,0 +1,81 @@
+"""Margins of a loop from its frequency response: gain, phase, delay margin and the peak of the sensitivity."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import control
+import numpy as np
+
+from feeddrive.typing import FloatArray
+
+_POINTS = 20_000
+"""Of the grid; crossings are interpolated between them."""
+
+
+@dataclass(frozen=True)
+class Margins:
+    """How far a loop is from instability; a margin that does not exist is infinite and its frequency NaN.
+
+    Attributes:
+        gain: smallest gain margin [dB].
+        gain_frequency: where [Hz].
+        phase: smallest phase margin [deg].
+        phase_frequency: where the loop gain is 1 there [Hz].
+        sensitivity: largest |1 / (1 + L)| [1].
+    """
+
+    gain: float
+    gain_frequency: float
+    phase: float
+    phase_frequency: float
+    sensitivity: float
+
+
+def frequency_response(system: control.StateSpace, frequency: FloatArray) -> FloatArray:
+    """Complex response of a system of one input and one output at frequencies [Hz], shape (n,)."""
+    z = np.exp(2j * math.pi * np.asarray(frequency) * system.dt) if system.dt else 2j * math.pi * np.asarray(frequency)
+    response: FloatArray = np.atleast_1d(np.asarray(system(z, squeeze=True)))
+    return response
+
+
+def margins(loop: control.StateSpace, lowest: float = 0.1) -> Margins:
+    """Margins of an open loop with negative feedback.
+
+    Gain margins count above 0 dB only (gain that may be added); every crossing up to half the sample rate is seen.
+
+    Args:
+        loop: discrete, one input and one output.
+        lowest: frequency from which crossings count [Hz].
+    """
+    frequency = np.geomspace(lowest, 0.5 / loop.dt, _POINTS)
+    response = frequency_response(loop, frequency)
+    magnitude, phase = np.log(np.abs(response)), np.unwrap(np.angle(response))
+    turns = 2 * math.pi * np.round((phase[0] + math.pi / 2) / (2 * math.pi))  # begin near -90 deg
+    found = _crossings(frequency, magnitude, phase - turns)
+    gain = min(found[0], default=(math.inf, math.nan))
+    least = min(found[1], default=(math.inf, math.nan))
+    decibel = 20 * gain[0] / math.log(10)
+    return Margins(decibel, gain[1], math.degrees(least[0]), least[1], float(np.max(1 / np.abs(1 + response))))
+
+
+def _crossings(
+    frequency: FloatArray, magnitude: FloatArray, phase: FloatArray
+) -> tuple[list[tuple[float, float]], list[tuple[float, float]]]:
+    """(ln of gain that may be added, frequency) at each -180 deg, (phase margin, frequency) at each gain of 1."""
+    beyond = np.floor((phase + math.pi) / (2 * math.pi))
+    gains = []
+    for i in np.flatnonzero(np.diff(beyond)):
+        target = 2 * math.pi * max(beyond[i], beyond[i + 1]) - math.pi
+        share = (target - phase[i]) / (phase[i + 1] - phase[i])
+        value = magnitude[i] + share * (magnitude[i + 1] - magnitude[i])
+        if value < 0:
+            gains.append((float(-value), float(frequency[i] + share * (frequency[i + 1] - frequency[i]))))
+    phases = []
+    for i in np.flatnonzero(np.diff(np.signbit(magnitude))):
+        share = -magnitude[i] / (magnitude[i + 1] - magnitude[i])
+        at = phase[i] + share * (phase[i + 1] - phase[i])
+        distance = abs((at + math.pi + math.pi) % (2 * math.pi) - math.pi)
+        phases.append((float(distance), float(frequency[i] + share * (frequency[i + 1] - frequency[i]))))
+    return gains, phases

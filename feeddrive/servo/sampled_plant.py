@@ -1,0 +1,106 @@
+"""The linearised plant with its current loop, sampled exactly: torque held over a tick, then a dead time and a lag.
+
+| symbol | meaning | unit |
+|---|---|---|
+| T | tick | s |
+| d = k T + f | dead time in whole ticks and the rest | s |
+| tau | lag of the current loop | s |
+
+Source: Åström, Wittenmark, Computer-Controlled Systems, 3rd ed., section 2.3 (sampling a system with a time delay).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import control
+import numpy as np
+from scipy.linalg import expm
+
+from feeddrive.effects.base import TimingEffect
+from feeddrive.plant.linear import MOVING, state_space
+from feeddrive.plant.plant import Plant
+from feeddrive.servo.cascade import Cascade
+from feeddrive.typing import FloatArray
+
+_SPLIT = 1e-9
+"""Part of a tick below which the rest of a dead time counts as none."""
+
+
+@dataclass(frozen=True)
+class Matrices:
+    """x+ = A x + B u, y = C x + D u; shapes (n, n), (n, m), (p, n), (p, m)."""
+
+    a: FloatArray
+    b: FloatArray
+    c: FloatArray
+    d: FloatArray
+
+
+def sampled_plant(plant: Plant, cascade: Cascade, velocity: float = MOVING, position: float = 0.0) -> Matrices:
+    """Plant and current loop from the held torque and cutting force to the readings `plant.linear.OUTPUTS`.
+
+    Args:
+        plant: the machine; a declared drive delay adds to the dead time.
+        cascade: its tick, lag and dead time.
+        velocity, position: of the point about which is linearised [m/s, m].
+
+    Returns:
+        Matrices per tick; the states are those of the plant, the lagged torque, and torques under way.
+
+    Raises:
+        InputError: as `plant.linear.state_space`.
+    """
+    a, b, c = _with_lag(state_space(plant, velocity, position), cascade.current_lag)
+    tick = cascade.sample_time
+    delays = (effect.delay(effect.values) for effect in plant.effects if isinstance(effect, TimingEffect))
+    dead = (cascade.dead_time + max(0.0, float(sum(delays)))) / tick
+    late = math.floor(dead + _SPLIT)
+    rest = dead - late if dead - late > _SPLIT else 0.0
+    whole, held = _sampled(a, b, tick)
+    if rest:
+        _, newest = _sampled(a, b[:, :1], (1 - rest) * tick)
+        torques = [held[:, :1] - newest, newest]
+    else:
+        torques = [held[:, :1]]
+    return _with_torques_under_way(whole, torques, held[:, 1:], c, late)
+
+
+def _with_lag(system: control.StateSpace, lag: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """A, B, C with the torque through a first-order lag [s]."""
+    a, b, c = (np.asarray(matrix, dtype=float) for matrix in (system.A, system.B, system.C))
+    if not lag:
+        return a, b, c
+    n = len(a)
+    lagged = np.block([[a, b[:, :1]], [np.zeros((1, n)), np.array([[-1 / lag]])]])
+    inputs = np.block([[np.zeros((n, 1)), b[:, 1:]], [np.array([[1 / lag]]), np.zeros((1, b.shape[1] - 1))]])
+    return lagged, inputs, np.hstack([c, np.zeros((len(c), 1))])
+
+
+def _sampled(a: FloatArray, b: FloatArray, step: float) -> tuple[FloatArray, FloatArray]:
+    """exp(A h) and its integral times B, exactly, from one matrix exponential."""
+    n, m = b.shape
+    joined = np.zeros((n + m, n + m))
+    joined[:n, :n], joined[:n, n:] = a * step, b * step
+    exponential = expm(joined)
+    return exponential[:n, :n], exponential[:n, n:]
+
+
+def _with_torques_under_way(
+    a: FloatArray, torques: list[FloatArray], force: FloatArray, c: FloatArray, late: int
+) -> Matrices:
+    """Matrices whose torque input acts `late` ticks later; `torques` holds the responses to older and newer torque."""
+    waiting = late + len(torques) - 1
+    n, m = len(a), force.shape[1]
+    whole, inputs = np.zeros((n + waiting, n + waiting)), np.zeros((n + waiting, 1 + m))
+    whole[:n, :n], inputs[:n, 1:] = a, force
+    # torques waiting, oldest first, then the new one; the oldest act now
+    columns = [whole[:n, n + i : n + i + 1] for i in range(waiting)] + [inputs[:n, :1]]
+    for column, response in zip(columns, torques, strict=False):
+        column += response
+    for i in range(waiting - 1):
+        whole[n + i, n + i + 1] = 1.0
+    if waiting:
+        inputs[n + waiting - 1, 0] = 1.0
+    return Matrices(whole, inputs, np.hstack([c, np.zeros((len(c), waiting))]), np.zeros((len(c), 1 + m)))
