@@ -64,7 +64,7 @@ def _values(plant: Plant) -> list[tuple[str, Any, str, str]]:
     if math.isfinite(plant.torque_limit):
         rows.append(("motor.torque_limit", plant.torque_limit, "N m", plant.origins.get("torque_limit", "")))
     for effect in plant.effects:
-        for parameter in effect.parameters:
+        for parameter in (p for p in effect.parameters if p.key in effect.values):
             key = f"{effect.label}.{parameter.key}"
             rows.append((key, effect.values[parameter.key], parameter.unit, plant.origins.get(key, "")))
     return rows

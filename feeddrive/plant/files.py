@@ -212,7 +212,7 @@ def _effect(table: Table, label: str) -> Effect:
 
 def _refuse_bad_curve(effect: Effect, where: str) -> None:
     """Refuse tables of unequal length, or positions that do not ascend."""
-    tables = {p.key: effect.values[p.key] for p in effect.parameters if p.table}
+    tables = {p.key: effect.values[p.key] for p in effect.parameters if p.table and p.key in effect.values}
     lengths = {key: len(value) if isinstance(value, tuple) else 1 for key, value in tables.items()}
     if len(set(lengths.values())) > 1:
         told = " and ".join(f"{key} has {length}" for key, length in lengths.items())
