@@ -9,8 +9,8 @@
 | r | (chain) | lead / 2 pi | m/rad |
 | Tc | (declared) | Coulomb torque declared at the screw | N m |
 
-c is the mean of the losses 1/eta_a - 1 and 1 - eta_b of `nut_friction`, which tells them apart by the sign of the power:
-0.07 is an efficiency of 93 %. It changes level, not form: the torque has the shape of the declared drag at the screw.
+c is the mean of the losses 1/eta_a - 1 and 1 - eta_b, which `nut_friction` tells apart by the sign of the power; 0.07
+is an efficiency of 93 %. The torque has the shape of the declared drag at the screw.
 Dissipative: c is not negative. The slope over F has a corner at F = 0.
 Source: paper 000, eqs. (5), (6), to first order in f.
 """

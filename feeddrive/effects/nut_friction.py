@@ -15,9 +15,9 @@
 | r | (chain) | lead / 2 pi; tan(alpha) = 2 r / d_m | m/rad |
 | F | (motion) | transmitted force, shared as F = F_A - F_B, neither negative; see `feeddrive.parts.double_nut` | N |
 
-A single nut takes F r / eta_a while it drives (F w > 0) and gives F r eta_b while it is driven (F w < 0). The lead stays
-as it is: the torque acts on the screw beside the reaction F r of the nut, so that power is kept, lost in friction and
-never created: T_f >= 0 for every F as long as f < a_n/b_n, 0.37 or more up to lead angles of 45 deg.
+A single nut takes F r / eta_a while it drives (F w > 0) and gives F r eta_b while it is driven (F w < 0). The lead
+stays as it is: the torque acts on the screw beside the reaction F r of the nut, so power is lost and never created:
+T_f >= 0 for every F while f < a_n/b_n, which is 0.37 or more up to lead angles of 45 deg.
 Smoothing: tanh at rest, where a static load creeps as with `guide_friction`; T_f changes with the sign of w, where
 tanh is 0, so T is continuous. Its slope over F has a corner at F = 0 for a single nut, and none with preload.
 `nut_drag` is a drag torque declared as a number, whatever the load; this one follows from f, angles and preload. Where
@@ -29,6 +29,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from typing import ClassVar
 
 from feeddrive.effects.base import Motion, Parameter, Signature
 from feeddrive.effects.direction import forward
@@ -44,7 +45,7 @@ class NutFriction(ShaftDrag):
     """Load-dependent Coulomb torque and lubricant torque of the nut."""
 
     name = "nut_friction"
-    parameters = (
+    parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter("friction_coefficient", "1", 0.0, 0.3, size=0.01),
         Parameter("contact_angle", "rad", math.radians(30), math.radians(80), size=0.1, default=math.pi / 4),
         Parameter("pitch_diameter", "m", 1e-3, 1.0, size=0.01),

@@ -16,6 +16,7 @@ Source: Palmgren, Ball and Roller Bearing Engineering (1959); paper 002, frictio
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import ClassVar
 
 import casadi as ca
 
@@ -30,7 +31,7 @@ class ShaftDrag(FrictionEffect):
     """Coulomb and lubricant torque on the screw."""
 
     ports = (Port.SCREW,)
-    parameters = (
+    parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter("coulomb", "N m", 0.0, size=0.2),
         Parameter("smoothing_speed", "rad/s", 1e-5, 100.0, size=0.1),
         Parameter("viscous", "N m/(rad/s)^(2/3)", 0.0, size=0.02, default=0.0),
