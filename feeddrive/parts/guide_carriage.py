@@ -68,9 +68,10 @@ class GuideForces:
         return self.rolling + self.slip + self.seal
 
     def shares(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Rolling, viscous and slip over their sum, without seals [1]."""
+        """Rolling, viscous and slip over their sum, without seals [1]; 0 where the sum is."""
         running = self.rolling + self.viscous + self.slip
-        return self.rolling / running, self.viscous / running, self.slip / running
+        over = np.where(running > 0.0, running, 1.0)
+        return self.rolling / over, self.viscous / over, self.slip / over
 
 
 def carriage_friction(
