@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from feeddrive.diagnose.candidates import Candidate, Scene
 from feeddrive.diagnose.cross_validation import (
     LEAST_GAIN,
     Comparison,
@@ -18,6 +17,7 @@ from feeddrive.diagnose.cross_validation import (
 )
 from feeddrive.diagnose.fit import Fit, Problem, fit
 from feeddrive.diagnose.predictability import predictable_samples
+from feeddrive.diagnose.scene import Candidate, Scene
 from feeddrive.effects.base import Effect, TransmissionEffect
 from feeddrive.errors import InputError
 from feeddrive.typing import FloatArray

@@ -78,7 +78,13 @@ class Sine:
 
 Coordinate = Linear | Logarithmic | Sine
 
-LOGARITHMIC = {("stribeck", "velocity"), ("presliding", "stiffness"), ("friction_vs_position", "half_width")}
+LOGARITHMIC = {
+    ("stribeck", "velocity"),
+    ("presliding", "stiffness"),
+    ("friction_vs_position", "half_width"),
+    ("thermal_growth", "time_constant"),
+    ("viscous_warmup", "time_constant"),
+}
 """Parameters known to a factor before they are known at all."""
 
 FIXED = {("presliding", "break_away"), ("friction_vs_position", "position")}

@@ -25,6 +25,8 @@ def is_material(effect: Effect, plant: Plant) -> bool:
         return any(abs(values[key] - 1) >= LEAST_FACTOR for key in ("coulomb_factor", "viscous_factor"))
     if effect.name == "payload":
         return abs(values["mass"]) >= LEAST_MASS_SHARE * plant.chain.values["table_mass"]
+    if effect.name == "stiffness_deviation":
+        return abs(values["factor"] - 1) >= LEAST_FACTOR
     forces = [abs(number) for key, value in effect.values.items() if key in FORCE_KEYS for number in _numbers(value)]
     return not forces or max(forces) >= LEAST_FORCE_SHARE * _coulomb_level(plant)
 

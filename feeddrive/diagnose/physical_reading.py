@@ -90,6 +90,54 @@ def _lead_error(v: Mapping[str, Value]) -> str:
     return f"Travel error locked to the screw angle, {v['order']:.4g} periods per revolution: wobble, or pitch error."
 
 
+def _ball_pass_ripple(v: Mapping[str, Value]) -> str:
+    return f"The drag of the screw changes with its angle, {v['order']:.4g} periods per revolution: balls passing."
+
+
+def _position_spring(v: Mapping[str, Value]) -> str:
+    return _signed(
+        v["stiffness"],
+        "A force draws the table back to one place: cable chain, bellows or hoses.",
+        "A force drives the table away from one place: a counterbalance or a spring past its dead point.",
+    )
+
+
+def _lead_error_cumulative(v: Mapping[str, Value]) -> str:
+    return _signed(
+        v["slope"],
+        "The screw's travel is longer than its nominal lead: warm, or made so.",
+        "The screw's travel is shorter than its nominal lead: stretched less than meant, or made so.",
+    )
+
+
+def _thermal_growth(v: Mapping[str, Value]) -> str:
+    return _signed(
+        v["strain"],
+        f"The screw grows while it is recorded, about {_one(v['strain']) / 11.7e-6:.2g} K of warming in steel.",
+        f"The screw shrinks while it is recorded, about {-_one(v['strain']) / 11.7e-6:.2g} K of cooling in steel.",
+    )
+
+
+def _viscous_warmup(v: Mapping[str, Value]) -> str:
+    return _signed(
+        v["share"],
+        "The viscous drag falls while the axis runs: the lubricant warms.",
+        "The viscous drag rises while the axis runs: fresh grease, or cooling.",
+    )
+
+
+def _stiffness_deviation(v: Mapping[str, Value]) -> str:
+    return _signed(
+        _one(v["factor"]) - 1,
+        "The drive is stiffer along its axis than declared.",
+        "The drive is softer along its axis than declared: bearing, bracket or nut, or less preload.",
+    )
+
+
+def _one(value: Value) -> float:
+    return value[0] if isinstance(value, tuple) else value
+
+
 def _payload(v: Mapping[str, Value]) -> str:
     return _signed(
         v["mass"], "The table is heavier than declared.", "The table is lighter than declared, or an inertia is."
@@ -117,5 +165,11 @@ READINGS: dict[str, Callable[[Mapping[str, Value]], str]] = {
     "lead_error_periodic": _lead_error,
     "payload": _payload,
     "drive_delay": _drive_delay,
+    "ball_pass_ripple": _ball_pass_ripple,
+    "position_spring": _position_spring,
+    "lead_error_cumulative": _lead_error_cumulative,
+    "thermal_growth": _thermal_growth,
+    "viscous_warmup": _viscous_warmup,
+    "stiffness_deviation": _stiffness_deviation,
 }
 """Effect name to the reading of its values."""

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from feeddrive.diagnose.attempt import JOINT_ITERATIONS, PROMISE, Attempt, alone, together
-from feeddrive.diagnose.candidates import CANDIDATES, Scene, scene_of
+from feeddrive.diagnose.candidates import CANDIDATES
 from feeddrive.diagnose.coordinates import read_coordinates
 from feeddrive.diagnose.cross_validation import (
     LEAST_GAIN,
@@ -26,6 +26,7 @@ from feeddrive.diagnose.fit import Fit, Problem, fit
 from feeddrive.diagnose.materiality import is_material
 from feeddrive.diagnose.pairs import masked_pair
 from feeddrive.diagnose.result import Trial
+from feeddrive.diagnose.scene import Scene, scene_of
 from feeddrive.effects.base import Effect
 from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.typing import FloatArray, IntegerArray

@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 
 from feeddrive.effects.backlash import Backlash
+from feeddrive.effects.ball_pass_ripple import BallPassRipple
 from feeddrive.effects.base import Effect
 from feeddrive.effects.constant_force import ConstantForce
 from feeddrive.effects.coulomb_asymmetry import CoulombAsymmetry
@@ -12,13 +13,18 @@ from feeddrive.effects.drive_delay import DriveDelay
 from feeddrive.effects.friction_deviation import FrictionDeviation
 from feeddrive.effects.friction_vs_position import FrictionVsPosition
 from feeddrive.effects.guide_friction import GuideFriction
+from feeddrive.effects.lead_error_cumulative import LeadErrorCumulative
 from feeddrive.effects.lead_error_periodic import LeadErrorPeriodic
 from feeddrive.effects.payload import Payload
+from feeddrive.effects.position_spring import PositionSpring
 from feeddrive.effects.presliding import Presliding
 from feeddrive.effects.shaft_drag import BearingDrag, NutDrag
+from feeddrive.effects.stiffness_deviation import StiffnessDeviation
 from feeddrive.effects.stribeck import Stribeck
+from feeddrive.effects.thermal_growth import ThermalGrowth
 from feeddrive.effects.torque_ripple import TorqueRipple
 from feeddrive.effects.viscous_asymmetry import ViscousAsymmetry
+from feeddrive.effects.viscous_warmup import ViscousWarmup
 from feeddrive.errors import InputError
 
 EFFECTS: dict[str, type[Effect]] = {
@@ -33,10 +39,16 @@ EFFECTS: dict[str, type[Effect]] = {
         Presliding,
         FrictionVsPosition,
         FrictionDeviation,
+        ViscousWarmup,
         TorqueRipple,
+        BallPassRipple,
         ConstantForce,
+        PositionSpring,
         Backlash,
         LeadErrorPeriodic,
+        LeadErrorCumulative,
+        ThermalGrowth,
+        StiffnessDeviation,
         Payload,
         DriveDelay,
     )

@@ -38,6 +38,12 @@ NEUTRAL: dict[str, dict[str, Value]] = {
     "backlash": {"width": 0.0},
     "lead_error_periodic": {"amplitude": 0.0, "order": 1.0, "phase": 0.2},
     "payload": {"mass": 0.0},
+    "ball_pass_ripple": {"amplitude": 0.0, "order": 3.7, "phase": 0.2},
+    "position_spring": {"stiffness": 0.0, "zero": 0.1},
+    "lead_error_cumulative": {"slope": 0.0},
+    "thermal_growth": {"strain": 0.0, "time_constant": 100.0},
+    "viscous_warmup": {"share": 0.0, "time_constant": 100.0},
+    "stiffness_deviation": {"factor": 1.0},
     "drive_delay": {"delay": 0.0},
 }
 """Values at which an effect is not there. `presliding` has none: it is another shape, stiffer or softer."""
@@ -62,10 +68,22 @@ DISSIPATIVE: dict[str, st.SearchStrategy[dict[str, Value]]] = {
     "friction_deviation": st.fixed_dictionaries(
         {"coulomb_factor": st.floats(0, 10), "viscous_factor": st.floats(0, 10)}
     ),
+    "viscous_warmup": st.fixed_dictionaries({"share": st.floats(-2, 1), "time_constant": st.floats(0.1, 1e4)}),
+    # Below the 0.35 N m that the bench axis declares at its screw.
+    "ball_pass_ripple": st.fixed_dictionaries({"amplitude": st.floats(0, 0.34), "order": st.floats(0.1, 50)}),
 }
 """Friction effects that depend on the motion alone, with physical values."""
 
-ODD = ("guide_friction", "nut_drag", "bearing_drag", "stribeck", "friction_vs_position", "friction_deviation")
+ODD = (
+    "guide_friction",
+    "nut_drag",
+    "bearing_drag",
+    "stribeck",
+    "friction_vs_position",
+    "friction_deviation",
+    "viscous_warmup",
+    "ball_pass_ripple",
+)
 
 
 def _friction(plant: Plant, port: Port, position: float, velocity: float) -> float:
@@ -132,7 +150,7 @@ def test_bristle_takes_no_more_than_it_stored(
     assert force * velocity - stiffness * z * rate >= -1e-12 * level * speed  # rounding of equal powers
 
 
-@pytest.mark.parametrize("name", ["torque_ripple", "constant_force"])
+@pytest.mark.parametrize("name", ["torque_ripple", "constant_force", "position_spring"])
 def test_source_is_conservative(name: str) -> None:
     """The force does not depend on velocity, so the work over a closed path is none."""
     effect = EFFECTS[name].of(**{**NEUTRAL[name], next(iter(NEUTRAL[name])): 2.0})

@@ -1,0 +1,127 @@
+"""Why recordings cannot show an effect, in words for a person; an empty text where they can."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from feeddrive.diagnose.evidence import Evidence
+from feeddrive.diagnose.scene import Scene
+from feeddrive.effects.base import Port
+from feeddrive.simulate.driven import LoadMotion
+
+LEAST_TURNS = 2.0
+"""Revolutions that must be travelled before a periodic effect can be told from a trend."""
+
+LEAST_SECONDS = 8.0
+"""Duration [s] below which a slow change of the machine cannot be told from the motion."""
+
+LEAST_STROKE_TURNS = 1.0
+"""Stroke in revolutions of the screw from which position and angle are different things."""
+
+
+def both_directions(scene: Scene) -> str:
+    """The table must move both ways."""
+    moved = [_moved(run, evidence) for run, evidence in zip(scene.runs, scene.problem.evidence, strict=True)]
+    forward, backward = sum(m[0] for m in moved), sum(m[1] for m in moved)
+    least = 5 * scene.problem.plant.chain.radius
+    if min(forward, backward) < least:
+        return f"the recording moves {forward * 1e3:.2g} mm forward and {backward * 1e3:.2g} mm back; it needs both"
+    return ""
+
+
+def _moved(run: LoadMotion, evidence: Evidence) -> tuple[float, float]:
+    steps = np.diff(run.table_position)[evidence.fit_rows[1:]]
+    return float(steps[steps > 0].sum()), float(-steps[steps < 0].sum())
+
+
+def reversals(scene: Scene) -> str:
+    """The motor must turn round twice or more."""
+    count = 0
+    for run, evidence in zip(scene.runs, scene.problem.evidence, strict=True):
+        direction = np.sign(run.motor_speed[evidence.fit_rows])
+        turned = direction[np.abs(run.motor_speed[evidence.fit_rows]) > 1e-3 * np.abs(run.motor_speed).max()]
+        count += int(np.sum(np.diff(turned) != 0))
+    return "" if count >= 2 else f"the recording has {count} reversals; it needs two or more"
+
+
+def turns(scene: Scene) -> str:
+    """The motor must turn often enough for a period to be told from a trend."""
+    travelled = max(
+        float(np.ptp(run.motor_angle[e.fit_rows])) for run, e in zip(scene.runs, scene.problem.evidence, strict=True)
+    )
+    count = travelled / (2 * np.pi)
+    return "" if count >= LEAST_TURNS else f"the recording covers {count:.2g} revolutions; it needs {LEAST_TURNS:g}"
+
+
+def lead(scene: Scene) -> str:
+    """Travel errors need a table position and some revolutions."""
+    if not any("table_position" in evidence.channels for evidence in scene.problem.evidence):
+        return "it needs a table position beside the motor angle"
+    return turns(scene)
+
+
+def gap(scene: Scene) -> str:
+    """Free play needs an elastic chain and reversals."""
+    if not scene.problem.plant.chain.elastic:
+        return "the structure is rigid: free play needs a screw that moves against the table"
+    return reversals(scene)
+
+
+def friction(scene: Scene) -> str:
+    """Friction at the table needs a declared level and both directions."""
+    declared = any(effect.name == "guide_friction" for effect in scene.problem.plant.effects)
+    return both_directions(scene) if declared else "the plant declares no guide_friction to act on"
+
+
+def nothing(scene: Scene) -> str:
+    """Every recording can show it."""
+    return ""
+
+
+def elastic(scene: Scene) -> str:
+    """Stiffness shows only where the chain is elastic."""
+    return "" if scene.problem.plant.chain.elastic else "the structure is rigid"
+
+
+def scale(scene: Scene) -> str:
+    """Travel along the stroke needs a table position and a stroke."""
+    if not any("table_position" in evidence.channels for evidence in scene.problem.evidence):
+        return "it needs a table position beside the motor angle"
+    return stroke(scene)
+
+
+def stroke(scene: Scene) -> str:
+    """What depends on the position needs a stroke."""
+    runs = zip(scene.runs, scene.problem.evidence, strict=True)
+    longest = max(float(np.ptp(run.table_position[e.fit_rows])) for run, e in runs)
+    least = LEAST_STROKE_TURNS * scene.problem.plant.chain.values["lead"]
+    return "" if longest >= least else f"the stroke is {longest * 1e3:.2g} mm; it needs {least * 1e3:.3g} mm"
+
+
+def duration(scene: Scene) -> str:
+    """What changes slowly needs time."""
+    evidence = scene.problem.evidence[scene.longest]
+    seconds = float(evidence.fit_rows.sum()) * evidence.recording.sample_time
+    return "" if seconds >= LEAST_SECONDS else f"the recording lasts {seconds:.2g} s; it needs {LEAST_SECONDS:g} s"
+
+
+def scale_duration(scene: Scene) -> str:
+    """Growth needs a table position and time."""
+    return scale(scene) or duration(scene)
+
+
+def screw_drag(scene: Scene) -> str:
+    """What changes the drag of the screw needs a declared one, and a force that the chain knows."""
+    if not any(e.port == Port.SCREW and "coulomb" in e.values for e in scene.problem.plant.effects):
+        return "the plant declares no nut_drag or bearing_drag to act on"
+    return elastic(scene) or both_directions(scene)
+
+
+def screw_drag_turns(scene: Scene) -> str:
+    """A ripple of the drag needs a declared one and some revolutions."""
+    return screw_drag(scene) or turns(scene)
+
+
+def friction_reversals(scene: Scene) -> str:
+    """Presliding needs declared friction and reversals."""
+    return friction(scene) or reversals(scene)

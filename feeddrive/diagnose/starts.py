@@ -1,0 +1,120 @@
+"""Values from which the fits of the candidates start, read off the residual."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from feeddrive.diagnose.periodogram import sine_at, strongest_orders
+from feeddrive.diagnose.position_curve import bump_of, friction_over_position
+from feeddrive.diagnose.scene import Scene
+from feeddrive.effects.backlash import Backlash
+from feeddrive.effects.base import Effect, Port
+from feeddrive.effects.friction_deviation import FrictionDeviation
+from feeddrive.effects.friction_vs_position import FrictionVsPosition
+from feeddrive.effects.lead_error_periodic import LeadErrorPeriodic
+from feeddrive.effects.presliding import Presliding
+from feeddrive.effects.stribeck import Stribeck
+from feeddrive.effects.torque_ripple import TorqueRipple
+from feeddrive.typing import FloatArray
+
+TABLE_NODES = 12
+"""Nodes of a tabulated friction curve over the stroke."""
+
+LEAST_CURVE = 0.01
+"""Share of the torque residual's square that must follow the position before a table is tried."""
+
+
+def plain(effect: Effect) -> Callable[[Scene], list[list[Effect]]]:
+    return lambda scene: [[effect]]
+
+
+def deviation(scene: Scene) -> list[list[Effect]]:
+    ports = [port for port in FrictionDeviation.ports if any(has_level(e, port) for e in scene.problem.plant.effects)]
+    taken = [effect.port for effect in scene.found if effect.name == FrictionDeviation.name]
+    return [[FrictionDeviation.of(port)] for port in ports if port not in taken]
+
+
+def has_level(effect: Effect, port: Port) -> bool:
+    return effect.port == port and "coulomb" in effect.values
+
+
+def stribeck(scene: Scene) -> list[list[Effect]]:
+    fastest = max(float(np.abs(run.table_velocity).max()) for run in scene.runs)
+    size = Stribeck.parameter("delta_force").size
+    return [[Stribeck.of(delta_force=size, velocity=fastest * share) for share in (0.005, 0.015, 0.05, 0.15, 0.4)]]
+
+
+def presliding(scene: Scene) -> list[list[Effect]]:
+    level = _coulomb_level(scene)
+    deflections = (1e-7, 3e-7, 1e-6, 3e-6, 1e-5, 3e-5, 1e-4)
+    return [
+        [Presliding.of(stiffness=level / z, damping=0.0, break_away=share) for z in deflections] for share in (0.0, 0.7)
+    ]
+
+
+def _coulomb_level(scene: Scene) -> float:
+    levels = [e.values["coulomb"] for e in scene.problem.plant.effects if has_level(e, Port.TABLE)]
+    return max(float(sum(level for level in levels if isinstance(level, float))), 1.0)
+
+
+def backlash(scene: Scene) -> list[list[Effect]]:
+    at = scene.longest
+    residual, rows = scene.residuals[at], scene.problem.evidence[at].fit_rows
+    widths = [1e-6, 3e-6, 1e-5, 3e-5, 1e-4]
+    if "table_position" in residual:
+        flank = float(np.std(residual["table_position"][rows]))  # the table lags by half the play, either way
+        widths = [2 * flank, 1.4 * flank, 0.7 * flank, 3 * flank]
+    return [[Backlash.of(width=min(width, 5e-3)) for width in widths]]
+
+
+def ripple(scene: Scene) -> list[list[Effect]]:
+    at = scene.longest
+    rows = scene.problem.evidence[at].fit_rows
+    angle, residual = scene.runs[at].motor_angle[rows], scene.residuals[at]["motor_torque"][rows]
+    orders = strongest_orders(angle, residual, highest_order(scene, at))
+    return [[sine(TorqueRipple, angle, residual, order) for order in orders]] if orders else []
+
+
+def lead_error(scene: Scene) -> list[list[Effect]]:
+    at = scene.longest
+    rows = scene.problem.evidence[at].fit_rows
+    if "table_position" not in scene.residuals[at]:
+        return []
+    angle, residual = scene.runs[at].screw_angle[rows], scene.residuals[at]["table_position"][rows]
+    orders = strongest_orders(angle, residual, highest_order(scene, at))
+    return [[sine(LeadErrorPeriodic, angle, residual, order) for order in orders]] if orders else []
+
+
+def highest_order(scene: Scene, at: int) -> float:
+    """Order whose frequency meets half the sample rate at the highest speed; above it a sampled sine is another one."""
+    fastest = float(np.abs(scene.runs[at].motor_speed).max())
+    return float(np.pi / scene.problem.evidence[at].recording.sample_time / fastest)
+
+
+def sine(kind: type[Effect], angle: FloatArray, residual: FloatArray, order: float) -> Effect:
+    amplitude, phase = sine_at(angle, residual, order)
+    return kind.of(amplitude=amplitude, order=order, phase=phase)
+
+
+def over_position(scene: Scene) -> list[list[Effect]]:
+    at = scene.longest
+    evidence, run = scene.problem.evidence[at], scene.runs[at]
+    rows = evidence.fit_rows
+    radius = scene.problem.plant.chain.radius
+    curve = friction_over_position(
+        run.table_position[rows], run.table_velocity[rows], scene.residuals[at]["motor_torque"][rows] / radius
+    )
+    if curve is None:
+        return []
+    bumps: list[Effect] = [
+        FrictionVsPosition.of(peak=peak, centre=centre, half_width=width) for peak, centre, width in bump_of(curve)
+    ]
+    torque = scene.residuals[at]["motor_torque"][rows]
+    follows = float(np.sum(curve.samples * (radius * curve.force) ** 2)) / float(np.sum(torque**2))
+    if follows < LEAST_CURVE:
+        return [bumps]
+    nodes = np.linspace(curve.position[0], curve.position[-1], TABLE_NODES)
+    table = FrictionVsPosition.of(position=tuple(nodes.tolist()), delta_force=tuple([0.0] * TABLE_NODES))
+    return [bumps, [table]]
