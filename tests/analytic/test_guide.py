@@ -27,7 +27,8 @@ GUIDES = st.builds(
     preload_oversize=st.floats(0.0, 6e-6),
     balls_per_row=st.integers(8, 30),
 )
-LOADS = st.floats(-2500.0, 2500.0)
+LOADS = st.floats(-1000.0, 1000.0)
+"""The smallest of GUIDES carries them below the pressure of a dent."""
 SPEEDS = np.geomspace(1e-3, 2.0, 9)
 
 
