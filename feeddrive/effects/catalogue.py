@@ -15,6 +15,8 @@ from feeddrive.effects.friction_vs_position import FrictionVsPosition
 from feeddrive.effects.guide_friction import GuideFriction
 from feeddrive.effects.lead_error_cumulative import LeadErrorCumulative
 from feeddrive.effects.lead_error_periodic import LeadErrorPeriodic
+from feeddrive.effects.load_dependent_friction import LoadDependentFriction
+from feeddrive.effects.nut_friction import NutFriction
 from feeddrive.effects.payload import Payload
 from feeddrive.effects.position_spring import PositionSpring
 from feeddrive.effects.presliding import Presliding
@@ -33,12 +35,14 @@ EFFECTS: dict[str, type[Effect]] = {
         GuideFriction,
         NutDrag,
         BearingDrag,
+        NutFriction,
         CoulombAsymmetry,
         ViscousAsymmetry,
         Stribeck,
         Presliding,
         FrictionVsPosition,
         FrictionDeviation,
+        LoadDependentFriction,
         ViscousWarmup,
         TorqueRipple,
         BallPassRipple,

@@ -22,12 +22,14 @@ from feeddrive.plant.linear import ode, ode_parameters, state_names
 from feeddrive.plant.plant import Plant
 
 BENCH = read_plant(plants_folder() / "bench_axis.toml")
-DECLARED = ("guide_friction", "nut_drag", "bearing_drag")
+DECLARED = ("guide_friction", "nut_drag", "bearing_drag", "nut_friction")
 
 NEUTRAL: dict[str, dict[str, Value]] = {
     "guide_friction": {"coulomb": 0.0, "smoothing_velocity": 1e-3, "viscous": 0.0},
     "nut_drag": {"coulomb": 0.0, "smoothing_speed": 0.1, "viscous": 0.0},
     "bearing_drag": {"coulomb": 0.0, "smoothing_speed": 0.1, "viscous": 0.0},
+    "nut_friction": {"friction_coefficient": 0.0, "pitch_diameter": 0.04, "preload": 2e3, "smoothing_speed": 0.1},
+    "load_dependent_friction": {"coefficient": 0.0},
     "coulomb_asymmetry": {"delta_force": 0.0},
     "viscous_asymmetry": {"delta_viscous": 0.0},
     "stribeck": {"delta_force": 0.0, "velocity": 0.01},
@@ -58,6 +60,17 @@ DISSIPATIVE: dict[str, st.SearchStrategy[dict[str, Value]]] = {
     "bearing_drag": st.fixed_dictionaries(
         {"coulomb": st.floats(0, 5), "smoothing_speed": st.floats(1e-3, 10), "viscous": st.floats(0, 1)}
     ),
+    "nut_friction": st.fixed_dictionaries(
+        {
+            "friction_coefficient": st.floats(0, 0.3),
+            "contact_angle": st.floats(0.53, 1.39),
+            "pitch_diameter": st.floats(0.008, 0.2),
+            "preload": st.floats(0, 2e4),
+            "smoothing_speed": st.floats(1e-3, 10),
+            "viscous": st.floats(0, 1),
+        }
+    ),
+    "load_dependent_friction": st.fixed_dictionaries({"coefficient": st.floats(0, 1)}),
     # Above minus the declared 60 N and 300 N s/m, as the docstrings say.
     "coulomb_asymmetry": st.fixed_dictionaries({"delta_force": st.floats(-59, 200)}),
     "viscous_asymmetry": st.fixed_dictionaries({"delta_viscous": st.floats(-299, 900)}),
@@ -72,7 +85,7 @@ DISSIPATIVE: dict[str, st.SearchStrategy[dict[str, Value]]] = {
     # Below the 0.35 N m that the bench axis declares at its screw.
     "ball_pass_ripple": st.fixed_dictionaries({"amplitude": st.floats(0, 0.34), "order": st.floats(0.1, 50)}),
 }
-"""Friction effects that depend on the motion alone, with physical values."""
+"""Friction effects that depend on motion and transmitted force alone, with physical values."""
 
 ODD = (
     "guide_friction",
@@ -83,12 +96,15 @@ ODD = (
     "friction_deviation",
     "viscous_warmup",
     "ball_pass_ripple",
+    "load_dependent_friction",
 )
+"""`nut_friction` is odd in velocity and force together: driving and back-driving lose different shares."""
 
 
-def _friction(plant: Plant, port: Port, position: float, velocity: float) -> float:
+def _friction(plant: Plant, port: Port, position: float, velocity: float, transmitted: float = 0.0) -> float:
     symbols = parameter_symbols(plant)
-    force = friction_force(plant, symbols, port, Motion(ca.SX(position), ca.SX(velocity)))
+    motion = Motion(ca.SX(position), ca.SX(velocity), force=ca.SX(transmitted), radius=ca.SX(R_TABLE))
+    force = friction_force(plant, symbols, port, motion)
     return float(ca.Function("force", [symbols.vector], [force])(parameter_values(plant)))
 
 
@@ -121,18 +137,20 @@ R_TABLE = BENCH.chain.radius
 
 
 @pytest.mark.parametrize("name", ODD)
-@given(data=st.data(), velocity=st.floats(1e-6, 1.0), position=st.floats(-1, 1))
-def test_odd_in_velocity(name: str, data: st.DataObject, velocity: float, position: float) -> None:
+@given(data=st.data(), velocity=st.floats(1e-6, 1.0), position=st.floats(-1, 1), force=st.floats(-2e4, 2e4))
+def test_odd_in_velocity(name: str, data: st.DataObject, velocity: float, position: float, force: float) -> None:
     plant = _plant(effect := EFFECTS[name].of(**data.draw(DISSIPATIVE[name])))
-    there, back = (_friction(plant, effect.port, position, sign * velocity) for sign in (1, -1))
+    there, back = (_friction(plant, effect.port, position, sign * velocity, force) for sign in (1, -1))
     assert there == pytest.approx(-back, rel=1e-12)  # the same operations with the other sign
 
 
 @pytest.mark.parametrize("name", DISSIPATIVE)
-@given(data=st.data(), velocity=st.floats(-1, 1), position=st.floats(-1, 1))
-def test_friction_never_creates_power(name: str, data: st.DataObject, velocity: float, position: float) -> None:
+@given(data=st.data(), velocity=st.floats(-1, 1), position=st.floats(-1, 1), force=st.floats(-2e4, 2e4))
+def test_friction_never_creates_power(
+    name: str, data: st.DataObject, velocity: float, position: float, force: float
+) -> None:
     plant = _plant(effect := EFFECTS[name].of(**data.draw(DISSIPATIVE[name])))
-    assert _friction(plant, effect.port, position, velocity) * velocity >= 0.0
+    assert _friction(plant, effect.port, position, velocity, force) * velocity >= 0.0
 
 
 @given(
