@@ -12,11 +12,9 @@ from scipy.ndimage import shift
 from feeddrive.diagnose.evidence import Evidence
 from feeddrive.effects.base import ChainEffect, Effect, Motion, Port, SourceEffect, TimingEffect
 from feeddrive.plant.plant import Plant
-from feeddrive.simulate.driven import LoadMotion, motor_motion, simulate_driven
+from feeddrive.simulate.driven import LoadMotion, simulate_driven, unfollowed
+from feeddrive.simulate.step_constants import SimulationError
 from feeddrive.typing import FloatArray
-
-FINER_STEPS = 4
-"""Steps a sample where one is not enough."""
 
 REMEMBERED = 48
 """Load-side simulations kept; effects at the motor alone need none of their own."""
@@ -71,13 +69,11 @@ def motor_sources(plant: Plant, run: LoadMotion) -> FloatArray:
 
 
 def _simulated(plant: Plant, evidence: Evidence) -> LoadMotion:
-    """The driven simulation, with finer steps where one step a sample does not hold (very stiff bristles)."""
-    run = simulate_driven(plant, evidence.motion)
-    if np.all(np.isfinite(run.table_position)):
-        return run
-    samples = evidence.motion.samples
-    finer = motor_motion(evidence.motion.time[samples], evidence.motion.angle[samples], FINER_STEPS)
-    return simulate_driven(plant, finer)
+    """The driven simulation; no numbers where the plant cannot be followed with these values."""
+    try:
+        return simulate_driven(plant, evidence.motion)
+    except SimulationError:
+        return unfollowed(evidence.motion)
 
 
 def _load_side(plant: Plant) -> Plant:

@@ -20,7 +20,8 @@ import numpy as np
 
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant, PositionVelocityController
-from feeddrive.simulate.held_torque import SUBSTEPS, initial_state, run_samples
+from feeddrive.simulate.held_torque import initial_state, run_samples
+from feeddrive.simulate.program import TOLERANCE, StepReport
 from feeddrive.typing import Expression, FloatArray
 
 
@@ -34,7 +35,7 @@ class ClosedLoopRun:
         output: of the controller, in its unit.
         position, velocity: of the table [m, m/s].
         motor_angle: [rad].
-        correction: last Newton correction of the effect forces, largest over the run [N or N m].
+        report: how the steps went.
     """
 
     time: FloatArray
@@ -43,12 +44,12 @@ class ClosedLoopRun:
     position: FloatArray
     velocity: FloatArray
     motor_angle: FloatArray
-    correction: float
+    report: StepReport
 
 
 def simulate_closed_loop(
     plant: Plant, time: FloatArray, setpoint: FloatArray, initial_position: float, initial_velocity: float = 0.0,
-    substeps: int = SUBSTEPS,
+    tolerance: float = TOLERANCE,
 ) -> ClosedLoopRun:  # fmt: skip
     """The plant under its declared controller; no torque before the start.
 
@@ -58,22 +59,22 @@ def simulate_closed_loop(
         setpoint: of the table position at the samples [m], shape (n,).
         initial_position: of the table [m]; the transmission starts without force.
         initial_velocity: of the table [m/s].
-        substeps: plant steps per sample.
+        tolerance: error of the table position that a step may make [m].
 
     Returns:
         The motion and what the controller did.
 
     Raises:
         InputError: no controller declared, times that are not evenly spaced, lengths that differ, or a motion that
-            does not stay finite.
+            cannot be followed.
     """
     if plant.controller is None:
         raise InputError("no controller is declared", plant.name, "add a [controller] table to the plant")
     settings = _settings(plant.controller, plant)
     command = _from_motor if _reads_motor(plant) else _from_table
     start = initial_state(plant, initial_position, initial_velocity)
-    run = run_samples(plant, command, settings, time, setpoint, start, 0.0, substeps)
-    return ClosedLoopRun(run.time, run.torque, run.output, run.position, run.velocity, run.motor_angle, run.correction)
+    run = run_samples(plant, command, settings, time, setpoint, start, 0.0, tolerance)
+    return ClosedLoopRun(run.time, run.torque, run.output, run.position, run.velocity, run.motor_angle, run.report)
 
 
 def _reads_motor(plant: Plant) -> bool:

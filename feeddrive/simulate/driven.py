@@ -18,10 +18,15 @@ from feeddrive.plant.equations import (
     travel_deviation,
 )
 from feeddrive.plant.plant import Plant
-from feeddrive.simulate.loop import Loop, loop_of
-from feeddrive.simulate.step import Layout, StepModel, driven_step
+from feeddrive.simulate.engine import Feed, Machine, machine_of, run_machine, watched
+from feeddrive.simulate.program import Program, StepReport
+from feeddrive.simulate.step import driven_step
+from feeddrive.simulate.step_constants import Layout
 from feeddrive.simulate.structure import per_structure
 from feeddrive.typing import FloatArray
+
+TOLERANCE = 1e-10
+"""Error of the table position that one step may make [m]: the springs to the motor forget it within milliseconds."""
 
 PASSES = 3
 """For the table position at the start; travel per length is below 1e-3, so each gains three digits."""
@@ -59,7 +64,7 @@ class LoadMotion:
         screw_angle, screw_speed: [rad, rad/s].
         table_position, table_velocity: [m, m/s].
         torque: motor torque needed, without timing effects [N m].
-        correction: last Newton correction of the effect forces, largest over the run [N or N m].
+        report: how the steps went.
     """
 
     time: FloatArray
@@ -70,7 +75,7 @@ class LoadMotion:
     table_position: FloatArray
     table_velocity: FloatArray
     torque: FloatArray
-    correction: float
+    report: StepReport
 
 
 def motor_motion(time: FloatArray, angle: FloatArray, substeps: int = 1) -> MotorMotion:
@@ -90,67 +95,65 @@ def motor_motion(time: FloatArray, angle: FloatArray, substeps: int = 1) -> Moto
     return MotorMotion(fine, spline(fine), spline(fine, 1), spline(time - time[0], 2), substeps)
 
 
-def simulate_driven(plant: Plant, motion: MotorMotion) -> LoadMotion:
+def simulate_driven(plant: Plant, motion: MotorMotion, tolerance: float = TOLERANCE) -> LoadMotion:
     """Load side and motor torque of the plant for a given motor motion, starting at rest without stretch.
 
     Args:
         plant: with its values.
         motion: of the motor.
+        tolerance: error of the table position that a step may make [m].
 
     Returns:
         The motion of screw and table and the motor torque, at the samples.
+
+    Raises:
+        SimulationError: a motion that cannot be followed; says when, and which effect to look at.
     """
-    machine = _machine(plant)
-    memory = np.zeros(machine.model.layout.memory)
-    free = machine.model.layout.coordinates
-    if free:
-        start = machine.start(motion.angle[0], motion.speed[0], parameter_values(plant))
-        memory[: 2 * free] = np.array(start).ravel()
+    machine, outputs, beginning = _machine(plant)
+    values = np.array(parameter_values(plant))
+    states = np.zeros(0)
+    if machine.program.step.layout.coordinates:
+        states = np.array(beginning(motion.angle[0], motion.speed[0], values)).ravel()
+    start = watched(machine, plant, states, np.zeros(0), (motion.angle[0], motion.speed[0]), 0.0)
     step = motion.time[1] - motion.time[0]
     # the acceleration is known at the samples only, and only there is the torque read
     acceleration = np.zeros(len(motion.time))
     acceleration[motion.samples] = motion.acceleration
-    inputs = np.column_stack(
-        [motion.angle[:-1], motion.speed[:-1], motion.angle[1:], motion.speed[1:], motion.time[:-1], acceleration[1:]]
+    fed = np.column_stack(
+        [motion.angle[:-1], motion.speed[:-1], motion.angle[1:], motion.speed[1:], acceleration[1:], motion.time[:-1]]
     )
-    constants = machine.model.constants(plant, step)
-    _, extra = machine.loop(memory, inputs, constants)
-    first = machine.outputs(memory, motion.angle[0], motion.speed[0], acceleration[0], 0.0, parameter_values(plant))
-    values = np.vstack([np.array(first).ravel(), extra[:, 1:]])[motion.samples]
-    phi, screw_speed, x, velocity, torque = np.ascontiguousarray(values.T)
+    outcome = run_machine(machine, plant, Feed(fed, np.array([step]), np.array([step])), start, tolerance)
+    first = outputs(start.memory, motion.angle[0], motion.speed[0], acceleration[0], 0.0, values)
+    read = np.vstack([np.array(first).ravel(), outcome.seen])[motion.samples]
+    phi, screw_speed, x, velocity, torque = np.ascontiguousarray(read.T)
     at = motion.samples
     return LoadMotion(
-        motion.time[at], motion.angle[at], motion.speed[at], phi, screw_speed, x, velocity, torque,
-        float(np.max(extra[:, 0], initial=0.0)),
-    )  # fmt: skip
+        motion.time[at], motion.angle[at], motion.speed[at], phi, screw_speed, x, velocity, torque, outcome.report
+    )
 
 
-@dataclass(frozen=True)
-class _Machine:
-    """What one structure needs to be simulated: the step model, its loop, the outputs and the start."""
-
-    model: StepModel
-    loop: Loop
-    outputs: ca.Function
-    start: ca.Function
+def unfollowed(motion: MotorMotion) -> LoadMotion:
+    """A motion of no numbers, for searches that meet values with which the plant cannot be simulated."""
+    at = motion.samples
+    nothing = np.full(len(motion.time[at]), np.nan)
+    report = StepReport(0, 0, 0, 0, 0, np.inf, 0, np.inf, np.inf)
+    return LoadMotion(
+        motion.time[at], motion.angle[at], motion.speed[at], nothing, nothing, nothing, nothing, nothing, report
+    )
 
 
 @per_structure
-def _machine(plant: Plant) -> _Machine:
-    model = driven_step(plant)
-    outputs = _outputs(plant, model.layout)
-    memory, inputs, time, constants = (ca.SX.sym("a", model.function.size1_in(i)) for i in range(4))
-    acceleration = ca.SX.sym("acceleration")
-    after, correction = model.function(memory, inputs, time, constants)
-    count = outputs.size1_in(5)
-    duration, parameters = constants[-count - 1], constants[-count:]
-    read = outputs(after, inputs[2], inputs[3], acceleration, time + duration, parameters)
-    step = ca.Function(
-        "feeddrive_step",
-        [memory, ca.vertcat(inputs, time, acceleration), constants],
-        [after, ca.vertcat(correction, read)],
-    )
-    return _Machine(model, loop_of(step), outputs, _start(plant))
+def _machine(plant: Plant) -> tuple[Machine, ca.Function, ca.Function]:
+    """What runs a structure, its outputs and its start."""
+    step = driven_step(plant)
+    outputs = _outputs(plant, step.layout)
+    memory, own, fed, settings = (ca.SX.sym(*a) for a in (("m", step.layout.memory), ("o", 0), ("f", 6), ("s", 1)))
+    values = ca.SX.sym("values", outputs.size1_in(5))
+    arguments = [memory, own, fed, settings, values]
+    read = outputs(memory, fed[2], fed[3], fed[4], fed[5] + settings[0], values)
+    before = ca.Function("feeddrive_before", arguments, [own, fed[:4], ca.SX.zeros(0, 1)])
+    after = ca.Function("feeddrive_after", arguments, [read])
+    return machine_of(Program(step, before, after, 1)), outputs, _start(plant)
 
 
 def _start(plant: Plant) -> ca.Function:

@@ -1,12 +1,17 @@
-"""One step of a plant as a CasADi function: exact linear chain, effect forces on Radau nodes.
+"""One step of a plant as CasADi functions: exact linear chain, effect forces on Radau nodes, an estimate of the error.
 
 At the two Radau nodes the coordinates follow exactly from the state at the start, the input and the node forces; the
 node forces follow from the coordinates through the effects. The small system for node forces and bristle deflections
-is solved by Newton with the exact Jacobian.
+is solved by Newton with the exact Jacobian, one correction per call, so that whoever steps decides when it ends.
 
     s_i = E_i s_0 + I_i w + sum_j W_ij f_j,     f_i = f(q_i, q_i', z_i, t_i),     z_i = z_0 + h sum_j a_ij z_j'
 
-The last Newton correction is handed out, so that no trajectory is wrong in silence.
+A force that is no straight line over the step is seen where the line through the nodes misses its value at the start:
+
+    d = f(0) - (3 f_1 - f_2) / 2,     error = sum_k u_k |d_k| + v_k |d_k - (h / h_before)^2 d_k,before|
+
+u weighs what a parabola does to the state, v the impulse of what is more than a parabola (see `step_constants`).
+Source: Hairer and Wanner, Solving ODEs II, sections IV.5 (Radau IIA) and IV.8 (embedded estimates); own combination.
 """
 
 from __future__ import annotations
@@ -14,74 +19,67 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import casadi as ca
-import numpy as np
 
 from feeddrive.plant.equations import (
+    Forces,
     Symbols,
     bristle_count,
     chain_symbols,
     effect_forces,
     parameter_symbols,
-    parameter_values,
 )
 from feeddrive.plant.plant import Plant
-from feeddrive.simulate.propagators import HERMITE_BASIS, NODES, RADAU
-from feeddrive.simulate.step_constants import Layout, propagator_shapes, step_propagators, unflatten
-from feeddrive.typing import Expression, FloatArray
-
-NEWTON_ITERATIONS = 3
-"""Corrections per step; quadratic from the last step's forces, the third is the check."""
+from feeddrive.simulate.algebra import cubic, newton_correction, part
+from feeddrive.simulate.propagators import NODES, RADAU
+from feeddrive.simulate.step_constants import CONVERGED, Layout, constant_shapes, unflatten
+from feeddrive.typing import Expression
 
 
 @dataclass(frozen=True)
 class StepModel:
-    """A step function and the constants that it needs for given values.
+    """The functions of a step; `fixed` are the constants of `step_constants`, `values` the plant's parameters.
 
-    `function` maps (memory, inputs, time, constants) to (memory after, last Newton correction).
+    Attributes:
+        layout: sizes.
+        watch: (memory, theta, theta', time, values) -> memory, its watched part set from the state. At a start.
+        begin: (memory, input, place, time, fixed) -> (what the coordinates at the nodes are without node forces,
+            first guess of the unknowns).
+        iterate: (memory, base, guess, time, fixed, values) -> (better guess, correction over its limit).
+        finish: (memory, input, place, guess, fixed, time, values) -> (memory after, error over the tolerance).
     """
 
-    plant: Plant
     layout: Layout
-    function: ca.Function
-
-    def constants(self, plant: Plant, step: float) -> FloatArray:
-        """Propagators for the plant's values and the step [s], then step and parameters; shape (k,)."""
-        return np.concatenate([step_propagators(plant, self.layout, step), [step], parameter_values(plant)])
+    watch: ca.Function
+    begin: ca.Function
+    iterate: ca.Function
+    finish: ca.Function
 
 
 def driven_step(plant: Plant) -> StepModel:
-    """The step of the load side with the motor angle prescribed as a cubic per step.
+    """The step of the load side with the motor angle prescribed as a cubic, of which the step may be a part.
 
-    Inputs per step: theta and theta' at its start, theta and theta' at its end [rad, rad/s].
+    Input: theta and theta' at the cubic's start and end [rad, rad/s].
     """
-    return _build(plant, driven=True)
+    return _build(plant, driven=True, lagging=False)
 
 
-def torque_step(plant: Plant) -> StepModel:
-    """The step of the whole plant with motor torque [N m] and cutting force [N] held over the step."""
-    return _build(plant, driven=False)
+def torque_step(plant: Plant, lagging: bool = False) -> StepModel:
+    """The step of the whole plant with motor torque [N m] and cutting force [N] held over the step.
+
+    Args:
+        plant: whose structure counts.
+        lagging: whether the motor torque follows the held one with a time constant.
+    """
+    return _build(plant, driven=False, lagging=lagging)
 
 
-def _build(plant: Plant, driven: bool) -> StepModel:
+def _build(plant: Plant, driven: bool, lagging: bool) -> StepModel:
     symbols = parameter_symbols(plant)
-    layout = _layout(plant, symbols, driven)
-    memory = ca.SX.sym("memory", layout.memory)
-    inputs = ca.SX.sym("inputs", layout.inputs)
-    time = ca.SX.sym("time")
-    shapes = propagator_shapes(layout)
-    flat = ca.SX.sym("propagators", sum(rows * columns for rows, columns in shapes))
-    step = ca.SX.sym("step")
-    blocks = unflatten(flat, shapes)
-    after, correction = _newton(plant, symbols, layout, memory, inputs, time, step, blocks)
-    constants = ca.vertcat(flat, step, symbols.vector)
-    function = ca.Function(
-        "step", [memory, inputs, time, constants], [after, correction], ["memory", "inputs", "time", "constants"],
-        ["after", "correction"],
-    )  # fmt: skip
-    return StepModel(plant, layout, function)
+    layout = _layout(plant, symbols, driven, lagging)
+    return _Maker(plant, symbols, layout).model()
 
 
-def _layout(plant: Plant, symbols: Symbols, driven: bool) -> Layout:
+def _layout(plant: Plant, symbols: Symbols, driven: bool, lagging: bool) -> Layout:
     n = len(plant.chain.coordinates)
     q, rate = ca.SX.sym("q", n), ca.SX.sym("rate", n)
     z, time = ca.SX.sym("z", bristle_count(plant)), ca.SX.sym("time")
@@ -89,94 +87,186 @@ def _layout(plant: Plant, symbols: Symbols, driven: bool) -> Layout:
     first = 1 if driven else 0
     forced = tuple(i for i in range(first, n) if not forces[i].is_zero())
     free = n - first
-    return Layout(driven, free, 2 * free, forced, bristle_count(plant), 4 if driven else 2)
+    return Layout(driven, lagging, free, 2 * free + lagging, forced, bristle_count(plant), 4 if driven else 2)
 
 
-def _newton(
-    plant: Plant, symbols: Symbols, layout: Layout, memory: Expression, inputs: Expression, time: Expression,
-    step: Expression, blocks: list[Expression],
-) -> tuple[Expression, Expression]:  # fmt: skip
-    """Memory after the step and the size of the last correction of the node forces."""
-    m, nz = len(layout.forced), layout.bristles
-    start = _part(memory, 0, layout.states)
-    z0 = _part(memory, layout.states, nz)
-    last = _part(memory, layout.states + nz, m)
-    unknown = ca.SX.sym("unknown", 2 * (m + nz))
-    states = _node_states(layout, start, inputs, _part(unknown, 0, 2 * m), blocks)
-    forces, rates = [], []
-    for i, node in enumerate(NODES):
-        q, rate = _coordinates(plant, symbols, layout, states[i], inputs, node, step)
-        z = _part(unknown, 2 * m + i * nz, nz)
-        found = effect_forces(plant, symbols, q, rate, z, time + node * step)
-        forces.append(ca.reshape(found.on_coordinates[list(layout.forced)], m, 1))
-        rates.append(found.bristle_rates)
-    residual = [_part(unknown, i * m, m) - forces[i] for i in range(2)]
-    for i in range(2):
-        z = _part(unknown, 2 * m + i * nz, nz)
-        residual.append(z - z0 - step * (RADAU[i, 0] * rates[0] + RADAU[i, 1] * rates[1]))
-    guess = ca.vertcat(last, last, z0, z0)
-    correct = _newton_correction(ca.vertcat(*residual), unknown)
-    change: Expression = ca.SX.zeros(unknown.numel(), 1)
-    for _ in range(NEWTON_ITERATIONS):
-        (change,) = ca.substitute([correct], [unknown], [guess])
-        guess = guess - change
-    (end,) = ca.substitute([states[1]], [unknown], [guess])
-    after = ca.vertcat(end, _part(guess, 2 * m + nz, nz), _part(guess, m, m))
-    largest = ca.mmax(ca.fabs(change[: 2 * m])) if m else ca.SX(0)
-    return after, largest
+class _Maker:
+    """Symbols shared by the functions of one step."""
 
+    def __init__(self, plant: Plant, symbols: Symbols, layout: Layout) -> None:
+        self.plant, self.symbols, self.layout = plant, symbols, layout
+        self.count = len(layout.forced)
+        self.memory = ca.SX.sym("memory", layout.memory)
+        self.input = ca.SX.sym("input", layout.inputs)
+        self.place, self.time = ca.SX.sym("place"), ca.SX.sym("time")
+        self.guess = ca.SX.sym("guess", layout.unknowns)
+        shapes = constant_shapes(layout)
+        self.fixed = ca.SX.sym("fixed", sum(rows * columns for rows, columns in shapes))
+        *self.blocks, span, self.scales, self.on_curvature, self.on_change = unflatten(self.fixed, shapes)
+        self.step, self.share = span[0], span[1]
 
-def _part(column: Expression, start: int, count: int) -> Expression:
-    """Rows of a column; a column of no rows where count is 0, which slicing would turn into a row."""
-    return ca.reshape(column[start : start + count], count, 1)
+    def model(self) -> StepModel:
+        values = self.symbols.vector
+        bases = [self._free_response(i) for i in range(2)]
+        needed = self._needed_rows()
+        base = ca.vertcat(*[bases[i][needed[i]] for i in range(2)])
+        begin = [self.memory, self.input, self.place, self.time, self.fixed]
+        known = ca.SX.sym("base", base.numel())
+        spread = self._spread(known, needed)
+        improved, change = self._corrected(spread)
+        after, error = self._finished()
+        return StepModel(
+            self.layout,
+            self._watch(),
+            ca.Function("feeddrive_begin", begin, [base, self._first_guess()]),
+            ca.Function(
+                "feeddrive_iterate", [self.memory, known, self.guess, self.time, self.fixed, values], [improved, change]
+            ),
+            ca.Function(
+                "feeddrive_finish",
+                [self.memory, self.input, self.place, self.guess, self.fixed, self.time, values],
+                [after, error],
+            ),
+        )
 
+    def _watch(self) -> ca.Function:
+        """Memory whose watched part belongs to its state, at rest in curvature and slope."""
+        theta, speed = ca.SX.sym("theta"), ca.SX.sym("speed")
+        layout = self.layout
+        q, rate = self._with_motor(self._state(), theta, speed)
+        found = self._forces(q, rate, part(self.memory, layout.states, layout.bristles), self.time)
+        rest = ca.SX.zeros(2 * layout.watched, 1)
+        kept = self.memory[: layout.states + layout.bristles]
+        after = ca.vertcat(kept, self._watched(found), rest)
+        arguments = [self.memory, theta, speed, self.time, self.symbols.vector]
+        return ca.Function("feeddrive_watch", arguments, [after])
 
-def _newton_correction(residual: Expression, unknown: Expression) -> Expression:
-    """J^-1 r by elimination without pivoting: the diagonal of J is 1 plus dissipation."""
-    n = unknown.numel()
-    if n == 0:
-        return ca.SX.zeros(0, 1)
-    rows = ca.SX(ca.horzcat(ca.jacobian(residual, unknown), residual))
-    for column in range(n):
-        for row in range(column + 1, n):
-            if not rows[row, column].is_zero():
-                rows[row, :] -= rows[row, column] / rows[column, column] * rows[column, :]
-    solution = ca.SX.zeros(n, 1)
-    for row in reversed(range(n)):
-        known = sum((rows[row, k] * solution[k] for k in range(row + 1, n)), start=ca.SX(0))
-        solution[row] = (rows[row, n] - known) / rows[row, row]
-    return solution
+    def _state(self) -> Expression:
+        return part(self.memory, 0, self.layout.states)
 
+    def _history(self, index: int) -> Expression:
+        """Value, curvature over h^2 or slope of the watched quantities at the start."""
+        at = self.layout.states + self.layout.bristles
+        return part(self.memory, at + index * self.layout.watched, self.layout.watched)
 
-def _node_states(
-    layout: Layout, start: Expression, inputs: Expression, forces: Expression, blocks: list[Expression]
-) -> list[Expression]:
-    m = len(layout.forced)
-    states = []
-    for i in range(2):
-        exponential, from_input, from_first, from_second = blocks[4 * i : 4 * i + 4]
-        state = ca.mtimes(exponential, start) + ca.mtimes(from_input, inputs)
-        state += ca.mtimes(from_first, _part(forces, 0, m)) + ca.mtimes(from_second, _part(forces, m, m))
-        states.append(state)
-    return states
+    def _forces(self, q: Expression, rate: Expression, z: Expression, time: Expression) -> Forces:
+        return effect_forces(self.plant, self.symbols, q, rate, z, time)
 
+    def _watched(self, found: Forces) -> Expression:
+        on_coordinates = ca.reshape(found.on_coordinates[list(self.layout.forced)], self.count, 1)
+        return on_coordinates if self.count else found.bristle_rates
 
-def _coordinates(
-    plant: Plant, symbols: Symbols, layout: Layout, state: Expression, inputs: Expression, node: float, step: Expression
-) -> tuple[Expression, Expression]:
-    """q and q' of the whole chain at a node."""
-    half = layout.coordinates
-    if not layout.driven:
-        return state[:half], state[half:]
-    powers = node ** np.arange(4)
-    slopes = np.concatenate([[0.0], np.arange(1, 4) * node ** np.arange(3)])
-    scaled = ca.vertcat(inputs[0], step * inputs[1], inputs[2], step * inputs[3])
-    theta = ca.mtimes(ca.DM(HERMITE_BASIS @ powers).T, scaled)
-    theta_rate = ca.mtimes(ca.DM(HERMITE_BASIS @ slopes).T, scaled) / step
-    if not plant.chain.elastic:
-        ratio = plant.chain.motor(chain_symbols(plant, symbols))[0]
-        return theta / ratio, theta_rate / ratio
-    return ca.vertcat(theta, state[:half]), ca.vertcat(theta_rate, state[half:])
+    def _with_motor(self, state: Expression, theta: Expression, speed: Expression) -> tuple[Expression, Expression]:
+        """q and q' of the whole chain."""
+        half = self.layout.coordinates
+        if not self.layout.driven:
+            return state[:half], state[half : 2 * half]
+        if not self.plant.chain.elastic:
+            ratio = self.plant.chain.motor(chain_symbols(self.plant, self.symbols))[0]
+            return theta / ratio, speed / ratio
+        return ca.vertcat(theta, state[:half]), ca.vertcat(speed, state[half : 2 * half])
 
+    def _step_input(self) -> Expression:
+        """The input as this step sees it: of a cubic, the part from `place` on."""
+        if not self.layout.driven:
+            return self.input
+        ends = [cubic(self.input, self.place + end * self.share, self.step / self.share) for end in (0, 1)]
+        return ca.vertcat(*ends[0], *ends[1])
 
-__all__ = ["Layout", "StepModel", "driven_step", "torque_step"]
+    def _free_response(self, node: int) -> Expression:
+        """State at a node without node forces; below it, where the motor is driven, its angle and speed there."""
+        exponential, from_input = self.blocks[4 * node], self.blocks[4 * node + 1]
+        state = ca.mtimes(exponential, self._state()) + ca.mtimes(from_input, self._step_input())
+        if not self.layout.driven:
+            return state
+        motor = cubic(self.input, self.place + NODES[node] * self.share, self.step / self.share)
+        return ca.vertcat(state, *motor)
+
+    def _needed_rows(self) -> list[list[int]]:
+        """Rows of the free response, per node, that the effects read."""
+        rows = self.layout.states + (2 if self.layout.driven else 0)
+        states = [ca.SX.sym(f"at_{i}", rows) for i in range(2)]
+        residual = self._residual(states)
+        return [[k for k, used in enumerate(ca.which_depends(residual, s, 1, False)) if used] for s in states]
+
+    def _spread(self, known: Expression, needed: list[list[int]]) -> list[Expression]:
+        """Free responses with the known rows in place; the other rows are not read."""
+        rows, at = self.layout.states + (2 if self.layout.driven else 0), 0
+        result = []
+        for wanted in needed:
+            response = ca.SX.zeros(rows, 1)
+            for k in wanted:
+                response[k] = known[at]
+                at += 1
+            result.append(response)
+        return result
+
+    def _node_state(self, node: int, response: Expression) -> Expression:
+        first, second = self.blocks[4 * node + 2], self.blocks[4 * node + 3]
+        m = self.count
+        forced = ca.mtimes(first, part(self.guess, 0, m)) + ca.mtimes(second, part(self.guess, m, m))
+        return response[: self.layout.states] + forced
+
+    def _node_effects(self, responses: list[Expression]) -> list[Forces]:
+        layout, found = self.layout, []
+        for i, node in enumerate(NODES):
+            state = self._node_state(i, responses[i])
+            motor = (responses[i][layout.states], responses[i][layout.states + 1]) if layout.driven else (0, 0)
+            q, rate = self._with_motor(state, *motor)
+            found.append(self._forces(q, rate, self._node_bristles(i), self.time + node * self.step))
+        return found
+
+    def _node_bristles(self, node: int) -> Expression:
+        return part(self.guess, 2 * self.count + node * self.layout.bristles, self.layout.bristles)
+
+    def _residual(self, responses: list[Expression]) -> Expression:
+        layout, m = self.layout, self.count
+        found = self._node_effects(responses)
+        z0 = part(self.memory, layout.states, layout.bristles)
+        residual = []
+        for i, forces in enumerate(found):
+            on_forced = ca.reshape(forces.on_coordinates[list(layout.forced)], m, 1)
+            residual.append(part(self.guess, i * m, m) - on_forced)
+        for i in range(2):
+            moved = self.step * (RADAU[i, 0] * found[0].bristle_rates + RADAU[i, 1] * found[1].bristle_rates)
+            residual.append(self._node_bristles(i) - z0 - moved)
+        return ca.vertcat(*residual)
+
+    def _corrected(self, responses: list[Expression]) -> tuple[Expression, Expression]:
+        """A Newton correction, and the largest correction over its limit."""
+        correction = newton_correction(self._residual(responses), self.guess)
+        improved = self.guess - correction
+        count = 2 * (self.count or self.layout.bristles)
+        ratios = []
+        for k in range(count):
+            limit = ca.fmax(CONVERGED * ca.fabs(improved[k]), self.scales[k % (count // 2)])
+            ratios.append(ca.fabs(correction[k]) / limit)
+        largest: Expression = ca.SX(0)
+        for ratio in ratios:
+            largest = ca.fmax(largest, ratio)
+        return improved, largest
+
+    def _first_guess(self) -> Expression:
+        """Node forces on the parabola of the last step, bristles where they are."""
+        z0 = part(self.memory, self.layout.states, self.layout.bristles)
+        if not self.count:
+            return ca.vertcat(z0, z0)
+        value, curvature, slope = (self._history(i) for i in range(3))
+        times = [node * self.step for node in NODES]
+        # a parabola that is 1 at the start of its step and 0 at both nodes has the second derivative 6
+        return ca.vertcat(*[value + time * (slope + 3 * time * curvature) for time in times], z0, z0)
+
+    def _finished(self) -> tuple[Expression, Expression]:
+        m = self.count
+        responses = [self._free_response(i) for i in range(2)]
+        end = self._node_state(1, responses[1])
+        if m:
+            first, second = part(self.guess, 0, m), part(self.guess, m, m)
+        else:
+            first, second = (found.bristle_rates for found in self._node_effects(responses))
+        missed = self._history(0) - 1.5 * first + 0.5 * second
+        curvature = missed / self.step**2
+        change = missed - self._history(1) * self.step**2
+        error = ca.dot(self.on_curvature, ca.fabs(missed)) + ca.dot(self.on_change, ca.fabs(change))
+        slope = (1.5 * (second - first) + 2 * missed) / self.step  # of the parabola, at its end
+        return ca.vertcat(end, self._node_bristles(1), second, curvature, slope), error

@@ -1,4 +1,15 @@
-"""The constants of a step: how state, input and node forces reach the states at the Radau nodes."""
+"""The constants of a step: how state, input and node forces reach the states at the Radau nodes, and what errors weigh.
+
+The error of a step is told as a table position. An error e in position and e' in velocity count
+
+    sqrt(e M e / m) + sqrt(e' M e' / m) / omega,      m = 1 / (L M^-1 L')
+
+| symbol | meaning | unit |
+|---|---|---|
+| M, L | mass matrix, row with x = L q | |
+| m | mass felt at the table | kg |
+| omega | rate at which a velocity is forgotten: lowest frequency where the motor is driven, else 100 1/s | 1/s |
+"""
 
 from __future__ import annotations
 
@@ -7,16 +18,50 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 
+from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.simulate.propagators import HERMITE_BASIS, NODE_BASIS, NODES, basis_propagators, monomial_propagators
 from feeddrive.typing import Expression, FloatArray
 
+FORGETTING = 100.0
+"""Rate at which a controlled axis forgets an error in velocity [1/s]: the position loop of a machine tool."""
+
+FULL_SCALE = 10.0
+"""Acceleration of the full scale of effect forces [m/s^2]."""
+
+CONVERGED = 1e-9
+"""Newton ends where its last correction is below this share of the force, or of full scale."""
+
+BRISTLE_SCALE = 1e-8
+"""Deflection that counts as full scale where bristles alone are solved [m]."""
+
+_CURVATURE = np.array([1.0, -4.0, 3.0])
+"""Monomial coefficients of the parabola that is 1 at the start and 0 at both nodes."""
+
+_CUBIC_SHARE = 1 / 36
+"""Impulse that the two nodes miss of a force whose curvature at the start changes by 1 from step to step."""
+
+
+class SimulationError(InputError):
+    """A run that cannot be begun or could not go on; nothing of it is handed out."""
+
 
 @dataclass(frozen=True)
 class Layout:
-    """Sizes of a step: free coordinates, states, effect forces that are not identically zero, bristles, inputs."""
+    """Sizes of a step.
+
+    Attributes:
+        driven: whether the motor angle is prescribed; else the motor torque.
+        lagging: whether the motor torque follows its command with a time constant.
+        coordinates: free ones.
+        states: of the linear part.
+        forced: coordinates with effect forces that are not identically zero.
+        bristles: deflections.
+        inputs: held over a step, or the ends of a cubic.
+    """
 
     driven: bool
+    lagging: bool
     coordinates: int
     states: int
     forced: tuple[int, ...]
@@ -24,15 +69,37 @@ class Layout:
     inputs: int
 
     @property
+    def watched(self) -> int:
+        """Quantities whose curvature tells the error: forces; rates of bristles where no force moves anything."""
+        return len(self.forced) or self.bristles
+
+    @property
     def memory(self) -> int:
-        """Length of what is carried from step to step: states, bristles, last node forces."""
-        return self.states + self.bristles + len(self.forced)
+        """Length of what is carried from step to step: states, bristles; value, curvature and slope of the watched."""
+        return self.states + self.bristles + 3 * self.watched
+
+    @property
+    def unknowns(self) -> int:
+        """Node forces and bristle deflections."""
+        return 2 * (len(self.forced) + self.bristles)
 
 
 def propagator_shapes(layout: Layout) -> list[tuple[int, int]]:
     """Shapes of the blocks: per node E, response to the input, to the first and to the second node force."""
     n, m = layout.states, len(layout.forced)
     return [(n, n), (n, layout.inputs), (n, m), (n, m)] * 2
+
+
+def constant_shapes(layout: Layout) -> list[tuple[int, int]]:
+    """Shapes of all blocks of `step_constants`: propagators; step, its share of the part; full scales; two weights."""
+    watched = layout.watched
+    return [
+        *propagator_shapes(layout),
+        (2, 1),
+        (max(len(layout.forced), layout.bristles), 1),
+        (watched, 1),
+        (watched, 1),
+    ]
 
 
 def unflatten(flat: Expression, shapes: list[tuple[int, int]]) -> list[Expression]:
@@ -44,55 +111,138 @@ def unflatten(flat: Expression, shapes: list[tuple[int, int]]) -> list[Expressio
     return blocks
 
 
-def step_propagators(plant: Plant, layout: Layout, step: float) -> FloatArray:
-    """The blocks of `propagator_shapes`, column-major, for the plant's present values."""
+@dataclass(frozen=True)
+class Linear:
+    """The linear part in first order, s' = A s + G f + B w; free coordinates only.
+
+    Attributes:
+        mass, inverse: M and its inverse, shape (n, n).
+        damping, stiffness: of all coordinates.
+        a, on_force, on_input: A, G of the forced coordinates, B (empty where the motor is driven).
+        felt_mass: m of the module [kg].
+        forgetting: omega of the module [1/s].
+    """
+
+    mass: FloatArray
+    inverse: FloatArray
+    damping: FloatArray
+    stiffness: FloatArray
+    a: FloatArray
+    on_force: FloatArray
+    on_input: FloatArray
+    felt_mass: float
+    forgetting: float
+
+
+def linear_part(plant: Plant, layout: Layout, torque_lag: float = 0.0) -> Linear:
+    """The linear part for the plant's present values.
+
+    Args:
+        plant: with its values.
+        layout: of the step.
+        torque_lag: time constant of the torque loop [s], where the layout has one.
+
+    Raises:
+        SimulationError: a mass matrix with which nothing can move.
+    """
     p = plant.chain_values()
     mass, damping, stiffness = (
         np.array(matrix(p), dtype=float) for matrix in (plant.chain.mass, plant.chain.damping, plant.chain.stiffness)
     )
     first = 1 if layout.driven else 0
     free = slice(first, None)
-    inverse = np.linalg.inv(mass[free, free]) if layout.coordinates else np.zeros((0, 0))
-    a = _state_matrix(inverse, damping[free, free], stiffness[free, free])
-    force = _force_matrix(inverse, [i - first for i in layout.forced])
+    n = layout.coordinates
+    if not (np.isfinite(mass).all() and np.linalg.eigvalsh(mass[free, free]).min(initial=np.inf) > 0):
+        raise SimulationError(
+            "masses and inertias that are not positive", plant.name, "check them and what adds to them"
+        )
+    inverse = np.linalg.inv(mass[free, free]) if n else np.zeros((0, 0))
+    a = np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ stiffness[free, free], -inverse @ damping[free, free]]])
+    on_force = np.vstack([np.zeros((n, len(layout.forced))), inverse[:, [i - first for i in layout.forced]]])
+    on_input = np.zeros((2 * n, 0))
+    if not layout.driven:
+        columns = np.column_stack([plant.chain.motor(p), plant.chain.table(p)])  # virtual work: force = L' torque
+        on_input = np.vstack([np.zeros((n, 2)), inverse @ columns.astype(float)])
+    if layout.lagging:
+        a, on_force, on_input = _with_lag(a, on_force, on_input, torque_lag)
+    table = np.array(plant.chain.table(p), dtype=float)[free]
+    felt = 1 / float(table @ inverse @ table) if n else 1.0
+    forgetting = FORGETTING
+    if layout.driven and n:
+        lowest = float(np.min(np.linalg.eigvals(inverse @ stiffness[free, free]).real))
+        forgetting = max(np.sqrt(max(lowest, 0.0)), FORGETTING)
+    return Linear(mass[free, free], inverse, damping, stiffness, a, on_force, on_input, felt, forgetting)
+
+
+def _with_lag(
+    a: FloatArray, on_force: FloatArray, on_input: FloatArray, lag: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """The torque as a further state, T' = (u - T) / lag."""
+    n = len(a)
+    larger = np.zeros((n + 1, n + 1))
+    larger[:n, :n], larger[:n, n], larger[n, n] = a, on_input[:, 0], -1 / lag
+    fed = np.zeros((n + 1, 2))
+    fed[:n, 1], fed[n, 0] = on_input[:, 1], 1 / lag
+    return larger, np.vstack([on_force, np.zeros((1, on_force.shape[1]))]), fed
+
+
+def step_constants(linear: Linear, layout: Layout, step: float, share: float, tolerance: float) -> FloatArray:
+    """The blocks of `constant_shapes`, column-major.
+
+    Args:
+        linear: part of the plant.
+        layout: of the step.
+        step: h [s].
+        share: of the step in the span over which the input is given.
+        tolerance: error of the table position that a step may make [m].
+    """
     blocks: list[FloatArray] = []
+    curved = np.zeros((layout.states, len(layout.forced)))
     for node in NODES:
-        exponential, on_force = monomial_propagators(a, force, step, 1, node)
-        on_nodes = basis_propagators(on_force, NODE_BASIS)
-        from_input = _input_propagator(plant, layout, a, inverse, damping, stiffness, step, node)
-        blocks += [exponential, from_input, on_nodes[0], on_nodes[1]]
+        exponential, on_force = monomial_propagators(linear.a, linear.on_force, step, 2, node)
+        on_nodes = basis_propagators(on_force[:2], NODE_BASIS)
+        blocks += [exponential, _input_propagator(linear, layout, step, node), on_nodes[0], on_nodes[1]]
+        curved = basis_propagators(on_force, _CURVATURE[None, :])[0]
+    blocks.append(np.array([step, share]))
+    blocks += _weights(linear, layout, step, curved, tolerance)
     return np.concatenate([block.ravel(order="F") for block in blocks])
 
 
-def _input_propagator(
-    plant: Plant, layout: Layout, a: FloatArray, inverse: FloatArray, damping: FloatArray, stiffness: FloatArray,
-    step: float, node: float,
-) -> FloatArray:  # fmt: skip
-    n = layout.coordinates
+def _weights(
+    linear: Linear, layout: Layout, step: float, curved: FloatArray, tolerance: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Full scales of what Newton solves, and what curvature and its change weigh in tolerances."""
+    n, count = layout.coordinates, len(layout.forced)
+    if count == 0:
+        # no force moves anything: the deflection itself is judged, by the impulse of its rate
+        on_bristle = np.full(layout.bristles, step / 12 / (1e-2 * BRISTLE_SCALE))
+        if not np.isfinite(tolerance):
+            on_bristle[:] = 0.0
+        return np.full(layout.bristles, CONVERGED * BRISTLE_SCALE), on_bristle, on_bristle
+    own = np.array([1 / linear.inverse[i, i] for i in (k - int(layout.driven) for k in layout.forced)])
+    scales = CONVERGED * FULL_SCALE * np.sqrt(own * linear.felt_mass)
+    scales = np.concatenate([scales, np.zeros(max(0, layout.bristles - count))])
+    moved, moving = (_energy_norm(linear, curved[rows]) for rows in (slice(0, n), slice(n, 2 * n)))
+    by_curvature = moved + moving / linear.forgetting
+    by_change = _CUBIC_SHARE * step / np.sqrt(own * linear.felt_mass) / linear.forgetting
+    return scales, by_curvature / tolerance, by_change / tolerance
+
+
+def _energy_norm(linear: Linear, columns: FloatArray) -> FloatArray:
+    norm: FloatArray = np.sqrt(np.einsum("ik,ij,jk->k", columns, linear.mass, columns) / linear.felt_mass)
+    return norm
+
+
+def _input_propagator(linear: Linear, layout: Layout, step: float, node: float) -> FloatArray:
     if not layout.driven:
-        p = plant.chain_values()
-        columns = np.column_stack([plant.chain.motor(p), plant.chain.table(p)])  # virtual work: force = L' torque
-        held = np.vstack([np.zeros((n, 2)), inverse @ columns])
-        on_held: FloatArray = monomial_propagators(a, held, step, 0, node)[1][0]
+        on_held: FloatArray = monomial_propagators(linear.a, linear.on_input, step, 0, node)[1][0]
         return on_held
-    zeros = np.zeros((n, 1))
-    by_angle = np.vstack([zeros, -inverse @ stiffness[1:, :1]])
-    by_speed = np.vstack([zeros, -inverse @ damping[1:, :1]])
+    zeros = np.zeros((layout.coordinates, 1))
+    by_angle = np.vstack([zeros, -linear.inverse @ linear.stiffness[1:, :1]])
+    by_speed = np.vstack([zeros, -linear.inverse @ linear.damping[1:, :1]])
     slopes = np.zeros_like(HERMITE_BASIS)
     slopes[:, :3] = HERMITE_BASIS[:, 1:] * np.arange(1, 4) / step
-    angle = basis_propagators(monomial_propagators(a, by_angle, step, 3, node)[1], HERMITE_BASIS)
-    speed = basis_propagators(monomial_propagators(a, by_speed, step, 3, node)[1], slopes)
+    angle = basis_propagators(monomial_propagators(linear.a, by_angle, step, 3, node)[1], HERMITE_BASIS)
+    speed = basis_propagators(monomial_propagators(linear.a, by_speed, step, 3, node)[1], slopes)
     response: FloatArray = (angle + speed)[:, :, 0].T * np.array([1.0, step, 1.0, step])
     return response
-
-
-def _state_matrix(inverse: FloatArray, damping: FloatArray, stiffness: FloatArray) -> FloatArray:
-    n = len(inverse)
-    matrix: FloatArray = np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ stiffness, -inverse @ damping]])
-    return matrix
-
-
-def _force_matrix(inverse: FloatArray, forced: list[int]) -> FloatArray:
-    n = len(inverse)
-    matrix: FloatArray = np.vstack([np.zeros((n, len(forced))), inverse[:, forced]])
-    return matrix

@@ -13,6 +13,9 @@ Options = TypeVarTuple("Options")
 Machine = TypeVar("Machine")
 
 
+_CACHES: list[Callable[[], None]] = []
+
+
 class _Holder:
     """Carries a plant past the cache, whose key is the structure alone."""
 
@@ -40,10 +43,18 @@ def per_structure(build: Callable[[Plant, *Options], Machine]) -> Callable[[Plan
     def cached(key: tuple[object, ...], holder: _Holder, options: tuple[*Options]) -> Machine:
         return build(holder.plant, *options)
 
+    _CACHES.append(cached.cache_clear)
+
     def machine(plant: Plant, *options: *Options) -> Machine:
         return cached(structure_key(plant), _Holder(plant), options)
 
     return machine
+
+
+def forget_machines() -> None:
+    """Make every machine anew at its next use, for instance because another compiler is to be used."""
+    for forget in _CACHES:
+        forget()
 
 
 def structure_key(plant: Plant) -> tuple[object, ...]:

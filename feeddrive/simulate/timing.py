@@ -25,15 +25,13 @@ SPLIT = 1e-9
 
 @dataclass(frozen=True)
 class Timing:
-    """How the held torque meets the samples; `late` and `split` change the equations, `fraction` is a value.
+    """How the held torque meets the samples; `late` and the number of parts change the equations, the rest is a value.
 
     Attributes:
-        substeps: plant steps per sample, and per part of it where the delay splits it.
         late: whole samples of delay.
         fraction: the rest of the delay, as part of a sample; 0 where there is none.
     """
 
-    substeps: int
     late: int
     fraction: float
 
@@ -48,7 +46,7 @@ class Timing:
         return self.late + len(self.parts) - 1
 
 
-def timing_of(plant: Plant, sample: float, substeps: int) -> Timing:
+def timing_of(plant: Plant, sample: float) -> Timing:
     """Delay of the plant's drive in samples of `sample` [s]; a negative one warns and counts as none."""
     delay = float(sum(effect.delay(effect.values) for effect in plant.effects if isinstance(effect, TimingEffect)))
     if delay < 0:
@@ -57,4 +55,4 @@ def timing_of(plant: Plant, sample: float, substeps: int) -> Timing:
         delay = 0.0
     late = math.floor(delay / sample + SPLIT)
     fraction = delay / sample - late
-    return Timing(substeps, late, fraction if fraction > SPLIT else 0.0)
+    return Timing(late, fraction if fraction > SPLIT else 0.0)

@@ -1,0 +1,112 @@
+"""Generated C of a program with its driver, compiled and kept.
+
+One binary per structure: lengths, values and inputs are arguments. The cache is written atomically, so that processes
+that start together do not meet half a file; where the home is read-only a temporary folder serves.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import hashlib
+import os
+import re
+import shutil
+import subprocess
+import tempfile
+from functools import lru_cache
+from pathlib import Path
+
+import casadi as ca
+import numpy as np
+
+from feeddrive.simulate.interpreted import Run
+from feeddrive.simulate.program import Position, Program, Status, Task
+from feeddrive.typing import FloatArray
+
+FLAGS = ("-O1", "-ffp-contract=off", "-fPIC", "-shared")
+"""No fused or reordered arithmetic: the compiled numbers are those of the virtual machine."""
+
+_NULL_CHECK = re.compile(r"arg\[(\d+)\]\? (arg\[\1\]\[\d+\]) : 0")
+_RESULT_CHECK = re.compile(r"if \(res\[\d+\]!=0\) ")
+
+
+@lru_cache(maxsize=1)
+def find_compiler() -> str | None:
+    """The C compiler: $CC, cc, gcc or clang; None if there is none or FEEDDRIVE_COMPILER is "none"."""
+    if os.environ.get("FEEDDRIVE_COMPILER") == "none":
+        return None
+    for name in (os.environ.get("CC"), "cc", "gcc", "clang"):
+        if name and (found := shutil.which(name)):
+            return found
+    return None
+
+
+def compiled_run(program: Program, compiler: str) -> Run | None:
+    """The driver of a program in C; None if the compiler fails or no folder can hold what it makes."""
+    library = _library(source_of(program), compiler)
+    return None if library is None else _bound(program, library)
+
+
+def source_of(program: Program) -> str:
+    """C of a program: its functions, its sizes, the driver."""
+    generator = ca.CodeGenerator("step.c", {"with_header": False, "with_export": False})
+    for function in program.functions:
+        generator.add(function)
+    # the driver passes every argument and result, so that what may be absent need not be asked for
+    functions = _RESULT_CHECK.sub("", _NULL_CHECK.sub(r"\2", generator.dump()))
+    sizes = "".join(f"#define {name} {size}\n" for name, size in program.sizes.items())
+    return functions + sizes + (Path(__file__).parent / "driver.c").read_text(encoding="utf-8")
+
+
+def _library(source: str, compiler: str) -> ctypes.CDLL | None:
+    """The shared library, from the cache or made now."""
+    key = hashlib.sha256((source + compiler + " ".join(FLAGS)).encode()).hexdigest()[:24]
+    for folder in _cache_folders():
+        library = folder / f"{key}.so"
+        try:
+            if not library.exists():
+                _compile(source, compiler, library)
+            return ctypes.CDLL(str(library))
+        except (OSError, subprocess.CalledProcessError):
+            continue
+    return None
+
+
+def _cache_folders() -> list[Path]:
+    base = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
+    return [Path(base) / "feeddrive", Path(tempfile.gettempdir()) / f"feeddrive-{os.getuid()}"]
+
+
+def _compile(source: str, compiler: str, library: Path) -> None:
+    library.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
+    with tempfile.TemporaryDirectory(dir=library.parent) as folder:
+        text, made = Path(folder) / "step.c", Path(folder) / "step.so"
+        text.write_text(source)
+        subprocess.run([compiler, *FLAGS, "-o", str(made), str(text), "-lm"], check=True, capture_output=True)
+        made.replace(library)
+
+
+def _bound(program: Program, library: ctypes.CDLL) -> Run:
+    """The driver as a Python function on arrays."""
+    function = library.feeddrive_run
+    integer, pointer = ctypes.c_longlong, ctypes.c_void_p
+    function.argtypes = [integer, *[pointer] * 7, integer, *[pointer] * 6]
+    function.restype = ctypes.c_int
+    work_size = max(f.sz_w() for f in program.functions) + 1, max(f.sz_iw() for f in program.functions) + 1
+
+    def run(
+        task: Task, position: Position, first: int, seen: FloatArray, report: FloatArray
+    ) -> tuple[Status, int, Position]:
+        at, level = ctypes.c_longlong(first), ctypes.c_longlong(position.level)
+        memory, own = position.memory.copy(), position.own.copy()
+        fixed = [np.ascontiguousarray(a) for a in (task.fed, task.spans, task.table, task.settings, task.values)]
+        fed, spans, table, settings, values = (array.ctypes.data for array in fixed)
+        work, integers = np.empty(work_size[0]), np.empty(work_size[1], dtype=np.int64)
+        status = function(
+            len(task.fed), ctypes.addressof(at), memory.ctypes.data, own.ctypes.data, ctypes.addressof(level), fed,
+            spans, table, task.table.shape[1], settings, values, seen.ctypes.data, report.ctypes.data,
+            integers.ctypes.data, work.ctypes.data,
+        )  # fmt: skip
+        return Status(status), at.value, Position(memory, own, level.value)
+
+    return run

@@ -1,0 +1,185 @@
+"""The driver in CasADi's virtual machine, where no compiler is found: the decisions of `driver.c`, the same numbers.
+
+Stretches that need one step a sample run in chunks inside the virtual machine; where a step is refused, Python takes
+that sample and the virtual machine goes on behind it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import casadi as ca
+import numpy as np
+
+from feeddrive.simulate.program import DEEPEST, Position, Program, Status, Task
+from feeddrive.typing import Expression, FloatArray
+
+CHUNKS = (512, 16)
+"""Samples per call of the virtual machine: the longest while all goes well, the shorter behind a refused step."""
+
+SWEEPS = 12
+COARSER = 0.02
+STRETCH_SWEEPS = 3
+
+Run = Callable[[Task, Position, int, FloatArray, FloatArray], tuple[Status, int, Position]]
+"""(task, position, first sample, seen (n, s), report (8,)) -> (status, where it ended, position there).
+
+`seen` and `report` are filled in place.
+"""
+
+
+def interpreted_run(program: Program) -> Run:
+    """The driver of a program in the virtual machine."""
+    return _Interpreter(program).run
+
+
+class _Interpreter:
+    def __init__(self, program: Program) -> None:
+        self.program = program
+        self.stretches = [_stretch(program, count) for count in CHUNKS] if program.parts == 1 else []
+
+    def run(
+        self, task: Task, position: Position, first: int, seen: FloatArray, report: FloatArray
+    ) -> tuple[Status, int, Position]:
+        at, memory, own, level = first, position.memory, position.own, position.level
+        trust = 0
+        while at < len(task.fed):
+            if level == 0 and self.stretches:
+                done, memory, own = self._stretch(task, at, memory, own, seen, report, trust)
+                trust = 0 if done == CHUNKS[trust] else 1
+                at += done
+                if at == len(task.fed):
+                    break
+                if done:
+                    continue
+            status, after, own_after, level_after = self._sample(task, at, memory, own, level, seen, report)
+            if status != Status.DONE:
+                return status, at, Position(memory, own, level)
+            memory, own, level, at = after, own_after, level_after, at + 1
+        return Status.DONE, at, Position(memory, own, level)
+
+    def _stretch(
+        self, task: Task, at: int, memory: FloatArray, own: FloatArray, seen: FloatArray, report: FloatArray, size: int
+    ) -> tuple[int, FloatArray, FloatArray]:
+        """Samples of one step each; how many of them held, and where they lead."""
+        count = CHUNKS[size]
+        part = task.fed[at : at + count]
+        padded = part if len(part) == count else np.vstack([part, np.repeat(part[-1:], count - len(part), axis=0)])
+        out = self.stretches[size](memory, own, padded.T, task.table[0, 0], task.settings, task.values)
+        memories, owns, shown, judged = (np.array(block).T for block in out)
+        change, error = judged[: len(part)].T
+        held = (change < 1.0) & (error <= 1.0)
+        good = len(part) if held.all() else int(np.argmin(held))
+        if good == 0:
+            return 0, memory, own
+        seen[at : at + good] = shown[:good]
+        report[0] += good
+        report[2] += good * STRETCH_SWEEPS
+        report[4] = max(report[4], error[:good].max())
+        report[7] = max(report[7], change[:good].max())
+        return good, memories[good - 1].copy(), owns[good - 1].copy()
+
+    def _sample(
+        self, task: Task, at: int, memory: FloatArray, own: FloatArray, level: int, seen: FloatArray, report: FloatArray
+    ) -> tuple[Status, FloatArray, FloatArray, int]:
+        program, row = self.program, task.fed[at]
+        own_after, held, shown = _called(program.before, memory, own, row, task.settings, task.values)
+        start, inputs = row[-1], held.reshape(program.parts, -1)
+        for part in range(program.parts):
+            status, memory, level = self._advance(task, part, memory, inputs[part], start, level, report)
+            if status != Status.DONE:
+                return status, memory, own, level
+            start += task.spans[part]
+        (after,) = _called(program.after, memory, own_after, row, task.settings, task.values)
+        seen[at] = np.concatenate([shown, after])
+        return Status.DONE, memory, own_after, level
+
+    def _advance(
+        self, task: Task, part: int, memory: FloatArray, held: FloatArray, start: float, level: int, report: FloatArray
+    ) -> tuple[Status, FloatArray, int]:
+        whole, at = 1 << DEEPEST, 0
+        while at < whole:
+            length, place = whole >> level, at / whole
+            if level >= task.table.shape[1]:
+                return Status.NEEDS_LEVEL, memory, level
+            time = start + place * task.spans[part]
+            after, error = self._attempt(memory, held, place, time, task.table[part, level], task.values, report)
+            if not 0.0 <= error <= 1.0 and level < DEEPEST:
+                level += 1
+                report[1] += 1
+                continue
+            if error < 0.0:
+                return Status.NO_SOLUTION, memory, level
+            if error > 1.0:
+                report[3] += 1
+                report[5] += error
+            report[4], report[6] = max(report[4], error), max(report[6], level)
+            report[0] += 1
+            memory, at = after, at + length
+            if level > 0 and error < COARSER and at % (2 * length) == 0:
+                level -= 1
+        return Status.DONE, memory, level
+
+    def _attempt(
+        self, memory: FloatArray, held: FloatArray, place: float, time: float, fixed: FloatArray, values: FloatArray,
+        report: FloatArray,
+    ) -> tuple[FloatArray, float]:  # fmt: skip
+        step = self.program.step
+        base, guess = step.begin(memory, held, place, time, fixed)
+        before = 1e300
+        for sweep in range(SWEEPS):
+            guess, found = step.iterate(memory, base, guess, time, fixed, values)
+            change = float(found)
+            report[2] += 1
+            if change < 1.0 or not change < 1e290 or (sweep > 3 and change > before):
+                break
+            before = change
+        if not change < 1.0:
+            return memory, -1.0
+        report[7] = max(report[7], change)
+        after, error = _called(step.finish, memory, held, place, guess, fixed, time, values)
+        return after, float(error[0]) if error[0] < 1e290 else -1.0
+
+
+def _called(function: ca.Function, *arguments: Expression) -> list[FloatArray]:
+    return [np.array(value).ravel() for value in function.call(list(arguments))]
+
+
+def _stretch(program: Program, count: int) -> ca.Function:
+    """So many samples of one step each: (memory, own, fed, fixed, settings, values) -> ..., [correction, error]."""
+    step = program.step
+    fed_size, own_size = program.before.size1_in(2), program.before.size1_in(1)
+    names = {"memory": step.layout.memory, "own": own_size, "fed": fed_size, "fixed": step.begin.size1_in(4)}
+    memory, own, fed, fixed = (ca.SX.sym(name, size) for name, size in names.items())
+    settings = ca.SX.sym("settings", program.before.size1_in(3))
+    values = ca.SX.sym("values", program.before.size1_in(4))
+    own_after, held, shown = program.before(memory, own, fed, settings, values)
+    time = fed[fed_size - 1]
+    base, guess = step.begin(memory, held, 0, time, fixed)
+    change = ca.SX(0)
+    for _ in range(STRETCH_SWEEPS):
+        guess, change = step.iterate(memory, base, guess, time, fixed, values)
+    after, error = step.finish(memory, held, 0, guess, fixed, time, values)
+    seen = ca.vertcat(shown, program.after(after, own_after, fed, settings, values))
+    one = ca.Function(
+        "one",
+        [memory, own, fed, fixed, settings, values],
+        [after, own_after, seen, ca.vertcat(change, error)],
+    )
+    return _repeated(one, count)
+
+
+def _repeated(one: ca.Function, count: int) -> ca.Function:
+    """`one` over so many samples, without wide copies of what does not change."""
+    sizes = [one.size1_in(i) for i in range(6)]
+    state = ca.MX.sym("state", sizes[0] + sizes[1])
+    fed, still = ca.MX.sym("fed", sizes[2]), [ca.MX.sym(f"still_{i}", sizes[i]) for i in (3, 4, 5)]
+    after, own_after, seen, judged = one(state[: sizes[0]], state[sizes[0] :], fed, *still)
+    body = ca.Function("body", [state, fed, *still], [ca.vertcat(after, own_after), seen, judged])
+    chunk = body.mapaccum("chunk", count)
+    memory, own = ca.MX.sym("memory", sizes[0]), ca.MX.sym("own", sizes[1])
+    series = ca.MX.sym("series", sizes[2], count)
+    wide = [ca.repmat(symbol, 1, count) for symbol in still]
+    states, seen_all, judged_all = chunk(ca.vertcat(memory, own), series, *wide)
+    split = ca.vertsplit(states, [0, sizes[0], sizes[0] + sizes[1]])
+    return ca.Function("stretch", [memory, own, series, *still], [split[0], split[1], seen_all, judged_all])
