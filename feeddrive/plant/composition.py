@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
-from feeddrive.effects.base import BristleEffect, Effect, FrictionEffect, Port, TransmissionEffect
-from feeddrive.effects.guide_friction import GuideFriction
-from feeddrive.effects.shaft_drag import ShaftDrag
+from feeddrive.effects.base import BristleEffect, ChainEffect, Effect, FrictionEffect, Port, TransmissionEffect
 from feeddrive.effects.viscous_asymmetry import ViscousAsymmetry
 from feeddrive.errors import InputError
 
@@ -20,16 +18,39 @@ def refuse_what_cannot_compose(effects: Sequence[Effect], elastic: bool, where: 
         where: plant or file, for messages.
 
     Raises:
-        InputError: two bristles at one port, an effect of the transmission in a rigid structure, one effect twice
-            that does not add, or an effect on a friction that is not declared.
+        InputError: two bristles at one port, an effect of the transmission or one that reads its force in a rigid
+            structure, one effect twice that does not add, or an effect on a friction that is not declared.
     """
     _refuse_two_bristles(effects, where)
     _refuse_duplicates(effects, where)
     _refuse_friction_without_level(effects, where)
+    if not elastic:
+        _refuse_what_needs_springs(effects, where)
+
+
+def refuse_what_misses_values(effects: Sequence[Effect], values: Mapping[str, float], structure: str) -> None:
+    """Refuse effects that change a value of the chain which its structure does not have.
+
+    Raises:
+        InputError: names effect, value and structure.
+    """
     for effect in effects:
-        if isinstance(effect, TransmissionEffect) and not elastic:
-            mend = 'use structure = "three_inertias" with the stiffness of the transmission'
+        if isinstance(effect, ChainEffect):
+            try:
+                effect.chain(dict(values), effect.values)
+            except KeyError as missing:
+                what = f"{effect.name} changes {missing.args[0]}, which the structure {structure} does not have"
+                raise InputError(what, effect.name, "use another structure or effect") from None
+
+
+def _refuse_what_needs_springs(effects: Sequence[Effect], where: str) -> None:
+    mend = 'use structure = "three_inertias" with the stiffness of the transmission'
+    for effect in effects:
+        if isinstance(effect, TransmissionEffect):
             raise InputError(f"{effect.name} needs an elastic transmission, the structure is rigid", where, mend)
+        if effect.reads_force:
+            what = f"{effect.name} reads the force that the nut transmits, which a rigid structure does not tell"
+            raise InputError(what, where, mend)
 
 
 def _refuse_two_bristles(effects: Sequence[Effect], where: str) -> None:
@@ -49,7 +70,7 @@ def _refuse_duplicates(effects: Sequence[Effect], where: str) -> None:
 
 def _refuse_friction_without_level(effects: Sequence[Effect], where: str) -> None:
     """Refuse an effect on the Coulomb level of a port that declares no friction: it would act on nothing."""
-    declared = {effect.port for effect in effects if isinstance(effect, GuideFriction | ShaftDrag)}
+    declared = {effect.port for effect in effects if isinstance(effect, FrictionEffect) and effect.declared}
     for effect in effects:
         free = not isinstance(effect, FrictionEffect) or isinstance(effect, ViscousAsymmetry)
         if not free and effect.port not in declared:

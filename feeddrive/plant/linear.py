@@ -38,11 +38,8 @@ OUTPUTS = ("motor_angle", "motor_speed", "table_position", "table_velocity")
 MOVING = 0.05
 """Velocity of the point about which is linearised by default [m/s]."""
 
-_NAMES = {
-    "motor": ("motor_angle", "motor_speed"),
-    "screw": ("screw_angle", "screw_speed"),
-    "table": ("table_position", "table_velocity"),
-}
+_ALONG = ("axial", "far_axial", "table")
+"""Coordinates that are positions; the others are angles."""
 _START_STRETCH = 1e-6  # beyond the free play [m]: Newton must start on a flank, inside the gap there is no slope
 _NEWTON_STEPS = 30
 _ROUNDING = 1e-12  # of the largest spring force: what the difference of two positions leaves
@@ -63,13 +60,21 @@ class SteadyMotion:
 
 def state_names(plant: Plant) -> tuple[str, ...]:
     """Names of the states: positions, rates, bristle deflections."""
-    pairs = [_NAMES[coordinate] for coordinate in plant.chain.coordinates]
+    pairs = [_state_pair(coordinate) for coordinate in plant.chain.coordinates]
     bristles = [f"bristle_{i}" if i else "bristle" for i in range(bristle_count(plant))]
     return (*(pair[0] for pair in pairs), *(pair[1] for pair in pairs), *bristles)
 
 
+def _state_pair(coordinate: str) -> tuple[str, str]:
+    if coordinate in _ALONG:
+        return f"{coordinate}_position", f"{coordinate}_velocity"
+    return f"{coordinate}_angle", f"{coordinate}_speed"
+
+
 def ode(plant: Plant) -> ca.Function:
     """The equations of motion as a function (x, u, p) -> (xdot, y).
+
+    A chain that depends on the table position is followed: M, C and K are those of the present position.
 
     Args:
         plant: its structure and effects; its values come in through p. Timing effects are not in it.
@@ -84,10 +89,13 @@ def ode(plant: Plant) -> ca.Function:
     q, rate, z = x[:n], x[n : 2 * n], x[2 * n :]
     p = chain_symbols(plant, symbols)
     motor, table = symbolic([plant.chain.motor(p)]), symbolic([plant.chain.table(p)])
-    forces = effect_forces(plant, symbols, q, rate, z, 0.0)
-    linear = symbolic(plant.chain.damping(p)) @ rate + symbolic(plant.chain.stiffness(p)) @ q
-    pushed = motor.T * u[0] + table.T * u[1] + forces.on_coordinates - linear
-    acceleration = ca.inv_minor(symbolic(plant.chain.mass(p))) @ pushed
+    forces = effect_forces(plant, symbols, q, rate, z, 0.0, reference=None)
+    at = table @ q
+    mass, damping, stiffness = (
+        symbolic(m(p, at)) for m in (plant.chain.mass, plant.chain.damping, plant.chain.stiffness)
+    )
+    pushed = motor.T * u[0] + table.T * u[1] + forces.on_coordinates - (damping @ rate + stiffness @ q)
+    acceleration = ca.inv_minor(ca.sparsify(mass)) @ pushed
     xdot = ca.vertcat(rate, acceleration, forces.bristle_rates)
     y = ca.vertcat(motor @ q, motor @ rate, table @ q, table @ rate)
     return ca.Function("ode", [x, u, symbols.vector], [xdot, y], ["x", "u", "p"], ["xdot", "y"])
@@ -107,8 +115,10 @@ def steady_motion(plant: Plant, velocity: float = MOVING, position: float = 0.0)
         position: of the table [m].
 
     Raises:
-        InputError: no such state is found, for instance inside a free play that nothing loads.
+        InputError: no such state is found, for instance inside a free play that nothing loads, or the nut would not
+            be on the screw.
     """
+    plant.chain.refuse_off_screw(position, plant.name)
     if not (math.isfinite(velocity) and math.isfinite(position)):
         raise InputError("velocity and position must be finite numbers", plant.name, "give e.g. 0.05 m/s at 0 m")
     side = -1.0 if velocity < 0 else 1.0
@@ -152,14 +162,15 @@ def _solve(plant: Plant, velocity: float, position: float, flank: float) -> Stea
     unknown = ca.SX.sym("unknown", n + bristle_count(plant))
     x = _moving_state(plant, velocity, position, unknown)
     xdot, _ = function(x, ca.vertcat(unknown[n - 1], 0), parameter_values(plant))
-    residual = ca.vertcat(symbolic(plant.chain.mass(plant.chain_values())) @ xdot[n : 2 * n], xdot[2 * n :])
+    mass = symbolic(plant.chain.mass(plant.chain_values(), position))
+    residual = ca.vertcat(mass @ xdot[n : 2 * n], xdot[2 * n :])
     newton = ca.Function("newton", [unknown], [residual, ca.jacobian(residual, unknown)])
     values = _start(plant, velocity, position, flank)
     for _ in range(_NEWTON_STEPS):
         error, slope = (np.array(part.full()) for part in newton(values))
         if not (np.isfinite(error).all() and np.isfinite(slope).all()):
             return None
-        if np.max(np.abs(error)) <= _tolerance(plant, values):
+        if np.max(np.abs(error)) <= _tolerance(plant, values, position):
             return SteadyMotion(_state_at(x, unknown, values), float(values[n - 1]))
         if velocity == 0:
             slope[:, n:] = 0.0  # at rest any deflection is steady: the bristles stay unloaded
@@ -169,8 +180,8 @@ def _solve(plant: Plant, velocity: float, position: float, flank: float) -> Stea
 
 def _moving_state(plant: Plant, velocity: float, position: float, unknown: Expression) -> Expression:
     """x with the table at `position` and every coordinate at the rate that belongs to `velocity`."""
-    r, n = plant.chain.radius, len(plant.chain.coordinates)
-    rates = [velocity if coordinate == "table" else velocity / r for coordinate in plant.chain.coordinates]
+    n = len(plant.chain.coordinates)
+    rates = [velocity * rate for rate in plant.chain.rigid_motion(plant.chain_values())]
     unknowns = [unknown[i] for i in range(unknown.numel())]  # a slice of length zero is not empty in CasADi
     return ca.vertcat(*unknowns[: n - 1], position, *rates, *unknowns[n:])
 
@@ -178,9 +189,10 @@ def _moving_state(plant: Plant, velocity: float, position: float, unknown: Expre
 def _start(plant: Plant, velocity: float, position: float, flank: float) -> FloatArray:
     widths = [effect.values["width"] for effect in plant.effects if isinstance(effect, Backlash)]
     play = float(np.sum(np.array(widths, dtype=float)))
-    angle = (position + flank * (0.5 * play + _START_STRETCH)) / plant.chain.radius
+    travel = position + flank * (0.5 * play + _START_STRETCH)
+    rigid = [travel * rate for rate in plant.chain.rigid_motion(plant.chain_values())]
     bristles = [_sliding_deflection(plant, bristle, velocity, position) for bristle in plant.effects_of(BristleEffect)]
-    return np.array([angle] * (len(plant.chain.coordinates) - 1) + [0.0] + bristles)
+    return np.array([*rigid[:-1], 0.0, *bristles])
 
 
 def _sliding_deflection(plant: Plant, bristle: Effect, velocity: float, position: float) -> float:
@@ -191,9 +203,9 @@ def _sliding_deflection(plant: Plant, bristle: Effect, velocity: float, position
     return float(ca.Function("deflection", [symbols.vector], [deflection])(parameter_values(plant)))
 
 
-def _tolerance(plant: Plant, values: FloatArray) -> float:
+def _tolerance(plant: Plant, values: FloatArray, position: float) -> float:
     """Residual force [N or N m] that rounding leaves."""
-    stiffness = np.max(np.abs(np.array(plant.chain.stiffness(plant.chain_values()), dtype=float)))
+    stiffness = np.max(np.abs(np.array(plant.chain.stiffness(plant.chain_values(), position), dtype=float)))
     return float(1e-9 + _ROUNDING * stiffness * (np.max(np.abs(values[:-1]), initial=0.0) * plant.chain.radius + 1e-3))
 
 

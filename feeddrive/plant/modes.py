@@ -35,24 +35,34 @@ class Modes:
     poles: tuple[complex, ...]
 
 
-def free_modes(plant: Plant) -> Modes:
-    """Modes with the motor free to turn; the first is the motion of the whole axis."""
-    return _modes(plant, np.eye(len(plant.chain.coordinates)))
+def free_modes(plant: Plant, position: float = 0.0) -> Modes:
+    """Modes with the motor free to turn; the first is the motion of the whole axis.
+
+    Args:
+        plant: the machine.
+        position: of the table [m]; of no effect where the chain does not depend on it.
+
+    Raises:
+        InputError: the nut would not be on the screw.
+    """
+    return _modes(plant, np.eye(len(plant.chain.coordinates)), position)
 
 
-def braked_modes(plant: Plant) -> Modes:
-    """Modes with the motor held; none where the structure is rigid."""
+def braked_modes(plant: Plant, position: float = 0.0) -> Modes:
+    """Modes with the motor held, by its brake or its servo; none where the structure is rigid. As `free_modes`."""
     motor = np.array([plant.chain.motor(plant.chain_values())], dtype=float)
-    return _modes(plant, null_space(motor))
+    return _modes(plant, null_space(motor), position)
 
 
-def _modes(plant: Plant, basis: FloatArray) -> Modes:
+def _modes(plant: Plant, basis: FloatArray, position: float) -> Modes:
     """Modes of the motions q = S B eta, with S from table travel to coordinates and B a basis."""
+    plant.chain.refuse_off_screw(position, plant.name)
     values = plant.chain_values()
-    travel = np.diag([1.0 if name == "table" else 1 / plant.chain.radius for name in plant.chain.coordinates])
+    rigid = np.array(plant.chain.rigid_motion(values), dtype=float)
+    travel = np.diag(np.where(rigid == 0, 1.0, rigid))  # what a rigid motion leaves at rest is a position already
     into = travel @ basis
-    matrices = (plant.chain.mass(values), plant.chain.damping(values), plant.chain.stiffness(values))
-    M, C, K = (into.T @ np.array(matrix, dtype=float) @ into for matrix in matrices)
+    matrices = (plant.chain.mass, plant.chain.damping, plant.chain.stiffness)
+    M, C, K = (into.T @ np.array(matrix(values, position), dtype=float) @ into for matrix in matrices)
     if basis.shape[1] == 0:
         return Modes(np.zeros(0), np.zeros(0), np.zeros((basis.shape[0], 0)), ())
     squared, vectors = eigh(K, M)

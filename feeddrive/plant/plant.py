@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 
 from feeddrive.effects.base import ChainEffect, Effect, TravelEffect, Value
 from feeddrive.plant.chain import Chain
-from feeddrive.plant.composition import refuse_what_cannot_compose
+from feeddrive.plant.composition import refuse_what_cannot_compose, refuse_what_misses_values
 
 
 @dataclass(frozen=True)
@@ -51,6 +51,8 @@ class Plant:
         torque_limit: of the motor [N m]; infinite if not declared.
         sensors: declared sensors.
         controller: the controller that drives the axis, where declared.
+        stroke: least and greatest table position [m], where declared.
+        data: what is known of the machine and enters no equation of motion (ratings, limits), by `section.key`, SI.
         origins: value key to the source written in the plant file.
     """
 
@@ -60,10 +62,13 @@ class Plant:
     torque_limit: float = float("inf")
     sensors: tuple[Sensor, ...] = ()
     controller: PositionVelocityController | None = None
+    stroke: tuple[float, float] | None = None
+    data: Mapping[str, float] = field(default_factory=dict)
     origins: Mapping[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         refuse_what_cannot_compose(self.effects, self.chain.elastic, self.name)
+        refuse_what_misses_values(self.effects, self.chain.values, self.chain.structure)
         object.__setattr__(self, "effects", _labelled(self.effects))
 
     def with_effects(self, *effects: Effect) -> Plant:
@@ -85,6 +90,11 @@ class Plant:
             if isinstance(effect, ChainEffect):
                 values = effect.chain(values, effect.values)
         return values
+
+    @property
+    def middle(self) -> float:
+        """Table position in the middle of the stroke [m]; 0 where no stroke is declared."""
+        return 0.5 * sum(self.stroke) if self.stroke else 0.0
 
     def effects_of(self, kind: type[Effect]) -> tuple[Effect, ...]:
         """The effects of one class."""

@@ -1,0 +1,61 @@
+"""Symbols of a plant's parameters, and their values in the same order."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import casadi as ca
+
+from feeddrive.effects.base import ChainEffect
+from feeddrive.plant.plant import Plant
+from feeddrive.typing import Expression
+
+
+@dataclass(frozen=True)
+class Symbols:
+    """CasADi symbols of a plant's parameters.
+
+    Attributes:
+        chain: key of the chain to symbol, without chain effects.
+        effects: effect label to (key to symbol).
+        vector: all of them in one column, in the order of `names`.
+        names: `key` for chain values, `label.key` for effects; tables take one name per entry, `label.key[i]`.
+    """
+
+    chain: dict[str, Expression]
+    effects: dict[str, dict[str, Expression]]
+    vector: Expression
+    names: tuple[str, ...]
+
+
+def parameter_symbols(plant: Plant) -> Symbols:
+    """Symbols for every parameter of the plant."""
+    chain = {key: ca.SX.sym(key) for key in plant.chain.values}
+    names = list(chain)
+    effects: dict[str, dict[str, Expression]] = {}
+    for effect in plant.effects:
+        effects[effect.label] = {}
+        for key, value in effect.values.items():
+            length = len(value) if isinstance(value, tuple) else 1
+            name = f"{effect.label}.{key}"
+            effects[effect.label][key] = ca.SX.sym(name, length)
+            names += [name] if length == 1 else [f"{name}[{i}]" for i in range(length)]
+    columns = [*chain.values(), *(symbol for group in effects.values() for symbol in group.values())]
+    return Symbols(chain, effects, ca.vertcat(*columns), tuple(names))
+
+
+def parameter_values(plant: Plant) -> list[float]:
+    """Values in the order of `Symbols.vector`, SI."""
+    values = [float(value) for value in plant.chain.values.values()]
+    for value in plant.effect_values().values():
+        values += list(value) if isinstance(value, tuple) else [float(value)]
+    return values
+
+
+def chain_symbols(plant: Plant, symbols: Symbols) -> dict[str, Expression]:
+    """Chain values with the chain effects in."""
+    chain = dict(symbols.chain)
+    for effect in plant.effects:
+        if isinstance(effect, ChainEffect):
+            chain = effect.chain(chain, symbols.effects[effect.label])
+    return chain

@@ -1,0 +1,103 @@
+"""The one law of the transmission: travel errors enter the stretch of the nut, free play its spring.
+
+    e = e_0 + delta(phi, x, t),  e_0 = w q,     F = k dz(e) + c e' outside the gap
+
+delta is the travel deviation. By virtual work the force on the coordinates is -(w + delta_phi L_phi + delta_x L_x)' F
+with the rows w of the stretch, L_phi of the screw angle and L_x of the table position.
+
+| symbol | meaning | unit |
+|---|---|---|
+| e, e_0 | stretch of the nut, and without travel errors: r phi - x less what the screw gives way | m |
+| F | force of the nut on the table | N |
+| k, c | stiffness and damping of the nut's spring (the combined axial one of three inertias) | N/m, N s/m |
+| dz | dead zone: stretch beyond the flank of the free play | m |
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import casadi as ca
+
+from feeddrive.effects.base import TransmissionEffect, TravelEffect
+from feeddrive.plant.linear_chain import Spring
+from feeddrive.plant.plant import Plant
+from feeddrive.plant.symbols import Symbols
+from feeddrive.typing import Expression
+
+CONTACT_SMOOTHING = 1e-9
+"""Stretch over which the flank of a free play takes up its damper [m]; a tenth of a good scale's resolution."""
+
+
+@dataclass(frozen=True)
+class NutForce:
+    """What the nut transmits.
+
+    Attributes:
+        force: F on the table [N].
+        beyond_linear: force on the coordinates beyond the chain's -w' (k w q + c w q'), shape (n, 1) [N or N m].
+    """
+
+    force: Expression
+    beyond_linear: Expression
+
+
+def nut_force(
+    plant: Plant, symbols: Symbols, nut: Spring, rows: tuple[Expression, Expression], q: Expression, rate: Expression,
+    time: Expression,
+) -> NutForce:  # fmt: skip
+    """Force of the nut, and what of it the linear chain does not hold.
+
+    Args:
+        plant: which effects there are.
+        symbols: parameters.
+        nut: spring of the chain.
+        rows: of screw angle and table position, each shape (1, n).
+        q, rate: coordinates and rates, shape (n, 1).
+        time: [s].
+    """
+    stretch_row = ca.horzcat(*nut.row)
+    stretch, stretch_rate = ca.mtimes(stretch_row, q), ca.mtimes(stretch_row, rate)
+    linear = nut.stiffness * stretch + nut.damping * stretch_rate
+    if not plant.has_travel and not plant.effects_of(TransmissionEffect):
+        return NutForce(linear, ca.SX.zeros(q.numel(), 1))
+    screw, table = rows
+    delta, by_angle, by_position = _travel(plant, symbols, ca.mtimes(screw, q), ca.mtimes(table, q), time)
+    stretch += delta
+    stretch_rate += by_angle * ca.mtimes(screw, rate) + by_position * ca.mtimes(table, rate)
+    force = spring_force(plant, symbols, nut, stretch, stretch_rate)
+    along = stretch_row + by_angle * screw + by_position * table
+    return NutForce(force, stretch_row.T * linear - along.T * force)
+
+
+def travel_deviation(plant: Plant, symbols: Symbols, phi: Expression, x: Expression, time: Expression) -> Expression:
+    """Sum of the travel deviations [m] at screw angle phi [rad] and table position x [m]."""
+    delta = ca.SX(0)
+    for effect in plant.effects:
+        if isinstance(effect, TravelEffect):
+            delta += effect.travel(phi, x, time, symbols.effects[effect.label])
+    return delta
+
+
+def spring_force(plant: Plant, symbols: Symbols, nut: Spring, stretch: Expression, rate: Expression) -> Expression:
+    """The one spring law of the transmission [N] at nut stretch [m] and its rate [m/s]; free plays add."""
+    play: Expression = 0.0
+    gaps = [effect for effect in plant.effects if isinstance(effect, TransmissionEffect)]
+    for effect in gaps:
+        play += effect.free_play(symbols.effects[effect.label])
+    if not gaps:
+        return nut.stiffness * stretch + nut.damping * rate
+    beyond = ca.fabs(stretch) - 0.5 * play
+    contact = ca.fmin(ca.fmax(beyond / CONTACT_SMOOTHING, 0), 1)
+    return nut.stiffness * ca.sign(stretch) * ca.fmax(beyond, 0) + contact * nut.damping * rate
+
+
+def _travel(
+    plant: Plant, symbols: Symbols, angle: Expression, position: Expression, time: Expression
+) -> tuple[Expression, Expression, Expression]:
+    """delta [m] and its slopes with screw angle [m/rad] and table position [1]."""
+    phi, x = ca.SX.sym("phi"), ca.SX.sym("x")
+    delta = travel_deviation(plant, symbols, phi, x, time)
+    parts = [delta, ca.jacobian(delta, phi), ca.jacobian(delta, x)]
+    at = ca.substitute(parts, [phi, x], [angle, position])
+    return at[0], at[1], at[2]
