@@ -16,6 +16,7 @@ from feeddrive.parts.combined_stiffness import combined_stiffness, natural_frequ
 from feeddrive.parts.effective_mass import added_mass, rayleigh_frequency
 from feeddrive.parts.motor import HoldingBrake
 from feeddrive.parts.screw_drive import BallScrewDrive
+from feeddrive.parts.transmission import Transmission
 from tests.analytic.screw_fem import ScrewDrive, frequencies
 from tests.analytic.stiffness_cases import AT_NUT, drives, paper_drive
 
@@ -87,6 +88,17 @@ def test_soft_brake_lets_the_rotor_take_part() -> None:
     swing = k * r / 40_000.0
     assert added_mass(soft, AT_NUT).hubs > soft.motor.rotor_inertia * swing**2
     assert rayleigh_frequency(soft, AT_NUT) < rayleigh_frequency(drive, AT_NUT)
+
+
+def test_wheels_swing_with_the_springs_before_them() -> None:
+    """By hand: twist at the screw under the torque k r of a unit push; the motor's wheel counts with the ratio squared."""
+    belt = Transmission(ratio=2.0, torsional_stiffness=20_000.0, motor_wheel_inertia=1e-3, screw_wheel_inertia=8e-3)
+    drive = replace(paper_drive(), coupling=None, transmission=belt)
+    torque = combined_stiffness(drive, AT_NUT).total * drive.screw.travel_per_radian
+    motor_wheel = torque / (69_930.0 * 4.0)
+    screw_wheel = motor_wheel + torque / 20_000.0
+    expected = 1e-3 * 4.0 * motor_wheel**2 + 8e-3 * screw_wheel**2
+    assert added_mass(drive, AT_NUT).hubs == pytest.approx(expected, rel=1e-10)  # rounding
 
 
 @pytest.mark.parametrize("length", [0.7, 1.2])

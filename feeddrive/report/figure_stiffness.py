@@ -1,0 +1,132 @@
+"""Figures of a drive's stiffness: which part gives way how much, and how it changes along the stroke."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from feeddrive.errors import InputError
+from feeddrive.parts.combined_stiffness import CombinedStiffness, Deformation, combined_stiffness, stiffness_along
+from feeddrive.parts.effective_mass import rayleigh_frequency
+from feeddrive.parts.screw_drive import BallScrewDrive
+from feeddrive.report.drawing import ReportFigure, dress, legend_above, new_figure
+from feeddrive.report.people import fixed, significant, with_unit
+from feeddrive.typing import FloatArray
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_SHADES = {
+    Deformation.AXIAL: ("#0072b2", "#4c9ccb", "#8fc1de", "#bcd9ea", "#dcebf4"),
+    Deformation.TORSIONAL: ("#d55e00", "#e58a45", "#f0b288", "#f6d0b5", "#fae5d8"),
+}
+_DARK_SHADES = 2
+"""How many shades of each chain are dark enough for white text."""
+
+_NARROW = 0.065
+"""A part with less than this share has its label below the bar."""
+
+_LINES = (("#0072b2", "-"), ("#d55e00", "--"), ("#009e73", "-."), ("#cc79a7", ":"))
+
+
+def participation_figure(found: CombinedStiffness) -> ReportFigure:
+    """One bar of all compliances at the table, axial parts at the left, torsional at the right, each part by share."""
+    figure = new_figure(1.75)
+    axes = figure.subplots()
+    left = 0.0
+    for chain in Deformation:
+        share = found.share(chain)
+        if share <= 0.0:
+            continue
+        _brace(axes, left, share, f"{chain.value} {100.0 * share:.0f} %")
+        left = _chain_bar(axes, found, chain, left)
+    axes.set_xlim(0.0, 100.0)
+    axes.set_ylim(-1.05, 1.0)
+    axes.set_yticks([])
+    dress(axes, "share in the compliance at the table [%]", "")
+    axes.spines["left"].set_visible(False)
+    axes.grid(False)
+    return ReportFigure("stiffness_shares", "Which part gives way", _participation_caption(found), figure)
+
+
+def _chain_bar(axes: Axes, found: CombinedStiffness, chain: Deformation, left: float) -> float:
+    """The parts of one chain, the softest first; returns where the next chain begins."""
+    parts = sorted(found.shares_within(chain).items(), key=lambda one: -one[1])
+    step = 0
+    for number, (part, within) in enumerate(parts):
+        share = within * found.share(chain)
+        shade = _SHADES[chain][min(number, len(_SHADES[chain]) - 1)]
+        axes.barh(0.0, 100.0 * share, left=100.0 * left, color=shade, height=0.72, edgecolor="white", linewidth=0.8)
+        middle, text = 100.0 * (left + share / 2.0), f"{part}\n{100.0 * share:.0f} %"
+        if share >= _NARROW:
+            colour = "white" if number < _DARK_SHADES else "#222222"
+            axes.text(middle, 0.0, text, ha="center", va="center", fontsize=8.5, color=colour)
+        else:
+            # Beside each other they would collide: every second one stands lower.
+            axes.text(middle, -0.42 - 0.3 * (step % 2), text.replace("\n", " "), ha="center", va="top", fontsize=8)
+            step += 1
+        left += share
+    return left
+
+
+def _brace(axes: Axes, left: float, share: float, text: str) -> None:
+    """A line over the bar, with the chain's share."""
+    axes.plot([100.0 * left + 0.4, 100.0 * (left + share) - 0.4], [0.5, 0.5], color="#6b6b6b", lw=1.2)
+    axes.text(100.0 * (left + share / 2.0), 0.58, text, ha="center", va="bottom", fontsize=9)
+
+
+def _participation_caption(found: CombinedStiffness) -> str:
+    chains = f"axial chain alone {with_unit(significant(found.axial / 1e6, 4), 'N/µm')}"
+    if np.isfinite(found.torsional):
+        chains += f", torsional chain alone {with_unit(significant(found.torsional, 4), 'N m/rad')}"
+    total = f"{with_unit(significant(found.total / 1e6, 4), 'N/µm')} at the table"
+    return (
+        f"Motor held; the parts act in series. Together they give {total} ({chains}). "
+        "The widest field is the part to strengthen first."
+    )
+
+
+def stiffness_position_figure(drives: Mapping[str, BallScrewDrive], positions: FloatArray) -> ReportFigure:
+    """Stiffness and first natural frequency of one or more drives against the nut's place.
+
+    Args:
+        drives: by the name for the legend; up to four.
+        positions: nut from the near bearing, on every screw [m], shape (n,).
+
+    Raises:
+        InputError: no drive, more than four, or a position outside a screw.
+    """
+    if not 0 < len(drives) <= len(_LINES):
+        raise InputError(f"{len(drives)} drives in one figure", "drives", f"give one to {len(_LINES)}")
+    figure = new_figure(3.4)
+    stiffness, frequency = figure.subplots(1, 2)
+    places = 1e3 * positions
+    for (name, drive), (colour, style) in zip(drives.items(), _LINES, strict=False):
+        look = {"color": colour, "ls": style, "lw": 1.8}
+        stiffness.plot(places, stiffness_along(drive, positions) / 1e6, label=name, **look)
+        frequencies = [rayleigh_frequency(drive, float(position)) for position in positions]
+        alone = [combined_stiffness(drive, float(p)).natural_frequency(drive.table_mass) for p in positions]
+        frequency.plot(places, frequencies, **look)
+        frequency.plot(places, alone, color=colour, ls=style, lw=0.8, alpha=0.5)
+    dress(stiffness, "nut from the bearing at the motor [mm]", "stiffness at the table [N/µm]")
+    dress(frequency, "nut from the bearing at the motor [mm]", "first natural frequency [Hz]")
+    stiffness.set_ylim(bottom=0.0)
+    frequency.set_ylim(bottom=0.0)
+    if len(drives) > 1:
+        legend_above(stiffness, columns=2)
+    return ReportFigure(
+        "stiffness_position", "Stiffness along the stroke", _position_caption(drives, positions), figure
+    )
+
+
+def _position_caption(drives: Mapping[str, BallScrewDrive], positions: FloatArray) -> str:
+    softest = ", ".join(
+        f"{name} {fixed(float(stiffness_along(drive, positions).min()) / 1e6, 0)}" for name, drive in drives.items()
+    )
+    return (
+        f"Motor held. Softest along the stroke, in N/µm: {softest}. Right: with the screw's own mass and inertia "
+        "(Rayleigh, up to some per cent too high), thin: with the table's mass alone. Lines that coincide lie over "
+        "each other."
+    )
