@@ -91,7 +91,7 @@ def test_soft_brake_lets_the_rotor_take_part() -> None:
 
 
 def test_wheels_swing_with_the_springs_before_them() -> None:
-    """By hand: twist at the screw under the torque k r of a unit push; the motor's wheel counts with the ratio squared."""
+    """By hand: twist at the screw under the torque k r of a unit push; the motor wheel counts with the ratio squared."""
     belt = Transmission(ratio=2.0, torsional_stiffness=20_000.0, motor_wheel_inertia=1e-3, screw_wheel_inertia=8e-3)
     drive = replace(paper_drive(), coupling=None, transmission=belt)
     torque = combined_stiffness(drive, AT_NUT).total * drive.screw.travel_per_radian
