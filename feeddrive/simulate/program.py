@@ -92,6 +92,14 @@ class StepReport:
     excess: float
     tolerance: float
 
+    def __str__(self) -> str:
+        finer = f"{self.refused} steps were halved, down to 1/{2**self.finest} of a sample" if self.refused else ""
+        jumps = (
+            f"{self.over} steps stayed above the tolerance, by {1e9 * self.excess:.3g} nm in all" if self.over else ""
+        )
+        told = "; ".join(part for part in (finer, jumps) if part) or "one step a sample was enough"
+        return f"finished: {self.steps} steps for {self.samples} samples; {told}"
+
 
 REPORTS = 8
 """Entries of the driver's report: steps, refused, sweeps, over, worst, excess, finest, last sweep."""

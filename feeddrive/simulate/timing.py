@@ -46,9 +46,13 @@ class Timing:
         return self.late + len(self.parts) - 1
 
 
-def timing_of(plant: Plant, sample: float) -> Timing:
-    """Delay of the plant's drive in samples of `sample` [s]; a negative one warns and counts as none."""
-    delay = float(sum(effect.delay(effect.values) for effect in plant.effects if isinstance(effect, TimingEffect)))
+def timing_of(plant: Plant, sample: float, dead_time: float = 0.0) -> Timing:
+    """Delay of the plant's drive, and a dead time [s] beyond it, in samples of `sample` [s].
+
+    A negative one warns and counts as none.
+    """
+    effects = [effect for effect in plant.effects if isinstance(effect, TimingEffect)]
+    delay = dead_time + float(sum(effect.delay(effect.values) for effect in effects))
     if delay < 0:
         text = f"{plant.name}: torque cannot act before its command; the drive delay of {delay:g} s is taken as 0"
         warnings.warn(text, ValidityWarning, stacklevel=4)
