@@ -159,5 +159,5 @@ class SumOfForces:
 
 def held(force: Force, first_tick: int, count: int, tick: float) -> FloatArray:
     """The force for ticks of `tick` [s], each the value in its middle, shape (count,) [N]."""
-    middles: FloatArray = (np.arange(first_tick, first_tick + count) + 0.5) * tick
+    middles = np.arange(first_tick, first_tick + count, dtype=np.float64) * tick + 0.5 * tick
     return force.at(middles)

@@ -24,7 +24,6 @@ from dataclasses import dataclass
 from feeddrive.errors import InputError
 from feeddrive.simulate.motion import Piece, chained
 
-
 _ROUNDING = 1e-12
 """A share of the ramps that only rounding makes of constant velocity."""
 

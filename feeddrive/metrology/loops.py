@@ -1,0 +1,97 @@
+"""Force-displacement loops: stiffness and lost motion; torque over slow reversals: friction and break-away."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from feeddrive.errors import InputError
+from feeddrive.typing import FloatArray
+
+
+@dataclass(frozen=True)
+class ForceLoop:
+    """A closed loop of displacement over force.
+
+    Attributes:
+        stiffness: least-squares slope of force over displacement, both branches [N/m].
+        width: of the loop at zero force, the lost motion [m].
+        work: area of one loop, the energy lost per cycle [J].
+        displacement: from the largest negative to the largest positive force [m].
+    """
+
+    stiffness: float
+    width: float
+    work: float
+    displacement: float
+
+
+def force_loop(force: FloatArray, displacement: FloatArray) -> ForceLoop:
+    """Figures of one whole cycle.
+
+    Args:
+        force: on the table, one cycle that begins and ends alike [N], shape (n,).
+        displacement: of the table [m], shape (n,).
+
+    Raises:
+        InputError: a force that does not change its sign on both ways.
+    """
+    rising = np.gradient(force) > 0
+    at_zero = [_at_zero(force[branch], displacement[branch]) for branch in (rising, ~rising)]
+    # slope of the compliance: displacement follows force, whose samples are exact
+    compliance = np.polyfit(force, displacement, 1)[0]
+    work = abs(float(np.trapezoid(force, displacement)))
+    span = displacement[np.argmax(force)] - displacement[np.argmin(force)]
+    return ForceLoop(float(1 / compliance), abs(at_zero[0] - at_zero[1]), work, float(span))
+
+
+def _at_zero(force: FloatArray, displacement: FloatArray) -> float:
+    """Displacement where a branch passes zero force."""
+    if not len(force) or not force.min() <= 0.0 <= force.max():
+        raise InputError("the force does not pass zero on both ways", "force loop", "load in both directions")
+    order = np.argsort(force, kind="stable")
+    return float(np.interp(0.0, force[order], displacement[order]))
+
+
+@dataclass(frozen=True)
+class FrictionPoint:
+    """Mean torque at a constant velocity.
+
+    Attributes:
+        velocity: of the table, with its sign [m/s].
+        torque: mean at the motor [N m].
+        spread: standard deviation of the torque along the way [N m].
+        force: the torque as a force at the table, 2 pi / lead times it [N].
+    """
+
+    velocity: float
+    torque: float
+    spread: float
+    force: float
+
+
+def friction_map(velocity: FloatArray, torque: FloatArray, lead: float) -> tuple[FrictionPoint, ...]:
+    """Friction over velocity from samples at constant velocities.
+
+    Args:
+        velocity: set velocity [m/s], zero or NaN where it is not constant, shape (n,).
+        torque: of the motor [N m], shape (n,).
+        lead: [m].
+
+    Returns:
+        One point per velocity, ascending.
+
+    Raises:
+        InputError: no sample at a constant velocity.
+    """
+    rounded = np.where(np.isfinite(velocity), np.round(velocity, 9), 0.0)
+    speeds = [speed for speed in np.unique(rounded) if speed != 0.0]
+    if not speeds:
+        raise InputError("no constant velocity", "friction map", "make the strokes longer or the limits higher")
+    points = []
+    for speed in speeds:
+        at = torque[rounded == speed]
+        mean = float(at.mean())
+        points.append(FrictionPoint(float(speed), mean, float(at.std()), mean * 2 * np.pi / lead))
+    return tuple(points)

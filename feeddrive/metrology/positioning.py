@@ -1,0 +1,92 @@
+"""Accuracy and repeatability of positioning after ISO 230-2:2014, from deviations at targets.
+
+    x_ij = P_ij - P_i,   s with n - 1,   R_i^ = 4 s_i^,   B_i = mean_i^ - mean_iv
+    R_i = max(2 s_i^ + 2 s_iv + |B_i|, R_i^, R_iv)
+    E  = max(mean_i^, mean_iv) - min(mean_i^, mean_iv),   M = max(mean_i) - min(mean_i)
+    A  = max(mean + 2 s) - min(mean - 2 s), over both directions; A^ and Av over one
+
+^ is the approach along +, v along -. Source: ISO 230-2:2014, clause 3 (definitions).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from feeddrive.errors import InputError
+from feeddrive.typing import FloatArray
+
+EDITION = "ISO 230-2:2014"
+
+
+@dataclass(frozen=True)
+class Positioning:
+    """Figures of a positioning test, all in m; arrays of one value per target, shape (m,).
+
+    Attributes:
+        target: positions.
+        mean_up, mean_down: mean deviation (actual minus target) per direction.
+        deviation_up, deviation_down: standard uncertainty estimator s per direction.
+        reversal: B_i.
+        reversal_value, mean_reversal: B, the largest |B_i|, and the mean of B_i.
+        repeatability_up, repeatability_down, repeatability: R^, Rv, R (bidirectional).
+        systematic, systematic_up, systematic_down: E, E^, Ev.
+        mean_range: M.
+        accuracy, accuracy_up, accuracy_down: A, A^, Av.
+    """
+
+    target: FloatArray
+    mean_up: FloatArray
+    mean_down: FloatArray
+    deviation_up: FloatArray
+    deviation_down: FloatArray
+    reversal: FloatArray
+    reversal_value: float
+    mean_reversal: float
+    repeatability_up: float
+    repeatability_down: float
+    repeatability: float
+    systematic: float
+    systematic_up: float
+    systematic_down: float
+    mean_range: float
+    accuracy: float
+    accuracy_up: float
+    accuracy_down: float
+
+
+def positioning(target: FloatArray, up: FloatArray, down: FloatArray) -> Positioning:
+    """The figures from deviations.
+
+    Args:
+        target: [m], shape (m,).
+        up, down: deviation, actual minus target, of every approach [m], shape (m, n).
+
+    Raises:
+        InputError: fewer than two approaches per direction, or shapes that differ.
+    """
+    if up.shape != down.shape or up.ndim != 2 or up.shape[0] != len(target) or up.shape[1] < 2:
+        what = f"deviations of shape {up.shape} and {down.shape} at {len(target)} targets"
+        raise InputError(what, "ISO 230-2", "approach every target at least twice from both sides")
+    mean_up, mean_down = up.mean(axis=1), down.mean(axis=1)
+    s_up, s_down = up.std(axis=1, ddof=1), down.std(axis=1, ddof=1)
+    reversal, mean = mean_up - mean_down, 0.5 * (mean_up + mean_down)
+    both = 2 * s_up + 2 * s_down + np.abs(reversal)
+    means = np.stack([mean_up, mean_down])
+    spread = 2 * np.stack([s_up, s_down])
+    return Positioning(
+        target, mean_up, mean_down, s_up, s_down, reversal,
+        reversal_value=float(np.max(np.abs(reversal))),
+        mean_reversal=float(np.mean(reversal)),
+        repeatability_up=float(4 * s_up.max()),
+        repeatability_down=float(4 * s_down.max()),
+        repeatability=float(np.max(np.maximum(both, np.maximum(4 * s_up, 4 * s_down)))),
+        systematic=float(np.ptp(means)),
+        systematic_up=float(np.ptp(mean_up)),
+        systematic_down=float(np.ptp(mean_down)),
+        mean_range=float(np.ptp(mean)),
+        accuracy=float((means + spread).max() - (means - spread).min()),
+        accuracy_up=float((mean_up + 2 * s_up).max() - (mean_up - 2 * s_up).min()),
+        accuracy_down=float((mean_down + 2 * s_down).max() - (mean_down - 2 * s_down).min()),
+    )  # fmt: skip

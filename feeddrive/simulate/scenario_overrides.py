@@ -1,0 +1,67 @@
+"""Values put in the place of what a scenario file says: `controller.position_gain=5 (m/min)/mm`."""
+
+from __future__ import annotations
+
+import copy
+import tomllib
+from collections.abc import Mapping
+from typing import Any
+
+from feeddrive.errors import InputError
+
+
+def parse_overrides(texts: list[str]) -> dict[str, str]:
+    """Dotted key to value of texts such as "trajectory.velocity=0.2 m/s".
+
+    Raises:
+        InputError: no "=", an empty key, or a key given twice.
+    """
+    found: dict[str, str] = {}
+    for text in texts:
+        key, sign, value = (part.strip() for part in text.partition("="))
+        if not sign or not key or not value:
+            raise InputError(f'"{text}" is not key=value', "--set", 'write e.g. --set trajectory.velocity="0.2 m/s"')
+        if key in found:
+            raise InputError(f"{key} is set twice", "--set", "keep one of them")
+        found[key] = value
+    return found
+
+
+def with_overrides(entries: Mapping[str, Any], overrides: Mapping[str, str]) -> dict[str, Any]:
+    """The entries with values put in; tables that are not there are made, entries of lists are counted from 1.
+
+    Raises:
+        InputError: a key that leads into something that is no table, or to an entry that a list does not have.
+    """
+    result: dict[str, Any] = copy.deepcopy(dict(entries))
+    for key, text in overrides.items():
+        *path, last = key.split(".")
+        at: Any = result
+        for step in path:
+            at = _inside(at, step, key)
+        if isinstance(at, list):
+            _inside(at, last, key)
+            at[int(last) - 1] = _value(text)
+        else:
+            at[last] = _value(text)
+    return result
+
+
+def _inside(at: Any, step: str, key: str) -> Any:
+    """The table or list one step further."""
+    if isinstance(at, list):
+        if not step.isdigit() or not 1 <= int(step) <= len(at):
+            raise InputError(f"no entry {step}", f"--set {key}", f"count from 1 to {len(at)}")
+        return at[int(step) - 1]
+    inner = at.setdefault(step, {})
+    if not isinstance(inner, dict | list):
+        raise InputError(f'"{step}" is a value, not a table', f"--set {key}", "leave out what follows it")
+    return inner
+
+
+def _value(text: str) -> Any:
+    """A TOML value where the text is one, such as 5, true or ["1 mm", "2 mm"]; else the text itself."""
+    try:
+        return tomllib.loads(f"value = {text}")["value"]
+    except tomllib.TOMLDecodeError:
+        return text

@@ -1,0 +1,175 @@
+"""Running a scenario in stretches, its state written between them so that a stopped run goes on where it was.
+
+A resumed run is bit for bit the run that was never stopped: the engine's state, the torque under way and everything
+recorded so far are in the checkpoint, and nothing depends on how the stretches are cut.
+"""
+
+from __future__ import annotations
+
+import io
+import time as clock
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from feeddrive.errors import InputError
+from feeddrive.files import write_bytes_atomically
+from feeddrive.servo.cascade_function import cascade_controller
+from feeddrive.simulate.acting_torque import ActingTorque
+from feeddrive.simulate.controlled import (
+    ControlledRun,
+    ControlledState,
+    TorqueLoop,
+    resting_state,
+    simulate_controlled,
+    state_from,
+)
+from feeddrive.simulate.cutting_force import held
+from feeddrive.simulate.scenario import Place, Scenario
+from feeddrive.simulate.scenario_result import SERIES, ScenarioResult, recorded
+from feeddrive.typing import FloatArray
+
+STRETCH = 40_000
+"""Ticks between looks at the clock, about; 5 s at 8 kHz."""
+
+CHECKPOINT_EVERY = 5.0
+"""Seconds of work between checkpoints; shorter runs write none."""
+
+Progress = Callable[[float], None]
+"""Told the share of the run that is done."""
+
+
+@dataclass(frozen=True)
+class _Done:
+    """A run so far: state of the engine, torque under way, rows of `SERIES`, one per sample."""
+
+    state: ControlledState
+    torque: ActingTorque
+    rows: tuple[FloatArray, ...]
+
+
+def run_scenario(
+    scenario: Scenario, checkpoint: Path | None = None, progress: Progress | None = None
+) -> ScenarioResult:
+    """Run a scenario from its start, or from the checkpoint of the same scenario where there is one.
+
+    Args:
+        scenario: to run.
+        checkpoint: file for the state of a long run; removed at the end. None writes none.
+        progress: told after every stretch.
+
+    Returns:
+        The finished run.
+
+    Raises:
+        InputError: fewer than two samples, a checkpoint that cannot be read or written.
+        SimulationError: a motion that cannot be followed.
+    """
+    divider = scenario.recorder.divider
+    samples = scenario.ticks // divider
+    if samples < 2:
+        raise InputError("the run is shorter than two samples", scenario.name, "make it longer or the rate higher")
+    done = _resumed(scenario, checkpoint) or _start(scenario)
+    written = clock.monotonic()
+    stretch = divider * max(1, STRETCH // divider)
+    while done.state.tick < samples * divider:
+        done = _further(scenario, done, min(stretch, samples * divider - done.state.tick))
+        if checkpoint is not None and clock.monotonic() - written > CHECKPOINT_EVERY:
+            write_checkpoint(scenario, done, checkpoint)
+            written = clock.monotonic()
+        if progress is not None:
+            progress(done.state.tick / (samples * divider))
+    if checkpoint is not None:
+        checkpoint.unlink(missing_ok=True)
+    return _finished(scenario, done)
+
+
+def _start(scenario: Scenario) -> _Done:
+    controller, loop = cascade_controller(scenario.cascade), _torque_loop(scenario)
+    position = float(scenario.trajectory.at(np.zeros(1)).position[0])
+    state = resting_state(scenario.plant, controller, loop, position)
+    return _Done(state, ActingTorque.at_rest(scenario.cascade), ())
+
+
+def _torque_loop(scenario: Scenario) -> TorqueLoop:
+    return TorqueLoop(scenario.cascade.current_lag, scenario.cascade.dead_time)
+
+
+def _further(scenario: Scenario, done: _Done, count: int) -> _Done:
+    """The run some ticks further."""
+    tick, first = scenario.cascade.sample_time, done.state.tick
+    time = np.arange(first, first + count, dtype=np.float64) * tick
+    motion = scenario.trajectory.at(time)
+    speed, torque = _excitations(scenario, time)
+    reference = np.column_stack([motion.position, motion.velocity, motion.acceleration, speed, torque])
+    load = held(scenario.force, first, count, tick)
+    controller = cascade_controller(scenario.cascade)
+    run = simulate_controlled(scenario.plant, controller, reference, load, _torque_loop(scenario), done.state)
+    means, under_way = done.torque.means(scenario.cascade, run.command)
+    rows = _rows(scenario, run, motion.position, means, load)
+    return _Done(run.end, under_way, (*done.rows, rows))
+
+
+def _excitations(scenario: Scenario, time: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """What is added to the speed set-point [rad/s] and to the torque command [N m]."""
+    nothing, given = np.zeros_like(time), scenario.excitation
+    if given is None:
+        return nothing, nothing
+    since = time - given.start
+    acting = (since > -1e-9) & (since < given.waveform.duration - 1e-9)
+    values = np.where(acting, given.amplitude * given.waveform.values(np.maximum(since, 0.0))[1], 0.0)
+    return (values, nothing) if given.place is Place.SPEED else (nothing, values)
+
+
+def _rows(
+    scenario: Scenario, run: ControlledRun, setpoint: FloatArray, torque: FloatArray, load: FloatArray
+) -> FloatArray:
+    """Samples of `SERIES` of a stretch, shape (samples, series)."""
+    divider = scenario.recorder.divider
+    series = {
+        "setpoint": setpoint[::divider],
+        "motor_torque": torque.reshape(-1, divider).mean(axis=1),
+        "motor_angle": run.motor_angle[::divider],
+        "motor_speed": run.motor_speed[::divider],
+        "table_position": run.table_position[::divider],
+        "table_velocity": run.table_velocity[::divider],
+        "cutting_force": load.reshape(-1, divider).mean(axis=1),
+        "speed_command": run.signals["speed_command"][::divider],
+    }
+    return np.column_stack([series[name] for name in SERIES])
+
+
+def _finished(scenario: Scenario, done: _Done) -> ScenarioResult:
+    table = np.ascontiguousarray(np.vstack(done.rows).T)
+    time = np.arange(table.shape[1], dtype=np.float64) * scenario.sample_time
+    series = dict(zip(SERIES, table, strict=True))
+    return ScenarioResult(scenario, recorded(scenario, time, series), time, series)
+
+
+def write_checkpoint(scenario: Scenario, done: _Done, path: Path) -> None:
+    """Write the state of a run, whole or not at all.
+
+    Raises:
+        InputError: the file cannot be written.
+    """
+    buffer = io.BytesIO()
+    rows = np.vstack(done.rows) if done.rows else np.zeros((0, len(SERIES)))
+    digest = np.frombuffer(scenario.digest.encode(), dtype=np.uint8)
+    np.savez(buffer, digest=digest, state=done.state.vector, torque=done.torque.state, rows=rows)
+    write_bytes_atomically(path, buffer.getvalue())
+
+
+def _resumed(scenario: Scenario, path: Path | None) -> _Done | None:
+    """What a checkpoint of this scenario holds; None where there is none, or that of another scenario."""
+    if path is None or not path.is_file():
+        return None
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            digest, state, torque, rows = (file[name] for name in ("digest", "state", "torque", "rows"))
+    except (ValueError, KeyError, OSError, EOFError):
+        raise InputError("is not a checkpoint", str(path), "remove it to start anew") from None
+    if bytes(digest).decode(errors="replace") != scenario.digest:
+        return None
+    return _Done(state_from(state), ActingTorque(torque), (rows,))
