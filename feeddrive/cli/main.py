@@ -45,6 +45,7 @@ COMMANDS: dict[str, Entry] = {
     "show": Entry("show", "Show a machine: stiffness budget, inertias, friction, modes."),
     "run": Entry("run", "Run a scenario: a machine under its controller, with figures and metrics."),
     "diagnose": Entry("diagnose", "Find what a machine's model lacks, from recordings of it."),
+    "reproduce": Entry("reproduce", "Compare the source papers' numbers with what feeddrive computes."),
 }
 """Commands by name, in the order in which `feeddrive --help` lists them."""
 

@@ -1,0 +1,103 @@
+"""The comparison with a paper as people read it: a table whose reasons stand on lines of their own, at any width."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from rich.console import Console, ConsoleOptions, RenderResult
+from rich.padding import Padding
+from rich.table import Table
+from rich.text import Text
+
+from feeddrive.reproduce.row import Paper, Row, Status
+
+HEADINGS = ("place", "quantity", "printed", "computed", "deviation", "status")
+SHORT = {
+    Status.REPRODUCED: "reproduced",
+    Status.ASSUMPTION: "assumed",
+    Status.CONTRADICTED: "contradicted",
+    Status.NOT_POSSIBLE: "not possible",
+}
+"""Status in a column; `assumed` is reproduced with the assumption that stands under the row."""
+
+_DEVIATION, _STATUS, _GAP, _INDENT = 9, 12, 2, 4
+_SHARES = (0.17, 0.38, 0.2, 0.25)
+"""Of the remaining width: place, quantity, printed, computed."""
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """All rows of one paper, for rich."""
+
+    paper: Paper
+    rows: Sequence[Row]
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
+        """Heading, column headings, and every row with its reason under it."""
+        widths = _widths(options.max_width)
+        total = min(options.max_width, sum(widths) + _GAP * (len(widths) - 1))
+        yield Text(f"Paper {self.paper.number}  {self.paper.citation}", style="bold")
+        if not self.rows:
+            yield Text("not compared yet\n")
+            return
+        yield _line(HEADINGS, widths)
+        yield Text("─" * total)
+        for row in self.rows:
+            yield _line(cells(row), widths)
+            if row.reason:
+                yield Padding(Text(row.reason, style="dim", overflow="fold"), (0, 0, 0, _INDENT))
+        yield Text("")
+
+
+def cells(row: Row) -> tuple[str, ...]:
+    """Texts of a row under `HEADINGS`."""
+    printed, computed = _with_unit(row.printed, row.unit), _with_unit(row.computed, row.unit)
+    return row.place, row.quantity, printed, computed, deviation_text(row.deviation), SHORT[row.status]
+
+
+def deviation_text(deviation: float | None) -> str:
+    """A relative deviation in per cent, no digits that mean nothing; empty where there is none."""
+    if deviation is None:
+        return ""
+    percent = 100.0 * deviation
+    if abs(percent) < 0.005:
+        return "0 %"
+    return f"{percent:+.2f} %" if abs(percent) < 1.0 else f"{percent:+.1f} %"
+
+
+def summary_table(rows: Sequence[Row], papers: Sequence[Paper]) -> Table:
+    """How many rows of each paper have each status."""
+    made = Table(title="Summary", title_justify="left", title_style="bold")
+    for heading in ("paper", *SHORT.values(), "rows"):
+        made.add_column(heading, justify="left" if heading == "paper" else "right")
+    for paper in papers:
+        made.add_row(paper.number, *_counted([row for row in rows if row.paper is paper]))
+    if len(papers) > 1:
+        made.add_section()
+        made.add_row("all", *_counted(rows))
+    return made
+
+
+def _counted(rows: Sequence[Row]) -> list[str]:
+    return [*(str(sum(row.status is status for row in rows)) for status in SHORT), str(len(rows))]
+
+
+def _widths(total: int) -> tuple[int, ...]:
+    """Columns for a line of `total` letters; below 70 letters the terminal wraps."""
+    free = max(total, 70) - _DEVIATION - _STATUS - _GAP * (len(HEADINGS) - 1)
+    place, quantity, printed = (round(share * free) for share in _SHARES[:3])
+    return place, quantity, printed, free - place - quantity - printed, _DEVIATION, _STATUS
+
+
+def _line(texts: Sequence[str], widths: Sequence[int]) -> Table:
+    """One row, its cells wrapped at words."""
+    made = Table.grid(padding=(0, _GAP, 0, 0), pad_edge=False)
+    for width, heading in zip(widths, HEADINGS, strict=True):
+        made.add_column(width=width, overflow="fold", justify="right" if heading == "deviation" else "left")
+    made.add_row(*(Text(text) for text in texts))
+    return made
+
+
+def _with_unit(text: str, unit: str) -> str:
+    return f"{text} {unit}" if text and unit else text

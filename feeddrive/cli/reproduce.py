@@ -1,0 +1,60 @@
+"""`feeddrive reproduce`: every number and checkable claim of the source papers beside what the program computes."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.text import Text
+
+from feeddrive import __version__
+from feeddrive.cli.comparison import Comparison, summary_table
+from feeddrive.cli.output import JsonOption, deliver, warnings_as_lines
+from feeddrive.files import write_text_atomically
+from feeddrive.reproduce.collection import as_csv, counts, find_papers, record, rows_of
+from feeddrive.reproduce.row import Paper, Row
+
+_LEGEND = "assumed: reproduced with the assumption under the row. deviation: (computed - printed) / printed."
+
+
+def command(
+    paper: Annotated[str | None, typer.Option("--paper", help="One paper alone, such as 004.")] = None,
+    as_json: JsonOption = False,
+    out: Annotated[
+        Path | None, typer.Option("--out", help="Folder for reproduce.csv and reproduce.json, written besides.")
+    ] = None,
+) -> None:
+    """Compare every number and checkable claim of the source papers with what the program computes."""
+    papers = find_papers(paper)
+    with warnings_as_lines():
+        rows = tuple(row for one in papers for row in rows_of(one))
+    content = _content(papers, rows)
+    written = _write(content, rows, out) if out is not None else []
+    comparisons = [Comparison(one, [row for row in rows if row.paper is one]) for one in papers]
+    deliver(content, [*comparisons, summary_table(rows, papers), Text(_LEGEND)], as_json, None)
+    for path in written:
+        typer.echo(f"written: {path}", err=True)
+
+
+def _content(papers: tuple[Paper, ...], rows: tuple[Row, ...]) -> dict[str, Any]:
+    return {
+        "format": "feeddrive-reproduce/1",
+        "version": __version__,
+        "papers": {paper.number: paper.citation for paper in papers},
+        "summary": {str(status): number for status, number in counts(rows).items()},
+        "rows": [record(row) for row in rows],
+    }
+
+
+def _write(content: dict[str, Any], rows: tuple[Row, ...], folder: Path) -> list[Path]:
+    """The files of `--out`."""
+    texts = {
+        "reproduce.csv": as_csv(rows),
+        "reproduce.json": json.dumps(content, indent=2, ensure_ascii=False) + "\n",
+    }
+    paths = [folder / name for name in texts]
+    for path, text in zip(paths, texts.values(), strict=True):
+        write_text_atomically(path, text)
+    return paths
