@@ -95,7 +95,7 @@ def guide_effect(
 ) -> GuideFriction:  # fmt: skip
     """Friction of a table on ball guides: rolling, slip and seals as Coulomb level, the oil film as power of speed.
 
-    The power law leaves the film's force by less than 0.2 % from 1 mm/s to 2 m/s.
+    The power law leaves the film's force by less than 0.03 % from 1 mm/s to 2 m/s.
 
     Args:
         guide: geometry and preload of the guide.

@@ -25,6 +25,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TypeVar
 
 from scipy.optimize import brentq
@@ -186,8 +187,9 @@ def ball_in_groove(diameter: float, conformity: float, material: Material = BEAR
     return point_contact(Curvatures((ball, ball), (0.0, -1.0 / (conformity * diameter))), material, material)
 
 
+@lru_cache(maxsize=256)
 def ellipse_numbers(relative: tuple[float, float]) -> EllipseNumbers:
-    """Hertz's numbers for the relative curvatures A, B [1/m] of the two planes, in any order.
+    """Hertz's numbers for the relative curvatures A, B [1/m] of the two planes, in any order; kept, for balls repeat.
 
     Raises:
         InputError: as `point_contact`.

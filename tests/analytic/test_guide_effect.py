@@ -94,8 +94,8 @@ def test_what_the_parts_hand_over(guide, load: float) -> None:
     expected = table_friction(guide, SET_A, 4, speeds, load, seal_drag=3.0)
     film = effect.viscous(Motion(0.0, ca.DM(speeds)), effect.values)
     # As its docstring says: the film is two powers of almost the same exponent.
-    assert np.array(film).ravel() == pytest.approx(expected.viscous, rel=2e-3)
-    assert _forces(effect, list(speeds)) == pytest.approx(expected.total, rel=2e-3)
+    assert np.array(film).ravel() == pytest.approx(expected.viscous, rel=3e-4)
+    assert _forces(effect, list(speeds)) == pytest.approx(expected.total, rel=3e-4)
 
 
 def test_set_b_slips_more_under_load() -> None:
