@@ -1,0 +1,179 @@
+"""The explicit scheme with the nut moving cell by cell: the oracle that everything faster is measured against.
+
+    θ' = θ + Δt C⁻¹ (b - K_p θ)        (paper 002, equations (7), (10), (13))
+
+with the matrix K_p of the place p where the nut stands. It is stable, and free of overshoot, while every node keeps a
+non-negative share of its own temperature, Δt ≤ min C/K_ii (equation (14)). A step is one sparse product; the constant 1
+and the heat lost to the air ride along as two more states, so that the energy is audited in every run.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from itertools import cycle, islice
+
+import numpy as np
+import scipy.sparse as sparse
+
+from feeddrive.errors import InputError
+from feeddrive.thermal.full_model import Discretisation, model_of
+from feeddrive.thermal.model import HeatModel, Path
+from feeddrive.thermal.rig import Travel, refuse_unless_positive
+from feeddrive.thermal.system import HeatSystem
+from feeddrive.typing import Expression, FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class ExplicitRun:
+    """Outcome of an explicit run.
+
+    Attributes:
+        times: middles of the periods that were averaged, (k,) [s].
+        outputs: means over these periods, (k, p) [K, m].
+        output_names: p names.
+        profile: mean rise of the shaft's cross-sections over the last period, (axial,) [K].
+        steps: how many were taken.
+        step: Δt [s].
+        heat_in, heat_out, heat_stored: by the heats, through the air, in the steel [J].
+    """
+
+    times: FloatArray
+    outputs: FloatArray
+    output_names: tuple[str, ...]
+    profile: FloatArray
+    steps: int
+    step: float
+    heat_in: float
+    heat_out: float
+    heat_stored: float
+
+    @property
+    def imbalance(self) -> float:
+        """|in - out - stored| / in."""
+        return abs(self.heat_in - self.heat_out - self.heat_stored) / max(abs(self.heat_in), 1e-300)
+
+
+def places_of(travel: Travel, cell: float) -> tuple[FloatArray, FloatArray]:
+    """Places where the nut's centre stands on its way, a cell or less apart, and the share of time at each.
+
+    Args:
+        travel: of the nut's centre.
+        cell: axial cell of the nut [m].
+
+    Returns:
+        Places (k,) [m] and shares (k,); at the two ends it stands half as long as elsewhere.
+    """
+    stretches = math.ceil(travel.stroke / cell - 1e-9)
+    if stretches == 0:
+        return np.array([travel.low]), np.ones(1)
+    shares = np.full(stretches + 1, 1.0 / stretches)
+    shares[[0, -1]] /= 2
+    return np.linspace(travel.low, travel.high, stretches + 1), shares
+
+
+def stability_limit(system: HeatSystem) -> float:
+    """Longest explicit step [s]: every node keeps a non-negative share of itself (equation (14))."""
+    return float(np.min(system.capacity / system.conductance.diagonal()))
+
+
+def run_explicitly(
+    parts: Discretisation, conductances: Mapping[Path, float], heats: Mapping[str, float], feed: float,
+    duration: float, *, step: float | None = None, reports: int = 18, travel: Travel | None = None,
+) -> ExplicitRun:  # fmt: skip
+    """Run from rest, the nut moving to and fro, and average over whole periods.
+
+    Args:
+        parts: the rig in finite volumes.
+        conductances: path to g.
+        heats: input name to its constant value [W, K].
+        feed: speed of the nut along the shaft [m/s].
+        duration: rounded down to whole periods [s].
+        step: Δt [s]; None for the longest that is stable and divides the time in a cell.
+        reports: how many periods are averaged, evenly over the run, the last one among them.
+        travel: in place of the rig's.
+
+    Raises:
+        InputError: a step that is not stable, a nut that leaves the shaft, an unknown heat, a negative conductance.
+    """
+    refuse_unless_positive(feed, "m/s", "feed")
+    travel = travel or parts.rig.travel
+    parts.rig.refuse_travel(travel)
+    places, _ = places_of(travel, parts.nut.spacing)
+    systems = [model_of(parts, Travel(place, place)).at(conductances) for place in places]
+    limit = min(stability_limit(system) for system in systems)
+    dwell = _dwell(places, feed, limit)
+    Δt, in_cell = _step(step, limit, dwell)
+    products = [_product(system, heats, Δt) for system in systems]
+    there_and_back = [*products, *products[-2:0:-1]]
+    averaged = model_of(parts, travel)
+    return _march(there_and_back, averaged, averaged.at(conductances), heats, Δt, in_cell, duration, reports)
+
+
+def _dwell(places: FloatArray, feed: float, limit: float) -> float:
+    """Time at one place on one pass [s]."""
+    return float(places[1] - places[0]) / feed if len(places) > 1 else limit
+
+
+def _step(wanted: float | None, limit: float, dwell: float) -> tuple[float, int]:
+    """The step and how many there are at one place."""
+    if wanted is not None:
+        refuse_unless_positive(wanted, "s", "step")
+        if wanted > limit * (1 + 1e-12):
+            what = f"a step of {wanted * 1e3:.4g} ms is not stable"
+            raise InputError(what, "step", f"write at most {limit * 1e3:.4g} ms")
+    count = max(math.ceil(dwell / (wanted or limit) - 1e-9), 1)
+    return dwell / count, count
+
+
+def _product(system: HeatSystem, heats: Mapping[str, float], Δt: float) -> Expression:
+    """The step's matrix on (θ, 1, heat lost)."""
+    given = np.zeros(len(system.input_names))
+    for name, value in heats.items():
+        given[system.column(name)] = value
+    n, rate = system.order, Δt / system.capacity
+    inner = sparse.eye_array(n) - sparse.diags_array(rate) @ system.conductance
+    # What the columns of K do not return to other nodes goes to the air.
+    leak = np.asarray(system.conductance.sum(axis=0)).ravel()
+    surroundings = np.array([name in ("ambient", "coolant") for name in system.input_names])
+    gained = float(np.sum(system.gains[:, surroundings] @ given[surroundings]))
+    leak[np.abs(leak) < 1e-12 * system.conductance.diagonal()] = 0.0
+    return sparse.block_array(
+        [
+            [inner, sparse.csr_array((rate * (system.gains @ given))[:, None]), None],
+            [None, np.ones((1, 1)), None],
+            [sparse.csr_array(Δt * leak[None, :]), np.array([[-Δt * gained]]), np.ones((1, 1))],
+        ]
+    ).tocsr()
+
+
+def _march(
+    there_and_back: list[Expression], model: HeatModel, system: HeatSystem, heats: Mapping[str, float], Δt: float,
+    in_cell: int, duration: float, reports: int,
+) -> ExplicitRun:  # fmt: skip
+    in_period = len(there_and_back) * in_cell
+    periods = max(int(duration / (in_period * Δt) + 1e-9), 1)
+    reported = set(np.linspace(0, periods, min(reports, periods) + 1).astype(int)[1:] - 1)
+    state = np.zeros(system.order + 2)
+    state[-2] = 1.0
+    means: list[FloatArray] = []
+    times: list[float] = []
+    for period in range(periods):
+        wanted = period in reported
+        total = np.zeros_like(state)
+        for product in islice(cycle(there_and_back), len(there_and_back)):
+            for _ in range(in_cell):
+                state = product @ state
+                if wanted:
+                    total += state
+        if wanted:
+            means.append(total[:-2] / in_period)
+            times.append((period + 0.5) * in_period * Δt)
+    duration = periods * in_period * Δt
+    heat_in = duration * sum(value for name, value in heats.items() if name not in ("ambient", "coolant"))
+    return ExplicitRun(
+        np.array(times), system.outputs(np.array(means), np.zeros(0)), system.output_names,
+        np.asarray(model.profile @ means[-1]),
+        periods * in_period, Δt, heat_in, float(state[-1]), float(system.capacity @ state[:-2]),
+    )  # fmt: skip
