@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from rich.console import Console, ConsoleOptions, RenderResult
+from rich.console import Console, ConsoleOptions, RenderableType, RenderResult
 from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
@@ -21,33 +21,57 @@ SHORT = {
 }
 """Status in a column; `assumed` is reproduced with the assumption that stands under the row."""
 
-_DEVIATION, _STATUS, _GAP, _INDENT = 9, 12, 2, 4
+_WIDE = 100
+"""Letters in a line from which on all columns stand side by side."""
+
+_NARROWEST = 60
+_DEVIATION, _STATUS, _PLACE, _GAP, _INDENT = 9, 12, 13, 2, 4
+_NUMBERS = HEADINGS.index("deviation")
 _SHARES = (0.17, 0.38, 0.2, 0.25)
-"""Of the remaining width: place, quantity, printed, computed."""
+"""Of the width beside deviation and status: place, quantity, printed, computed."""
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """All rows of one paper, for rich."""
+    """All rows of one paper, for rich: side by side where they fit, else printed and computed under the quantity."""
 
     paper: Paper
     rows: Sequence[Row]
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
         """Heading, column headings, and every row with its reason under it."""
-        widths = _widths(options.max_width)
-        total = min(options.max_width, sum(widths) + _GAP * (len(widths) - 1))
         yield Text(f"Paper {self.paper.number}  {self.paper.citation}", style="bold")
         if not self.rows:
             yield Text("not compared yet\n")
             return
-        yield _line(HEADINGS, widths)
-        yield Text("─" * total)
-        for row in self.rows:
-            yield _line(cells(row), widths)
-            if row.reason:
-                yield Padding(Text(row.reason, style="dim", overflow="fold"), (0, 0, 0, _INDENT))
+        wide = options.max_width >= _WIDE
+        yield from _wide(self.rows, options.max_width) if wide else _narrow(self.rows, options.max_width)
         yield Text("")
+
+
+def _wide(rows: Sequence[Row], width: int) -> Iterator[RenderableType]:
+    free = width - _DEVIATION - _STATUS - _GAP * (len(HEADINGS) - 1)
+    place, quantity, printed = (round(share * free) for share in _SHARES[:3])
+    widths = (place, quantity, printed, free - place - quantity - printed, _DEVIATION, _STATUS)
+    yield _line(HEADINGS, widths)
+    yield Text("─" * width)
+    for row in rows:
+        yield _line(cells(row), widths)
+        if row.reason:
+            yield _under(row.reason, _INDENT)
+
+
+def _narrow(rows: Sequence[Row], width: int) -> Iterator[RenderableType]:
+    widths = (_PLACE, max(width, _NARROWEST) - _PLACE - _STATUS - 2 * _GAP, _STATUS)
+    yield _line((HEADINGS[0], f"{HEADINGS[1]}: {', '.join(HEADINGS[2:5])}", HEADINGS[5]), widths)
+    yield Text("─" * width)
+    for row in rows:
+        place, quantity, printed, computed, deviation, status = cells(row)
+        yield _line((place, quantity, status), widths)
+        named = (("printed", printed), ("computed", computed), ("deviation", deviation))
+        yield _under("; ".join(f"{name} {text}" for name, text in named if text), _PLACE + _GAP)
+        if row.reason:
+            yield _under(row.reason, _PLACE + _GAP)
 
 
 def cells(row: Row) -> tuple[str, ...]:
@@ -83,21 +107,19 @@ def _counted(rows: Sequence[Row]) -> list[str]:
     return [*(str(sum(row.status is status for row in rows)) for status in SHORT), str(len(rows))]
 
 
-def _widths(total: int) -> tuple[int, ...]:
-    """Columns for a line of `total` letters; below 70 letters the terminal wraps."""
-    free = max(total, 70) - _DEVIATION - _STATUS - _GAP * (len(HEADINGS) - 1)
-    place, quantity, printed = (round(share * free) for share in _SHARES[:3])
-    return place, quantity, printed, free - place - quantity - printed, _DEVIATION, _STATUS
-
-
 def _line(texts: Sequence[str], widths: Sequence[int]) -> Table:
     """One row, its cells wrapped at words."""
     made = Table.grid(padding=(0, _GAP, 0, 0), pad_edge=False)
-    for width, heading in zip(widths, HEADINGS, strict=True):
-        made.add_column(width=width, overflow="fold", justify="right" if heading == "deviation" else "left")
+    for column, width in enumerate(widths):
+        made.add_column(width=width, overflow="fold", justify="right" if column == _NUMBERS else "left")
     made.add_row(*(Text(text) for text in texts))
     return made
 
 
+def _under(text: str, indent: int) -> Padding:
+    return Padding(Text(text, style="dim", overflow="fold"), (0, 0, 0, indent))
+
+
 def _with_unit(text: str, unit: str) -> str:
-    return f"{text} {unit}" if text and unit else text
+    """Text with its unit where it holds a number: "curves" has none."""
+    return f"{text} {unit}" if unit and any(letter.isdigit() for letter in text) else text

@@ -24,7 +24,8 @@ def find_papers(number: str | None) -> tuple[Paper, ...]:
     """
     if number is None:
         return tuple(Paper)
-    found = tuple(paper for paper in Paper if paper.number == number.strip().zfill(3))
+    wanted = number.strip() and number.strip().zfill(3)
+    found = tuple(paper for paper in Paper if paper.number == wanted)
     if not found:
         known = ", ".join(paper.number for paper in Paper)
         raise InputError(f'no source paper "{number}"', "--paper", f"the papers are {known}")

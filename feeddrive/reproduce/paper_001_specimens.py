@@ -59,7 +59,7 @@ def _weibull() -> tuple[Row, ...]:
         claim(_LIFE, "sec. 2.2", "lives of screws scatter less than those of bearings", "smaller",
               f"standard deviation over mean {scatter[0]:.2f} against {scatter[1]:.2f}", scatter[0] < scatter[1]),
         claim(_LIFE, "eq. (1), sec. 2.2", "F in per cent", "F (%)",
-              f"ln ln(1/(1 - F)) of one half is {fraction:.3f} as a fraction, {per_cent} in per cent",
+              f"ln ln(1/(1 - F)) of one half is {fraction:.3f}, of 50 {_or_none(per_cent)}",
               math.isfinite(per_cent), otherwise="F must be a fraction: in per cent the logarithm does not exist"),
     )  # fmt: skip
 
@@ -71,13 +71,13 @@ def _consistency() -> tuple[Row, ...]:
     twenty = WeibullLaw.through(FIRST_FAILURE, float(beta.ppf(0.5, 1, 2 * SPECIMENS)), BALL_SCREW.slope).life()
     return (
         number(_LIFE, "conclusion 5", "rated life L10, greatest of ten lives from 230 000 to 500 000 with slope 3.6",
-               "10^3 rev", "300", greatest_rated_life() / _THOUSAND, within=0.01,
+               "thousand rev", "300", greatest_rated_life() / _THOUSAND, within=0.01,
                otherwise="no ten such lives give 300; with the first failure as the first of twenty single nuts it "
                f"would be {twenty / _THOUSAND:.0f}"),
         claim(_LIFE, "sec. 2.2, conclusion 5", "L10 of 300 000, slope 3.6 and all ten failed by 500 000 rev",
               "all three", f"chance of it {all_failed:.1e}", all_failed > 0.05,
               otherwise=f"with them the last of ten fails at {_median_last(law) / _THOUSAND:.0f} 000 rev; it agrees if "
-              " half of the nuts were suspended, or if twenty single nuts are counted"),
+              "half of the nuts were suspended, or if twenty single nuts are counted"),
     )  # fmt: skip
 
 
@@ -122,6 +122,10 @@ def _ordinate(failed: float) -> float:
     """ln ln(1/(1 - F)); not a number where it does not exist."""
     with np.errstate(invalid="ignore"):
         return float(np.log(-np.log1p(-np.float64(failed))))
+
+
+def _or_none(value: float) -> str:
+    return f"{value:.3f}" if math.isfinite(value) else "not a number"
 
 
 def _variation(slope: float) -> float:
