@@ -43,9 +43,9 @@ COMMANDS: dict[str, Entry] = {
     "demo": Entry("demo", "Diagnose a shipped machine from a shipped recording."),
     "list": Entry("list_plants", "List the machines that come with feeddrive."),
     "show": Entry("show", "Show a machine: stiffness budget, inertias, friction, modes."),
-    "run": Entry("run", "Run a scenario: a machine under its controller, with figures and metrics."),
+    "run": Entry("run", "Run a scenario: a machine under control; figures, metrics."),
     "diagnose": Entry("diagnose", "Find what a machine's model lacks, from recordings of it."),
-    "reproduce": Entry("reproduce", "Compare the source papers' numbers with what feeddrive computes."),
+    "reproduce": Entry("reproduce", "Compare the source papers' numbers with computed ones."),
 }
 """Commands by name, in the order in which `feeddrive --help` lists them."""
 
