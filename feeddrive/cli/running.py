@@ -29,7 +29,7 @@ from feeddrive.servo.cascade import KV_UNIT
 from feeddrive.servo.linear_loop import worst_eigenvalue
 from feeddrive.simulate.scenario_file import read_scenario
 from feeddrive.simulate.scenario_overrides import parse_overrides
-from feeddrive.simulate.scenario_result import ScenarioResult
+from feeddrive.simulate.scenario_result import SERIES, ScenarioResult
 from feeddrive.simulate.scenario_run import Progress as Told
 from feeddrive.simulate.scenario_run import run_scenario
 
@@ -171,7 +171,7 @@ _UNITS = {
     "spread": "N m", "force": "N", "stiffness": "N/m", "width": "m", "work": "J", "displacement": "m", "lag": "rad",
     "rise": "s", "settling": "s", "window": "m", "average": "s", "start": "s", "end": "s", "period": "s", "at": "s",
     "skip": "s", "segment": "s", "rms": "m", "maximum": "m", "mean": "m", "glitch": "m", "radial_maximum": "m",
-    "radial_minimum": "m",
+    "radial_minimum": "m", "friction": "N m", "offset": "N m", "stroke": "m", "reversal": "m",
 }  # fmt: skip
 
 
@@ -198,7 +198,7 @@ def _shown(key: str, value: Any, one: dict[str, Any] | None = None) -> str:
     if isinstance(value, list):
         return ", ".join(_shown(key, item, one) for item in value)
     if isinstance(value, float):
-        unit = "m" if key == "deviation" else _UNITS.get(key, "1")
+        unit = SERIES[one["channel"]] if one is not None and key == "final" else _UNITS.get(key, "1")
         if one is not None and one["kind"] == "step" and key == "overshoot":
             return f"{100 * value:.3g} %"
         return format_quantity(value, unit) if unit != "1" else f"{value:.5g}"

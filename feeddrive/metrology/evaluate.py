@@ -12,17 +12,18 @@ import numpy as np
 from feeddrive.errors import InputError
 from feeddrive.metrology.circular import Circular, circular
 from feeddrive.metrology.following import Following, Settling, following, settling
-from feeddrive.metrology.loops import ForceLoop, FrictionPoint, force_loop, friction_map
+from feeddrive.metrology.loops import ForceLoop, FrictionPoint, TorqueLoop, force_loop, friction_map, torque_loop
 from feeddrive.metrology.positioning import EDITION, Positioning, positioning
 from feeddrive.metrology.response import Response, StepResponse, measured_response, periodic_response, step_response
 from feeddrive.simulate.scenario import Evaluation
 from feeddrive.simulate.scenario_result import ScenarioResult
-from feeddrive.simulate.trajectories import Circle
-from feeddrive.simulate.waveforms import Multisine
+from feeddrive.simulate.trajectories import Circle, Wave
+from feeddrive.simulate.waveforms import Multisine, Prbs, Sweep, Waveform
 from feeddrive.typing import BoolArray
 
 Figure = (
-    Following | tuple[Settling, ...] | Positioning | Circular | tuple[FrictionPoint, ...] | ForceLoop | StepResponse
+    Following | tuple[Settling, ...] | Positioning | Circular | tuple[FrictionPoint, ...] | ForceLoop | TorqueLoop
+    | StepResponse
     | Response
 )  # fmt: skip
 
@@ -156,12 +157,23 @@ def _without_first(mask: BoolArray, count: int) -> BoolArray:
     return kept
 
 
-def _force_loop(result: ScenarioResult, wanted: Evaluation) -> ForceLoop:
+def _loop(result: ScenarioResult, wanted: Evaluation) -> BoolArray:
+    """The samples of a loop from `start` over `period`."""
     start, period = _number(wanted, "start", 0.0), _number(wanted, "period", 0.0)
     chosen = _between(result, start, start + period)
     if chosen.sum() < 10:
-        raise InputError("fewer than ten samples in the loop", "evaluate force_loop", "choose start and period")
+        raise InputError("fewer than ten samples in the loop", f"evaluate {wanted.kind}", "choose start and period")
+    return chosen
+
+
+def _force_loop(result: ScenarioResult, wanted: Evaluation) -> ForceLoop:
+    chosen = _loop(result, wanted)
     return force_loop(result.series["cutting_force"][chosen], result.series["table_position"][chosen])
+
+
+def _torque_loop(result: ScenarioResult, wanted: Evaluation) -> TorqueLoop:
+    chosen, lead = _loop(result, wanted), 2 * math.pi * result.scenario.plant.chain.radius
+    return torque_loop(result.series["table_position"][chosen], result.series["motor_torque"][chosen], lead)
 
 
 def _step(result: ScenarioResult, wanted: Evaluation) -> StepResponse:
@@ -179,7 +191,16 @@ def _response(result: ScenarioResult, wanted: Evaluation) -> Response:
             raise InputError("a period is no whole number of samples", "evaluate response", "change period or rate")
         return periodic_response(given, output, tick, period, waveform.frequencies)
     segment = max(8, round(_number(wanted, "segment", 0.0) / tick))
-    return measured_response(given, output, tick, segment)
+    trajectory = result.scenario.trajectory
+    lowest, highest = _band(waveform or (trajectory.waveform if isinstance(trajectory, Wave) else None))
+    return measured_response(given, output, tick, segment).between(lowest, highest)
+
+
+def _band(waveform: Waveform | None) -> tuple[float, float]:
+    """The frequencies that a waveform excites [Hz]; all of them where there is none."""
+    if isinstance(waveform, Sweep | Multisine):
+        return waveform.low, waveform.high
+    return 0.0, 0.45 / waveform.bit if isinstance(waveform, Prbs) else math.inf
 
 
 _EVALUATORS: dict[str, Callable[[ScenarioResult, Evaluation], Figure]] = {
@@ -189,6 +210,7 @@ _EVALUATORS: dict[str, Callable[[ScenarioResult, Evaluation], Figure]] = {
     "circular": _circular,
     "friction_map": _friction_map,
     "force_loop": _force_loop,
+    "torque_loop": _torque_loop,
     "step": _step,
     "response": _response,
 }

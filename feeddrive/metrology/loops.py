@@ -1,4 +1,4 @@
-"""Force-displacement loops: stiffness and lost motion; torque over slow reversals: friction and break-away."""
+"""Force-displacement loops: stiffness, lost motion; torque over slow reversals and at constant velocity: friction."""
 
 from __future__ import annotations
 
@@ -52,6 +52,53 @@ def _at_zero(force: FloatArray, displacement: FloatArray) -> float:
         raise InputError("the force does not pass zero on both ways", "force loop", "load in both directions")
     order = np.argsort(force, kind="stable")
     return float(np.interp(0.0, force[order], displacement[order]))
+
+
+@dataclass(frozen=True)
+class TorqueLoop:
+    """A loop of motor torque over table position, from slow reversals.
+
+    Attributes:
+        friction: half the distance of the branches in the middle of the stroke [N m].
+        offset: their mean there [N m].
+        force: the friction as a force at the table, 2 pi / lead times it [N].
+        stroke: from one reversal to the other [m].
+        reversal: travel after a reversal in which the torque passes from -63 to +63 % of the friction [m].
+    """
+
+    friction: float
+    offset: float
+    force: float
+    stroke: float
+    reversal: float
+
+
+_RISEN = 0.63
+
+
+def torque_loop(position: FloatArray, torque: FloatArray, lead: float) -> TorqueLoop:
+    """Figures of one whole cycle.
+
+    Args:
+        position: of the table over whole cycles [m], shape (n,).
+        torque: of the motor [N m], shape (n,).
+        lead: [m].
+
+    Raises:
+        InputError: a position that does not move to and fro.
+    """
+    low, high = float(position.min()), float(position.max())
+    forward = np.gradient(position) > 0
+    middle = np.abs(position - 0.5 * (low + high)) < 0.1 * (high - low)
+    if not (forward & middle).any() or not (~forward & middle).any():
+        raise InputError("the position does not move to and fro", "torque loop", "choose start and period")
+    up, down = (float(torque[branch & middle].mean()) for branch in (forward, ~forward))
+    friction, offset = 0.5 * (up - down), 0.5 * (up + down)
+    first = int(np.argmin(position))
+    place, share = np.roll(position, -first), (np.roll(torque, -first) - offset) / friction
+    rising = slice(0, int(np.argmax(place)) + 1)
+    passed = [float(place[rising][np.argmax(share[rising] > level)]) for level in (-_RISEN, _RISEN)]
+    return TorqueLoop(friction, offset, friction * 2 * np.pi / lead, high - low, passed[1] - passed[0])
 
 
 @dataclass(frozen=True)

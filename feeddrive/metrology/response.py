@@ -34,6 +34,11 @@ class Response:
     coherence: FloatArray
     averages: int
 
+    def between(self, low: float, high: float) -> Response:
+        """The part from `low` to `high` [Hz]."""
+        inside = (self.frequency >= low) & (self.frequency <= high)
+        return Response(self.frequency[inside], self.response[inside], self.coherence[inside], self.averages)
+
 
 def measured_response(given: FloatArray, output: FloatArray, sample_time: float, segment: int) -> Response:
     """H1 over Hann windows of `segment` samples.
@@ -56,7 +61,8 @@ def measured_response(given: FloatArray, output: FloatArray, sample_time: float,
     if averages < 2:
         coherence = np.full_like(coherence, np.nan)
     with np.errstate(divide="ignore", invalid="ignore"):
-        return Response(frequency[1:], (cross / power)[1:], coherence[1:], averages)
+        inside = slice(1, -1)  # neither at rest nor at half the sample rate
+        return Response(frequency[inside], (cross / power)[inside], coherence[inside], averages)
 
 
 def periodic_response(

@@ -11,7 +11,8 @@ import numpy as np
 from feeddrive.metrology.circular import Circular
 from feeddrive.metrology.evaluate import Evaluated
 from feeddrive.metrology.following import Settling
-from feeddrive.metrology.loops import ForceLoop, FrictionPoint
+from feeddrive.metrology.linear_response import linear_response
+from feeddrive.metrology.loops import ForceLoop, FrictionPoint, TorqueLoop
 from feeddrive.metrology.positioning import EDITION, Positioning
 from feeddrive.metrology.response import Response, StepResponse
 from feeddrive.report.drawing import AFTER, BEFORE, MEASURED, NOISE, ReportFigure, dress, legend_above, new_figure
@@ -24,7 +25,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.projections.polar import PolarAxes
 
-_MOST_STOPS = 12
+_MOST_STOPS = 40
+_LABELLED = 8
 _RIM = 0.35
 """Share of a polar drawing's radius that the deviations fill on either side."""
 
@@ -44,12 +46,15 @@ def settling_figure(result: ScenarioResult, one: Evaluated) -> ReportFigure:
     for stop in stops[:_MOST_STOPS]:
         near = (result.time >= stop.arrival - 0.2 * (stop.leave - stop.arrival)) & (result.time < stop.leave)
         deviation = 1e6 * stop.direction * (result.series["table_position"][near] - stop.target)
-        axes.plot(*envelope(1e3 * (result.time[near] - stop.arrival), deviation), linewidth=0.9)
+        label = f"{1e3 * stop.target:.6g} mm {'from below' if stop.direction > 0 else 'from above'}"
+        axes.plot(*envelope(1e3 * (result.time[near] - stop.arrival), deviation, 2000), linewidth=0.9, label=label)
     settled = cast(tuple[Settling, ...], one.figure)
     times = [point.time for point in settled if math.isfinite(point.time)]
     largest = max([4e6 * window, *(1.2e6 * point.overshoot for point in settled)])
     axes.set_ylim(-largest, largest)
-    dress(axes, "time after the set-point's arrival [ms]", "beyond target [µm]", "along the direction of approach")
+    dress(axes, "time after the set-point's arrival [ms]", "beyond target [µm]")
+    if len(stops) <= _LABELLED:
+        legend_above(axes, 4)
     slowest = f"{1e3 * max(times):.3g} ms" if times else "never"
     text = f"Window ±{micrometres(window)} shaded; slowest settling {slowest} of {len(times)} of {len(settled)} stops"
     return ReportFigure("settling", "Settling at the targets", text, figure)
@@ -104,14 +109,14 @@ def friction_figure(result: ScenarioResult, one: Evaluated) -> ReportFigure:
     points = cast(tuple[FrictionPoint, ...], one.figure)
     figure = new_figure(3.6)
     axes = figure.subplots()
-    for side, colour, label in ((1, AFTER, "along +"), (-1, BEFORE, "along −, sign turned")):
+    for side, colour, label, style in ((1, AFTER, "along +", "o-"), (-1, BEFORE, "along −, sign turned", "s--")):
         some = [point for point in points if side * point.velocity > 0]
         speed, torque = ([60 * side * p.velocity for p in some], [side * p.torque for p in some])
         spread = [point.spread for point in some]
-        axes.errorbar(
-            speed, torque, spread, fmt="o-", color=colour, markersize=3.5, linewidth=1, capsize=2, label=label
-        )
-    axes.set_xscale("log")
+        filled = "full" if side > 0 else "none"
+        axes.errorbar(speed, torque, spread, fmt=style, color=colour, markersize=6 - 2 * side, linewidth=1, capsize=2,
+                      label=label, fillstyle=filled)  # fmt: skip
+    _plain_logarithm(axes)
     axes.set_ylim(bottom=0)
     dress(axes, "velocity [m/min]", "torque at the motor [N m]", "mean and standard deviation at constant velocity")
     legend_above(axes, 2)
@@ -119,6 +124,7 @@ def friction_figure(result: ScenarioResult, one: Evaluated) -> ReportFigure:
     right = axes.secondary_yaxis("right", functions=(_times(factor), _times(1 / factor)))
     right.set_ylabel("as a force at the table [N]", fontsize=9)
     right.tick_params(labelsize=8.5, color="#888888")
+    right.spines["right"].set_color("#888888")
     text = "Friction over velocity; the force is the torque times 2π / lead, without any efficiency"
     return ReportFigure("friction_map", "Friction map", text, figure)
 
@@ -140,6 +146,22 @@ def force_loop_figure(result: ScenarioResult, one: Evaluated) -> ReportFigure:
     text = (f"Stiffness {with_unit(significant(1e-6 * loop.stiffness), 'N/µm')}, lost motion "
             f"{micrometres(loop.width)}, work of a loop {with_unit(significant(1e3 * loop.work), 'mJ')}")  # fmt: skip
     return ReportFigure("force_loop", "Force and displacement", text, figure)
+
+
+def torque_loop_figure(result: ScenarioResult, one: Evaluated) -> ReportFigure:
+    """Motor torque over table position."""
+    loop = cast(TorqueLoop, one.figure)
+    start, period = (float(one.evaluation.settings[key]) for key in ("start", "period"))
+    chosen = (result.time >= start) & (result.time < start + period)
+    figure = new_figure(3.6)
+    axes = figure.subplots()
+    position = result.series["table_position"][chosen]
+    factor, unit = (1e6, "µm") if loop.stroke < 1e-3 else (1e3, "mm")
+    axes.plot(factor * (position - position.min()), result.series["motor_torque"][chosen], color=AFTER, linewidth=1)
+    dress(axes, f"table position, from its lowest [{unit}]", "motor torque [N m]")
+    friction = f"{with_unit(significant(loop.friction), 'N m')}, {with_unit(significant(loop.force), 'N')} at the table"
+    text = f"Friction {friction}; the torque turns within {micrometres(loop.reversal)} after a reversal"
+    return ReportFigure("torque_loop", "Torque over slow reversals", text, figure)
 
 
 _SHOWN: dict[str, tuple[float, str]] = {
@@ -165,24 +187,42 @@ def step_figure(result: ScenarioResult, one: Evaluated) -> ReportFigure:
 
 
 def response_figure(result: ScenarioResult, one: Evaluated) -> ReportFigure:
-    """Magnitude, phase and coherence of a measured frequency response."""
+    """Magnitude, phase and coherence of a measured frequency response, and what the linear plant says."""
     r, settings = cast(Response, one.figure), one.evaluation.settings
+    given, output = str(settings["input"]), str(settings["output"])
     figure = new_figure(6.0)
     top, middle, bottom = figure.subplots(3, 1, sharex=True, height_ratios=[3, 2, 1])
-    style = "." if len(r.frequency) < 400 else "-"
-    _curve(top, r.frequency, 20 * np.log10(np.abs(r.response)), style)
-    _curve(middle, r.frequency, np.degrees(np.angle(r.response)), style)
-    _curve(bottom, r.frequency, r.coherence, style)
-    units = f"{SERIES[str(settings['output'])]} per {SERIES[str(settings['input'])]}"
-    dress(top, "", f"magnitude [dB, {units}]", f"{settings['output']} over {settings['input']}".replace("_", " "))
+    linear = linear_response(result, given, output, r.frequency)
+    if linear is not None:
+        _response_curve(top, middle, r.frequency, linear, BEFORE, "linear, about the mean velocity", 2.6)
+    _response_curve(top, middle, r.frequency, r.response, MEASURED, "as measured on the axis", 0.9)
+    bottom.plot(r.frequency, r.coherence, color=MEASURED, linewidth=0.9)
+    units = f"{SERIES[output]} per {SERIES[given]}"
+    dress(top, "", f"magnitude [dB, {units}]", f"{output} over {given}".replace("_", " "))
+    legend_above(top, 2)
     dress(middle, "", "phase [°]")
     middle.set_yticks([-180, -90, 0, 90, 180])
     dress(bottom, "frequency [Hz]", "coherence")
     bottom.set_ylim(0, 1.05)
-    bottom.set_xscale("log")
-    text = f"{r.averages} averages; measured, so friction, reversals and limits are in it"
+    _plain_logarithm(bottom)
+    text = f"{r.averages} averages; friction, reversals and limits are in what is measured, not in the linear curve"
     return ReportFigure("response", "Frequency response", text, figure)
 
 
-def _curve(axes: Axes, frequency: FloatArray, values: FloatArray, style: str) -> None:
-    axes.plot(frequency, values, style, color=MEASURED, markersize=2.5, linewidth=0.9)
+def _response_curve(
+    top: Axes, middle: Axes, frequency: FloatArray, response: FloatArray, colour: str, label: str, width: float
+) -> None:
+    options: dict[str, Any] = {"color": colour, "linewidth": width}
+    top.plot(frequency, 20 * np.log10(np.abs(response)), label=label, **options)
+    phase = np.degrees(np.angle(response))
+    phase[1:][np.abs(np.diff(phase)) > 180] = np.nan  # no stroke from -180 to 180
+    middle.plot(frequency, phase, **options)
+
+
+def _plain_logarithm(axes: Axes) -> None:
+    """A logarithmic abscissa with 10, 100, 1000 in place of powers."""
+    from matplotlib.ticker import FuncFormatter, NullFormatter
+
+    axes.set_xscale("log")
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.xaxis.set_minor_formatter(NullFormatter())

@@ -17,6 +17,7 @@ from feeddrive.report.figure_metrology import (
     response_figure,
     settling_figure,
     step_figure,
+    torque_loop_figure,
 )
 from feeddrive.report.reduction import envelope
 from feeddrive.simulate.scenario_result import ScenarioResult
@@ -31,6 +32,7 @@ _DRAWERS: dict[str, Callable[[ScenarioResult, Evaluated], ReportFigure]] = {
     "circular": circular_figure,
     "friction_map": friction_figure,
     "force_loop": force_loop_figure,
+    "torque_loop": torque_loop_figure,
     "step": step_figure,
     "response": response_figure,
 }
@@ -55,7 +57,7 @@ def motion_figure(result: ScenarioResult) -> ReportFigure:
     forced = bool(np.any(series["cutting_force"]))
     figure = new_figure(8.4 if forced else 7.2)
     panels = list(figure.subplots(5 if forced else 4, 1, sharex=True))
-    _line(panels[0], time, 1e3 * series["setpoint"], BEFORE, "set-point")
+    _line(panels[0], time, 1e3 * series["setpoint"], BEFORE, "set-point", 2.4)
     _line(panels[0], time, 1e3 * series["table_position"], MEASURED, "table")
     dress(panels[0], "", "position [mm]", result.scenario.name)
     legend_above(panels[0], 2)
@@ -75,5 +77,5 @@ def motion_figure(result: ScenarioResult) -> ReportFigure:
     return ReportFigure("motion", "Motion", text, figure)
 
 
-def _line(axes: Axes, time: FloatArray, values: FloatArray, colour: str, label: str = "") -> None:
-    axes.plot(*envelope(time, values), color=colour, linewidth=0.9, label=label or None)
+def _line(axes: Axes, time: FloatArray, values: FloatArray, colour: str, label: str = "", width: float = 0.9) -> None:
+    axes.plot(*envelope(time, values, 2500), color=colour, linewidth=width, label=label or None)

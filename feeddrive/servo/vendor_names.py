@@ -67,7 +67,17 @@ def with_own_names(entries: dict[str, Any], where: str) -> dict[str, Any]:
         key = alias.key if alias else name
         if key in named:
             raise InputError(f"{named[key]} and {name} both set {key}", where, "keep one of them")
-        bare = isinstance(value, int | float) and not isinstance(value, bool)
-        result[key] = f"{value} {alias.unit}" if alias and alias.unit and bare else value
+        result[key] = f"{value} {alias.unit}" if alias and alias.unit and _bare(value) else value
         named[key] = name
     return result
+
+
+def _bare(value: object) -> bool:
+    """Whether a value is a number without unit, written as a number or as a text."""
+    if isinstance(value, bool) or not isinstance(value, int | float | str):
+        return False
+    try:
+        float(value)
+    except ValueError:
+        return False
+    return True

@@ -31,6 +31,7 @@ KINDS: dict[str, dict[str, str]] = {
     "circular": {},
     "friction_map": {"skip": "s"},
     "force_loop": {"start": "s", "period": "s"},
+    "torque_loop": {"start": "s", "period": "s"},
     "step": {"channel": _WORD, "at": "s"},
     "response": {"input": _WORD, "output": _WORD, "segment": "s", "start": "s"},
 }

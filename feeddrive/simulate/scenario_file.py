@@ -30,11 +30,13 @@ from typing import Any
 from feeddrive import __version__
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant
+from feeddrive.plant.effect_sections import read_effects
 from feeddrive.plant.entries import Origins, Table, read_toml
 from feeddrive.plant.files import read_plant
 from feeddrive.recording.channels import channel_unit
 from feeddrive.servo.cascade import Cascade, divider
 from feeddrive.servo.linear_loop import refuse_unstable
+from feeddrive.servo.vendor_names import with_own_names
 from feeddrive.simulate.scenario import Recorder, Scenario
 from feeddrive.simulate.scenario_controller import FORMAT as CONTROLLER_FORMAT
 from feeddrive.simulate.scenario_controller import read_cascade
@@ -47,7 +49,7 @@ from feeddrive.simulate.trajectories import refuse_beyond_travel
 FORMAT = "feeddrive-scenario/1"
 _KEYS = (
     "format", "name", "description", "source", "plant", "controller", "travel", "run", "record", "trajectory",
-    "excitation", "force", "evaluate",
+    "excitation", "force", "effect", "evaluate",
 )  # fmt: skip
 CHANNELS = (
     "setpoint", "motor_torque", "motor_angle", "motor_speed", "table_position", "table_velocity", "cutting_force",
@@ -76,11 +78,11 @@ def read_scenario(path: Path, overrides: Mapping[str, str] | None = None) -> Sce
             "is not a scenario file of this version", where, f'write format = "{FORMAT}" in its first line'
         )
     controller_where = _insert_controller(entries, path)
-    entries = with_overrides(entries, overrides or {})
+    entries = with_overrides(entries, _own_keys(overrides or {}))
     top = Table(entries, where, Origins())
     top.refuse_unknown(_KEYS)
     plant_path = _plant_path(top, path.parent)
-    plant = read_plant(plant_path)
+    plant = read_plant(plant_path).with_effects(*read_effects(top))
     written = top.table("controller")
     cascade, unstable = read_cascade(Table(written.entries, controller_where, top.origins), plant)
     _require(top, "trajectory")
@@ -100,6 +102,14 @@ def read_scenario(path: Path, overrides: Mapping[str, str] | None = None) -> Sce
     )  # fmt: skip
 
 
+def _own_keys(overrides: Mapping[str, str]) -> dict[str, str]:
+    """Overrides of the controller under our names, so that they meet what the file says."""
+    start = "controller."
+    settings = {key.removeprefix(start): value for key, value in overrides.items() if key.startswith(start)}
+    others = {key: value for key, value in overrides.items() if not key.startswith(start)}
+    return others | {start + key: value for key, value in with_own_names(settings, "--set").items()}
+
+
 def _require(top: Table, key: str) -> None:
     if key not in top.entries:
         raise InputError(f"{key} is missing", top.where, f"write a table [{key}]")
@@ -110,15 +120,17 @@ def _insert_controller(entries: dict[str, Any], path: Path) -> str:
     named = entries.get("controller")
     if named is None:
         raise InputError("controller is missing", str(path), "write a table [controller] or the name of a file")
-    if not isinstance(named, str):
+    changes = dict(named) if isinstance(named, dict) else {"file": named}
+    if "file" not in changes:
         return f"{path}, controller"
-    file = path.parent / named
+    file = path.parent / str(changes.pop("file"))
     read = read_toml(file, "controller file")
     if read.get("format") != CONTROLLER_FORMAT:
         what = "is not a controller file of this version"
         raise InputError(what, str(file), f'write format = "{CONTROLLER_FORMAT}" in its first line')
-    entries["controller"] = read
-    return str(file)
+    own = with_own_names(read, str(file))
+    entries["controller"] = own | with_own_names(changes, f"{path}, controller")
+    return str(file) if not changes else f"{path}, controller"
 
 
 def _plant_path(top: Table, folder: Path) -> Path:

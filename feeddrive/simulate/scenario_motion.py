@@ -11,7 +11,7 @@
   wave            start, offset_velocity, amplitude (a velocity), and a waveform
 waveform =
   sweep           low, high, duration
-  multisine       low, high, period, periods
+  multisine       low, high, period, periods, lines (spread in equal ratios; left out: all)
   prbs            bit, order, periods
 [excitation]      at ("speed" or "torque"), amplitude, start, and a waveform
 [[force]] kind =
@@ -49,7 +49,7 @@ from feeddrive.simulate.trajectories import Circle, Sine, Wave, moves, position_
 from feeddrive.simulate.waveforms import Multisine, Prbs, Sweep, Waveform
 
 _LIMITS = ("velocity", "acceleration", "jerk")
-_WAVEFORM_KEYS = ("waveform", "low", "high", "duration", "period", "periods", "bit", "order")
+_WAVEFORM_KEYS = ("waveform", "low", "high", "duration", "period", "periods", "lines", "bit", "order")
 
 
 def read_trajectory(table: Table) -> Trajectory:
@@ -159,7 +159,7 @@ def _waveform(table: Table) -> Waveform:
     low, high = positive(table, "low", "Hz"), positive(table, "high", "Hz")
     if kind == "sweep":
         return Sweep(low, high, positive(table, "duration", "s"))
-    return Multisine(low, high, positive(table, "period", "s"), whole(table, "periods", 1))
+    return Multisine(low, high, positive(table, "period", "s"), whole(table, "periods", 1), whole(table, "lines", 0))
 
 
 _TRAJECTORIES: dict[str, tuple[tuple[str, ...], Callable[[Table], Trajectory]]] = {

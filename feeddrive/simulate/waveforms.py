@@ -71,12 +71,16 @@ class Sweep:
 
 @dataclass(frozen=True)
 class Multisine:
-    """Cosines at the harmonics of 1 / `period` from `low` to `high` [Hz], for `periods` periods [s]."""
+    """Cosines at harmonics of 1 / `period` from `low` to `high` [Hz], for `periods` periods [s].
+
+    All harmonics of the band, or about `lines` of them in equal ratios where that is not 0.
+    """
 
     low: float
     high: float
     period: float
     periods: int = 1
+    lines: int = 0
 
     def __post_init__(self) -> None:
         _refuse_band(self.low, self.high, "multisine")
@@ -92,7 +96,10 @@ class Multisine:
     def frequencies(self) -> FloatArray:
         """f_i [Hz]."""
         first, last = math.ceil(self.low * self.period - 1e-9), math.floor(self.high * self.period + 1e-9)
-        harmonics: FloatArray = np.arange(first, last + 1) / self.period
+        chosen = np.arange(first, last + 1)
+        if 0 < self.lines < len(chosen):
+            chosen = np.unique(np.round(np.geomspace(first, last, self.lines)))
+        harmonics: FloatArray = chosen / self.period
         return harmonics
 
     @cached_property
