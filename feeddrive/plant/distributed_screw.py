@@ -6,7 +6,7 @@
     J_n pn'' = -r F - k_t (pn - p1) - k_o (pn - pe) - c(...)
     J_e pe'' = k_o (pn - pe) + c(...)
     J_1 p1'' = k_t (pn - p1) - k_d (p1 - thm / i) + c(...)
-    J_m thm'' = T + k_d (p1 - thm / i) / i + c(...),  and the driving hub J_h rides at (1 - a) thm / i + a p1
+    J_m thm'' = T + k_d (p1 - thm / i) / i + c(...),   and J_h couples: M(thm, p1) = J_h / i
 
 with the nut at z = z_0 + x from the bearing at the motor's end, the coupling at z = -d, the far bearing at z = S and
 the end of the screw at z = L:
@@ -21,8 +21,8 @@ the end of the screw at z = L:
 | u, x | (coordinates) | axial: screw at the nut; table | m |
 | i | ratio | motor turns per screw turn | 1 |
 | k_d, c_d | drive_stiffness, drive_damping | shaft, gear and coupling in series, at the screw | N m/rad, N m s/rad |
-| J_h, a | hub_inertia, hub_share | hub between motor shaft and coupling, share of p1 in its motion | kg m^2, 1 |
-| J_c | drive_end_inertia | hub or wheel that is fixed to the screw | kg m^2 |
+| J_m | motor_inertia | rotor and sum of J (1 - a)^2 / i^2 over hubs and wheels J, see below | kg m^2 |
+| J_h, J_c | shared_inertia, drive_end_inertia | sum of J a (1 - a), of J a^2 | kg m^2 |
 | EA, GJ | axial_rigidity, torsional_rigidity | of the screw | N, N m^2 |
 | mu, j | mass_per_length, inertia_per_length | of the screw | kg/m, kg m |
 | k_b1, k_b2 | bearing_stiffness, far_bearing_stiffness | axial, of the supports; 0 where one slides | N/m |
@@ -30,6 +30,9 @@ the end of the screw at z = L:
 | z_0 | first_nut_position | nut where the table is at 0 | m |
 | k_N, c_N | nut_stiffness, nut_damping | of the nut | N/m, N s/m |
 | tau | damping_time | C = tau K for screw and supports: damping ratio pi f tau at frequency f | s |
+
+Hubs and wheels between the springs of k_d ride at (1 - a) thm / i + a p1; a is the share of the compliance between
+motor and screw that lies on the motor's side of them, 1 for what is fixed to the screw.
 
 The overhang carries no static load. Its stiffness 25/12 GJ/(L-z) and the split 1/6, 5/6 of its inertia make the
 dynamic stiffness of this one branch that of the continuous shaft, -w^2 J tan(y)/y with y = w (L-z)/c, to the order y^4
@@ -81,24 +84,23 @@ class DistributedScrew(Chain):
     required = (
         ChainValue("lead", "ball_screw", "m"),
         ChainValue("motor_inertia", "motor", "kg m^2"),
-        ChainValue("ratio", "gear", "1"),
-        ChainValue("drive_stiffness", "drive", "N m/rad"),
-        ChainValue("drive_damping", "drive", "N m s/rad", may_be_zero=True),
-        ChainValue("hub_inertia", "drive", "kg m^2", may_be_zero=True),
-        ChainValue("hub_share", "drive", "1", may_be_zero=True),
-        ChainValue("drive_end_inertia", "drive", "kg m^2", may_be_zero=True),
-        ChainValue("drive_length", "ball_screw", "m", may_be_zero=True),
+        ChainValue("ratio", "transmission", "1"),
+        ChainValue("drive_stiffness", "transmission", "N m/rad"),
+        ChainValue("drive_damping", "transmission", "N m s/rad", may_be_zero=True),
+        ChainValue("shared_inertia", "transmission", "kg m^2", may_be_zero=True),
+        ChainValue("drive_end_inertia", "transmission", "kg m^2", may_be_zero=True),
+        ChainValue("drive_length", "ball_screw", "m", may_be_zero=True, written="stub"),
         ChainValue("bearing_distance", "ball_screw", "m"),
         ChainValue("screw_length", "ball_screw", "m"),
         ChainValue("axial_rigidity", "ball_screw", "N"),
         ChainValue("torsional_rigidity", "ball_screw", "N m^2"),
         ChainValue("mass_per_length", "ball_screw", "kg/m"),
         ChainValue("inertia_per_length", "ball_screw", "kg m"),
-        ChainValue("damping_time", "damping", "s", may_be_zero=True),
-        ChainValue("bearing_stiffness", "support", "N/m", may_be_zero=True),
-        ChainValue("far_bearing_stiffness", "support", "N/m", may_be_zero=True),
-        ChainValue("nut_stiffness", "nut", "N/m"),
-        ChainValue("nut_damping", "nut", "N s/m", may_be_zero=True),
+        ChainValue("damping_time", "damping", "s", may_be_zero=True, written="time"),
+        ChainValue("bearing_stiffness", "support", "N/m", may_be_zero=True, written="near_stiffness"),
+        ChainValue("far_bearing_stiffness", "support", "N/m", may_be_zero=True, written="far_stiffness"),
+        ChainValue("nut_stiffness", "nut", "N/m", written="combined_stiffness"),
+        ChainValue("nut_damping", "nut", "N s/m", may_be_zero=True, written="damping"),
         ChainValue("table_mass", "table", "kg"),
         ChainValue("first_nut_position", "table", "m", may_be_zero=True),
     )
@@ -125,10 +127,8 @@ class DistributedScrew(Chain):
         masses |= self._inertias(p, position) | self._axial_masses(p, position)
         names = self.coordinates
         matrix: Matrix = [[masses[a] if a == b else 0.0 for b in names] for a in names]
-        hub = {"motor": (1 - p["hub_share"]) / p["ratio"], "drive_end": p["hub_share"]}
-        for a in hub:
-            for b in hub:
-                matrix[names.index(a)][names.index(b)] += p["hub_inertia"] * hub[a] * hub[b]
+        motor, drive_end = names.index("motor"), names.index("drive_end")
+        matrix[motor][drive_end] = matrix[drive_end][motor] = p["shared_inertia"] / p["ratio"]
         return matrix
 
     def motor(self, p: Values) -> Row:

@@ -2,7 +2,7 @@
 
     format = "feeddrive-plant/1"
     name = "bench axis"
-    structure = "three_inertias"     # or "rigid": without [transmission], inertias may be left out
+    structure = "three_inertias"     # "rigid": without [transmission], inertias may be left out; "distributed_screw"
     source = "data sheet"            # of every value that names none itself; also inside a table
 
     [motor]
@@ -35,32 +35,75 @@
     output_limit = "10 V"
     torque_per_output = "0.014 N m/V"
 
-Nothing in the file is evaluated.
+A machine may be described by its parts instead (`feeddrive.plant.drive_sections`): their stiffness and inertia are
+computed, and a value of the chain that is written takes the place of the computed one. Further, for every structure:
+
+    [table]
+    stroke = ["0 mm", "500 mm"]      # least and greatest table position
+    first_nut_position = "150 mm"    # nut from the bearing at the motor's end where the table is at 0
+    inclination = "90 deg"           # of the + direction above the horizontal: weight as constant_force
+    counterbalance = "1200 N"        # against the weight
+    [damping]                        # in place of the dampers
+    ratio = 0.02                     # at `frequency`, or at the first mode with the motor free
+    [guide]                          # guide_friction from catalogue data
+    carriage = "HSR-30R"
+    carriages = 4
+    seal_drag = "8 N"                # of one
+
+and ratings for plausibility rules (`feeddrive.plant.ratings`). Nothing in the file is evaluated.
 """
 
 from __future__ import annotations
 
 import warnings
-from itertools import pairwise
 from pathlib import Path
 
-from feeddrive.effects.base import Effect
-from feeddrive.effects.catalogue import EFFECTS, find_effect
 from feeddrive.errors import InputError, ValidityWarning
-from feeddrive.plant.chain import CHAINS, Chain, ChainValue, Rigid
+from feeddrive.plant.chain import CHAINS, Chain, ChainValue, DistributedScrew
+from feeddrive.plant.chain_sections import positive, read_chain
 from feeddrive.plant.composition import refuse_what_cannot_compose
+from feeddrive.plant.derived_effects import WEIGHT_KEYS, derived_effects
+from feeddrive.plant.drive_sections import PART_VALUES, describes_parts
+from feeddrive.plant.effect_sections import read_effects
 from feeddrive.plant.effect_text import plant_text_with_effects
-from feeddrive.plant.entries import Origins, Table, nearest, read_toml
+from feeddrive.plant.entries import Origins, Table, read_toml
 from feeddrive.plant.equipment import read_controller, read_sensors
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.ratings import RATINGS, read_data
+from feeddrive.plant.stroke import read_stroke
 from feeddrive.quantity import format_quantity
 
 __all__ = ["FORMAT", "plant_text_with_effects", "read_plant", "section_key"]
 
 FORMAT = "feeddrive-plant/1"
-_SECTIONS = ("motor", "ball_screw", "transmission", "table")
-_TOP_KEYS = ("format", "name", "structure", "source", "description", *_SECTIONS, "effect", "sensor", "controller")
-_PREFIXES = {"motor": "motor_", "ball_screw": "screw_", "table": "table_"}
+_SECTIONS = (
+    "motor",
+    "ball_screw",
+    "transmission",
+    "table",
+    "brake",
+    "coupling",
+    "belt",
+    "gear",
+    "support",
+    "nut",
+    "damping",
+)
+_NESTED = ("bearing", "guide")
+_TOP_KEYS = (
+    "format", "name", "structure", "source", "description", *_SECTIONS, *_NESTED, "effect", "sensor",
+    "controller", "thermal",
+)  # fmt: skip
+_FURTHER = {
+    "motor": ("torque_limit",),
+    "ball_screw": ("elements",),
+    "transmission": ("nut_position",),
+    "table": ("stroke", "first_nut_position", *WEIGHT_KEYS),
+    "support": ("kind",),
+    "damping": ("ratio", "frequency"),
+}
+"""Keys of a section that are neither values of a chain nor of a part."""
+
 _USUAL = {
     "lead": (5e-4, 0.2),
     "motor_inertia": (1e-8, 10.0),
@@ -68,6 +111,13 @@ _USUAL = {
     "torsional_stiffness": (1.0, 1e8),
     "axial_stiffness": (1e5, 1e11),
     "table_mass": (1e-2, 1e5),
+    "drive_stiffness": (1.0, 1e8),
+    "nut_stiffness": (1e6, 1e11),
+    "bearing_stiffness": (1e6, 1e11),
+    "far_bearing_stiffness": (1e6, 1e11),
+    "axial_rigidity": (1e5, 1e11),
+    "torsional_rigidity": (1e-2, 1e8),
+    "screw_length": (0.02, 20.0),
 }
 """Range in which a value is usual [SI]; outside it a slip of the unit is likely."""
 
@@ -80,7 +130,8 @@ def read_plant(path: Path) -> Plant:
 
     Returns:
         The plant, values in SI; `origins` names the source of each value that has one: chain values and
-        `torque_limit` by key, effects as `label.key`, the controller as `controller.key`.
+        `torque_limit` by key, effects as `label.key`, the controller as `controller.key`, parts as `section.key`.
+        Values computed from parts are marked so.
 
     Raises:
         InputError: not found, not TOML, another format, unknown key or name, a value that is missing, without unit,
@@ -90,10 +141,12 @@ def read_plant(path: Path) -> Plant:
         ValidityWarning: a value far outside what is usual.
     """
     top = _top(path)
-    chain = _chain(top)
+    _refuse_unknown_keys(top)
+    chain, drive = read_chain(top)
     motor = top.table("motor")
-    limit = _positive(motor, "torque_limit", "N m", "torque_limit") if "torque_limit" in motor.entries else float("inf")
-    effects = _effects(top)
+    limit = positive(motor, "torque_limit", "N m", "torque_limit") if "torque_limit" in motor.entries else float("inf")
+    declared = read_effects(top)
+    effects = (*declared, *derived_effects(top, declared))
     refuse_what_cannot_compose(effects, chain.elastic, top.where)
     plant = Plant(
         name=top.text("name", path.stem),
@@ -102,16 +155,20 @@ def read_plant(path: Path) -> Plant:
         torque_limit=limit,
         sensors=read_sensors(top),
         controller=read_controller(top),
+        stroke=read_stroke(top),
+        drive=drive,
+        data=read_data(top),
         origins=top.origins.found,
     )
     _refuse_moving_mass(plant, str(path))
+    _refuse_stroke_off_screw(plant, str(path))
     _warn_of_unusual(chain, str(path))
     return plant
 
 
 def section_key(value: ChainValue) -> str:
     """Key of a chain value inside its section: `motor_inertia` is `inertia` in [motor]."""
-    return value.key.removeprefix(_PREFIXES.get(value.section, ""))
+    return value.section_key
 
 
 def _top(path: Path) -> Table:
@@ -124,102 +181,23 @@ def _top(path: Path) -> Table:
     return Table(entries, where, unread.origins, unread.text("source", ""))
 
 
-def _chain(top: Table) -> Chain:
-    """The chain of the structure, its values checked."""
+def _refuse_unknown_keys(top: Table) -> None:
+    """Refuse keys that nothing reads; the message tells where they would have a meaning."""
     structure = CHAINS[top.choice("structure", CHAINS)]
+    parts = structure is DistributedScrew or describes_parts(top)
     for section in _SECTIONS:
-        _refuse_unknown_values(top.table(section), section, structure)
-    values: dict[str, float] = {}
-    for value in structure.required:
-        table = top.table(value.section)
-        missing = section_key(value) not in table.entries
-        if missing and structure is Rigid and value.may_be_zero:
-            values[value.key] = 0.0
-            continue
-        values[value.key] = _chain_value(table, value)
-    return structure(values)
-
-
-def _refuse_unknown_values(table: Table, section: str, structure: type[Chain]) -> None:
-    known = [section_key(value) for value in structure.required if value.section == section]
-    extra = ("torque_limit",) if section == "motor" else ()
-    elsewhere = {
-        section_key(value): f'leave it out, or use structure = "{other.structure}"'
-        for other in CHAINS.values()
-        for value in other.required
-        if value.section == section
-    }
-    table.refuse_unknown((*known, *extra, "source"), elsewhere)
-
-
-def _chain_value(table: Table, value: ChainValue) -> float:
-    key = section_key(value)
-    if value.may_be_zero:
-        number = table.quantity(key, value.unit, value.key)
-        if number < 0:
-            shown = format_quantity(number, value.unit)
-            raise InputError(f"{shown} is negative", table.place(key), "write it positive")
-        return number
-    return _positive(table, key, value.unit, value.key)
-
-
-def _positive(table: Table, key: str, unit: str, origin: str) -> float:
-    number = table.quantity(key, unit, origin)
-    if number <= 0:
-        sign = "negative" if number < 0 else "zero"
-        raise InputError(f"{format_quantity(number, unit)} is {sign}", table.place(key), "write a value above zero")
-    return number
-
-
-def _effects(top: Table) -> tuple[Effect, ...]:
-    """The effects, in the order of the file."""
-    effects: list[Effect] = []
-    for table in top.tables("effect"):
-        name = table.text("name")
-        label = _label(name, effects)
-        effects.append(_effect(Table(table.entries, f"{table.where} ({name})", table.origins, table.source), label))
-    return tuple(effects)
-
-
-def _label(name: str, before: list[Effect]) -> str:
-    """The label that the plant will give to the next effect of that name."""
-    count = sum(effect.name == name for effect in before)
-    return name if count == 0 else f"{name}_{count + 1}"
-
-
-def _effect(table: Table, label: str) -> Effect:
-    name = table.entries["name"]
-    if name not in EFFECTS:
-        raise InputError(f"unknown effect {name!r}", table.where, nearest(name, EFFECTS))
-    effect = find_effect(name)
-    keys = [parameter.key for parameter in effect.parameters]
-    table.refuse_unknown(("name", "port", "source", *keys))
-    values = {
-        parameter.key: (table.quantities if parameter.table else table.quantity)(
-            parameter.key, parameter.unit, f"{label}.{parameter.key}"
-        )
-        for parameter in effect.parameters
-        if parameter.key in table.entries or parameter.default is None
-    }
-    port = table.choice("port", effect.ports, effect.ports[0])
-    try:
-        made = effect.of(next(known for known in effect.ports if known == port), **values)
-    except InputError as error:
-        raise InputError(error.what, table.where, error.mend) from None
-    _refuse_bad_curve(made, table.where)
-    return made
-
-
-def _refuse_bad_curve(effect: Effect, where: str) -> None:
-    """Refuse tables of unequal length, or positions that do not ascend."""
-    tables = {p.key: effect.values[p.key] for p in effect.parameters if p.table and p.key in effect.values}
-    lengths = {key: len(value) if isinstance(value, tuple) else 1 for key, value in tables.items()}
-    if len(set(lengths.values())) > 1:
-        told = " and ".join(f"{key} has {length}" for key, length in lengths.items())
-        raise InputError(f"{told} values", where, "write lists of equal length")
-    position = tables.get("position")
-    if isinstance(position, tuple) and any(b <= a for a, b in pairwise(position)):
-        raise InputError("position does not ascend", where, "write the positions in ascending order, none twice")
+        known = [value.section_key for value in structure.required if value.section == section]
+        further = _FURTHER.get(section, ())
+        if parts:
+            known += [value.key for value in PART_VALUES.get(section, ())]
+        known += [value.key for value in RATINGS.get(section, ())]
+        elsewhere = {
+            value.section_key: f'leave it out, or use structure = "{other.structure}"'
+            for other in CHAINS.values()
+            for value in other.required
+            if value.section == section
+        }
+        top.table(section).refuse_unknown((*known, *further, "source"), elsewhere)
 
 
 def _refuse_moving_mass(plant: Plant, where: str) -> None:
@@ -230,11 +208,16 @@ def _refuse_moving_mass(plant: Plant, where: str) -> None:
         raise InputError(what, where, "write a payload that leaves it above zero")
 
 
+def _refuse_stroke_off_screw(plant: Plant, where: str) -> None:
+    for position in plant.stroke or ():
+        plant.chain.refuse_off_screw(position, f"{where}, table.stroke")
+
+
 def _warn_of_unusual(chain: Chain, where: str) -> None:
     for value in chain.required:
         low, high = _USUAL.get(value.key, (0.0, float("inf")))
         number = chain.values[value.key]
         if number != 0 and not low <= number <= high:
-            place = f"{where}, {value.section}.{section_key(value)}"
+            place = f"{where}, {value.section}.{value.section_key}"
             shown = format_quantity(number, value.unit)
             warnings.warn(f"{place}: {shown} is unusual; check its unit", ValidityWarning, stacklevel=3)

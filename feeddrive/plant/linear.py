@@ -29,6 +29,7 @@ from feeddrive.plant.equations import (
     friction_level,
     parameter_symbols,
     parameter_values,
+    travel_deviation,
 )
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import Expression, FloatArray
@@ -83,13 +84,24 @@ def ode(plant: Plant) -> ca.Function:
         CasADi function with inputs `x`, `u`, `p` and outputs `xdot`, `y`, all SI columns; rows of x are named by
         `state_names`, of u by `INPUTS`, of y by `OUTPUTS`, of p by the keys of `ode_parameters`.
     """
+    function = timed_ode(plant)
+    x, u, p = (ca.SX.sym(name, function.size1_in(name)) for name in ("x", "u", "p"))
+    return ca.Function("ode", [x, u, p], function(0.0, x, u, p), ["x", "u", "p"], ["xdot", "y"])
+
+
+def timed_ode(plant: Plant) -> ca.Function:
+    """The equations of motion as a function (time, x, u, p) -> (xdot, y), with what changes as time goes on.
+
+    As `ode`, which is this at the start; `time` [s] counts from there. Warm-up and thermal growth read it.
+    """
     n, symbols = len(plant.chain.coordinates), parameter_symbols(plant)
+    time = ca.SX.sym("time")
     x = ca.SX.sym("x", 2 * n + bristle_count(plant))
     u = ca.SX.sym("u", len(INPUTS))
     q, rate, z = x[:n], x[n : 2 * n], x[2 * n :]
     p = chain_symbols(plant, symbols)
     motor, table = symbolic([plant.chain.motor(p)]), symbolic([plant.chain.table(p)])
-    forces = effect_forces(plant, symbols, q, rate, z, 0.0, reference=None)
+    forces = effect_forces(plant, symbols, q, rate, z, time, reference=None)
     at = table @ q
     mass, damping, stiffness = (
         symbolic(m(p, at)) for m in (plant.chain.mass, plant.chain.damping, plant.chain.stiffness)
@@ -97,8 +109,13 @@ def ode(plant: Plant) -> ca.Function:
     pushed = motor.T * u[0] + table.T * u[1] + forces.on_coordinates - (damping @ rate + stiffness @ q)
     acceleration = ca.inv_minor(ca.sparsify(mass)) @ pushed
     xdot = ca.vertcat(rate, acceleration, forces.bristle_rates)
-    y = ca.vertcat(motor @ q, motor @ rate, table @ q, table @ rate)
-    return ca.Function("ode", [x, u, symbols.vector], [xdot, y], ["x", "u", "p"], ["xdot", "y"])
+    shown = (
+        at
+        if plant.chain.elastic
+        else at + travel_deviation(plant, symbols, symbolic([plant.chain.screw(p)]) @ q, at, time)
+    )
+    y = ca.vertcat(motor @ q, motor @ rate, shown, ca.jacobian(shown, q) @ rate + ca.jacobian(shown, time))
+    return ca.Function("ode", [time, x, u, symbols.vector], [xdot, y], ["time", "x", "u", "p"], ["xdot", "y"])
 
 
 def ode_parameters(plant: Plant) -> dict[str, float]:

@@ -35,6 +35,9 @@ Matrix = list[Row]
 Values = Mapping[str, Expression]
 
 
+_PREFIXES = {"motor": "motor_", "ball_screw": "screw_", "table": "table_"}
+
+
 def symbolic(matrix: Matrix) -> Expression:
     """The matrix as a CasADi expression."""
     return ca.vertcat(*[ca.horzcat(*row) for row in matrix])
@@ -42,12 +45,26 @@ def symbolic(matrix: Matrix) -> Expression:
 
 @dataclass(frozen=True)
 class ChainValue:
-    """A value of the chain: key, section of the plant file, SI unit and whether it may be zero."""
+    """A value of the chain.
+
+    Attributes:
+        key: among the values of the chain.
+        section: of the plant file.
+        unit: SI unit.
+        may_be_zero: whether it may be.
+        written: key in that section, where it is not the key without the section's name before it.
+    """
 
     key: str
     section: str
     unit: str
     may_be_zero: bool = False
+    written: str = ""
+
+    @property
+    def section_key(self) -> str:
+        """Key in the section of the plant file: `motor_inertia` is `inertia` in [motor]."""
+        return self.written or self.key.removeprefix(_PREFIXES.get(self.section, ""))
 
 
 @dataclass(frozen=True)

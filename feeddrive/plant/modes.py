@@ -49,20 +49,27 @@ def free_modes(plant: Plant, position: float = 0.0) -> Modes:
 
 
 def braked_modes(plant: Plant, position: float = 0.0) -> Modes:
-    """Modes with the motor held, by its brake or its servo; none where the structure is rigid. As `free_modes`."""
+    """Modes with the motor held; none where the structure is rigid. Arguments and errors as `free_modes`.
+
+    A declared brake holds it by its stiffness; without one it is held ideally and its coordinate removed.
+    """
     motor = np.array([plant.chain.motor(plant.chain_values())], dtype=float)
-    return _modes(plant, null_space(motor), position)
+    brake = plant.drive.motor.brake if plant.drive is not None else None
+    if brake is None:
+        return _modes(plant, null_space(motor), position)
+    return _modes(plant, np.eye(motor.shape[1]), position, brake.stiffness * motor.T @ motor)
 
 
-def _modes(plant: Plant, basis: FloatArray, position: float) -> Modes:
-    """Modes of the motions q = S B eta, with S from table travel to coordinates and B a basis."""
+def _modes(plant: Plant, basis: FloatArray, position: float, held: FloatArray | float = 0.0) -> Modes:
+    """Modes of the motions q = S B eta, with S from table travel to coordinates, B a basis, `held` added to K."""
     plant.chain.refuse_off_screw(position, plant.name)
     values = plant.chain_values()
     rigid = np.array(plant.chain.rigid_motion(values), dtype=float)
     travel = np.diag(np.where(rigid == 0, 1.0, rigid))  # what a rigid motion leaves at rest is a position already
     into = travel @ basis
     matrices = (plant.chain.mass, plant.chain.damping, plant.chain.stiffness)
-    M, C, K = (into.T @ np.array(matrix(values, position), dtype=float) @ into for matrix in matrices)
+    M, C, K = (np.array(matrix(values, position), dtype=float) for matrix in matrices)
+    M, C, K = (into.T @ matrix @ into for matrix in (M, C, K + held))
     if basis.shape[1] == 0:
         return Modes(np.zeros(0), np.zeros(0), np.zeros((basis.shape[0], 0)), ())
     squared, vectors = eigh(K, M)

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from feeddrive.effects.base import ChainEffect, Effect, TravelEffect, Value
+from feeddrive.parts.screw_drive import BallScrewDrive
 from feeddrive.plant.chain import Chain
 from feeddrive.plant.composition import refuse_what_cannot_compose, refuse_what_misses_values
 
@@ -19,6 +20,14 @@ class Sensor:
     kind: str
     at: str
     resolution: float = 0.0
+
+
+@dataclass(frozen=True)
+class Datum:
+    """A number of a plant file and its SI unit."""
+
+    value: float
+    unit: str
 
 
 @dataclass(frozen=True)
@@ -52,7 +61,8 @@ class Plant:
         sensors: declared sensors.
         controller: the controller that drives the axis, where declared.
         stroke: least and greatest table position [m], where declared.
-        data: what is known of the machine and enters no equation of motion (ratings, limits), by `section.key`, SI.
+        drive: the parts, where the machine is described by them.
+        data: values of parts and ratings as declared, by `section.key`.
         origins: value key to the source written in the plant file.
     """
 
@@ -63,7 +73,8 @@ class Plant:
     sensors: tuple[Sensor, ...] = ()
     controller: PositionVelocityController | None = None
     stroke: tuple[float, float] | None = None
-    data: Mapping[str, float] = field(default_factory=dict)
+    drive: BallScrewDrive | None = None
+    data: Mapping[str, Datum] = field(default_factory=dict)
     origins: Mapping[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:

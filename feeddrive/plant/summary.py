@@ -1,17 +1,18 @@
 """The figures by which a servo engineer knows an axis: inertias, combined stiffness, friction over speed, modes.
 
-    k_total = 1 / (1/k_XS + r^2/k_TS),   r = lead / 2 pi
-
-Source: paper 004, eqs. (5) and (8): axial and torsional spring chain act in series on the table.
+The stiffness budget is that of `feeddrive.plant.stiffness_budget`, the modes those of `feeddrive.plant.modes`.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from feeddrive.plant.linear import steady_motion
 from feeddrive.plant.modes import Modes, braked_modes, free_modes
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.stiffness_budget import StiffnessBudget, stiffness_budget
 
 SPEEDS = (0.001, 0.01, 0.05, 0.1, 0.3)
 """Table speeds of the friction table [m/s]."""
@@ -32,21 +33,13 @@ class FrictionRow:
 
 
 @dataclass(frozen=True)
-class StiffnessBudget:
-    """Static stiffness at the table with the motor held, and whose compliance it is.
+class InertiaRow:
+    """What turns or moves with one coordinate: seen at the motor [kg m^2], at the table [kg], its share [1]."""
 
-    Attributes:
-        axial: k_XS [N/m].
-        torsional: k_TS converted to the table [N/m].
-        total: both in series [N/m].
-        axial_share, torsional_share: of the compliance [1].
-    """
-
-    axial: float
-    torsional: float
-    total: float
-    axial_share: float
-    torsional_share: float
+    coordinate: str
+    at_motor: float
+    at_table: float
+    share: float
 
 
 @dataclass(frozen=True)
@@ -54,48 +47,61 @@ class Summary:
     """Figures of a plant, SI.
 
     Attributes:
+        position: of the table, for which stiffness and modes hold [m].
         inertia_at_motor: everything that moves, seen at the motor [kg m^2].
         mass_at_table: the same, seen at the table [kg].
+        inertias: its parts by coordinate.
         stiffness: None where the structure is rigid.
-        friction: at `SPEEDS`, table at 0.
+        friction: at `SPEEDS`.
         braked, free: modes with the motor held and free.
     """
 
+    position: float
     inertia_at_motor: float
     mass_at_table: float
+    inertias: tuple[InertiaRow, ...]
     stiffness: StiffnessBudget | None
     friction: tuple[FrictionRow, ...]
     braked: Modes
     free: Modes
 
 
-def summarise(plant: Plant) -> Summary:
+def summarise(plant: Plant, position: float | None = None) -> Summary:
     """The figures of a plant.
 
+    Args:
+        plant: the machine.
+        position: of the table, where the chain depends on it [m]; the middle of the stroke if not given.
+
     Raises:
-        InputError: no steady motion is found at one of `SPEEDS`.
+        InputError: no steady motion is found at one of `SPEEDS`, or the nut would not be on the screw.
     """
-    values, r = plant.chain_values(), plant.chain.radius
-    shafts = values["motor_inertia"] + values["screw_inertia"]
+    at = plant.middle if position is None else position
+    inertias = _inertias(plant, at)
     return Summary(
-        inertia_at_motor=shafts + values["table_mass"] * r**2,
-        mass_at_table=values["table_mass"] + shafts / r**2,
-        stiffness=stiffness_budget(plant) if plant.chain.elastic else None,
-        friction=tuple(_friction(plant, speed) for speed in SPEEDS),
-        braked=braked_modes(plant),
-        free=free_modes(plant),
+        position=at,
+        inertia_at_motor=sum(row.at_motor for row in inertias),
+        mass_at_table=sum(row.at_table for row in inertias),
+        inertias=inertias,
+        stiffness=stiffness_budget(plant, at) if plant.chain.elastic else None,
+        friction=tuple(_friction(plant, speed, at) for speed in SPEEDS),
+        braked=braked_modes(plant, at),
+        free=free_modes(plant, at),
     )
 
 
-def stiffness_budget(plant: Plant) -> StiffnessBudget:
-    """Axial and torsional stiffness in series, for an elastic structure."""
-    values, r = plant.chain_values(), plant.chain.radius
-    axial, torsional = values["axial_stiffness"], values["torsional_stiffness"] / r**2
-    total = 1 / (1 / axial + 1 / torsional)
-    return StiffnessBudget(axial, torsional, total, total / axial, total / torsional)
+def _inertias(plant: Plant, position: float) -> tuple[InertiaRow, ...]:
+    values = plant.chain_values()
+    rigid = np.array(plant.chain.rigid_motion(values), dtype=float)
+    M = np.array(plant.chain.mass(values, position), dtype=float)
+    at_table = rigid * (M @ rigid)
+    names = [name for name, moved in zip(plant.chain.coordinates, rigid, strict=True) if moved]
+    masses = [float(mass) for mass in at_table[rigid != 0]]
+    whole, r = sum(masses), plant.chain.motor_radius
+    return tuple(InertiaRow(name, mass * r**2, mass, mass / whole) for name, mass in zip(names, masses, strict=True))
 
 
-def _friction(plant: Plant, speed: float) -> FrictionRow:
-    r = plant.chain.radius
-    forward, backward = steady_motion(plant, speed).torque, steady_motion(plant, -speed).torque
+def _friction(plant: Plant, speed: float, position: float) -> FrictionRow:
+    r = plant.chain.motor_radius
+    forward, backward = (steady_motion(plant, v, position).torque for v in (speed, -speed))
     return FrictionRow(speed, forward / r, backward / r, forward, backward)

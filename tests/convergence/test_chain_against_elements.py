@@ -27,15 +27,15 @@ def chain_of(drive: ScrewDrive, elements: int = 1, **others: float) -> Distribut
     """The chain of a drive of the oracle; the table stands at 0 where the nut is at the bearing."""
     area, polar = math.pi * drive.diameter**2 / 4, math.pi * drive.diameter**4 / 32
     shaft = 1 / (1 / drive.coupling + 1 / drive.motor_shaft)
+    hub, share = drive.coupling_inertia / 2, 1 - shaft / drive.coupling
     values = {
         "lead": drive.lead,
-        "motor_inertia": drive.rotor_inertia,
+        "motor_inertia": drive.rotor_inertia + hub * (1 - share) ** 2,
         "ratio": 1.0,
         "drive_stiffness": shaft,
         "drive_damping": 0.0,
-        "hub_inertia": drive.coupling_inertia / 2,
-        "hub_share": 1 - shaft / drive.coupling,
-        "drive_end_inertia": drive.coupling_inertia / 2,
+        "shared_inertia": hub * share * (1 - share),
+        "drive_end_inertia": hub * (1 + share**2),
         "drive_length": drive.stub,
         "bearing_distance": drive.length,
         "screw_length": drive.length,
@@ -260,8 +260,7 @@ def test_chain_alone_is_passive() -> None:
 
 def test_gear_between_motor_and_screw() -> None:
     """A ratio i is a motor of inertia i^2 J whose angle is counted i times: the frequencies are the same."""
-    geared = plant_of(ratio=2.0, motor_inertia=1.5e-3, hub_inertia=0.0)
-    direct = plant_of(motor_inertia=6e-3, hub_inertia=0.0)
+    geared, direct = plant_of(ratio=2.0, motor_inertia=1.5e-3), plant_of(motor_inertia=6e-3)
     # One eigenvalue problem with its rows scaled.
     assert free_modes(geared, 0.5).frequencies[1:] == pytest.approx(free_modes(direct, 0.5).frequencies[1:], rel=1e-9)
     assert geared.chain.motor_radius == pytest.approx(direct.chain.motor_radius / 2, rel=1e-15)
