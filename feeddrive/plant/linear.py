@@ -32,6 +32,7 @@ from feeddrive.plant.equations import (
     travel_deviation,
 )
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.symbols import Symbols
 from feeddrive.typing import Expression, FloatArray
 
 INPUTS = ("motor_torque", "cutting_force")
@@ -109,13 +110,15 @@ def timed_ode(plant: Plant) -> ca.Function:
     pushed = motor.T * u[0] + table.T * u[1] + forces.on_coordinates - (damping @ rate + stiffness @ q)
     acceleration = ca.inv_minor(ca.sparsify(mass)) @ pushed
     xdot = ca.vertcat(rate, acceleration, forces.bristle_rates)
-    shown = (
-        at
-        if plant.chain.elastic
-        else at + travel_deviation(plant, symbols, symbolic([plant.chain.screw(p)]) @ q, at, time)
-    )
+    shown = at if plant.chain.elastic else at + _rigid_deviation(plant, symbols, at, time)
     y = ca.vertcat(motor @ q, motor @ rate, shown, ca.jacobian(shown, q) @ rate + ca.jacobian(shown, time))
     return ca.Function("ode", [time, x, u, symbols.vector], [xdot, y], ["time", "x", "u", "p"], ["xdot", "y"])
+
+
+def _rigid_deviation(plant: Plant, symbols: Symbols, x: Expression, time: Expression) -> Expression:
+    """Travel deviation [m] by which the table of a rigid plant stands beside where its motor says it is."""
+    phi = symbolic([plant.chain.screw(chain_symbols(plant, symbols))]) @ x
+    return travel_deviation(plant, symbols, phi, x, time)
 
 
 def ode_parameters(plant: Plant) -> dict[str, float]:
