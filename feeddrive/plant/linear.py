@@ -87,7 +87,8 @@ def ode(plant: Plant) -> ca.Function:
     """
     function = timed_ode(plant)
     x, u, p = (ca.SX.sym(name, function.size1_in(name)) for name in ("x", "u", "p"))
-    return ca.Function("ode", [x, u, p], function(0.0, x, u, p), ["x", "u", "p"], ["xdot", "y"])
+    xdot, y = function(0.0, x, u, p)
+    return ca.Function("ode", [x, u, p], [xdot, y], ["x", "u", "p"], ["xdot", "y"])
 
 
 def timed_ode(plant: Plant) -> ca.Function:
