@@ -28,6 +28,7 @@ from feeddrive.parts.motor import Motor
 from feeddrive.parts.nut import Nut
 from feeddrive.parts.screw_drive import BallScrewDrive
 from feeddrive.parts.supports import ScrewSupports, Support
+from feeddrive.plant.held_frequency import held_frequency
 from feeddrive.quantity import format_quantity
 from feeddrive.report.drawing import render
 from feeddrive.report.figure_stiffness_gap import stiffness_gap_figure
@@ -62,6 +63,9 @@ def print_own_mass(start: DriveAt) -> None:
         mass += more
         here, softer = (natural_frequency(k, mass) for k in (stiffness, STIFFNESS))
         print(f"  {'+ ' if more else '':2}{name:16} {more:6.2f} kg   {here:7.1f} Hz   {softer:7.1f} Hz")
+    exact = held_frequency(start.drive, start.position)
+    soft = frequency_of(explain_stiffness(start, STIFFNESS)[0].state)
+    print(f"    chain of the screw            {exact:7.1f} Hz   {soft:7.1f} Hz   (Rayleigh's is a bound from above)")
 
 
 def print_single(found: Sequence[Solved]) -> None:
@@ -105,7 +109,7 @@ def main(folder: Path) -> None:
     print(
         f"Calculated {short.stiffness / 1e6:.1f} N/µm, measured {STIFFNESS / 1e6:.0f}; measured {FREQUENCY:.0f} Hz.\n"
     )
-    print("First natural frequency (Rayleigh) at the calculated and at the measured stiffness")
+    print("First natural frequency at the calculated and at the measured stiffness, masses after Rayleigh")
     print(" screw of 1.2 m, coupling of 3e-3 kg m²")
     print_own_mass(long)
     print(f"\nSingle changes that give the measured stiffness; foretold at {ELSEWHERE:g} m; what would decide")
@@ -122,9 +126,6 @@ def main(folder: Path) -> None:
     print("\nWhat would decide among the second of each pair")
     print_deciding(tuple(dynamic.values()), letters)
     print("\nOne static and one dynamic number cannot separate these: each pair above meets both exactly.")
-    print(
-        "Rayleigh's frequency is a bound from above, here by 0.5 to 0.9 %: masses and lengths found are a little large."
-    )
     figure = stiffness_gap_figure(long, single, FREQUENCY, np.linspace(0.65, 1.5, 40))
     path = folder / "combined_stiffness_gap.png"
     write_bytes_atomically(path, render(figure).png)

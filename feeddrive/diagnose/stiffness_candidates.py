@@ -13,6 +13,9 @@ from feeddrive.parts.combined_stiffness import combined_stiffness
 from feeddrive.parts.nut import Nut
 from feeddrive.parts.screw_drive import BallScrewDrive
 
+_SHORTEST_OVERHANG = 1e-3
+"""Screw beyond the nut's middle that the search begins with [m]; the chain needs the nut on the screw."""
+
 
 @dataclass(frozen=True)
 class DriveAt:
@@ -111,7 +114,7 @@ def slower_masses(start: DriveAt) -> tuple[Candidate, ...]:
 
     found = [
         Candidate(
-            "screw length", "m", screw.length, (start.position, start.position + 3.0),
+            "screw length", "m", screw.length, (start.position + _SHORTEST_OVERHANG, start.position + 3.0),
             lambda value: changed(screw=replace(screw, length=value)),
             "length with a rule; the second natural frequency",
         ),

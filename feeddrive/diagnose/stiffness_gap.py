@@ -17,8 +17,8 @@ from scipy.optimize import brentq
 
 from feeddrive.diagnose.stiffness_candidates import Candidate, DriveAt, slower_masses, softer_parts
 from feeddrive.errors import InputError, ValidityWarning
-from feeddrive.parts.effective_mass import rayleigh_frequency
 from feeddrive.parts.screw_drive import BallScrewDrive
+from feeddrive.plant.held_frequency import held_frequency
 
 FrequencyModel = Callable[[BallScrewDrive, float], float]
 """First natural frequency [Hz] of a drive, motor held, with its nut at a position [m]."""
@@ -55,7 +55,7 @@ class Explanation:
     frequency: float
 
 
-def frequency_of(state: DriveAt, model: FrequencyModel = rayleigh_frequency) -> float:
+def frequency_of(state: DriveAt, model: FrequencyModel = held_frequency) -> float:
     """First natural frequency [Hz]; sticking guides lie parallel to the drive: f sqrt(1 + k_guide / k)."""
     return model(state.drive, state.position) * math.sqrt(1.0 + state.guide_stiffness / state.stiffness)
 
@@ -76,9 +76,7 @@ def explain_stiffness(start: DriveAt, measured: float) -> tuple[Solved, ...]:
     return _all_solved(softer_parts(start), lambda state: state.stiffness, measured)
 
 
-def explain_frequency(
-    start: DriveAt, measured: float, model: FrequencyModel = rayleigh_frequency
-) -> tuple[Solved, ...]:
+def explain_frequency(start: DriveAt, measured: float, model: FrequencyModel = held_frequency) -> tuple[Solved, ...]:
     """Every single change of a mass, an inertia or the guides that gives the measured natural frequency.
 
     Args:
@@ -95,7 +93,7 @@ def explain_frequency(
 
 
 def explain_both(
-    start: DriveAt, stiffness: float, frequency: float, model: FrequencyModel = rayleigh_frequency
+    start: DriveAt, stiffness: float, frequency: float, model: FrequencyModel = held_frequency
 ) -> tuple[Explanation, ...]:
     """All pairs of one softer part and one other mass that meet a static and a dynamic measurement.
 

@@ -9,8 +9,8 @@ import numpy as np
 
 from feeddrive.errors import InputError
 from feeddrive.parts.combined_stiffness import CombinedStiffness, Deformation, combined_stiffness, stiffness_along
-from feeddrive.parts.effective_mass import rayleigh_frequency
 from feeddrive.parts.screw_drive import BallScrewDrive
+from feeddrive.plant.held_frequency import held_frequency
 from feeddrive.report.drawing import ReportFigure, dress, legend_above, new_figure
 from feeddrive.report.people import fixed, significant, with_unit
 from feeddrive.typing import FloatArray
@@ -93,7 +93,7 @@ def stiffness_position_figure(drives: Mapping[str, BallScrewDrive], positions: F
 
     Args:
         drives: by the name for the legend; up to four.
-        positions: nut from the near bearing, on every screw [m], shape (n,).
+        positions: nut from the near bearing, between the ends of every screw [m], shape (n,).
 
     Raises:
         InputError: no drive, more than four, or a position outside a screw.
@@ -106,7 +106,7 @@ def stiffness_position_figure(drives: Mapping[str, BallScrewDrive], positions: F
     for (name, drive), (colour, style) in zip(drives.items(), _LINES, strict=False):
         look = {"color": colour, "ls": style, "lw": 1.8}
         stiffness.plot(places, stiffness_along(drive, positions) / 1e6, label=name, **look)
-        frequencies = [rayleigh_frequency(drive, float(position)) for position in positions]
+        frequencies = [held_frequency(drive, float(position)) for position in positions]
         alone = [combined_stiffness(drive, float(p)).natural_frequency(drive.table_mass) for p in positions]
         frequency.plot(places, frequencies, **look)
         frequency.plot(places, alone, color=colour, ls=style, lw=0.8, alpha=0.5)
@@ -126,7 +126,6 @@ def _position_caption(drives: Mapping[str, BallScrewDrive], positions: FloatArra
         f"{name} {fixed(float(stiffness_along(drive, positions).min()) / 1e6, 0)}" for name, drive in drives.items()
     )
     return (
-        f"Motor held. Softest along the stroke, in N/µm: {softest}. Right: with the screw's own mass and inertia "
-        "(Rayleigh, up to some per cent too high), thin: with the table's mass alone. Lines that coincide lie over "
-        "each other."
+        f"Motor held. Softest along the stroke, in N/µm: {softest}. Right: with the screw's own mass and inertia, "
+        "thin: with the table's mass alone. Lines that coincide lie over each other."
     )

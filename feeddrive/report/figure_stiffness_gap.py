@@ -43,7 +43,7 @@ def stiffness_gap_figure(
     _length_panel(left, declared, single[0], frequency, lengths)
     _position_panel(right, declared, single)
     caption = (
-        "Left: the screw's own mass and inertia (Rayleigh) lower the frequency without any change of stiffness. "
+        "Left: the screw's own mass and inertia lower the frequency without any change of stiffness. "
         "Right: every line meets the measured stiffness, by one change each. Different lines are told apart by a "
         "second nut position; changes that share a line only by measuring at the part itself."
     )

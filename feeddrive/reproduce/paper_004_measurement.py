@@ -58,7 +58,7 @@ def _dynamic_row(drive: BallScrewDrive) -> Row:
     screw = softer.drive.screw
     states = [replace(softer, drive=replace(softer.drive, screw=replace(screw, length=length))) for length in _LENGTHS]
     high, low = (frequency_of(state) for state in states)
-    assumption = "measured stiffness; screw's own mass (Rayleigh), its length of 0.7 to 1.5 m is not printed"
+    assumption = "measured stiffness; screw's own mass, its length of 0.7 to 1.5 m is not printed"
     return claim(
         _PAPER, "Fig. 7", "measured natural frequency", "185", f"{low:.1f} to {high:.1f}",
         low <= _FREQUENCY <= high, unit="Hz", assumption=assumption,

@@ -91,7 +91,7 @@ def test_soft_brake_lets_the_rotor_take_part() -> None:
 
 
 def test_wheels_swing_with_the_springs_before_them() -> None:
-    """By hand: twist at the screw under the torque k r of a unit push; the motor wheel counts with the ratio squared."""
+    """By hand: twist at the screw under the torque k r of a unit push; its wheel by the ratio squared."""
     belt = Transmission(ratio=2.0, torsional_stiffness=20_000.0, motor_wheel_inertia=1e-3, screw_wheel_inertia=8e-3)
     drive = replace(paper_drive(), coupling=None, transmission=belt)
     torque = combined_stiffness(drive, AT_NUT).total * drive.screw.travel_per_radian
@@ -104,7 +104,7 @@ def test_wheels_swing_with_the_springs_before_them() -> None:
 @pytest.mark.parametrize("length", [0.7, 1.2])
 def test_every_explanation_meets_both_measurements(length: float) -> None:
     start = DriveAt(paper_drive(length), AT_NUT)
-    found = explain_both(start, 191e6, 185.0)
+    found = explain_both(start, 191e6, 185.0, rayleigh_frequency)
     assert len(found) >= 8
     for one in found:
         # The solver's tolerance on the value is 1e-12, or 2e-12 in its own unit where the value is about zero.
@@ -115,7 +115,7 @@ def test_every_explanation_meets_both_measurements(length: float) -> None:
 
 def test_explanations_survive_finite_elements() -> None:
     """Pairs found with Rayleigh's mass, recomputed: its error of 0.5 to 1 % is what is left, and always below 185."""
-    for one in explain_both(DriveAt(paper_drive(0.7, 0.0), AT_NUT), 191e6, 185.0):
+    for one in explain_both(DriveAt(paper_drive(0.7, 0.0), AT_NUT), 191e6, 185.0, rayleigh_frequency):
         changed = one.dynamic.state
         if changed.guide_stiffness or changed.drive.housing_stiffness or changed.drive.screw.root_diameter:
             continue  # the elements have none of these
