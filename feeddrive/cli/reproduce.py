@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import json
+import sys
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
+from rich.console import Console
 from rich.text import Text
 
 from feeddrive import __version__
@@ -29,13 +32,24 @@ def command(
     """Compare every number and checkable claim of the source papers with what the program computes."""
     papers = find_papers(paper)
     with warnings_as_lines():
-        rows = tuple(row for one in papers for row in rows_of(one))
+        rows = tuple(row for one in _announced(papers) for row in rows_of(one))
     content = _content(papers, rows)
     written = _write(content, rows, out) if out is not None else []
     comparisons = [Comparison(one, [row for row in rows if row.paper is one]) for one in papers]
     deliver(content, [*comparisons, summary_table(rows, papers), Text(_LEGEND)], as_json, None)
     for path in written:
         typer.echo(f"written: {path}", err=True)
+
+
+def _announced(papers: tuple[Paper, ...]) -> Iterator[Paper]:
+    """The papers one after another, each named on a terminal while it is computed; nothing in a pipe."""
+    if not sys.stderr.isatty():
+        yield from papers
+        return
+    with Console(stderr=True).status("") as status:
+        for paper in papers:
+            status.update(f"paper {paper.number}")
+            yield paper
 
 
 def _content(papers: tuple[Paper, ...], rows: tuple[Row, ...]) -> dict[str, Any]:

@@ -143,7 +143,7 @@ def load_distribution(body: NutBody, force: float, loading: Loading = Loading.OP
     return LoadDistribution(axial / body.track.axial_part, axial)
 
 
-def share_of_greatest(body: NutBody, force: float) -> tuple[float, float]:
+def continuum_extremes(body: NutBody, force: float) -> tuple[float, float]:
     """Greatest and least load over the mean where the stiffness of the balls is taken as constant (opposite ends).
 
     lambda L coth(lambda L) and lambda L / sinh(lambda L), lambda^2 = (k_b / s)(1/A_s + 1/A_n) / E, L the loaded length:

@@ -28,6 +28,9 @@ RATED_FAILURE = 0.1
 """Share of specimens that have failed at the rated life L10."""
 
 
+_LARGEST = 1e300
+
+
 @dataclass(frozen=True)
 class WeibullLaw:
     """A Weibull law: scale [life] and slope [1], both above zero.
@@ -165,24 +168,33 @@ def likelihood_fit(sample: LifeSample) -> WeibullLaw:
     Its slope is too steep on average where failures are few: by a sixth for ten, a thirteenth for twenty.
 
     Raises:
-        InputError: all failures at one life, where the slope would be infinite.
+        InputError: every failure may have come at one life, so that the slope would be infinite.
     """
-    ends = np.concatenate((sample.failed, sample.found.ravel()))
-    if np.ptp(ends) == 0.0:
-        raise InputError("all failures at one life", "Weibull fit", "a slope needs two different lives")
-    # Lives near 1 and the line as the start: the search is scipy's, in the plain parameters.
-    unit = float(np.median(ends[ends > 0.0]))
+    _require_spread(sample)
+    # Lives near 1: the search is scipy's, in the plain parameters.
+    unit = float(np.median(np.concatenate((sample.failed, sample.found[:, 1]))))
     data = CensoredData(sample.failed / unit, right=sample.suspended / unit, interval=sample.found / unit)
     slope, _, scale = weibull_min.fit(data, floc=0.0)
     return WeibullLaw(float(scale) * unit, float(slope))
 
 
 def log_likelihood(law: WeibullLaw, sample: LifeSample) -> float:
-    """Log-likelihood of a sample under a law."""
+    """Log-likelihood of a sample under a law; minus infinity where it is below the range of numbers."""
     slope, scale = law.slope, law.scale
-    exact = weibull_min.logpdf(sample.failed, slope, scale=scale).sum()
-    whole = -((sample.suspended / scale) ** slope).sum()
-    hazard = (sample.found / scale) ** slope
-    # S(start) - S(end) = S(start) (1 - exp(-(difference of the hazards))), without the difference of two ones.
-    between = (-hazard[:, 0] + np.log(-np.expm1(hazard[:, 0] - hazard[:, 1]))).sum()
+    with np.errstate(over="ignore", divide="ignore", under="ignore"):
+        exact = weibull_min.logpdf(sample.failed, slope, scale=scale).sum()
+        whole = -((sample.suspended / scale) ** slope).sum()
+        hazard = np.minimum((sample.found / scale) ** slope, _LARGEST)
+        # S(start) - S(end) = S(start) (1 - exp(-(difference of the hazards))), without the difference of two ones.
+        between = (-hazard[:, 0] + np.log(-np.expm1(hazard[:, 0] - hazard[:, 1]))).sum()
     return float(exact + whole + between)
+
+
+def _require_spread(sample: LifeSample) -> None:
+    """Refuse a sample in which one life can stand for all failures, and no suspended specimen outlived it."""
+    latest_start = max([*sample.failed, *sample.found[:, 0]])
+    earliest_end = min([*sample.failed, *sample.found[:, 1]])
+    outlived = sample.suspended.size > 0 and float(sample.suspended.max()) > earliest_end
+    if latest_start <= earliest_end and not outlived:
+        what = f"every failure may have come at the life {earliest_end:g}"
+        raise InputError(what, "Weibull fit", "a slope needs failures at lives that differ")

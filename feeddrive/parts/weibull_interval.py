@@ -32,7 +32,7 @@ _STRETCH = 1.6
 
 @dataclass(frozen=True)
 class Interval:
-    """A confidence interval: ends in the unit of the estimate, an end at infinity where the data set no bound."""
+    """A confidence interval in the unit of the estimate; an end more than a factor of 1000 away is 0 or infinite."""
 
     low: float
     estimate: float
@@ -47,11 +47,13 @@ def slope_interval(sample: LifeSample, level: float = 0.9) -> Interval:
         InputError: as `likelihood_fit`, or a level outside 0 to 1.
     """
     best = likelihood_fit(sample)
+    # The life by which as many fail as failed in the test hardly depends on the slope; the scale may, by powers of ten.
+    share = sample.failures / (sample.size + 1.0)
 
-    def law(slope: float, scale: float) -> WeibullLaw:
-        return WeibullLaw(scale, slope)
+    def law(slope: float, life: float) -> WeibullLaw:
+        return WeibullLaw.through(life, share, slope)
 
-    return _interval(sample, best, law, best.slope, best.scale, level)
+    return _interval(sample, best, law, best.slope, best.life(share), level)
 
 
 def life_interval(sample: LifeSample, failed: float = RATED_FAILURE, level: float = 0.9) -> Interval:
@@ -102,8 +104,7 @@ def _profile(sample: LifeSample, law: Callable[[float, float], WeibullLaw], held
     """Largest log-likelihood over the free parameter, searched within e^4 of its best value."""
 
     def loss(logarithm: float) -> float:
-        with np.errstate(over="ignore", divide="ignore", under="ignore"):
-            value = -log_likelihood(law(held, math.exp(logarithm)), sample)
+        value = -log_likelihood(law(held, math.exp(logarithm)), sample)
         return value if math.isfinite(value) else 1e12
 
     centre = math.log(free)
@@ -112,7 +113,7 @@ def _profile(sample: LifeSample, law: Callable[[float, float], WeibullLaw], held
 
 
 def _crossing(excess: Callable[[float], float], start: float, sign: float) -> float:
-    """Where the excess changes sign on one side of the start; infinite where it does not within e^7."""
+    """Where the excess changes sign on one side of the start; infinite where it does not within a factor of e^7."""
     inner, step = start, 0.05
     while abs(inner - start) < 7.0:
         outer = inner + sign * step

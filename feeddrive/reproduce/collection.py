@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Iterable, Sequence
+from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
 from typing import Any
@@ -32,8 +33,9 @@ def find_papers(number: str | None) -> tuple[Paper, ...]:
     return found
 
 
+@cache
 def rows_of(paper: Paper) -> tuple[Row, ...]:
-    """Rows of a paper in its own order; none where it has not been compared yet."""
+    """Rows of a paper in its own order, computed once; none where it has not been compared yet."""
     name = f"feeddrive.reproduce.paper_{paper.number}"
     if find_spec(name) is None:
         return ()

@@ -23,7 +23,7 @@ from feeddrive.parts.life import (
     survival,
 )
 from feeddrive.parts.life_exponents import BALL_SCREW, LifeExponents
-from feeddrive.parts.load_distribution import Loading, NutBody, load_distribution, nut_body, share_of_greatest
+from feeddrive.parts.load_distribution import Loading, NutBody, continuum_extremes, load_distribution, nut_body
 from feeddrive.parts.preload_loss import (
     opening_force,
     preload_share_from_stiffness,
@@ -48,6 +48,7 @@ from feeddrive.parts.subsurface_shear import (
     greatest_shear_under_line,
     line_shear,
 )
+from feeddrive.recording.recording import Recording
 
 TRACK = BallTrack(3.175e-3, 25.5e-3, 0.55, math.radians(45), 6e-3, 2.5)
 BODY = nut_body(TRACK, 0.04)
@@ -215,7 +216,7 @@ def test_equal_sections_in_the_same_sense_load_both_ends_alike() -> None:
 
 def test_distribution_meets_the_continuum() -> None:
     """At a small load the balls are soft: constant stiffness and a continuum are then exact to one over the count."""
-    greatest, least = share_of_greatest(BODY, 10.0)
+    greatest, least = continuum_extremes(BODY, 10.0)
     loads = load_distribution(BODY, 10.0).relative
     assert loads.max() - 1.0 == pytest.approx(greatest - 1.0, rel=0.03)
     assert 1.0 - loads.min() == pytest.approx(1.0 - least, rel=0.03)
@@ -308,6 +309,21 @@ def test_consumed_life_of_a_duty_is_that_of_its_equivalent_load() -> None:
     mean = equivalent_load((DutyPhase(1e3, 1.0, 1.0), DutyPhase(2e3, 2.0, 1.0), DutyPhase(4e3, 1.0, 1.0)))
     used = consumed_life(angle, force, 9e3).total[0]
     assert used == pytest.approx(4.0 / (2 * math.pi * 1e6) * (mean / 9e3) ** 3, rel=1e-12)
+
+
+def test_consumed_life_along_a_recording() -> None:
+    """A recorded motion, screw and motor on one shaft: the torque of row i turns the screw from sample i to i + 1."""
+    time = np.arange(1000) * 1e-3
+    angle = 20.0 * np.sin(2 * math.pi * time)
+    recording = Recording("run", time, {"motor_angle": angle, "motor_torque": 3.0 * np.cos(2 * math.pi * time)}, 1e-3)
+    force = recording["motor_torque"] * 2 * math.pi / 6e-3
+    whole = consumed_life(recording["motor_angle"], rigid_nut_forces(force, 3e3), 9.6e3)
+    # A full period: 4 amplitudes, less the last of 1000 steps; the two directions load the two nuts alike.
+    assert whole.revolutions[-1] == pytest.approx(80.0 / (2 * math.pi), rel=2e-3)
+    assert whole.total[0] == pytest.approx(whole.total[1], rel=0.01)
+    first = recording.between(0.0, 0.25)
+    early = consumed_life(first["motor_angle"], rigid_nut_forces(force[: len(first)], 3e3), 9.6e3)
+    assert early.total == pytest.approx(whole.used[:, len(first) - 1], rel=1e-12)
 
 
 def test_a_screw_at_rest_uses_no_life() -> None:

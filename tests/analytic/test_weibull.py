@@ -12,7 +12,6 @@ from scipy.stats import weibull_min
 
 from feeddrive.errors import InputError
 from feeddrive.parts.weibull import (
-    LifeSample,
     WeibullLaw,
     life_sample,
     likelihood_fit,
@@ -179,9 +178,31 @@ def test_unusable_samples_are_refused(
 
 @pytest.mark.parametrize("fit", [rank_fit, likelihood_fit])
 def test_equal_lives_have_no_slope(fit: object) -> None:
-    sample: LifeSample = life_sample([5.0, 5.0, 5.0])
-    with pytest.raises(InputError, match="all failures at one life"):
-        fit(sample)  # type: ignore[operator]
+    with pytest.raises(InputError, match=r"one life|the life 5"):
+        fit(life_sample([5.0, 5.0, 5.0]))  # type: ignore[operator]
+
+
+@pytest.mark.parametrize("found", [[(200.0, 230.0)] * 4, [(0.0, 4.0), (0.0, 8.0), (4.0, 8.0)]])
+def test_inspections_too_far_apart_have_no_slope(found: list[tuple[float, float]]) -> None:
+    with pytest.raises(InputError, match="every failure may have come at the life"):
+        likelihood_fit(life_sample([], found=found))
+
+
+def test_one_life_and_specimens_that_outlived_it_have_a_slope() -> None:
+    fitted = likelihood_fit(life_sample([5.0, 5.0], [10.0] * 5))
+    assert 0.5 < fitted.slope < 5.0
+
+
+def test_interval_of_few_failures_among_many_is_that_of_the_best_scales() -> None:
+    """With 2 failures of 1000 the scale moves by powers of ten with the slope; the profile must follow it."""
+    sample = life_sample([100.0, 200.0], [1000.0] * 998)
+    interval = slope_interval(sample)
+    top = log_likelihood(likelihood_fit(sample), sample)
+    for end in (interval.low, interval.high):
+        scales = np.exp(np.linspace(math.log(1e3), math.log(1e3) + 80.0, 4001))
+        best = max(log_likelihood(WeibullLaw(float(scale), end), sample) for scale in scales)
+        # 2.7055 is the 90 % point of chi-square with one degree; steps of 2 % of the scale lose less than 1e-3.
+        assert 2.0 * (top - best) == pytest.approx(2.7055, abs=2e-3)
 
 
 def test_levels_and_counts_outside_their_range_are_refused() -> None:

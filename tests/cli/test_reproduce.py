@@ -16,8 +16,6 @@ from feeddrive.cli.main import main
 from feeddrive.reproduce.collection import FIELDS, as_csv, counts, record, rows_of
 from feeddrive.reproduce.row import Paper, Row, Status, claim, not_possible, number
 
-COMPARED = [paper for paper in Paper if rows_of(paper)]
-
 
 @pytest.fixture(scope="module")
 def whole() -> list[Row]:
@@ -36,8 +34,11 @@ def _words(text: str) -> str:
     return " ".join(text.split())
 
 
-def test_every_paper_but_the_one_not_compared_yet_has_rows() -> None:
-    assert {Paper.EFFICIENCY, Paper.LIFE, Paper.GUIDE, Paper.STIFFNESS} <= set(COMPARED)
+@pytest.mark.parametrize("paper", Paper, ids=lambda paper: paper.number)
+def test_every_paper_has_rows_of_its_own(paper: Paper) -> None:
+    rows = rows_of(paper)
+    assert len(rows) >= 20
+    assert {row.paper for row in rows} == {paper}
 
 
 def test_there_are_enough_rows_and_every_other_one_has_a_reason(whole: list[Row]) -> None:
@@ -49,7 +50,8 @@ def test_there_are_enough_rows_and_every_other_one_has_a_reason(whole: list[Row]
 
 
 def test_no_row_stands_twice(whole: list[Row]) -> None:
-    keys = [(row.paper, row.place, row.quantity, row.printed) for row in whole]
+    # A printed number may be computed by two models: then the reasons tell them apart.
+    keys = [(row.paper, row.place, row.quantity, row.printed, row.reason) for row in whole]
     assert len(set(keys)) == len(keys)
 
 
@@ -71,15 +73,14 @@ def test_summary_counts_every_row_once(whole: list[Row]) -> None:
 
 
 @pytest.mark.parametrize("width", [80, 120])
-@pytest.mark.parametrize("paper", COMPARED, ids=lambda paper: paper.number)
+@pytest.mark.parametrize("paper", Paper, ids=lambda paper: paper.number)
 def test_tables_fit_the_terminal(paper: Paper, width: int) -> None:
     text = _shown(list(rows_of(paper)), width)
     assert max(len(line) for line in text.splitlines()) <= width
 
 
-def test_no_word_is_cut_at_80_columns() -> None:
-    rows = [row for paper in COMPARED for row in rows_of(paper)]
-    for row in rows:
+def test_no_word_is_cut_at_80_columns(whole: list[Row]) -> None:
+    for row in whole:
         shown = _shown([row], 80).split()
         for word in row.quantity.split():
             assert word in shown

@@ -16,7 +16,7 @@ from scipy.stats import beta
 from feeddrive.parts.consumed_life import consumed_life
 from feeddrive.parts.life import rated_revolutions, rating_of_test, survival
 from feeddrive.parts.life_exponents import BALL_BEARING, BALL_SCREW, diameter_exponent, load_exponent
-from feeddrive.parts.load_distribution import Loading, load_distribution, nut_body, share_of_greatest
+from feeddrive.parts.load_distribution import Loading, continuum_extremes, load_distribution, nut_body
 from feeddrive.parts.preload_loss import opening_force, stiffness_share, torque_share
 from feeddrive.parts.rating import (
     combined_rating,
@@ -260,7 +260,7 @@ def test_load_distribution_of_the_specimen() -> None:
     assert (loads.max(), loads.min()) == (printed("1.0807"), printed("0.9596"))
     for value, text in zip(loads[::9], ("1.081", "1.047", "1.020", "0.998", "0.981", "0.969", "0.962"), strict=True):
         assert value == printed(text)
-    assert share_of_greatest(body, PRELOAD)[0] == printed("1.0819")
+    assert continuum_extremes(body, PRELOAD)[0] == printed("1.0819")
     same = load_distribution(body, PRELOAD, Loading.SAME_END).relative
     assert (same.max(), same.min()) == (printed("1.035"), printed("0.988"))
     for diameter, text in ((0.036, "1.098"), (0.05, "1.065")):
