@@ -69,7 +69,7 @@ def _narrow(rows: Sequence[Row], width: int) -> Iterator[RenderableType]:
         place, quantity, printed, computed, deviation, status = cells(row)
         yield _line((place, quantity, status), widths)
         named = (("printed", printed), ("computed", computed), ("deviation", deviation))
-        yield _under("; ".join(f"{name} {text}" for name, text in named if text), _PLACE + _GAP)
+        yield _under("; ".join(f"{name} {text}" for name, text in named if text), _PLACE + _GAP, "")
         if row.reason:
             yield _under(row.reason, _PLACE + _GAP)
 
@@ -116,8 +116,8 @@ def _line(texts: Sequence[str], widths: Sequence[int]) -> Table:
     return made
 
 
-def _under(text: str, indent: int) -> Padding:
-    return Padding(Text(text, style="dim", overflow="fold"), (0, 0, 0, indent))
+def _under(text: str, indent: int, style: str = "dim") -> Padding:
+    return Padding(Text(text, style=style, overflow="fold"), (0, 0, 0, indent))
 
 
 def _with_unit(text: str, unit: str) -> str:
