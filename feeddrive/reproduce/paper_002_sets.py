@@ -129,7 +129,7 @@ def warm_up(assumptions: Assumptions, preload: float, speed: float, *, with_cont
     given = np.zeros(len(system.input_names))
     for name, heat in machine.heats(np.array([turning])).items():
         given[system.column(name)] = heat[0]
-    outputs = system.outputs(system.simulate(np.tile(given, (360, 1)), 30.0), given)
+    outputs = system.outputs(system.simulate(np.tile(given, (360, 1)), 30.0))
     minutes = np.arange(361) / 2
     nut, shaft = (np.append(0.0, outputs[:, system.row(name)]) for name in (NUT, "shaft_travel"))
     return WarmUp(minutes, nut, shaft)

@@ -56,25 +56,15 @@ def balance(system: HeatSystem, order: int, input_sizes: FloatArray, output_size
     return Balance(seen @ u[:, :order] * scale, reached @ vh[:order].T * scale, strengths)
 
 
-def reduced(system: HeatSystem, order: int, input_sizes: FloatArray, output_sizes: FloatArray) -> HeatSystem:
-    """The system on its strongest balanced states, the others settled at once: its steady state is exact.
-
-    Args, errors: as `balance`. Source: Liu, Anderson 1989 (singular perturbation of balanced systems).
-    """
-    whole = balance(system, system.order, input_sizes, output_sizes)
-    # States below rounding carry nothing; with them the transformation would be singular.
-    kept = max(int(np.sum(whole.strengths > 1e-10 * whole.strengths[0])), order)
-    left, right = whole.left[:, :kept], whole.right[:, :kept]
-    A, B, L = -left.T @ system.conductance @ right, left.T @ system.gains, system.rows @ right
-    settled = np.linalg.solve(A[order:, order:], np.hstack([A[order:, :order], B[order:]]))
-    fast_A, fast_B = settled[:, :order], settled[:, order:]
+def truncated(system: HeatSystem, order: int, input_sizes: FloatArray, output_sizes: FloatArray) -> HeatSystem:
+    """The system on its strongest balanced states; args and errors as `balance`."""
+    found = balance(system, order, input_sizes, output_sizes)
     return replace(
         system,
         capacity=np.ones(order),
-        conductance=-(A[:order, :order] - A[:order, order:] @ fast_A),
-        gains=B[:order] - A[:order, order:] @ fast_B,
-        rows=L[:, :order] - L[:, order:] @ fast_A,
-        direct=system.feedthrough - L[:, order:] @ fast_B,
+        conductance=found.left.T @ system.conductance @ found.right,
+        gains=found.left.T @ system.gains,
+        rows=system.rows @ found.right,
     )
 
 

@@ -173,7 +173,7 @@ def _march(
     duration = periods * in_period * Δt
     heat_in = duration * sum(value for name, value in heats.items() if name not in ("ambient", "coolant"))
     return ExplicitRun(
-        np.array(times), system.outputs(np.array(means), np.zeros(0)), system.output_names,
+        np.array(times), system.outputs(np.array(means)), system.output_names,
         np.asarray(model.profile @ means[-1]),
         periods * in_period, Δt, heat_in, float(state[-1]), float(system.capacity @ state[:-2]),
     )  # fmt: skip

@@ -12,16 +12,14 @@ from feeddrive.thermal.system import HeatSystem
 
 
 def state_space(system: HeatSystem) -> control.StateSpace:
-    """dx/dt = A x + B u, y = L x + D u; u in W and K, y in K and m, named.
+    """dx/dt = A x + B u, y = L x; u in W and K, y in K and m, named.
 
     Raises:
         InputError: a sparse system; reduce it first.
     """
     _refuse_sparse(system.is_sparse)
     A, B = -system.conductance / system.capacity[:, None], system.gains / system.capacity[:, None]
-    return control.ss(
-        A, B, system.rows, system.feedthrough, inputs=list(system.input_names), outputs=list(system.output_names)
-    )
+    return control.ss(A, B, system.rows, 0, inputs=list(system.input_names), outputs=list(system.output_names))
 
 
 def casadi_system(system: HeatSystem, name: str = "thermal") -> ca.Function:
@@ -33,7 +31,7 @@ def casadi_system(system: HeatSystem, name: str = "thermal") -> ca.Function:
     _refuse_sparse(system.is_sparse)
     x, u = ca.SX.sym("x", system.order), ca.SX.sym("u", len(system.input_names))
     rate = (-ca.DM(system.conductance) @ x + ca.DM(system.gains) @ u) / ca.DM(system.capacity)
-    shown = ca.DM(system.rows) @ x + ca.DM(system.feedthrough) @ u
+    shown = ca.DM(system.rows) @ x
     return ca.Function(name, [x, u], [rate, shown], ["x", "u"], ["rate", "y"])
 
 

@@ -6,7 +6,7 @@
 3. Congruence: C_r = VᵀCV = 1, K_r(g) = VᵀK₀V + Σ gᵢ VᵀKᵢV. As every g ≥ 0 keeps K_r symmetric and not negative, the
    model is stable and passive at every operating point, also while conductances change within a run.
 
-At one operating point `reduced_system` is smaller still: two-sided balancing with exact steady state.
+At one operating point `reduced_system` is smaller still: two-sided balancing.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from itertools import product
 
 import numpy as np
 
-from feeddrive.thermal.balancing import balance, reduced
+from feeddrive.thermal.balancing import balance, truncated
 from feeddrive.thermal.krylov import moments, orthonormal
 from feeddrive.thermal.model import AMBIENT, COOLANT, HeatModel, Path
 from feeddrive.thermal.system import HeatSystem
@@ -45,7 +45,7 @@ class Sizes:
     other_heat: float = 1.0
     surroundings: float = 2.0
     rise: float = 0.01
-    growth: float = 0.1e-6
+    growth: float = 0.02e-6
 
     def of_inputs(self, names: Iterable[str]) -> FloatArray:
         """Size of each input, (m,)."""
@@ -112,7 +112,7 @@ def compressed(system: HeatSystem, sizes: Sizes | None = None) -> HeatSystem:
 
 
 def reduced_system(system: HeatSystem, order: int, sizes: Sizes | None = None) -> HeatSystem:
-    """A system at one operating point, balanced to `order` states, its steady state exact.
+    """A system at one operating point, balanced to `order` states.
 
     Args:
         system: full, or dense with every C one.
@@ -124,7 +124,7 @@ def reduced_system(system: HeatSystem, order: int, sizes: Sizes | None = None) -
     """
     sizes = sizes or Sizes()
     small = compressed(system, sizes) if system.is_sparse else system
-    return reduced(small, order, sizes.of_inputs(small.input_names), sizes.of_outputs(small.output_names))
+    return truncated(small, order, sizes.of_inputs(small.input_names), sizes.of_outputs(small.output_names))
 
 
 def _directions(system: HeatSystem, inputs: FloatArray, outputs: FloatArray) -> FloatArray:

@@ -79,4 +79,4 @@ def exact_steps(system: HeatSystem, times: FloatArray) -> FloatArray:
         rates, vectors = scipy.linalg.eig(dense / system.capacity[:, None])
         seen, driven = system.rows @ vectors, np.linalg.solve(vectors, system.gains / system.capacity[:, None])
     grown = -np.expm1(-np.multiply.outer(times, rates)) / rates
-    return np.asarray(np.einsum("pn,kn,nm->kpm", seen, grown, driven).real + system.feedthrough)
+    return np.asarray(np.einsum("pn,kn,nm->kpm", seen, grown, driven).real)

@@ -1,6 +1,6 @@
 """A linear heat system at fixed conductances, full or reduced, with the methods of both.
 
-    C dθ/dt = -K θ + B u,    y = L θ + D u
+    C dθ/dt = -K θ + B u,    y = L θ
 
 Sparse systems are stepped by an L-stable scheme of second order, dense ones exactly (`stepping`).
 """
@@ -30,7 +30,6 @@ class HeatSystem:
         rows: L, (p, n).
         input_names: m names: heats [W], temperatures of the surroundings [K].
         output_names: p names: rises [K], growths [m].
-        direct: D, (p, m); None for zero. Only a model reduced with exact steady state has one.
     """
 
     capacity: FloatArray
@@ -39,7 +38,6 @@ class HeatSystem:
     rows: FloatArray
     input_names: tuple[str, ...]
     output_names: tuple[str, ...]
-    direct: FloatArray | None = None
 
     @property
     def order(self) -> int:
@@ -50,11 +48,6 @@ class HeatSystem:
     def is_sparse(self) -> bool:
         """Whether it is the full system."""
         return bool(sparse.issparse(self.conductance))
-
-    @property
-    def feedthrough(self) -> FloatArray:
-        """D, (p, m)."""
-        return np.zeros((len(self.rows), self.gains.shape[1])) if self.direct is None else self.direct
 
     def column(self, name: str) -> int:
         """Index of an input.
@@ -89,17 +82,23 @@ class HeatSystem:
         Raises:
             InputError: nothing leads heat away, so that there is no such state.
         """
+        self._refuse_adiabatic()
         return _solve(self.conductance, self.gains @ inputs)
 
     def gain(self) -> FloatArray:
-        """Steady outputs per unit of each input, (p, m)."""
-        return np.asarray(self.rows @ _solve(self.conductance, self.gains)) + self.feedthrough
+        """Steady outputs per unit of each input, (p, m).
+
+        Raises:
+            InputError: as `steady`.
+        """
+        self._refuse_adiabatic()
+        return np.asarray(self.rows @ _solve(self.conductance, self.gains))
 
     def frequency_response(self, frequencies: FloatArray) -> FloatArray:
         """Transfer matrices at frequencies [Hz], complex (k, p, m)."""
         answers = np.empty((len(frequencies), len(self.output_names), len(self.input_names)), dtype=complex)
         for at, frequency in enumerate(frequencies):
-            answers[at] = self.rows @ self.shifted_solve(2j * np.pi * frequency, self.gains) + self.feedthrough
+            answers[at] = self.rows @ self.shifted_solve(2j * np.pi * frequency, self.gains)
         return answers
 
     def shifted_solve(self, shift: complex, right: FloatArray) -> FloatArray:
@@ -127,26 +126,32 @@ class HeatSystem:
             state = states[at] = advance(state, given)
         return states
 
-    def outputs(self, states: FloatArray, inputs: FloatArray) -> FloatArray:
-        """Outputs (k, p) of states (k, n) under inputs (k, m), or (m,) for all of them."""
-        shown = states @ self.rows.T
-        return np.asarray(shown if self.direct is None else shown + inputs @ self.direct.T)
+    def outputs(self, states: FloatArray) -> FloatArray:
+        """Outputs (k, p) of states (k, n)."""
+        return np.asarray(states @ self.rows.T)
+
+    def _refuse_adiabatic(self) -> None:
+        """Refuse a system whose heat stays where it is: K is singular to rounding."""
+        if self.is_sparse:
+            lost = np.abs(self.conductance.sum(axis=0)).max()
+            stays = bool(lost <= 1e-12 * np.abs(self.conductance.diagonal()).max())
+        else:
+            stays = bool(np.linalg.cond(self.conductance) > 1e13)
+        if stays:
+            raise InputError("nothing leads heat away", "conductances", "write a film coefficient above zero")
 
     def step_response(self, name: str, size: float, times: int, step: float) -> FloatArray:
         """Outputs (times, p) after a step of one input at rest, every `step` [s]."""
         given = np.zeros(len(self.input_names))
         given[self.column(name)] = size
-        return self.outputs(self.simulate(np.tile(given, (times, 1)), step), given)
+        return self.outputs(self.simulate(np.tile(given, (times, 1)), step))
 
 
 def _solve(matrix: Expression, right: FloatArray) -> FloatArray:
-    try:
-        if sparse.issparse(matrix):
-            return np.asarray(scipy.sparse.linalg.splu(matrix.tocsc(), permc_spec="MMD_AT_PLUS_A").solve(
-                right.astype(matrix.dtype)))  # fmt: skip
-        return np.asarray(np.linalg.solve(matrix, right))
-    except (RuntimeError, np.linalg.LinAlgError):
-        raise InputError("nothing leads heat away", "conductances", "write a film coefficient above zero") from None
+    if sparse.issparse(matrix):
+        factors = scipy.sparse.linalg.splu(matrix.tocsc(), permc_spec="MMD_AT_PLUS_A")
+        return np.asarray(factors.solve(right.astype(matrix.dtype)))
+    return np.asarray(np.linalg.solve(matrix, right))
 
 
 def _index(name: str, names: tuple[str, ...], kind: str) -> int:

@@ -1,0 +1,32 @@
+"""The thermal bench, shared by the tests of the thermal model."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path as FilePath
+
+import numpy as np
+
+from feeddrive.thermal.files import read_thermal_plant
+from feeddrive.thermal.full_model import Discretisation, discretise
+from feeddrive.thermal.grid import Cells
+from feeddrive.thermal.model import Path
+
+BENCH_FILE = FilePath(__file__).resolve().parents[1] / "data" / "thermal_bench.toml"
+BENCH = read_thermal_plant(BENCH_FILE)
+RPM = math.pi / 30
+
+
+def conductances(speed: float) -> dict[Path, float]:
+    """Of the bench at a speed [rev/min]."""
+    return BENCH.at_speed(speed * RPM)
+
+
+def bench_parts(cells: Cells | None = None) -> Discretisation:
+    """The bench in finite volumes."""
+    return discretise(BENCH.rig, cells or Cells())
+
+
+def nut_heat(speed: float) -> float:
+    """Of the bench at a speed [rev/min], [W]."""
+    return float(BENCH.nut.heats(np.array([speed * RPM]))[0])
