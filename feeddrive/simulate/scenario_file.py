@@ -77,8 +77,11 @@ def read_scenario(path: Path, overrides: Mapping[str, str] | None = None) -> Sce
         raise InputError(
             "is not a scenario file of this version", where, f'write format = "{FORMAT}" in its first line'
         )
+    wanted = dict(overrides or {})
+    if "controller" in wanted:
+        entries["controller"] = wanted.pop("controller")
     controller_where = _insert_controller(entries, path)
-    entries = with_overrides(entries, _own_keys(overrides or {}))
+    entries = with_overrides(entries, _own_keys(wanted))
     top = Table(entries, where, Origins())
     top.refuse_unknown(_KEYS)
     plant_path = _plant_path(top, path.parent)
@@ -89,9 +92,9 @@ def read_scenario(path: Path, overrides: Mapping[str, str] | None = None) -> Sce
     trajectory = read_trajectory(top.table("trajectory"))
     excitation = read_excitation(top.table("excitation")) if "excitation" in entries else None
     ticks = _ticks(top, cascade, trajectory.duration)
-    if "travel" in entries:
-        low, high = _travel(top)
-        refuse_beyond_travel(trajectory, (low, high), cascade.sample_time * cascade.position_divider, where)
+    travel = _travel(top) if "travel" in entries else plant.stroke
+    if travel is not None:
+        refuse_beyond_travel(trajectory, travel, cascade.sample_time * cascade.position_divider, where)
     if not unstable:
         refuse_unstable(plant, cascade, controller_where)
     return Scenario(

@@ -37,6 +37,9 @@ STRETCH = 40_000
 CHECKPOINT_EVERY = 5.0
 """Seconds of work between checkpoints; shorter runs write none."""
 
+CHECKPOINT_SHARE = 0.05
+"""Of the time that writing checkpoints may take: large ones are written more seldom."""
+
 Progress = Callable[[float], None]
 """Told the share of the run that is done."""
 
@@ -72,13 +75,19 @@ def run_scenario(
     if samples < 2:
         raise InputError("the run is shorter than two samples", scenario.name, "make it longer or the rate higher")
     done = _resumed(scenario, checkpoint) or _start(scenario)
-    written = clock.monotonic()
+    due = clock.monotonic() + CHECKPOINT_EVERY
     stretch = divider * max(1, STRETCH // divider)
     while done.state.tick < samples * divider:
-        done = _further(scenario, done, min(stretch, samples * divider - done.state.tick))
-        if checkpoint is not None and clock.monotonic() - written > CHECKPOINT_EVERY:
+        try:
+            done = _further(scenario, done, min(stretch, samples * divider - done.state.tick))
+        except KeyboardInterrupt:
+            if checkpoint is not None:
+                write_checkpoint(scenario, done, checkpoint)
+            raise
+        if checkpoint is not None and clock.monotonic() > due:
+            begun = clock.monotonic()
             write_checkpoint(scenario, done, checkpoint)
-            written = clock.monotonic()
+            due = clock.monotonic() + max(CHECKPOINT_EVERY, (clock.monotonic() - begun) / CHECKPOINT_SHARE)
         if progress is not None:
             progress(done.state.tick / (samples * divider))
     if checkpoint is not None:
