@@ -19,8 +19,7 @@ from pathlib import Path
 import casadi as ca
 import numpy as np
 
-from feeddrive.simulate.interpreted import Run
-from feeddrive.simulate.program import Position, Program, Status, Task
+from feeddrive.simulate.program import CELL, Position, Program, Run, Status, Stop, Task
 from feeddrive.typing import FloatArray
 
 FLAGS = ("-O1", "-ffp-contract=off", "-fPIC", "-shared")
@@ -86,27 +85,42 @@ def _compile(source: str, compiler: str, library: Path) -> None:
         made.replace(library)
 
 
+class _Place(ctypes.Structure):
+    """`place_of_run` of the driver."""
+
+    _fields_ = [(name, ctypes.c_longlong) for name in ("sample", "level", "cell", "needed_cell", "needed_level")]
+
+
+class _Constants(ctypes.Structure):
+    """`constants_of_run` of the driver."""
+
+    _fields_ = [
+        ("fixed", ctypes.c_void_p), ("made", ctypes.c_void_p), ("first_cell", ctypes.c_longlong),
+        ("cells", ctypes.c_longlong), ("width", ctypes.c_double),
+    ]  # fmt: skip
+
+
 def _bound(program: Program, library: ctypes.CDLL) -> Run:
     """The driver as a Python function on arrays."""
     function = library.feeddrive_run
-    integer, pointer = ctypes.c_longlong, ctypes.c_void_p
-    function.argtypes = [integer, *[pointer] * 7, integer, *[pointer] * 6]
+    function.argtypes = [ctypes.c_longlong, *[ctypes.c_void_p] * 12]
     function.restype = ctypes.c_int
     work_size = max(f.sz_w() for f in program.functions) + 1, max(f.sz_iw() for f in program.functions) + 1
 
-    def run(
-        task: Task, position: Position, first: int, seen: FloatArray, report: FloatArray
-    ) -> tuple[Status, int, Position]:
-        at, level = ctypes.c_longlong(first), ctypes.c_longlong(position.level)
+    def run(task: Task, position: Position, first: int, seen: FloatArray, report: FloatArray) -> Stop:
+        place = _Place(first, position.level, position.cell, 0, 0)
+        cells = task.made.shape[0]
+        table = _Constants(task.fixed.ctypes.data, task.made.ctypes.data, task.first_cell, cells, CELL)
         memory, own = position.memory.copy(), position.own.copy()
-        fixed = [np.ascontiguousarray(a) for a in (task.fed, task.spans, task.table, task.settings, task.values)]
-        fed, spans, table, settings, values = (array.ctypes.data for array in fixed)
+        given = [np.ascontiguousarray(array) for array in (task.fed, task.spans, task.settings, task.values)]
+        fed, spans, settings, values = (array.ctypes.data for array in given)
         work, integers = np.empty(work_size[0]), np.empty(work_size[1], dtype=np.int64)
         status = function(
-            len(task.fed), ctypes.addressof(at), memory.ctypes.data, own.ctypes.data, ctypes.addressof(level), fed,
-            spans, table, task.table.shape[1], settings, values, seen.ctypes.data, report.ctypes.data,
-            integers.ctypes.data, work.ctypes.data,
+            len(task.fed), ctypes.addressof(place), memory.ctypes.data, own.ctypes.data, fed, spans,
+            ctypes.addressof(table), settings, values, seen.ctypes.data, report.ctypes.data, integers.ctypes.data,
+            work.ctypes.data,
         )  # fmt: skip
-        return Status(status), at.value, Position(memory, own, level.value)
+        at = Position(memory, own, place.level, place.cell)
+        return Stop(Status(status), place.sample, at, place.needed_cell, place.needed_level)
 
     return run

@@ -72,13 +72,13 @@ class ControlledState:
     def vector(self) -> FloatArray:
         """The state as plain numbers, for a file; see `state_from`."""
         at = self.position
-        return np.concatenate([[self.tick, at.level, len(at.memory)], at.memory, at.own])
+        return np.concatenate([[self.tick, at.level, at.cell, len(at.memory)], at.memory, at.own])
 
 
 def state_from(vector: FloatArray) -> ControlledState:
     """The state that `ControlledState.vector` has written."""
-    tick, level, count = (int(number) for number in vector[:3])
-    return ControlledState(tick, Position(vector[3 : 3 + count].copy(), vector[3 + count :].copy(), level))
+    tick, level, cell, count = (int(number) for number in vector[:4])
+    return ControlledState(tick, Position(vector[4 : 4 + count].copy(), vector[4 + count :].copy(), level, cell))
 
 
 @dataclass(frozen=True)
@@ -164,7 +164,7 @@ def resting_state(
     """
     machine, timing = _machine_for(plant, controller, torque_loop or TorqueLoop(), _resolutions(plant, controller))
     own = np.concatenate([controller.initial, np.zeros(timing.past)])
-    return ControlledState(0, rested(machine, plant, initial_state(plant, position, velocity), own))
+    return ControlledState(0, rested(machine, initial_state(plant, position, velocity), own))
 
 
 def _machine_for(
@@ -214,7 +214,7 @@ def _machine(plant: Plant, key: _ControllerKey, lagging: bool, late: int, parts:
     own_after = ca.vertcat(after, torques[1:] if past else ca.SX.zeros(0, 1))
     before = ca.Function("feeddrive_before", arguments, [own_after, held, seen])
     nothing = ca.Function("feeddrive_after", arguments, [ca.SX.zeros(0, 1)])
-    return machine_of(Program(step, before, nothing, parts))
+    return machine_of(Program(step, before, nothing, parts, plant.chain.varies))
 
 
 def _measured(key: _ControllerKey, readings: Expression, steps: Expression) -> Expression:

@@ -18,7 +18,7 @@ from feeddrive.plant.equations import (
     travel_deviation,
 )
 from feeddrive.plant.plant import Plant
-from feeddrive.simulate.engine import Feed, Machine, machine_of, run_machine, watched
+from feeddrive.simulate.engine import Feed, Machine, machine_of, rested, run_machine
 from feeddrive.simulate.program import Program, StepReport
 from feeddrive.simulate.step import driven_step
 from feeddrive.simulate.step_constants import Layout
@@ -114,7 +114,7 @@ def simulate_driven(plant: Plant, motion: MotorMotion, tolerance: float = TOLERA
     states = np.zeros(0)
     if machine.program.step.layout.coordinates:
         states = np.array(beginning(motion.angle[0], motion.speed[0], values)).ravel()
-    start = watched(machine, plant, states, np.zeros(0), (motion.angle[0], motion.speed[0]), 0.0)
+    start = rested(machine, states, np.zeros(0))
     step = motion.time[1] - motion.time[0]
     # the acceleration is known at the samples only, and only there is the torque read
     acceleration = np.zeros(len(motion.time))
@@ -153,49 +153,57 @@ def _machine(plant: Plant) -> tuple[Machine, ca.Function, ca.Function]:
     read = outputs(memory, fed[2], fed[3], fed[4], fed[5] + settings[0], values)
     before = ca.Function("feeddrive_before", arguments, [own, fed[:4], ca.SX.zeros(0, 1)])
     after = ca.Function("feeddrive_after", arguments, [read])
-    return machine_of(Program(step, before, after, 1)), outputs, _start(plant)
+    return machine_of(Program(step, before, after, 1, plant.chain.varies)), outputs, _start(plant)
 
 
 def _start(plant: Plant) -> ca.Function:
-    """(theta, theta', parameters) -> [phi, x, phi', x'] with no stretch anywhere, travel errors included."""
+    """(theta, theta', parameters) -> free coordinates and rates with no stretch anywhere, travel errors included."""
     symbols = parameter_symbols(plant)
     theta, speed, place = (ca.SX.sym(name) for name in ("theta", "speed", "place"))
-    r = chain_symbols(plant, symbols)["lead"] / (2 * math.pi)
-    delta = travel_deviation(plant, symbols, theta, place, ca.SX(0))
-    x = r * theta
+    p = chain_symbols(plant, symbols)
+    r, motion = p["lead"] / (2 * math.pi), plant.chain.rigid_motion(p)
+    turned = theta / motion[0]  # r phi
+    delta = travel_deviation(plant, symbols, turned / r, place, ca.SX(0))
+    x = turned
     for _ in range(PASSES):
         (found,) = ca.substitute([delta], [place], [x])
-        x = r * theta + found
+        x = turned + found
     slopes = ca.substitute([ca.jacobian(delta, theta), ca.jacobian(delta, place)], [place], [x])
-    velocity = speed * (r + slopes[0]) / (1 - slopes[1])
-    return ca.Function("start", [theta, speed, symbols.vector], [ca.vertcat(theta, x, speed, velocity)])
+    velocity = speed * (1 / motion[0] + slopes[0]) / (1 - slopes[1])
+    shafts = ca.vertcat(*[entry / motion[0] for entry in motion[1:-1]])
+    return ca.Function(
+        "start", [theta, speed, symbols.vector], [ca.vertcat(theta * shafts, x, speed * shafts, velocity)]
+    )
 
 
 def _outputs(plant: Plant, layout: Layout) -> ca.Function:
     """(memory, theta, theta', theta'', t, parameters) -> [phi, phi', x, x', motor torque].
 
-    The torque is the motor's row of M q'' + C q' + K q = T + f.
+    The torque is the motor's row of M q'' + C q' + K q = T + f; what rides with the motor on a common hub moves with
+    the acceleration that the other rows give it.
     """
     symbols = parameter_symbols(plant)
-    p = chain_symbols(plant, symbols)
+    chain, p = plant.chain, chain_symbols(plant, symbols)
     memory = ca.SX.sym("memory", layout.memory)
     theta, speed, acceleration, time = (ca.SX.sym(name) for name in ("theta", "speed", "acceleration", "time"))
     free = layout.coordinates
-    if plant.chain.elastic:
-        q = ca.vertcat(theta, memory[:free])
-        rate = ca.vertcat(speed, memory[free : 2 * free])
-        row = acceleration
+    if chain.elastic:
+        q, rate = ca.vertcat(theta, memory[:free]), ca.vertcat(speed, memory[free : 2 * free])
     else:
-        ratio = plant.chain.motor(p)[0]
-        q, rate, row = theta / ratio, speed / ratio, acceleration / ratio
-    z = memory[layout.states : layout.states + layout.bristles]
-    force = effect_forces(plant, symbols, q, rate, z, time).on_coordinates[0]
-    mass, damping, stiffness = (symbolic(m(p)) for m in (plant.chain.mass, plant.chain.damping, plant.chain.stiffness))
-    on_motor = mass[0, 0] * row + ca.mtimes(damping[0, :], rate) + ca.mtimes(stiffness[0, :], q) - force
-    torque = on_motor / plant.chain.motor(p)[0]
-    screw, table = ca.horzcat(*plant.chain.screw(p)), ca.horzcat(*plant.chain.table(p))
+        q, rate = theta / chain.motor(p)[0], speed / chain.motor(p)[0]
+    screw, table = ca.horzcat(*chain.screw(p)), ca.horzcat(*chain.table(p))
     phi, x = ca.mtimes(screw, q), ca.mtimes(table, q)
-    if not plant.chain.elastic:
+    z = memory[layout.states : layout.states + layout.bristles]
+    force = effect_forces(plant, symbols, q, rate, z, time, None).on_coordinates
+    mass, damping, stiffness = (symbolic(m(p, x)) for m in (chain.mass, chain.damping, chain.stiffness))
+    unmoved = ca.mtimes(damping, rate) + ca.mtimes(stiffness, q) - force  # M q'' = motor torque - this
+    if chain.elastic:
+        others = ca.solve(ca.sparsify(mass[1:, 1:]), -unmoved[1:] - mass[1:, 0] * acceleration)
+        row = ca.vertcat(acceleration, others)
+    else:
+        row = acceleration / chain.motor(p)[0]
+    torque = (ca.mtimes(mass[0, :], row) + unmoved[0]) / chain.motor(p)[0]
+    if not chain.elastic:
         x = x + travel_deviation(plant, symbols, phi, x, time)
     result = ca.vertcat(phi, ca.mtimes(screw, rate), x, ca.mtimes(table, rate), torque)
     return ca.Function("outputs", [memory, theta, speed, acceleration, time, symbols.vector], [result])

@@ -5,7 +5,7 @@
  * with the same numbers, for machines without a compiler: change both or neither.
  */
 
-enum { DONE = 0, NEEDS_LEVEL = 1, NO_SOLUTION = 2 };
+enum { DONE = 0, NEEDS_CONSTANTS = 1, NO_SOLUTION = 2, OFF_GRID = 3 };
 
 #define BLANK 1 /* C has no arrays of length zero */
 #define COARSER 0.02
@@ -53,20 +53,49 @@ static double attempt(in memory, in held, double place, double start, in fixed, 
   return error < 1e290 ? error : -1.0;
 }
 
+/* Where the machine is between steps, but for its memory. */
+typedef struct {
+  long long sample, level, cell, needed_cell, needed_level;
+} place_of_run;
+
+/* Constants per part, cell and level; those that are not made are asked for. Cells are `width` of table position. */
+typedef struct {
+  const double *fixed;
+  const unsigned char *made;
+  long long first_cell, cells;
+  double width;
+} constants_of_run;
+
+/* The watched forces are those beyond the chain at the reference of a cell: in another cell they are others. */
+static void watch(double *memory, in held, double place, double start, in fixed, in values, long long *iw, double *w) {
+  double after[N_MEMORY + BLANK];
+  in arg[] = {memory, held, &place, &start, fixed, values};
+  double *res[] = {after};
+  feeddrive_watch(arg, res, iw, w, 0);
+  for (int k = 0; k < N_MEMORY; ++k) memory[k] = after[k];
+}
+
 /* One part of a sample, in steps; the level of the last one is kept for the next part. */
-static int advance(double *memory, in held, double start, double span, in table, in values, long long levels,
-                   long long *level, long long *iw, double *w, double *report) {
+static int advance(double *memory, in held, double start, double span, int part, const constants_of_run *table,
+                   in values, place_of_run *run, long long *iw, double *w, double *report) {
   const long long whole = 1LL << DEEPEST;
   long long at = 0;
   double after[N_MEMORY + BLANK];
   while (at < whole) {
-    long long length = whole >> *level;
-    double place = (double)at / (double)whole;
-    if (*level >= levels) return NEEDS_LEVEL;
-    double error = attempt(memory, held, place, start + place * span, table + *level * N_FIXED, values, after, iw, w,
-                           report);
-    if (!(error >= 0.0 && error <= 1.0) && *level < DEEPEST) {
-      *level += 1;
+    long long length = whole >> run->level;
+    double place = (double)at / (double)whole, now = start + place * span;
+    long long cell = VARIES ? (long long)floor(memory[TABLE] / table->width + 0.5) - table->first_cell : 0;
+    if (cell < 0 || cell >= table->cells) return OFF_GRID;
+    run->needed_cell = cell;
+    if (!table->made[cell * (DEEPEST + 1) + run->level]) return NEEDS_CONSTANTS;
+    in fixed = table->fixed + ((part * table->cells + cell) * (DEEPEST + 1) + run->level) * N_FIXED;
+    if (run->cell != cell + table->first_cell) {
+      watch(memory, held, place, now, fixed, values, iw, w);
+      run->cell = cell + table->first_cell;
+    }
+    double error = attempt(memory, held, place, now, fixed, values, after, iw, w, report);
+    if (!(error >= 0.0 && error <= 1.0) && run->level < DEEPEST) {
+      run->level += 1;
       report[REFUSED] += 1;
       continue;
     }
@@ -76,25 +105,25 @@ static int advance(double *memory, in held, double start, double span, in table,
       report[EXCESS] += error;
     }
     if (error > report[WORST]) report[WORST] = error;
-    if ((double)*level > report[FINEST]) report[FINEST] = (double)*level;
+    if ((double)run->level > report[FINEST]) report[FINEST] = (double)run->level;
     report[STEPS] += 1;
     for (int k = 0; k < N_MEMORY; ++k) memory[k] = after[k];
     at += length;
-    if (*level > 0 && error < COARSER && at % (2 * length) == 0) *level -= 1;
+    if (run->level > 0 && error < COARSER && at % (2 * length) == 0) run->level -= 1;
   }
   return DONE;
 }
 
-/* Samples from *first on; on return *first is where it ended, and memory, own and level are those at its start. */
-int feeddrive_run(long long samples, long long *first, double *memory, double *own, long long *level, in fed, in spans,
-                  in table, long long levels, in settings, in values, double *seen, double *report, long long *iw,
+/* Samples from run->sample on; on return run says where it ended, and memory and own are those at its start. */
+int feeddrive_run(long long samples, place_of_run *run, double *memory, double *own, in fed, in spans,
+                  const constants_of_run *table, in settings, in values, double *seen, double *report, long long *iw,
                   double *w) {
   double kept[N_MEMORY + BLANK], next[N_OWN + BLANK], held[N_PARTS * N_HELD + BLANK];
-  for (; *first < samples; ++*first) {
-    in row = fed + *first * N_FED;
-    double *shown = seen + *first * (N_BEFORE + N_AFTER);
+  for (; run->sample < samples; ++run->sample) {
+    in row = fed + run->sample * N_FED;
+    double *shown = seen + run->sample * (N_BEFORE + N_AFTER);
     double start = row[N_FED - 1];
-    long long level_before = *level;
+    long long level_before = run->level, cell_before = run->cell;
     for (int k = 0; k < N_MEMORY; ++k) kept[k] = memory[k];
     {
       in arg[] = {memory, own, row, settings, values};
@@ -102,11 +131,12 @@ int feeddrive_run(long long samples, long long *first, double *memory, double *o
       feeddrive_before(arg, res, iw, w, 0);
     }
     for (int part = 0; part < N_PARTS; ++part) {
-      int status = advance(memory, held + part * N_HELD, start, spans[part], table + part * levels * N_FIXED, values,
-                           levels, level, iw, w, report);
+      int status = advance(memory, held + part * N_HELD, start, spans[part], part, table, values, run, iw, w, report);
       if (status != DONE) {
         for (int k = 0; k < N_MEMORY; ++k) memory[k] = kept[k];
-        *level = level_before;
+        run->needed_level = run->level;
+        run->level = level_before;
+        run->cell = cell_before;
         return status;
       }
       start += spans[part];

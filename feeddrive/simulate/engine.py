@@ -5,29 +5,31 @@ Constants of finer steps are made when the first step asks for them, so that a r
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
+from feeddrive.plant.chain import DistributedScrew
 from feeddrive.plant.equations import parameter_values
 from feeddrive.plant.plant import Plant
 from feeddrive.simulate.compiled import compiled_run, find_compiler
-from feeddrive.simulate.interpreted import Run, interpreted_run
+from feeddrive.simulate.interpreted import interpreted_run
 from feeddrive.simulate.program import (
+    CELL,
     DEEPEST,
     REPORTS,
     TOLERANCE,
     Position,
     Program,
+    Run,
     Status,
     StepReport,
+    Stop,
     Task,
 )
-from feeddrive.simulate.step_constants import SimulationError, linear_part
+from feeddrive.simulate.step_constants import SimulationError, linear_part, step_constants
 from feeddrive.typing import FloatArray
-
-LEVELS_AT_ONCE = 3
-"""Levels added when one is missing."""
 
 
 @dataclass(frozen=True)
@@ -77,27 +79,17 @@ def machine_of(program: Program) -> Machine:
     return Machine(program, made if made is not None else interpreted_run(program))
 
 
-def rested(machine: Machine, plant: Plant, states: FloatArray, own: FloatArray, time: float = 0.0) -> Position:
-    """A start from states of the chain (and bristles, else 0), the effects' forces as they belong to them.
+def rested(machine: Machine, states: FloatArray, own: FloatArray) -> Position:
+    """A start from states of the chain, the bristles unloaded.
 
     Args:
         machine: that will run.
-        plant: with its values.
         states: of the step, coordinates first, shape (k,); the others are 0.
         own: of the commands, shape (o,).
-        time: [s].
     """
-    return watched(machine, plant, states, own, (0.0, 0.0), time)
-
-
-def watched(
-    machine: Machine, plant: Plant, states: FloatArray, own: FloatArray, motor: tuple[float, float], time: float
-) -> Position:
-    """As `rested`, with angle [rad] and speed [rad/s] of a motor that is driven."""
     memory = np.zeros(machine.program.step.layout.memory)
     memory[: len(states)] = states
-    after = machine.program.step.watch(memory, *motor, time, parameter_values(plant))
-    return Position(np.array(after).ravel(), np.asarray(own, dtype=float))
+    return Position(memory, np.asarray(own, dtype=float))
 
 
 def run_machine(machine: Machine, plant: Plant, feed: Feed, start: Position, tolerance: float = TOLERANCE) -> Outcome:
@@ -115,35 +107,64 @@ def run_machine(machine: Machine, plant: Plant, feed: Feed, start: Position, tol
 
     Raises:
         SimulationError: the step cannot be solved even at the finest level, or the motion does not stay finite.
+        InputError: the nut would leave the screw.
     """
     program = machine.program
-    linear = linear_part(plant, program.step.layout, feed.torque_lag)
-    values = np.array(parameter_values(plant))
-    table = np.empty((len(feed.spans), 0, program.sizes["N_FIXED"]))
-    task = Task(feed.fed, feed.spans, feed.settings, values, table, tolerance)
-    task = task.deeper(program, linear, start.level + 1)
+    task = _task(program, plant, feed)
     seen, report = np.empty((len(feed.fed), program.sizes["N_BEFORE"] + program.sizes["N_AFTER"])), np.zeros(REPORTS)
-    at, position, status = 0, start, Status.NEEDS_LEVEL
-    while status == Status.NEEDS_LEVEL:
-        status, at, position = machine.run(task, position, at, seen, report)
-        if status == Status.NEEDS_LEVEL:
-            task = task.deeper(program, linear, min(task.table.shape[1] + LEVELS_AT_ONCE, DEEPEST + 1))
-    _refuse_failure(plant, feed, status, at, seen)
-    return Outcome(seen, position, _told(report, len(seen), tolerance))
+    stop = machine.run(task, start, 0, seen, report)
+    while stop.status == Status.NEEDS_CONSTANTS:
+        _make_constants(task, program, plant, feed, stop, tolerance)
+        stop = machine.run(task, stop.position, stop.sample, seen, report)
+    _refuse_failure(plant, feed, stop, seen)
+    return Outcome(seen, stop.position, _told(report, len(seen), tolerance))
 
 
-def _refuse_failure(plant: Plant, feed: Feed, status: Status, at: int, seen: FloatArray) -> None:
-    if status == Status.DONE and np.isfinite(seen).all():
-        return
-    if status == Status.DONE:
-        at = int(np.argmin(np.isfinite(seen).all(axis=1)))
-    shortest = float(feed.spans.min()) / 2**DEEPEST
-    stiff = _steepest(plant)
-    mend = f"check the values of {stiff}" if stiff else "check the values of the chain"
+def _task(program: Program, plant: Plant, feed: Feed) -> Task:
+    first, count = _cells(plant)
+    levels = DEEPEST + 1
+    fixed = np.zeros((len(feed.spans), count, levels, program.sizes["N_FIXED"]))
+    made = np.zeros((count, levels), dtype=np.uint8)
+    return Task(feed.fed, feed.spans, feed.settings, np.array(parameter_values(plant)), fixed, made, first)
+
+
+def _cells(plant: Plant) -> tuple[int, int]:
+    """First cell and number of cells of the positions that the chain allows; one where it does not vary."""
+    if not isinstance(plant.chain, DistributedScrew):
+        return 0, 1
+    first, last = (math.floor(end / CELL + 0.5) for end in plant.chain.positions_on_screw())
+    return first, last - first + 1
+
+
+def _make_constants(task: Task, program: Program, plant: Plant, feed: Feed, stop: Stop, tolerance: float) -> None:
+    """Fill in what the driver has asked for."""
+    reference = CELL * (task.first_cell + stop.cell) if program.varies else 0.0
+    linear = linear_part(plant, program.step.layout, feed.torque_lag, reference)
+    for part, span in enumerate(feed.spans):
+        step, share = span / 2**stop.level, 0.5**stop.level
+        constants = step_constants(linear, program.step.layout, step, share, tolerance)
+        task.fixed[part, stop.cell, stop.level] = constants
+    task.made[stop.cell, stop.level] = 1
+
+
+def _refuse_failure(plant: Plant, feed: Feed, stop: Stop, seen: FloatArray) -> None:
+    at = stop.sample
+    if stop.status == Status.DONE:
+        finite = np.isfinite(seen).all(axis=1)
+        if finite.all():
+            return
+        at = int(np.argmin(finite))
     time = feed.fed[min(at, len(feed.fed) - 1), -1]
+    if stop.status == Status.OFF_GRID:
+        table = float(stop.position.memory[len(plant.chain.coordinates) - 1])
+        raise SimulationError(
+            f"after {time:.6g} s the nut leaves the screw, at {1e3 * table:.4g} mm", plant.name, "shorten the motion"
+        )
+    shortest = float(feed.spans.min()) / 2**DEEPEST
     raise SimulationError(
-        f"the motion cannot be followed after {time:.6g} s, not even with steps of {shortest:.2g} s", plant.name, mend
-    )
+        f"the motion cannot be followed after {time:.6g} s, not even with steps of {shortest:.2g} s", plant.name,
+        f"check the values of {_steepest(plant)}",
+    )  # fmt: skip
 
 
 def _steepest(plant: Plant) -> str:
@@ -151,7 +172,7 @@ def _steepest(plant: Plant) -> str:
     for name in ("presliding", "backlash", "stribeck"):
         if any(effect.name == name for effect in plant.effects):
             return name
-    return plant.effects[0].name if plant.effects else ""
+    return plant.effects[0].name if plant.effects else "the chain"
 
 
 def _told(report: FloatArray, samples: int, tolerance: float) -> StepReport:

@@ -118,7 +118,7 @@ def run_samples(
     machine = _machine(plant, command, len(settings), timing.late, len(timing.parts))
     own = np.full(timing.past, torque_before)
     feed = Feed(np.column_stack([fed, time - time[0]]), sample * np.array(timing.parts), settings)
-    outcome = run_machine(machine, plant, feed, rested(machine, plant, start, own), tolerance)
+    outcome = run_machine(machine, plant, feed, rested(machine, start, own), tolerance)
     output, torque, angle, _, position, velocity = np.ascontiguousarray(outcome.seen.T)
     return SampledRun(time, output, torque, angle, position, velocity, outcome.report)
 
@@ -138,7 +138,9 @@ def initial_state(plant: Plant, position: float, velocity: float) -> FloatArray:
     if not plant.chain.elastic:
         return np.array([r * angle, velocity])
     speed = velocity * (1 - by_position) / (r + by_angle)
-    return np.array([angle, angle, position, speed, speed, velocity])
+    motion = np.array(plant.chain.rigid_motion(plant.chain_values()), dtype=float)
+    # the shafts turn as for r angle, the table is where it is wanted
+    return np.concatenate([r * angle * motion[:-1], [position], r * speed * motion[:-1], [velocity]])
 
 
 @per_structure
@@ -162,7 +164,7 @@ def torque_program(plant: Plant, command: Command, settings: int, late: int, par
     after_own = torques[1:] if past else own
     before = ca.Function("feeddrive_before", arguments, [after_own, held_inputs, seen])
     after = ca.Function("feeddrive_after", arguments, [ca.SX.zeros(0, 1)])
-    return Program(step, before, after, parts)
+    return Program(step, before, after, parts, plant.chain.varies)
 
 
 def readings_of(plant: Plant, layout: Layout) -> ca.Function:

@@ -6,12 +6,13 @@ that sample and the virtual machine goes on behind it.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from dataclasses import dataclass
 
 import casadi as ca
 import numpy as np
 
-from feeddrive.simulate.program import DEEPEST, Position, Program, Status, Task
+from feeddrive.simulate.program import CELL, DEEPEST, Position, Program, Run, Status, Stop, Task
 from feeddrive.typing import Expression, FloatArray
 
 CHUNKS = (512, 16)
@@ -21,11 +22,19 @@ SWEEPS = 12
 COARSER = 0.02
 STRETCH_SWEEPS = 3
 
-Run = Callable[[Task, Position, int, FloatArray, FloatArray], tuple[Status, int, Position]]
-"""(task, position, first sample, seen (n, s), report (8,)) -> (status, where it ended, position there).
 
-`seen` and `report` are filled in place.
-"""
+@dataclass
+class _Place:
+    """Where the run is between steps; it moves on."""
+
+    memory: FloatArray
+    own: FloatArray
+    level: int
+    cell: int
+
+    @property
+    def position(self) -> Position:
+        return Position(self.memory, self.own, self.level, self.cell)
 
 
 def interpreted_run(program: Program) -> Run:
@@ -38,87 +47,103 @@ class _Interpreter:
         self.program = program
         self.stretches = [_stretch(program, count) for count in CHUNKS] if program.parts == 1 else []
 
-    def run(
-        self, task: Task, position: Position, first: int, seen: FloatArray, report: FloatArray
-    ) -> tuple[Status, int, Position]:
-        at, memory, own, level = first, position.memory, position.own, position.level
-        trust = 0
+    def run(self, task: Task, position: Position, first: int, seen: FloatArray, report: FloatArray) -> Stop:
+        place = _Place(position.memory, position.own, position.level, position.cell)
+        at, trust = first, 0
         while at < len(task.fed):
-            if level == 0 and self.stretches:
-                done, memory, own = self._stretch(task, at, memory, own, seen, report, trust)
+            if self._may_stretch(task, place):
+                done = self._stretch(task, at, place, seen, report, trust)
                 trust = 0 if done == CHUNKS[trust] else 1
                 at += done
-                if at == len(task.fed):
-                    break
                 if done:
                     continue
-            status, after, own_after, level_after = self._sample(task, at, memory, own, level, seen, report)
+            before = place.position
+            status = self._sample(task, at, place, seen, report)
             if status != Status.DONE:
-                return status, at, Position(memory, own, level)
-            memory, own, level, at = after, own_after, level_after, at + 1
-        return Status.DONE, at, Position(memory, own, level)
+                cell = self._cell(task, place.memory)
+                return Stop(status, at, before, cell - task.first_cell, place.level)
+            at += 1
+        return Stop(Status.DONE, at, place.position, 0, 0)
 
-    def _stretch(
-        self, task: Task, at: int, memory: FloatArray, own: FloatArray, seen: FloatArray, report: FloatArray, size: int
-    ) -> tuple[int, FloatArray, FloatArray]:
-        """Samples of one step each; how many of them held, and where they lead."""
+    def _cell(self, task: Task, memory: FloatArray) -> int:
+        if not self.program.varies:
+            return task.first_cell
+        return math.floor(float(memory[self.program.step.layout.coordinates - 1]) / CELL + 0.5)
+
+    def _may_stretch(self, task: Task, place: _Place) -> bool:
+        return bool(self.stretches) and place.level == 0 and place.cell == self._cell(task, place.memory)
+
+    def _stretch(self, task: Task, at: int, place: _Place, seen: FloatArray, report: FloatArray, size: int) -> int:
+        """Samples of one step each; how many of them held."""
         count = CHUNKS[size]
         part = task.fed[at : at + count]
         padded = part if len(part) == count else np.vstack([part, np.repeat(part[-1:], count - len(part), axis=0)])
-        out = self.stretches[size](memory, own, padded.T, task.table[0, 0], task.settings, task.values)
+        fixed = task.fixed[0, place.cell - task.first_cell, 0]
+        out = self.stretches[size](place.memory, place.own, padded.T, fixed, task.settings, task.values)
         memories, owns, shown, judged = (np.array(block).T for block in out)
         change, error = judged[: len(part)].T
         held = (change < 1.0) & (error <= 1.0)
+        if self.program.varies:
+            starts = np.vstack([place.memory, memories[: len(part) - 1]])
+            held &= np.array([self._cell(task, memory) == place.cell for memory in starts])
         good = len(part) if held.all() else int(np.argmin(held))
         if good == 0:
-            return 0, memory, own
+            return 0
         seen[at : at + good] = shown[:good]
         report[0] += good
         report[2] += good * STRETCH_SWEEPS
         report[4] = max(report[4], error[:good].max())
         report[7] = max(report[7], change[:good].max())
-        return good, memories[good - 1].copy(), owns[good - 1].copy()
+        place.memory, place.own = memories[good - 1].copy(), owns[good - 1].copy()
+        return good
 
-    def _sample(
-        self, task: Task, at: int, memory: FloatArray, own: FloatArray, level: int, seen: FloatArray, report: FloatArray
-    ) -> tuple[Status, FloatArray, FloatArray, int]:
+    def _sample(self, task: Task, at: int, place: _Place, seen: FloatArray, report: FloatArray) -> Status:
         program, row = self.program, task.fed[at]
-        own_after, held, shown = _called(program.before, memory, own, row, task.settings, task.values)
+        own_after, held, shown = _called(program.before, place.memory, place.own, row, task.settings, task.values)
         start, inputs = row[-1], held.reshape(program.parts, -1)
         for part in range(program.parts):
-            status, memory, level = self._advance(task, part, memory, inputs[part], start, level, report)
+            status = self._advance(task, part, place, inputs[part], start, report)
             if status != Status.DONE:
-                return status, memory, own, level
+                return status
             start += task.spans[part]
-        (after,) = _called(program.after, memory, own_after, row, task.settings, task.values)
-        seen[at] = np.concatenate([shown, after])
-        return Status.DONE, memory, own_after, level
+        (after,) = _called(program.after, place.memory, own_after, row, task.settings, task.values)
+        place.own, seen[at] = own_after, np.concatenate([shown, after])
+        return Status.DONE
 
     def _advance(
-        self, task: Task, part: int, memory: FloatArray, held: FloatArray, start: float, level: int, report: FloatArray
-    ) -> tuple[Status, FloatArray, int]:
+        self, task: Task, part: int, place: _Place, held: FloatArray, start: float, report: FloatArray
+    ) -> Status:
         whole, at = 1 << DEEPEST, 0
         while at < whole:
-            length, place = whole >> level, at / whole
-            if level >= task.table.shape[1]:
-                return Status.NEEDS_LEVEL, memory, level
-            time = start + place * task.spans[part]
-            after, error = self._attempt(memory, held, place, time, task.table[part, level], task.values, report)
-            if not 0.0 <= error <= 1.0 and level < DEEPEST:
-                level += 1
+            length, share = whole >> place.level, at / whole
+            time, cell = start + share * task.spans[part], self._cell(task, place.memory)
+            index = cell - task.first_cell
+            if not 0 <= index < len(task.made):
+                return Status.OFF_GRID
+            if not task.made[index, place.level]:
+                return Status.NEEDS_CONSTANTS
+            fixed = task.fixed[part, index, place.level]
+            if place.cell != cell:
+                (place.memory,) = _called(
+                    self.program.step.watch, place.memory, held, share, time, fixed, task.values
+                )  # fmt: skip
+                place.cell = cell
+            after, error = self._attempt(place.memory, held, share, time, fixed, task.values, report)
+            if not 0.0 <= error <= 1.0 and place.level < DEEPEST:
+                place.level += 1
                 report[1] += 1
                 continue
             if error < 0.0:
-                return Status.NO_SOLUTION, memory, level
+                return Status.NO_SOLUTION
             if error > 1.0:
                 report[3] += 1
                 report[5] += error
-            report[4], report[6] = max(report[4], error), max(report[6], level)
+            report[4], report[6] = max(report[4], error), max(report[6], place.level)
             report[0] += 1
-            memory, at = after, at + length
-            if level > 0 and error < COARSER and at % (2 * length) == 0:
-                level -= 1
-        return Status.DONE, memory, level
+            place.memory, at = after, at + length
+            if place.level > 0 and error < COARSER and at % (2 * length) == 0:
+                place.level -= 1
+        return Status.DONE
 
     def _attempt(
         self, memory: FloatArray, held: FloatArray, place: float, time: float, fixed: FloatArray, values: FloatArray,

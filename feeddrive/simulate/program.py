@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import dataclass
 from enum import IntEnum
 
 import casadi as ca
 import numpy as np
+from numpy.typing import NDArray
 
 from feeddrive.simulate.step import StepModel
-from feeddrive.simulate.step_constants import Linear, step_constants
 from feeddrive.typing import FloatArray
 
 DEEPEST = 12
 """Halvings of a step at most: a sample of 1 ms is cut into 0.25 µs where contact or break-away asks for it."""
+
+CELL = 0.005
+"""Width of the cells of table position over which a chain that varies is frozen [m]; the rest acts as a force."""
+
+NO_CELL = -(2**40)
+"""Cell of a position whose forces are not yet told."""
 
 TOLERANCE = 1e-11
 """Error of the table position that one step may make [m]; a thousandth of a good scale's resolution."""
@@ -23,8 +30,9 @@ class Status(IntEnum):
     """Why a run ended."""
 
     DONE = 0
-    NEEDS_LEVEL = 1
+    NEEDS_CONSTANTS = 1
     NO_SOLUTION = 2
+    OFF_GRID = 3
 
 
 @dataclass(frozen=True)
@@ -37,17 +45,20 @@ class Program:
             at every sample; the last entry of `fed` is the time of the sample [s].
         after: (memory, own, fed, settings, values) -> seen, at the end of the sample.
         parts: parts of a sample with an input of their own.
+        varies: whether the chain depends on the table position.
     """
 
     step: StepModel
     before: ca.Function
     after: ca.Function
     parts: int
+    varies: bool
 
     @property
     def functions(self) -> tuple[ca.Function, ...]:
         """Every function that a run calls."""
-        return (self.before, self.step.begin, self.step.iterate, self.step.finish, self.after)
+        step = self.step
+        return (self.before, step.watch, step.begin, step.iterate, step.finish, self.after)
 
     @property
     def sizes(self) -> dict[str, int]:
@@ -64,6 +75,8 @@ class Program:
             "N_BEFORE": self.before.size1_out(2),
             "N_AFTER": self.after.size1_out(0),
             "DEEPEST": DEEPEST,
+            "VARIES": int(self.varies),
+            "TABLE": self.step.layout.coordinates - 1,
         }
 
 
@@ -114,28 +127,18 @@ class Task:
         spans: length of the parts [s], shape (p,).
         settings: of the commands, shape (s,).
         values: of the plant, shape (v,).
-        table: constants of the steps, shape (p, levels, c).
-        tolerance: error of the table position that a step may make [m]; infinite for steps of fixed length.
+        fixed: constants of the steps, shape (p, cells, levels, c); filled in place when they are asked for.
+        made: which of them are there, shape (cells, levels).
+        first_cell: number of the first cell; cell k is `CELL` wide about the table position k `CELL`.
     """
 
     fed: FloatArray
     spans: FloatArray
     settings: FloatArray
     values: FloatArray
-    table: FloatArray
-    tolerance: float
-
-    def deeper(self, program: Program, linear: Linear, levels: int) -> Task:
-        """The task with constants for more levels."""
-        made = self.table.shape[1]
-        more = [
-            [
-                step_constants(linear, program.step.layout, span / 2**level, 0.5**level, self.tolerance)
-                for level in range(made, levels)
-            ]
-            for span in self.spans
-        ]
-        return replace(self, table=np.concatenate([self.table, np.array(more)], axis=1))
+    fixed: FloatArray
+    made: NDArray[np.uint8]
+    first_cell: int
 
 
 @dataclass(frozen=True)
@@ -146,8 +149,32 @@ class Position:
         memory: of the step, shape (m,).
         own: of the commands, shape (o,).
         level: halvings of the last step.
+        cell: in which the memory's forces are told; `NO_CELL` before the first step.
     """
 
     memory: FloatArray
     own: FloatArray
     level: int = 0
+    cell: int = NO_CELL
+
+
+@dataclass(frozen=True)
+class Stop:
+    """Where the driver stopped, and why.
+
+    Attributes:
+        status: why.
+        sample: that was not finished; the number of samples where all were.
+        position: at its start.
+        cell, level: of the constants that are missing, the cell counted from the first.
+    """
+
+    status: Status
+    sample: int
+    position: Position
+    cell: int
+    level: int
+
+
+Run = Callable[[Task, Position, int, FloatArray, FloatArray], Stop]
+"""(task, position, first sample, seen (n, s), report (8,)) -> where it stopped; seen and report are filled in place."""

@@ -41,7 +41,8 @@ class StepModel:
 
     Attributes:
         layout: sizes.
-        watch: (memory, theta, theta', time, values) -> memory, its watched part set from the state. At a start.
+        watch: (memory, input, place, time, fixed, values) -> memory, its watched part set from the state. At a start,
+            and where the fixed constants are those of another reference.
         begin: (memory, input, place, time, fixed) -> (what the coordinates at the nodes are without node forces,
             first guess of the unknowns).
         iterate: (memory, base, guess, time, fixed, values) -> (better guess, correction over its limit).
@@ -81,9 +82,8 @@ def _build(plant: Plant, driven: bool, lagging: bool) -> StepModel:
 
 def _layout(plant: Plant, symbols: Symbols, driven: bool, lagging: bool) -> Layout:
     n = len(plant.chain.coordinates)
-    q, rate = ca.SX.sym("q", n), ca.SX.sym("rate", n)
-    z, time = ca.SX.sym("z", bristle_count(plant)), ca.SX.sym("time")
-    forces = effect_forces(plant, symbols, q, rate, z, time).on_coordinates
+    q, rate, z = ca.SX.sym("q", n), ca.SX.sym("rate", n), ca.SX.sym("z", bristle_count(plant))
+    forces = effect_forces(plant, symbols, q, rate, z, ca.SX.sym("t"), ca.SX.sym("reference")).on_coordinates
     first = 1 if driven else 0
     forced = tuple(i for i in range(first, n) if not forces[i].is_zero())
     free = n - first
@@ -103,7 +103,7 @@ class _Maker:
         shapes = constant_shapes(layout)
         self.fixed = ca.SX.sym("fixed", sum(rows * columns for rows, columns in shapes))
         *self.blocks, span, self.scales, self.on_curvature, self.on_change = unflatten(self.fixed, shapes)
-        self.step, self.share = span[0], span[1]
+        self.step, self.share, self.reference = span[0], span[1], span[2]
 
     def model(self) -> StepModel:
         values = self.symbols.vector
@@ -131,14 +131,13 @@ class _Maker:
 
     def _watch(self) -> ca.Function:
         """Memory whose watched part belongs to its state, at rest in curvature and slope."""
-        theta, speed = ca.SX.sym("theta"), ca.SX.sym("speed")
         layout = self.layout
-        q, rate = self._with_motor(self._state(), theta, speed)
+        motor = cubic(self.input, self.place, self.step / self.share) if layout.driven else (0, 0)
+        q, rate = self._with_motor(self._state(), *motor)
         found = self._forces(q, rate, part(self.memory, layout.states, layout.bristles), self.time)
-        rest = ca.SX.zeros(2 * layout.watched, 1)
         kept = self.memory[: layout.states + layout.bristles]
-        after = ca.vertcat(kept, self._watched(found), rest)
-        arguments = [self.memory, theta, speed, self.time, self.symbols.vector]
+        after = ca.vertcat(kept, self._watched(found), ca.SX.zeros(2 * layout.watched, 1))
+        arguments = [self.memory, self.input, self.place, self.time, self.fixed, self.symbols.vector]
         return ca.Function("feeddrive_watch", arguments, [after])
 
     def _state(self) -> Expression:
@@ -150,7 +149,7 @@ class _Maker:
         return part(self.memory, at + index * self.layout.watched, self.layout.watched)
 
     def _forces(self, q: Expression, rate: Expression, z: Expression, time: Expression) -> Forces:
-        return effect_forces(self.plant, self.symbols, q, rate, z, time)
+        return effect_forces(self.plant, self.symbols, q, rate, z, time, self.reference)
 
     def _watched(self, found: Forces) -> Expression:
         on_coordinates = ca.reshape(found.on_coordinates[list(self.layout.forced)], self.count, 1)

@@ -91,11 +91,11 @@ def propagator_shapes(layout: Layout) -> list[tuple[int, int]]:
 
 
 def constant_shapes(layout: Layout) -> list[tuple[int, int]]:
-    """Shapes of all blocks of `step_constants`: propagators; step, its share of the part; full scales; two weights."""
+    """Shapes of all blocks of `step_constants`: propagators; step, its share, reference; full scales; two weights."""
     watched = layout.watched
     return [
         *propagator_shapes(layout),
-        (2, 1),
+        (3, 1),
         (max(len(layout.forced), layout.bristles), 1),
         (watched, 1),
         (watched, 1),
@@ -117,61 +117,61 @@ class Linear:
 
     Attributes:
         mass, inverse: M and its inverse, shape (n, n).
-        damping, stiffness: of all coordinates.
-        a, on_force, on_input: A, G of the forced coordinates, B (empty where the motor is driven).
+        a, on_force, on_input: A, G of the forced coordinates, B; of theta, theta', theta'' where the motor is driven.
+        reference: table position at which M, C and K are taken [m].
         felt_mass: m of the module [kg].
         forgetting: omega of the module [1/s].
     """
 
     mass: FloatArray
     inverse: FloatArray
-    damping: FloatArray
-    stiffness: FloatArray
     a: FloatArray
     on_force: FloatArray
     on_input: FloatArray
     felt_mass: float
     forgetting: float
+    reference: float
 
 
-def linear_part(plant: Plant, layout: Layout, torque_lag: float = 0.0) -> Linear:
+def linear_part(plant: Plant, layout: Layout, torque_lag: float = 0.0, reference: float = 0.0) -> Linear:
     """The linear part for the plant's present values.
 
     Args:
         plant: with its values.
         layout: of the step.
         torque_lag: time constant of the torque loop [s], where the layout has one.
+        reference: table position at which a chain that varies is taken [m].
 
     Raises:
         SimulationError: a mass matrix with which nothing can move.
     """
-    p = plant.chain_values()
-    mass, damping, stiffness = (
-        np.array(matrix(p), dtype=float) for matrix in (plant.chain.mass, plant.chain.damping, plant.chain.stiffness)
-    )
+    p, n = plant.chain_values(), layout.coordinates
+    whole = [plant.chain.mass(p, reference), plant.chain.damping(p, reference), plant.chain.stiffness(p, reference)]
+    mass, damping, stiffness = (np.array(matrix, dtype=float) for matrix in whole)
     first = 1 if layout.driven else 0
     free = slice(first, None)
-    n = layout.coordinates
-    if not (np.isfinite(mass).all() and np.linalg.eigvalsh(mass[free, free]).min(initial=np.inf) > 0):
-        raise SimulationError(
-            "masses and inertias that are not positive", plant.name, "check them and what adds to them"
-        )
+    if not (np.isfinite(mass).all() and (n == 0 or np.linalg.eigvalsh(mass[free, free])[0] > 0)):
+        raise SimulationError("masses or inertias are not positive", plant.name, "check them and what adds to them")
     inverse = np.linalg.inv(mass[free, free]) if n else np.zeros((0, 0))
     a = np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ stiffness[free, free], -inverse @ damping[free, free]]])
     on_force = np.vstack([np.zeros((n, len(layout.forced))), inverse[:, [i - first for i in layout.forced]]])
-    on_input = np.zeros((2 * n, 0))
-    if not layout.driven:
+    if layout.driven:
+        columns = -np.column_stack([matrix[free, 0] for matrix in (stiffness, damping, mass)])
+    else:
         columns = np.column_stack([plant.chain.motor(p), plant.chain.table(p)])  # virtual work: force = L' torque
-        on_input = np.vstack([np.zeros((n, 2)), inverse @ columns.astype(float)])
+    on_input = np.vstack([np.zeros((n, columns.shape[1])), inverse @ columns.astype(float)])
     if layout.lagging:
         a, on_force, on_input = _with_lag(a, on_force, on_input, torque_lag)
     table = np.array(plant.chain.table(p), dtype=float)[free]
     felt = 1 / float(table @ inverse @ table) if n else 1.0
-    forgetting = FORGETTING
-    if layout.driven and n:
-        lowest = float(np.min(np.linalg.eigvals(inverse @ stiffness[free, free]).real))
-        forgetting = max(np.sqrt(max(lowest, 0.0)), FORGETTING)
-    return Linear(mass[free, free], inverse, damping, stiffness, a, on_force, on_input, felt, forgetting)
+    forgetting = _lowest_frequency(inverse @ stiffness[free, free]) if layout.driven and n else FORGETTING
+    return Linear(mass[free, free], inverse, a, on_force, on_input, felt, forgetting, reference)
+
+
+def _lowest_frequency(dynamic: FloatArray) -> float:
+    """Lowest own frequency [rad/s] of M^-1 K, but not below what is forgotten anyway."""
+    squared = float(np.min(np.linalg.eigvals(dynamic).real))
+    return max(float(np.sqrt(max(squared, 0.0))), FORGETTING)
 
 
 def _with_lag(
@@ -203,7 +203,7 @@ def step_constants(linear: Linear, layout: Layout, step: float, share: float, to
         on_nodes = basis_propagators(on_force[:2], NODE_BASIS)
         blocks += [exponential, _input_propagator(linear, layout, step, node), on_nodes[0], on_nodes[1]]
         curved = basis_propagators(on_force, _CURVATURE[None, :])[0]
-    blocks.append(np.array([step, share]))
+    blocks.append(np.array([step, share, linear.reference]))
     blocks += _weights(linear, layout, step, curved, tolerance)
     return np.concatenate([block.ravel(order="F") for block in blocks])
 
@@ -237,12 +237,16 @@ def _input_propagator(linear: Linear, layout: Layout, step: float, node: float) 
     if not layout.driven:
         on_held: FloatArray = monomial_propagators(linear.a, linear.on_input, step, 0, node)[1][0]
         return on_held
-    zeros = np.zeros((layout.coordinates, 1))
-    by_angle = np.vstack([zeros, -linear.inverse @ linear.stiffness[1:, :1]])
-    by_speed = np.vstack([zeros, -linear.inverse @ linear.damping[1:, :1]])
-    slopes = np.zeros_like(HERMITE_BASIS)
-    slopes[:, :3] = HERMITE_BASIS[:, 1:] * np.arange(1, 4) / step
-    angle = basis_propagators(monomial_propagators(linear.a, by_angle, step, 3, node)[1], HERMITE_BASIS)
-    speed = basis_propagators(monomial_propagators(linear.a, by_speed, step, 3, node)[1], slopes)
-    response: FloatArray = (angle + speed)[:, :, 0].T * np.array([1.0, step, 1.0, step])
+    # value, rate and acceleration of the cubic are polynomials in the same four end values
+    basis = [HERMITE_BASIS, _derivative(HERMITE_BASIS) / step, _derivative(_derivative(HERMITE_BASIS)) / step**2]
+    monomials = monomial_propagators(linear.a, linear.on_input, step, 3, node)[1]
+    parts = [basis_propagators(monomials[:, :, k : k + 1], basis[k])[:, :, 0] for k in range(3)]
+    response: FloatArray = np.sum(parts, axis=0).T * np.array([1.0, step, 1.0, step])
     return response
+
+
+def _derivative(basis: FloatArray) -> FloatArray:
+    """Monomial coefficients of the derivatives; same shape."""
+    slopes = np.zeros_like(basis)
+    slopes[:, :3] = basis[:, 1:] * np.arange(1, 4)
+    return slopes

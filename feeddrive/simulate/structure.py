@@ -59,7 +59,7 @@ def forget_machines() -> None:
 
 def structure_key(plant: Plant) -> tuple[object, ...]:
     """What makes two plants the same equations: chain, and per effect its name, port and table lengths."""
-    return (plant.chain.structure, *(_effect_key(effect) for effect in plant.effects))
+    return (plant.chain.key, *(_effect_key(effect) for effect in plant.effects))
 
 
 def _effect_key(effect: Effect) -> tuple[object, ...]:
