@@ -26,12 +26,10 @@ from feeddrive.plant.linear import INPUTS, MOVING, OUTPUTS
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade, FeedForward
 from feeddrive.servo.cascade_function import cascade_controller, velocity_loop_of
+from feeddrive.servo.margins import GROWTH
 from feeddrive.servo.sampled import SampledController
 from feeddrive.servo.sampled_plant import Matrices, sampled_plant
 from feeddrive.typing import FloatArray
-
-_GROWTH = 0.1
-"""[1/s]; an integrator's eigenvalue of 1 is known to about 1e-7 after rounding, which is 1e-3 1/s at 8 kHz."""
 
 
 def open_velocity_loop(plant: Plant, cascade: Cascade, velocity: float = MOVING) -> control.StateSpace:
@@ -121,7 +119,7 @@ def refuse_unstable(plant: Plant, cascade: Cascade, where: str) -> None:
         InputError: growth of the worst eigenvalue above 0.1 1/s; names the eigenvalue.
     """
     value, growth, frequency = worst_eigenvalue(plant, cascade)
-    if growth > _GROWTH:
+    if growth > GROWTH:
         what = f"the loop is unstable: eigenvalue {value:.4g} grows by {growth:.3g} 1/s at {frequency:.0f} Hz"
         raise InputError(what, where, "lower position_gain or velocity_gain, or set allow_unstable = true")
 

@@ -10,6 +10,12 @@ import numpy as np
 
 from feeddrive.typing import FloatArray
 
+GROWTH = 0.1
+"""[1/s] above which a loop counts as unstable.
+
+A free position has an eigenvalue of 1, known to about 1e-7 after rounding, which is 1e-3 1/s at 8 kHz.
+"""
+
 _POINTS = 20_000
 """Of the grid; crossings are interpolated between them."""
 
@@ -24,6 +30,7 @@ class Margins:
         phase: smallest phase margin [deg].
         phase_frequency: where the loop gain is 1 there [Hz].
         sensitivity: largest |1 / (1 + L)| [1].
+        stable: whether the closed loop is; the margins of one that is not mean nothing.
     """
 
     gain: float
@@ -31,6 +38,7 @@ class Margins:
     phase: float
     phase_frequency: float
     sensitivity: float
+    stable: bool
 
 
 def frequency_response(system: control.StateSpace, frequency: FloatArray) -> FloatArray:
@@ -57,7 +65,14 @@ def margins(loop: control.StateSpace, lowest: float = 0.1) -> Margins:
     gain = min(found[0], default=(math.inf, math.nan))
     least = min(found[1], default=(math.inf, math.nan))
     decibel = 20 * gain[0] / math.log(10)
-    return Margins(decibel, gain[1], math.degrees(least[0]), least[1], float(np.max(1 / np.abs(1 + response))))
+    peak = float(np.max(1 / np.abs(1 + response)))
+    return Margins(decibel, gain[1], math.degrees(least[0]), least[1], peak, _stable(loop))
+
+
+def _stable(loop: control.StateSpace) -> bool:
+    """Whether the loop is stable when it is closed, by its eigenvalues."""
+    closed = np.asarray(loop.A) - np.asarray(loop.B) @ np.asarray(loop.C) / (1 + float(loop.D[0, 0]))
+    return bool(math.log(np.max(np.abs(np.linalg.eigvals(closed)))) / float(loop.dt) < GROWTH)
 
 
 def _crossings(

@@ -21,6 +21,8 @@ from feeddrive.metrology.response import Response
 from feeddrive.recording.reading import read_recording
 from feeddrive.recording.writing import write_recording
 from feeddrive.servo.cascade_function import cascade_controller
+from feeddrive.servo.linear_loop import open_position_loop, open_velocity_loop
+from feeddrive.servo.margins import margins
 from feeddrive.servo.vendor_names import ALIASES
 from feeddrive.simulate.acting_torque import ActingTorque
 from feeddrive.simulate.controlled import TorqueLoop, resting_state, simulate_controlled
@@ -57,9 +59,9 @@ def test_following_error_without_feed_forward_is_velocity_over_gain() -> None:
                                   controller__feed_forward__speed="0", force__1__end="0.5 s"))  # fmt: skip
     steady = (found.time > 1.5) & (found.time < 2.5)
     error = (found.series["setpoint"] - found.series["table_position"])[steady]
-    # 8 mm/s / 60 1/s, less half the motion within a position tick that is held: (T/2) v would be 2 µm of 133 µm;
+    # v / K_v = 96 µm, less half the motion within a position tick that is held: (T/2) v would be 2 µm;
     # the set-point is compared at the tick itself, so nothing is lost. The scale's step is 10 nm.
-    np.testing.assert_allclose(error, 8e-3 / 60.0, atol=2e-8)
+    np.testing.assert_allclose(error, 8e-3 / found.scenario.cascade.position_gain, atol=2e-8)
 
 
 def test_measured_response_is_that_of_the_linear_loop() -> None:
@@ -197,7 +199,12 @@ def test_recording_is_read_again(tmp_path: Path) -> None:
 
 def test_names_of_makers_are_converted() -> None:
     own = scenario("step_position").cascade
-    for key, value in {"POSCTRL_GAIN": "3.6", "kvFactor": "60", "K_v": "3.6 (m/min)/mm", "p1462": "15"}.items():
+    for key, value in {
+        "POSCTRL_GAIN": "5",
+        "kvFactor": "83.3333333333333",
+        "K_v": "5 (m/min)/mm",
+        "p1462": "10",
+    }.items():
         found = scenario("step_position", **{f"controller__{key}": value}).cascade
         assert found.position_gain == pytest.approx(own.position_gain, rel=1e-12)
         assert found.reset_time == pytest.approx(own.reset_time, rel=1e-12)
@@ -230,3 +237,14 @@ def test_readme_names_every_alias() -> None:
     text = find_scenario_file("README.md").read_text(encoding="utf-8")
     for name in ALIASES:
         assert f"`{name}`" in text
+
+
+def test_shipped_controller_has_the_margins_that_its_file_tells() -> None:
+    wanted = scenario("step_position")
+    speed = margins(open_velocity_loop(wanted.plant, wanted.cascade))
+    place = margins(open_position_loop(wanted.plant, wanted.cascade))
+    # half of the last digit told
+    assert speed.gain == pytest.approx(11.0, abs=0.5)
+    assert speed.phase == pytest.approx(51.0, abs=0.5)
+    assert place.gain == pytest.approx(17.0, abs=1.0)
+    assert speed.stable and place.stable

@@ -124,6 +124,8 @@ def test_velocity_loop_of_a_rigid_axis_has_the_textbook_bandwidth() -> None:
 def test_margins_say_when_the_loop_becomes_unstable() -> None:
     """Gain raised to just below the gain margin is stable, just above it not: the eigenvalues know nothing of it."""
     loop = margins(open_velocity_loop(PLANT, SERVO))
+    assert loop.stable
+    assert not margins(open_velocity_loop(PLANT, replace(SERVO, velocity_gain=30.0))).stable
     factor = 10 ** (loop.gain / 20)
     below, above = (
         worst_eigenvalue(PLANT, replace(SERVO, position_gain=1e-3, velocity_gain=share * factor * SERVO.velocity_gain,

@@ -17,12 +17,12 @@ def test_run_writes_recording_figures_and_metrics(tmp_path: Path, capsys: pytest
     assert main(["run", "s_curve_positioning", "--out", str(out)]) == 0
     shown = capsys.readouterr()
     assert shown.err == ""
-    assert "3.6 (m/min)/mm = 60 1/s" in shown.out and "settling" in shown.out
+    assert "5 (m/min)/mm = 83.33 1/s" in shown.out and "settling" in shown.out
     assert {path.name for path in out.iterdir()} == {"recording.csv", "metrics.json", "motion.png", "settling.png"}
     assert (out / "motion.png").read_bytes().startswith(b"\x89PNG")
     content = json.loads((out / "metrics.json").read_text(encoding="utf-8"))
     assert content["format"] == "feeddrive-run/1"
-    assert content["controller"]["position_gain"]["1/s"] == pytest.approx(60.0)
+    assert content["controller"]["position_gain"]["1/s"] == pytest.approx(5e3 / 60)
     points = content["evaluations"][0]["points"]
     assert [point["target"] for point in points] == [0.25, 0.27, 0.271, 0.05]
     recording = read_recording(out / "recording.csv")
