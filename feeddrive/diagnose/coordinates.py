@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from feeddrive.diagnose.declared_friction import declared_level, declared_viscous
 from feeddrive.effects.base import Effect, Value
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray
@@ -113,10 +114,8 @@ def _unused(effect: Effect, plant: Plant) -> set[str]:
         as_table = isinstance(effect.values["position"], tuple)
         return {"peak", "centre", "half_width"} if as_table else {"delta_force"}
     if effect.name == "friction_deviation":
-        declared = [e for e in plant.effects if e.port == effect.port and e.name != effect.name]
-        return {
-            f"{kind}_factor" for kind in ("coulomb", "viscous") if not any(e.values.get(kind, 0.0) for e in declared)
-        }
+        unused = {"coulomb_factor"} if declared_level(plant, effect.port) == 0 else set()
+        return unused | ({"viscous_factor"} if declared_viscous(plant, effect.port) == 0 else set())
     return set()
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from feeddrive.diagnose.declared_friction import declared_level
 from feeddrive.effects.base import Effect, Port
 from feeddrive.plant.plant import Plant
 
@@ -28,13 +29,8 @@ def is_material(effect: Effect, plant: Plant) -> bool:
     if effect.name == "stiffness_deviation":
         return abs(values["factor"] - 1) >= LEAST_FACTOR
     forces = [abs(number) for key, value in effect.values.items() if key in FORCE_KEYS for number in _numbers(value)]
-    return not forces or max(forces) >= LEAST_FORCE_SHARE * _coulomb_level(plant)
+    return not forces or max(forces) >= LEAST_FORCE_SHARE * declared_level(plant, Port.TABLE)
 
 
 def _numbers(value: float | tuple[float, ...]) -> tuple[float, ...]:
     return value if isinstance(value, tuple) else (value,)
-
-
-def _coulomb_level(plant: Plant) -> float:
-    declared = [effect.values.get("coulomb", 0.0) for effect in plant.effects if effect.port == Port.TABLE]
-    return sum(level for level in declared if isinstance(level, float))

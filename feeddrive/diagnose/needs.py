@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from feeddrive.diagnose.declared_friction import declared_level
 from feeddrive.diagnose.evidence import Evidence
 from feeddrive.diagnose.scene import Scene
 from feeddrive.effects.base import Port
@@ -112,7 +113,7 @@ def scale_duration(scene: Scene) -> str:
 
 def screw_drag(scene: Scene) -> str:
     """What changes the drag of the screw needs a declared one, and a force that the chain knows."""
-    if not any(e.port == Port.SCREW and "coulomb" in e.values for e in scene.problem.plant.effects):
+    if not declared_level(scene.problem.plant, Port.SCREW):
         return "the plant declares no nut_drag or bearing_drag to act on"
     return elastic(scene) or both_directions(scene)
 

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from feeddrive.diagnose.declared_friction import declared_level, declared_viscous
 from feeddrive.diagnose.periodogram import sine_at, strongest_orders
 from feeddrive.diagnose.position_curve import bump_of, friction_over_position
 from feeddrive.diagnose.scene import Scene
@@ -27,39 +28,36 @@ LEAST_CURVE = 0.01
 
 
 def plain(effect: Effect) -> Callable[[Scene], list[list[Effect]]]:
+    """One start, whatever the residual."""
     return lambda scene: [[effect]]
 
 
 def deviation(scene: Scene) -> list[list[Effect]]:
-    ports = [port for port in FrictionDeviation.ports if any(has_level(e, port) for e in scene.problem.plant.effects)]
+    """A factor of one at every port that declares friction and has none yet."""
+    plant = scene.problem.plant
+    ports = [p for p in FrictionDeviation.ports if declared_level(plant, p) or declared_viscous(plant, p)]
     taken = [effect.port for effect in scene.found if effect.name == FrictionDeviation.name]
     return [[FrictionDeviation.of(port)] for port in ports if port not in taken]
 
 
-def has_level(effect: Effect, port: Port) -> bool:
-    return effect.port == port and "coulomb" in effect.values
-
-
 def stribeck(scene: Scene) -> list[list[Effect]]:
+    """A typical size at a few velocities of the recording."""
     fastest = max(float(np.abs(run.table_velocity).max()) for run in scene.runs)
     size = Stribeck.parameter("delta_force").size
     return [[Stribeck.of(delta_force=size, velocity=fastest * share) for share in (0.005, 0.015, 0.05, 0.15, 0.4)]]
 
 
 def presliding(scene: Scene) -> list[list[Effect]]:
-    level = _coulomb_level(scene)
+    """Bristles of a few deflections, slipping from the start or after break-away."""
+    level = max(declared_level(scene.problem.plant, Port.TABLE), 1.0)
     deflections = (1e-7, 3e-7, 1e-6, 3e-6, 1e-5, 3e-5, 1e-4)
     return [
         [Presliding.of(stiffness=level / z, damping=0.0, break_away=share) for z in deflections] for share in (0.0, 0.7)
     ]
 
 
-def _coulomb_level(scene: Scene) -> float:
-    levels = [e.values["coulomb"] for e in scene.problem.plant.effects if has_level(e, Port.TABLE)]
-    return max(float(sum(level for level in levels if isinstance(level, float))), 1.0)
-
-
 def backlash(scene: Scene) -> list[list[Effect]]:
+    """Widths about the lag of the table."""
     at = scene.longest
     residual, rows = scene.residuals[at], scene.problem.evidence[at].fit_rows
     widths = [1e-6, 3e-6, 1e-5, 3e-5, 1e-4]
@@ -70,6 +68,7 @@ def backlash(scene: Scene) -> list[list[Effect]]:
 
 
 def ripple(scene: Scene) -> list[list[Effect]]:
+    """The strongest orders of the residual torque."""
     at = scene.longest
     rows = scene.problem.evidence[at].fit_rows
     angle, residual = scene.runs[at].motor_angle[rows], scene.residuals[at]["motor_torque"][rows]
@@ -78,6 +77,7 @@ def ripple(scene: Scene) -> list[list[Effect]]:
 
 
 def lead_error(scene: Scene) -> list[list[Effect]]:
+    """The strongest orders of the residual position."""
     at = scene.longest
     rows = scene.problem.evidence[at].fit_rows
     if "table_position" not in scene.residuals[at]:
@@ -94,11 +94,13 @@ def highest_order(scene: Scene, at: int) -> float:
 
 
 def sine(kind: type[Effect], angle: FloatArray, residual: FloatArray, order: float) -> Effect:
+    """A sine of this order as it fits the residual best."""
     amplitude, phase = sine_at(angle, residual, order)
     return kind.of(amplitude=amplitude, order=order, phase=phase)
 
 
 def over_position(scene: Scene) -> list[list[Effect]]:
+    """Bumps that fit the friction left over, and a table where it follows the position."""
     at = scene.longest
     evidence, run = scene.problem.evidence[at], scene.runs[at]
     rows = evidence.fit_rows

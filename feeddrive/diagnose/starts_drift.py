@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from feeddrive.diagnose.declared_friction import declared_viscous
 from feeddrive.diagnose.periodogram import strongest_orders
 from feeddrive.diagnose.scene import Scene
 from feeddrive.diagnose.starts import highest_order, sine
 from feeddrive.effects.ball_pass_ripple import BallPassRipple
-from feeddrive.effects.base import Effect, Port
+from feeddrive.effects.base import Effect
 from feeddrive.effects.position_spring import PositionSpring
 from feeddrive.effects.thermal_growth import ThermalGrowth
 from feeddrive.effects.viscous_warmup import ViscousWarmup
@@ -39,7 +40,7 @@ def thermal_growth(scene: Scene) -> list[list[Effect]]:
 
 def viscous_warmup(scene: Scene) -> list[list[Effect]]:
     """A tenth of the viscous drag lost within the recording, at every port that declares one."""
-    ports = [port for port in ViscousWarmup.ports if any(_has_viscous(e, port) for e in scene.problem.plant.effects)]
+    ports = [port for port in ViscousWarmup.ports if declared_viscous(scene.problem.plant, port)]
     return [[ViscousWarmup.of(port, share=0.1, time_constant=t) for t in _time_constants(scene)] for port in ports]
 
 
@@ -59,7 +60,3 @@ def _time_constants(scene: Scene) -> list[float]:
     evidence = scene.problem.evidence[scene.longest]
     duration = float(evidence.fit_rows.sum()) * evidence.recording.sample_time
     return [share * duration for share in SHARES_OF_DURATION]
-
-
-def _has_viscous(effect: Effect, port: Port) -> bool:
-    return effect.port == port and bool(effect.values.get("viscous", 0.0))
