@@ -9,7 +9,8 @@ slowest loop, T_s = n T, and is time-invariant there.
 |---|---|---|
 | T, n, T_s | tick, ticks per position tick, their product | s, 1, s |
 
-Valid for small deviations about a moving point (see `plant.linear`): limits are not reached, nothing reverses.
+Valid for small deviations about a moving point, `velocity` and `position` of the table (see `plant.linear`): limits are
+not reached, nothing reverses.
 """
 
 from __future__ import annotations
@@ -32,7 +33,9 @@ from feeddrive.servo.sampled_plant import Matrices, sampled_plant
 from feeddrive.typing import FloatArray
 
 
-def open_velocity_loop(plant: Plant, cascade: Cascade, velocity: float = MOVING) -> control.StateSpace:
+def open_velocity_loop(
+    plant: Plant, cascade: Cascade, velocity: float = MOVING, position: float = 0.0
+) -> control.StateSpace:
     """Velocity loop cut at the torque command, the position loop open; its margins are those of the speed controller.
 
     Returns:
@@ -42,7 +45,7 @@ def open_velocity_loop(plant: Plant, cascade: Cascade, velocity: float = MOVING)
         InputError: as `sampled_plant`.
     """
     alone = replace(velocity_loop_of(cascade), position_divider=1)
-    machine, controller = sampled_plant(plant, alone, velocity), _Linear.of(cascade_controller(alone), 1)
+    machine, controller = sampled_plant(plant, alone, velocity, position), _Linear.of(cascade_controller(alone), 1)
     readings = controller.reading @ machine.c
     a = np.block([[machine.a, np.zeros((len(machine.a), len(controller.a)))], [controller.by_reading @ readings,
                   controller.a]])  # fmt: skip
@@ -51,25 +54,29 @@ def open_velocity_loop(plant: Plant, cascade: Cascade, velocity: float = MOVING)
     return control.ss(a, b, c, 0, alone.sample_time, inputs=["torque"], outputs=["torque_command"])
 
 
-def closed_velocity_loop(plant: Plant, cascade: Cascade, velocity: float = MOVING) -> control.StateSpace:
+def closed_velocity_loop(
+    plant: Plant, cascade: Cascade, velocity: float = MOVING, position: float = 0.0
+) -> control.StateSpace:
     """From the speed set-point [rad/s], before its filters, to the measured speed [rad/s], the position loop open."""
     alone = replace(velocity_loop_of(cascade), position_divider=1)
-    loop = closed_loop(plant, alone, velocity)
+    loop = closed_loop(plant, alone, velocity, position)
     return loop["measured_speed", "speed_excitation"]
 
 
-def open_position_loop(plant: Plant, cascade: Cascade, velocity: float = MOVING) -> control.StateSpace:
+def open_position_loop(
+    plant: Plant, cascade: Cascade, velocity: float = MOVING, position: float = 0.0
+) -> control.StateSpace:
     """Position loop cut at its error, the velocity loop closed: L = T / (1 - T) of the loop without feed-forward.
 
     Returns:
         Discrete state space of one input and one output, T_s.
     """
     bare = replace(cascade, feed_forward=FeedForward(), balancing_time=0.0)
-    followed = closed_loop(plant, bare, velocity)["measured_position", "position"]
+    followed = closed_loop(plant, bare, velocity, position)["measured_position", "position"]
     return control.feedback(followed, control.ss([], [], [], 1, bare.sample_time * bare.position_divider), sign=1)
 
 
-def closed_loop(plant: Plant, cascade: Cascade, velocity: float = MOVING) -> control.StateSpace:
+def closed_loop(plant: Plant, cascade: Cascade, velocity: float = MOVING, position: float = 0.0) -> control.StateSpace:
     """The whole loop, sampled at the position ticks.
 
     Inputs: the references of the cascade and the cutting force, held over T_s. Outputs: the readings of the plant,
@@ -82,7 +89,7 @@ def closed_loop(plant: Plant, cascade: Cascade, velocity: float = MOVING) -> con
         InputError: as `sampled_plant`.
     """
     controller = cascade_controller(cascade)
-    machine = sampled_plant(plant, cascade, velocity)
+    machine = sampled_plant(plant, cascade, velocity, position)
     steps = [
         _tick(machine, _Linear.of(controller, cascade.position_divider + k)) for k in range(cascade.position_divider)
     ]
@@ -97,7 +104,9 @@ def closed_loop(plant: Plant, cascade: Cascade, velocity: float = MOVING) -> con
     return control.ss(whole.a, whole.b, c, d, period, inputs=inputs, outputs=list(names))
 
 
-def worst_eigenvalue(plant: Plant, cascade: Cascade, velocity: float = MOVING) -> tuple[complex, float, float]:
+def worst_eigenvalue(
+    plant: Plant, cascade: Cascade, velocity: float = MOVING, position: float = 0.0
+) -> tuple[complex, float, float]:
     """The eigenvalue of largest magnitude of the closed loop over T_s, its growth [1/s] and its frequency [Hz].
 
     A growth above zero means an unstable loop. Without position loop the position is free and its eigenvalue is 1.
@@ -105,20 +114,20 @@ def worst_eigenvalue(plant: Plant, cascade: Cascade, velocity: float = MOVING) -
     Raises:
         InputError: as `sampled_plant`.
     """
-    system = closed_loop(plant, cascade, velocity)
+    system = closed_loop(plant, cascade, velocity, position)
     values = np.linalg.eigvals(system.A)
     worst = complex(values[np.argmax(np.abs(values))])
     period = float(system.dt)
     return worst, math.log(abs(worst)) / period, abs(math.atan2(worst.imag, worst.real)) / (2 * math.pi * period)
 
 
-def refuse_unstable(plant: Plant, cascade: Cascade, where: str) -> None:
+def refuse_unstable(plant: Plant, cascade: Cascade, where: str, position: float = 0.0) -> None:
     """Refuse a loop that is unstable, before it is run.
 
     Raises:
         InputError: growth of the worst eigenvalue above 0.1 1/s; names the eigenvalue.
     """
-    value, growth, frequency = worst_eigenvalue(plant, cascade)
+    value, growth, frequency = worst_eigenvalue(plant, cascade, position=position)
     if growth > GROWTH:
         what = f"the loop is unstable: eigenvalue {value:.4g} grows by {growth:.3g} 1/s at {frequency:.0f} Hz"
         raise InputError(what, where, "lower position_gain or velocity_gain, or set allow_unstable = true")

@@ -19,6 +19,9 @@ A free position has an eigenvalue of 1, known to about 1e-7 after rounding, whic
 _POINTS = 20_000
 """Of the grid; crossings are interpolated between them."""
 
+_AT_ONCE = 1000
+"""Frequencies that are solved together; more would take memory and no less time."""
+
 
 @dataclass(frozen=True)
 class Margins:
@@ -42,9 +45,14 @@ class Margins:
 
 
 def frequency_response(system: control.StateSpace, frequency: FloatArray) -> FloatArray:
-    """Complex response of a system of one input and one output at frequencies [Hz], shape (n,)."""
-    z = np.exp(2j * math.pi * np.asarray(frequency) * system.dt) if system.dt else 2j * math.pi * np.asarray(frequency)
-    response: FloatArray = np.atleast_1d(np.asarray(system(z, squeeze=True)))
+    """Complex response D + C (z - A)^-1 B of a system of one input and one output at frequencies [Hz], shape (n,)."""
+    s = 2j * math.pi * np.atleast_1d(np.asarray(frequency, dtype=float))
+    z = np.exp(s * system.dt) if system.dt else s
+    a, b, c, d = (np.asarray(matrix, dtype=float) for matrix in (system.A, system.B, system.C, system.D))
+    response = np.full(z.shape, d[0, 0], dtype=complex)
+    for first in range(0, len(z) if len(a) else 0, _AT_ONCE):
+        part = slice(first, first + _AT_ONCE)
+        response[part] += (c @ np.linalg.solve(z[part, None, None] * np.eye(len(a)) - a, b))[:, 0, 0]
     return response
 
 
@@ -58,7 +66,17 @@ def margins(loop: control.StateSpace, lowest: float = 0.1) -> Margins:
         lowest: frequency from which crossings count [Hz].
     """
     frequency = np.geomspace(lowest, 0.5 / loop.dt, _POINTS)
-    response = frequency_response(loop, frequency)
+    return margins_of(frequency, frequency_response(loop, frequency), _stable(loop))
+
+
+def margins_of(frequency: FloatArray, response: FloatArray, stable: bool) -> Margins:
+    """Margins of an open loop from its response.
+
+    Args:
+        frequency: ascending, dense enough to follow the phase [Hz], shape (n,).
+        response: complex, shape (n,).
+        stable: whether the closed loop is; margins do not tell.
+    """
     magnitude, phase = np.log(np.abs(response)), np.unwrap(np.angle(response))
     turns = 2 * math.pi * np.round((phase[0] + math.pi / 2) / (2 * math.pi))  # begin near -90 deg
     found = _crossings(frequency, magnitude, phase - turns)
@@ -66,7 +84,7 @@ def margins(loop: control.StateSpace, lowest: float = 0.1) -> Margins:
     least = min(found[1], default=(math.inf, math.nan))
     decibel = 20 * gain[0] / math.log(10)
     peak = float(np.max(1 / np.abs(1 + response)))
-    return Margins(decibel, gain[1], math.degrees(least[0]), least[1], peak, _stable(loop))
+    return Margins(decibel, gain[1], math.degrees(least[0]), least[1], peak, stable)
 
 
 def _stable(loop: control.StateSpace) -> bool:

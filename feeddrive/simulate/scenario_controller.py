@@ -37,6 +37,8 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 
+import numpy as np
+
 from feeddrive.errors import InputError
 from feeddrive.plant.entries import Table
 from feeddrive.plant.plant import Plant
@@ -83,7 +85,7 @@ def read_cascade(written: Table, plant: Plant) -> tuple[Cascade, bool]:
     bandwidth = optional(table, "current_bandwidth", "Hz", math.inf)
     try:
         cascade = Cascade(
-            radius=plant.chain.radius,
+            radius=plant.chain.motor_radius,
             sample_time=1 / fast,
             position_divider=divider(fast, slow, table.place("position_rate")),
             position_gain=optional(table, "position_gain", "1/s", 0.0),
@@ -142,9 +144,11 @@ def _feed_forward(table: Table, plant: Plant) -> FeedForward:
 
 
 def inertia_at_motor(plant: Plant) -> float:
-    """Inertia of motor, screw and table at the motor [kg m^2]."""
+    """Inertia of everything that moves with the motor, seen there [kg m^2]; screw and chain in mid-stroke."""
     values = plant.chain_values()
-    return values["motor_inertia"] + values["screw_inertia"] + values["table_mass"] * plant.chain.radius**2
+    rigid = np.array(plant.chain.rigid_motion(values), dtype=float)
+    mass = np.array(plant.chain.mass(values, plant.middle), dtype=float)
+    return float(rigid @ mass @ rigid) * plant.chain.motor_radius**2
 
 
 def _filters(table: Table, place: str) -> tuple[Filter, ...]:
