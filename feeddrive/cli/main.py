@@ -45,6 +45,7 @@ COMMANDS: dict[str, Entry] = {
     "show": Entry("show", "Show a machine: stiffness budget, inertias, friction, modes."),
     "run": Entry("run", "Run a scenario: a machine under control; figures, metrics."),
     "diagnose": Entry("diagnose", "Find what a machine's model lacks, from recordings of it."),
+    "export": Entry("export", "Write a machine as state space, .mat, CasADi, C, FMU or JSON."),
     "reproduce": Entry("reproduce", "Compare the source papers' numbers with computed ones."),
 }
 """Commands by name, in the order in which `feeddrive --help` lists them."""

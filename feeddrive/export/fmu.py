@@ -1,0 +1,109 @@
+"""An FMU of the equations of motion: FMI 2.0 for model exchange, with units, sources and, here, a binary.
+
+    fmpy.simulate_fmu("bench_axis.fmu", stop_time=0.1, start_values={"motor_torque": 1.5})
+
+The binary is compiled from the generated C and needs nothing but the C library: no Python, no feeddrive. It runs on
+the platform that exported it; the sources inside the FMU are whole, so that a tool can compile them for another. Where
+no compiler is found the FMU holds the sources alone.
+
+Written here and not by CasADi's own export, which is marked experimental, is not in every version that feeddrive runs
+with, and needs headers that do not come with it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import platform
+import subprocess
+import sys
+import tempfile
+import zipfile
+from pathlib import Path
+
+from feeddrive.errors import InputError
+from feeddrive.export.c_source import header_text, numbers, source_text
+from feeddrive.export.fmu_description import description_text, fixed_parameters, nominals
+from feeddrive.export.model import Model
+
+_WRAPPER = "fmi2_model_exchange.c"
+_FLAGS = ("-O2", "-ffp-contract=off", "-fPIC", "-shared", "-fvisibility=hidden")
+_EARLIEST = (1980, 1, 1, 0, 0, 0)  # of a zip file; the same export gives the same file
+
+
+def fmu_bytes(model: Model, compiler: str | None) -> bytes:
+    """The FMU.
+
+    Args:
+        model: the equations.
+        compiler: C compiler for the binary of this platform; None for the sources alone.
+
+    Raises:
+        InputError: the compiler fails.
+    """
+    name = model.identifier
+    sources = {f"{name}.h": header_text(model), f"{name}.c": source_text(model), _WRAPPER: _wrapper()}
+    guid = hashlib.sha256("".join([*sources.values(), *model.heading]).encode()).hexdigest()[:32]
+    sources["fmu_model.h"] = _sizes(model, guid)
+    compiled = (f"{name}.c", _WRAPPER)
+    files = {"modelDescription.xml": description_text(model, guid, compiled).encode()}
+    if compiler is not None:
+        folder, suffix = binary_platform()
+        files[f"binaries/{folder}/{name}{suffix}"] = _compiled(sources, compiled, compiler)
+    files |= {f"sources/{file}": text.encode() for file, text in sources.items()}
+    return _packed(files)
+
+
+def binary_platform() -> tuple[str, str]:
+    """Folder of FMI 2.0 for binaries of this platform, and the suffix of a shared library."""
+    bits = "64" if sys.maxsize > 2**32 else "32"
+    system, suffix = {"Windows": ("win", ".dll"), "Darwin": ("darwin", ".dylib")}.get(
+        platform.system(), ("linux", ".so")
+    )
+    return f"{system}{bits}", suffix
+
+
+def _wrapper() -> str:
+    return (Path(__file__).parent / _WRAPPER).read_text(encoding="utf-8")
+
+
+def _sizes(model: Model, guid: str) -> str:
+    """fmu_model.h: what the wrapper asks for."""
+    name, upper = model.identifier, model.identifier.upper()
+    lines = [
+        f'#include "{name}.h"',
+        f'#define MODEL_GUID "{guid}"',
+        *(f"#define MODEL_{of} {upper}_{of}" for of in ("STATES", "INPUTS", "OUTPUTS", "PARAMETERS")),
+        f"#define MODEL_FIXED {fixed_parameters(model)}",
+        f"#define MODEL_ODE {name}_ode",
+        f"#define MODEL_SLOPES {name}_slopes",
+        *(f"#define MODEL_{of.upper()}_DEFAULTS {name}_{of}_defaults" for of in ("state", "input", "parameter")),
+        f"static const double MODEL_NOMINALS[] = {numbers(nominals(model).tolist())};",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _compiled(sources: dict[str, str], units: tuple[str, ...], compiler: str) -> bytes:
+    """The shared library."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        for file, text in sources.items():
+            (folder / file).write_text(text, encoding="utf-8")
+        command = [compiler, *_FLAGS, "-o", "model", *units, "-lm"]
+        done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
+        if done.returncode != 0:
+            said = done.stderr.strip().splitlines() or ["no message"]
+            mend = "set FEEDDRIVE_COMPILER=none for an FMU of sources"
+            raise InputError(f"the C compiler refused the model: {said[0]}", compiler, mend)
+        return (folder / "model").read_bytes()
+
+
+def _packed(files: dict[str, bytes]) -> bytes:
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, data in files.items():
+            entry = zipfile.ZipInfo(name, _EARLIEST)
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            entry.external_attr = 0o644 << 16
+            archive.writestr(entry, data)
+    return buffer.getvalue()

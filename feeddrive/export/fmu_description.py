@@ -1,0 +1,137 @@
+"""modelDescription.xml of an exported model, FMI 2.0 for model exchange.
+
+Variables in the order of their value references: states `state.NAME`, their derivatives `der(state.NAME)`, inputs,
+outputs, parameters. Values of inertias and springs are fixed once the simulation starts, since the states hang on
+them; those of effects can be tuned.
+"""
+
+from __future__ import annotations
+
+from xml.etree import ElementTree as Tree
+
+import casadi as ca
+import numpy as np
+
+from feeddrive import __version__
+from feeddrive.export.fmu_units import exponents
+from feeddrive.export.model import Model
+from feeddrive.export.quantities import Quantity
+from feeddrive.typing import FloatArray
+
+TOLERANCE = 1e-8
+"""Relative, asked of the solver: of a shaft that has turned 100 rad it leaves a microradian, nanometres of travel."""
+
+_TRAVEL, _STRETCH, _VELOCITY = 1e-3, 1e-6, 0.1
+"""Nominal table travel [m], axial stretch and bristle deflection [m], velocity [m/s]; shafts turn in proportion."""
+
+
+def description_text(model: Model, guid: str, sources: tuple[str, ...]) -> str:
+    """The XML text.
+
+    Args:
+        model: what is described.
+        guid: that of the binary.
+        sources: names of the C files in the folder `sources` that are compiled.
+    """
+    root = Tree.Element("fmiModelDescription", {
+        "fmiVersion": "2.0", "modelName": " ".join(model.plant.name.split()), "guid": guid,
+        "description": " | ".join(" ".join(line.split()) for line in model.heading),
+        "generationTool": f"feeddrive {__version__}", "variableNamingConvention": "structured",
+        "numberOfEventIndicators": "0",
+    })  # fmt: skip
+    exchange = Tree.SubElement(root, "ModelExchange", {
+        "modelIdentifier": model.identifier, "canNotUseMemoryManagementFunctions": "true",
+        "providesDirectionalDerivative": "true",
+    })  # fmt: skip
+    files = Tree.SubElement(exchange, "SourceFiles")
+    for name in sources:
+        Tree.SubElement(files, "File", {"name": name})
+    _add_units(root, model)
+    Tree.SubElement(root, "DefaultExperiment", {"startTime": "0", "stopTime": "1", "tolerance": repr(TOLERANCE)})
+    _add_variables(Tree.SubElement(root, "ModelVariables"), model)
+    _add_structure(Tree.SubElement(root, "ModelStructure"), model)
+    Tree.indent(root)
+    return Tree.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
+
+
+def nominals(model: Model) -> FloatArray:
+    """Typical size of every state, from which a solver takes its absolute tolerance, shape (nx,)."""
+    motion = np.array(model.plant.chain.rigid_motion(model.plant.chain_values()), dtype=float)
+    turning = np.abs(motion)
+    positions = np.where(turning == 0, _STRETCH, _TRAVEL * turning)
+    rates = np.where(turning == 0, _VELOCITY, _VELOCITY * turning)
+    return np.concatenate([positions, rates, np.full(len(model.states) - 2 * len(motion), _STRETCH)])
+
+
+def fixed_parameters(model: Model) -> int:
+    """How many parameters, the first ones, are fixed once the simulation starts."""
+    return sum(row.of_chain for row in model.parameters)
+
+
+def _add_units(root: Tree.Element, model: Model) -> None:
+    definitions = Tree.SubElement(root, "UnitDefinitions")
+    rows = (*model.states, *model.inputs, *model.outputs, *model.parameters)
+    for unit in sorted({row.unit for row in rows} | {_rate_unit(row.unit) for row in model.states}):
+        if unit == "1":
+            continue
+        element = Tree.SubElement(definitions, "Unit", {"name": unit})
+        base = exponents(unit)
+        if base is not None:  # FMI knows whole exponents alone
+            Tree.SubElement(element, "BaseUnit", {key: str(value) for key, value in base.items()})
+
+
+def _add_variables(parent: Tree.Element, model: Model) -> None:
+    sizes = [repr(float(size)) for size in nominals(model)]
+    start: dict[str, str]
+    for row, nominal in zip(model.states, sizes, strict=True):
+        start = {"start": repr(row.value), "nominal": nominal}
+        _add(parent, f"state.{row.name}", row, ("local", "continuous", "exact"), start)
+    for index, row in enumerate(model.states, start=1):
+        rate = Quantity(row.name, _rate_unit(row.unit))
+        _add(parent, f"der(state.{row.name})", rate, ("local", "continuous", "calculated"), {"derivative": str(index)})
+    for row in model.inputs:
+        _add(parent, row.name, row, ("input", "continuous", ""), {"start": repr(row.value)})
+    for row in model.outputs:
+        _add(parent, row.name, row, ("output", "continuous", "calculated"), {})
+    for row in model.parameters:
+        kind = "fixed" if row.of_chain else "tunable"
+        _add(parent, row.name, row, ("parameter", kind, "exact"), {"start": repr(row.value)})
+
+
+def _add(parent: Tree.Element, name: str, row: Quantity, kind: tuple[str, str, str], real: dict[str, str]) -> None:
+    """One variable; its value reference is its place."""
+    causality, variability, initial = kind
+    attributes = {"name": name, "valueReference": str(len(parent))}
+    attributes |= {"description": " ".join(row.comment.split())} if row.comment else {}
+    attributes |= {"causality": causality, "variability": variability} | ({"initial": initial} if initial else {})
+    variable = Tree.SubElement(parent, "ScalarVariable", attributes)
+    Tree.SubElement(variable, "Real", ({"unit": row.unit} if row.unit != "1" else {}) | real)
+
+
+def _add_structure(parent: Tree.Element, model: Model) -> None:
+    """Outputs, derivatives and what each depends on, by index from 1."""
+    n, nu = len(model.states), len(model.inputs)
+    rates, outputs = range(n + 1, 2 * n + 1), range(2 * n + nu + 1, 2 * n + nu + len(model.outputs) + 1)
+    known = [*range(1, n + 1), *range(2 * n + 1, 2 * n + nu + 1)]
+    by_rate, by_output = _dependencies(model)
+    for name, unknowns, dependencies in (("Outputs", outputs, by_output), ("Derivatives", rates, by_rate)):
+        element = Tree.SubElement(parent, name)
+        for index, row in zip(unknowns, dependencies, strict=True):
+            on = " ".join(str(known[column]) for column in row)
+            Tree.SubElement(element, "Unknown", {"index": str(index), "dependencies": on})
+    initial = Tree.SubElement(parent, "InitialUnknowns")
+    for index in (*rates, *outputs):
+        Tree.SubElement(initial, "Unknown", {"index": str(index)})
+
+
+def _dependencies(model: Model) -> list[list[list[int]]]:
+    """For the rates and for the outputs: columns of (x, u) on which each row depends."""
+    arguments = [ca.SX.sym(of, model.function.size1_in(of)) for of in model.function.name_in()]
+    known = ca.vertcat(arguments[1], arguments[2])
+    patterns = [ca.jacobian_sparsity(result, known) for result in model.function(*arguments)]
+    return [[[c for c in range(pattern.size2()) if pattern.has_nz(r, c)] for r in range(pattern.size1())]
+            for pattern in patterns]  # fmt: skip
+
+
+def _rate_unit(unit: str) -> str:
+    return unit.replace("/s", "/s^2") if unit.endswith("/s") else f"{unit}/s"

@@ -1,0 +1,86 @@
+"""The nonlinear equations of motion of a plant, ready to be written in another form.
+
+    x' = f(t, x, u, p),   y = g(t, x, p)
+
+f and g are those that the plant itself is linearised from (`feeddrive.plant.linear.timed_ode`).
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+import casadi as ca
+
+from feeddrive import __version__
+from feeddrive.export.notes import included, left_out
+from feeddrive.export.point import Point, refuse_outside
+from feeddrive.export.quantities import Quantity, inputs, outputs, parameters, states
+from feeddrive.plant.linear import steady_motion, timed_ode
+from feeddrive.plant.plant import Plant
+
+
+@dataclass(frozen=True)
+class Model:
+    """Equations with their names, units and start.
+
+    Attributes:
+        plant: the machine.
+        identifier: its name as a C identifier, for files and functions.
+        point: where it starts; a steady motion, or at rest.
+        states, inputs: with values at the start.
+        outputs: in the order of y.
+        parameters: with their values.
+        function: (time, x, u, p) -> (xdot, y), SI columns.
+    """
+
+    plant: Plant
+    identifier: str
+    point: Point
+    states: tuple[Quantity, ...]
+    inputs: tuple[Quantity, ...]
+    outputs: tuple[Quantity, ...]
+    parameters: tuple[Quantity, ...]
+    function: ca.Function
+
+    @property
+    def heading(self) -> tuple[str, ...]:
+        """What stands at the head of every file made of it."""
+        lines = [f"{self.plant.name}: equations of motion, made by feeddrive {__version__}. SI units.", "Included:"]
+        lines += [f"  {line}" for line in included(self.plant)]
+        lines += ["Left out:", *(f"  {line}" for line in left_out(self.plant))]
+        return tuple(lines)
+
+
+def model_of(plant: Plant, point: Point) -> Model:
+    """The equations of motion of a plant, starting at a point.
+
+    Args:
+        plant: the machine.
+        point: start: motion at constant velocity, or rest with the springs bearing what acts on the table.
+
+    Raises:
+        InputError: a point outside the stroke, or where no steady motion is found.
+    """
+    refuse_outside(plant, point, plant.name)
+    start = steady_motion(plant, point.starts_at, point.position)
+    rows = states(plant, start.state.tolist()), inputs(start.torque), outputs(), parameters(plant)
+    return Model(plant, identifier_of(plant.name), point, *rows, timed_ode(plant))
+
+
+def slopes_of(model: Model, name: str) -> ca.Function:
+    """(time, x, u, p) -> (A, B, C, D) of the equations, dense, each transposed: C reads the columns as rows.
+
+    A = df/dx, B = df/du, C = dg/dx, D = dg/du.
+    """
+    arguments = [ca.SX.sym(of, model.function.size1_in(of)) for of in model.function.name_in()]
+    _, x, u, _ = arguments
+    xdot, y = model.function(*arguments)
+    slopes = [ca.densify(ca.jacobian(of, to).T) for of in (xdot, y) for to in (x, u)]
+    return ca.Function(name, arguments, slopes, model.function.name_in(), ["A", "B", "C", "D"])
+
+
+def identifier_of(name: str) -> str:
+    """The name in small letters of ASCII, digits and single underscores, beginning with a letter."""
+    plain = re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_")
+    return plain if plain[:1].isalpha() else f"plant_{plain}".rstrip("_")

@@ -1,0 +1,73 @@
+"""The point at which a plant is exported: where the table stands and how fast it moves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from feeddrive.errors import InputError
+from feeddrive.plant.linear import MOVING
+from feeddrive.plant.plant import Plant
+from feeddrive.quantity import format_quantity, parse
+
+_UNITS = {"x": "m", "v": "m/s"}
+_MEND = 'write e.g. --at "x=200 mm,v=3 m/min"'
+
+
+@dataclass(frozen=True)
+class Point:
+    """An operating point.
+
+    Attributes:
+        position: of the table [m].
+        velocity: of the table [m/s]; None where none was asked for: `MOVING` for a linear model, rest for the start of
+            a nonlinear one.
+    """
+
+    position: float
+    velocity: float | None = None
+
+    @property
+    def linearised_at(self) -> float:
+        """Velocity of the table about which is linearised [m/s]."""
+        return MOVING if self.velocity is None else self.velocity
+
+    @property
+    def starts_at(self) -> float:
+        """Velocity of the table at which a nonlinear model starts [m/s]."""
+        return 0.0 if self.velocity is None else self.velocity
+
+
+def export_point(plant: Plant, text: str = "", where: str = "--at") -> Point:
+    """Read a point such as "x=200 mm,v=3 m/min"; either may be left out.
+
+    Args:
+        plant: the machine; without x the table stands in the middle of its stroke, or at 0 where none is declared.
+        text: what was written.
+        where: for messages.
+
+    Raises:
+        InputError: unknown or repeated key, a number without unit, or a position outside the stroke or off the screw.
+    """
+    written: dict[str, float] = {}
+    for part in text.split(",") if text.strip() else []:
+        key, equals, value = (piece.strip() for piece in part.partition("="))
+        if not equals or key not in _UNITS or key in written:
+            what = f"{key} is given twice" if key in written else f'"{part.strip()}" is neither x=... nor v=...'
+            raise InputError(what, where, _MEND)
+        written[key] = parse(value, _UNITS[key], f"{where} {key}")
+    point = Point(written.get("x", plant.middle), written.get("v"))
+    refuse_outside(plant, point, where)
+    return point
+
+
+def refuse_outside(plant: Plant, point: Point, where: str) -> None:
+    """Refuse a table position outside the declared stroke, or with the nut off the screw.
+
+    Raises:
+        InputError: names what is allowed.
+    """
+    if plant.stroke is not None and not plant.stroke[0] <= point.position <= plant.stroke[1]:
+        ends = " to ".join(format_quantity(end, "m") for end in plant.stroke)
+        what = f"the table at {format_quantity(point.position, 'm')} is outside the stroke of {plant.name}"
+        raise InputError(what, where, f"choose x from {ends}")
+    plant.chain.refuse_off_screw(point.position, where)
