@@ -19,6 +19,7 @@ from tests.generator.constants import declared_constants
 from tests.generator.effects import Backlash, Effect, LeadErrorPeriodic, PlantedEffects, Presliding
 from tests.generator.loop import Sampling, open_loop
 from tests.generator.recording import sampling_of
+from tests.generator.state import State
 
 Array = npt.NDArray[np.float64]
 
@@ -139,12 +140,12 @@ def reference_run(effect: Effect | None) -> tuple[Array, int]:
 
 
 def generated_run(effect: Effect | None, refine: int = 1) -> Array:
-    """Return the generator's states (COUNT + 1, 7) under the same torque, its step divided by `refine`."""
+    """Return the generator's states (COUNT + 1, WIDTH) under the same torque, its step divided by `refine`."""
     effects = PlantedEffects(() if effect is None else (effect,))
     constants = effects.planted(declared_constants(BENCH))
     step = sampling_of(BENCH, constants).longest_step / refine
     sampling = Sampling(SAMPLE, step, 1e-6, 0.0, 0.0, 1.0, 30.0)
-    return open_loop(torque_curve(), (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), sampling, constants)
+    return open_loop(torque_curve(), State(*[0.0] * 6), sampling, constants)
 
 
 @pytest.mark.parametrize("family", FAMILIES)

@@ -7,12 +7,14 @@ import dataclasses
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import cast
 
 from tests.generator.axis import AXES
 from tests.generator.effects import EFFECT_CLASSES, Effect, PlantedEffects
-from tests.generator.profile import train_profile, validate_profile
+from tests.generator.pair import profiles, true_axis
 from tests.generator.recording import simulate, write_csv
+
+WORDS = ("port", "where", "channel")
+"""Keys whose values are words."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -21,11 +23,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     try:
         effects = planted_effects(options.effect, options.set)
+        off = {name: float(factor) for name, _, factor in (text.partition("=") for text in options.off)}
+        axis = true_axis(AXES[options.axis], effects, off, options.noise_factor)
     except (TypeError, ValueError) as error:
         parser.error(str(error))
-    axis = AXES[options.axis]
-    make_profile = validate_profile if options.validate else train_profile
-    profile = make_profile(axis, options.seconds)
+    profile = profiles(axis, PlantedEffects(), (options.seconds, options.seconds))[1 if options.validate else 0]
     if options.no_chirp:
         profile = profile.without_chirp()
     write_csv(options.out, simulate(axis, effects, profile, options.seed))
@@ -38,6 +40,8 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--axis", choices=sorted(AXES), default="bench")
     parser.add_argument("--effect", action="append", default=[], help="name of a planted effect, repeatable; or none")
     parser.add_argument("--set", action="append", default=[], help="key=value; effect.key=value with several effects")
+    parser.add_argument("--off", action="append", default=[], help="name=factor on a declared number, repeatable")
+    parser.add_argument("--noise-factor", type=float, default=1.0, help="noise over that of the sensors")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--seconds", type=float, default=20.0)
     parser.add_argument("--validate", action="store_true", help="the profile for judging instead of that for fitting")
@@ -56,7 +60,7 @@ def planted_effects(names: Sequence[str], settings: Sequence[str]) -> PlantedEff
         owner = owner or (wanted[0] if len(wanted) == 1 else "")
         if owner not in values:
             raise ValueError(f"--set {setting}: write effect.key=value with the name of a chosen effect")
-        values[owner][short] = text if short == "port" else float(text)
+        values[owner][short] = text if short in WORDS else float(text)
     return PlantedEffects(tuple(_effect(name, values[name]) for name in wanted))
 
 
@@ -68,7 +72,7 @@ def _effect(name: str, values: dict[str, float | str]) -> Effect:
     known = [item.name for item in dataclasses.fields(classes[name])]
     if unknown := sorted(set(values) - set(known)):
         raise ValueError(f"{name}: no key {unknown[0]}, known are {', '.join(known)}")
-    return cast(Effect, classes[name](**values))  # type: ignore[arg-type]
+    return classes[name](**values)
 
 
 if __name__ == "__main__":

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 
@@ -11,12 +13,14 @@ class Controller:
     """Cascade sampled once per recording sample, working on the quantised motor angle.
 
     position_gain [1/s], speed_gain [N m s/rad], integral_time [s], torque_limit [N m].
+    soft_speed_gain: for axes with a delay, which would make speed_gain oscillate on the torsional mode.
     """
 
     position_gain: float
     speed_gain: float
     integral_time: float
     torque_limit: float
+    soft_speed_gain: float
 
 
 @dataclass(frozen=True)
@@ -27,6 +31,10 @@ class Sensors:
     encoder_bits: int = 22
     scale_step: float = 10e-9
     scale_noise: float = 15e-9
+
+    def noisier(self, factor: float) -> Sensors:
+        """Return the sensors with `factor` times the noise; their steps stay."""
+        return dataclasses.replace(self, torque_noise=factor * self.torque_noise, scale_noise=factor * self.scale_noise)
 
 
 @dataclass(frozen=True)
@@ -67,6 +75,42 @@ class AxisParameters:
         """Table travel per radian of the screw [m/rad]."""
         return self.lead / (2.0 * math.pi)
 
+    @property
+    def stroke_low(self) -> float:
+        """Lowest table position of the long strokes [m]."""
+        return self.travel[0]
+
+    @property
+    def stroke_high(self) -> float:
+        """Highest table position of the long strokes [m]."""
+        return self.travel[1]
+
+    def off_by(self, factors: Mapping[str, float]) -> AxisParameters:
+        """Return the axis with these numbers multiplied; ValueError for a name that is no number of the mechanics."""
+        if unknown := sorted(set(factors) - set(MECHANICAL)):
+            raise ValueError(f"no number {unknown[0]} of the axis; known are {', '.join(MECHANICAL)}")
+        values = {name: factor * getattr(self, name) for name, factor in factors.items()}
+        return dataclasses.replace(self, **values)
+
+
+MECHANICAL = (
+    "motor_inertia",
+    "screw_inertia",
+    "table_mass",
+    "torsional_stiffness",
+    "torsional_damping",
+    "axial_stiffness",
+    "axial_damping",
+    "guide_coulomb",
+    "guide_viscous",
+    "guide_velocity",
+    "nut_coulomb",
+    "nut_power",
+    "bearing_coulomb",
+    "drag_speed",
+)
+"""What may be other than declared. Not the lead: set-points are planned with it."""
+
 
 BENCH = AxisParameters(
     lead=0.020,
@@ -88,7 +132,9 @@ BENCH = AxisParameters(
     top_speed=0.30,
     acceleration=3.1,
     chirp_amplitude=2.2,
-    controller=Controller(position_gain=60.0, speed_gain=1.9, integral_time=0.02, torque_limit=30.0),
+    controller=Controller(
+        position_gain=60.0, speed_gain=1.9, integral_time=0.02, torque_limit=30.0, soft_speed_gain=0.7
+    ),
 )
 
 LIGHT = AxisParameters(
@@ -111,7 +157,9 @@ LIGHT = AxisParameters(
     top_speed=0.24,
     acceleration=2.5,
     chirp_amplitude=0.7,
-    controller=Controller(position_gain=60.0, speed_gain=0.35, integral_time=0.02, torque_limit=10.0),
+    controller=Controller(
+        position_gain=60.0, speed_gain=0.35, integral_time=0.02, torque_limit=10.0, soft_speed_gain=0.13
+    ),
 )
 
 AXES = {"bench": BENCH, "light": LIGHT}

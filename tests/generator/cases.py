@@ -21,29 +21,39 @@ from tests.generator.effects import (
     TorqueRipple,
     ViscousAsymmetry,
 )
-from tests.generator.profile import Profile, train_profile, validate_profile
-
-SOFT_SPEED_GAIN = {"drive_delay": 0.7}
-"""Speed gain [N m s/rad] of cases whose delay would make the axis' own gain oscillate on the torsional mode."""
+from tests.generator.pair import Channels, recording_pair
+from tests.generator.recording import LONGEST_STEP
 
 SECONDS = {"bench": (12.0, 7.6), "light": (6.8, 6.0)}
 
 
 @dataclass(frozen=True)
 class Case:
-    """One pair of recordings: axis name, file name, effects and the seeds of training and validation."""
+    """One pair of recordings: axis name, file name, effects and the seeds of training and validation.
+
+    off: (name, factor) of the declared numbers that the true axis has otherwise. noise_factor: noise over declared.
+    seconds: lengths of training and validation [s], those of SECONDS where not given.
+    """
 
     axis: str
     name: str
     effects: PlantedEffects
     seeds: tuple[int, int]
+    off: tuple[tuple[str, float], ...] = ()
+    noise_factor: float = 1.0
+    seconds: tuple[float, float] | None = None
 
-    def profiles(self) -> tuple[Profile, Profile]:
-        """Return the profiles for fitting and for judging; free play is judged without the chirp, being chaotic."""
-        axis, (train_seconds, validate_seconds) = AXES[self.axis], SECONDS[self.axis]
-        validate = validate_profile(axis, validate_seconds)
-        chaotic = any(effect.name == Backlash.name for effect in self.effects.effects)
-        return train_profile(axis, train_seconds), validate.without_chirp() if chaotic else validate
+    def recordings(self) -> tuple[Channels, Channels]:
+        """Return the channels for fitting and for judging, with the step of the committed recordings."""
+        return recording_pair(
+            AXES[self.axis],
+            self.effects.effects,
+            self.seeds,
+            self.seconds or SECONDS[self.axis],
+            self.noise_factor,
+            dict(self.off),
+            LONGEST_STEP,
+        )
 
 
 BENCH_EFFECTS: tuple[Effect, ...] = (

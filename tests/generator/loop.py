@@ -8,14 +8,18 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from tests.generator.constants import Constants
-from tests.generator.motion import State, advance_many, compiled
+from tests.generator.constants import Constants, packed
+from tests.generator.motion import advance_many
+from tests.generator.state import WIDTH, State, compiled
 
 Array = npt.NDArray[np.float64]
 
 
 class Sampling(NamedTuple):
-    """What the loop needs beside the plant: sample_time, longest_step [s], encoder_step [rad], gains and limit."""
+    """What the loop needs beside the plant: sample_time, longest_step [s], encoder_step [rad], gains and limit.
+
+    reading: how long after the controller's instant the recorder reads [s], from 0 to below sample_time.
+    """
 
     sample_time: float
     longest_step: float
@@ -24,48 +28,81 @@ class Sampling(NamedTuple):
     speed_gain: float
     integral_time: float
     torque_limit: float
+    reading: float = 0.0
 
 
 @compiled
-def held_step(
-    state: State, side: int, old: float, new: float, late: float, s: Sampling, c: Constants
+def acting(torque: float, c: Constants) -> float:
+    """Return the torque that a command [N m] brings about."""
+    return torque * (1.0 - c.droop * torque * torque)
+
+
+@compiled
+def held(
+    state: State,
+    side: int,
+    torques: tuple[float, float],
+    late: float,
+    span: tuple[float, float],
+    s: Sampling,
+    c: Constants,
 ) -> tuple[State, int]:
-    """Return state and gap side one sample later: torque `old` for the first `late` seconds, then `new`."""
-    state, side = advance_many(state, old, side, late, s.longest_step, c)
-    return advance_many(state, new, side, s.sample_time - late, s.longest_step, c)
+    """Return state and gap side after the part `span` = (start, end) [s] of one sample.
+
+    `torques` = (old, new) act one after the other, changing `late` seconds after the sample's beginning.
+    """
+    start, end = span
+    old, new = torques
+    state, side = advance_many(state, old, side, min(late, end) - start, s.longest_step, c)
+    return advance_many(state, new, side, end - max(late, start), s.longest_step, c)
+
+
+def open_loop(torque: Array, state: State, s: Sampling, c: Constants) -> Array:
+    """Return the states (len(torque) + 1, WIDTH) under a held command sequence [N m]."""
+    return compiled_open_loop(torque, state, s, packed(c))
+
+
+def closed_loop(
+    setpoint: Array, injected: Array, state: State, s: Sampling, c: Constants
+) -> tuple[Array, Array, Array]:
+    """Return commanded torque (n,) [N m], states (n, WIDTH) at the sample instants, and those `reading` seconds later.
+
+    Position P with speed feed-forward, speed PI with back-calculation, on the quantised encoder; `injected` [N m]
+    is added before the limit. The torque of sample i acts from t_i + drive_delay to t_(i+1) + drive_delay.
+    """
+    return compiled_closed_loop(setpoint, injected, state, s, packed(c))
 
 
 @compiled
-def open_loop(torque: Array, state: State, s: Sampling, c: Constants) -> Array:
-    """Return the states (len(torque) + 1, 7) under a held torque sequence [N m]."""
-    states = np.empty((torque.size + 1, 7))
+def compiled_open_loop(torque: Array, state: State, s: Sampling, c: Constants) -> Array:
+    """Return what `open_loop` does, for packed constants."""
+    states = np.empty((torque.size + 1, WIDTH))
     side = 0
     for i in range(torque.size):
         states[i] = state
-        state, side = held_step(state, side, 0.0, torque[i], 0.0, s, c)
+        state, side = held(state, side, (0.0, acting(torque[i], c)), 0.0, (0.0, s.sample_time), s, c)
     states[torque.size] = state
     return states
 
 
 @compiled
-def closed_loop(setpoint: Array, injected: Array, state: State, s: Sampling, c: Constants) -> tuple[Array, Array]:
-    """Return the commanded torque (n,) [N m] and the states (n, 7) at the sample instants.
-
-    Position P with speed feed-forward, speed PI with back-calculation, on the quantised encoder; `injected` [N m]
-    is added before the limit. The torque of sample i acts from t_i + drive_delay to t_(i+1) + drive_delay.
-    """
+def compiled_closed_loop(
+    setpoint: Array, injected: Array, state: State, s: Sampling, c: Constants
+) -> tuple[Array, Array, Array]:
+    """Return what `closed_loop` does, for packed constants."""
     count = setpoint.size
     torque = np.empty(count)
-    states = np.empty((count, 7))
+    states = np.empty((count, WIDTH))
+    read = np.empty((count, WIDTH))
     whole = math.floor(c.drive_delay / s.sample_time)
     late = c.drive_delay - whole * s.sample_time
     side = 0
     integral = 0.0
-    old_angle = round(state[0] / s.encoder_step) * s.encoder_step
+    old_angle = round(state.angle / s.encoder_step) * s.encoder_step
     old_setpoint = setpoint[0]
     for i in range(count):
         states[i] = state
-        angle = round(state[0] / s.encoder_step) * s.encoder_step
+        angle = round(state.angle / s.encoder_step) * s.encoder_step
         wanted_speed = (setpoint[i] - old_setpoint) / (c.transmission * s.sample_time)
         wanted_speed += s.position_gain * (setpoint[i] / c.transmission - angle)
         error = wanted_speed - (angle - old_angle) / s.sample_time
@@ -74,7 +111,10 @@ def closed_loop(setpoint: Array, injected: Array, state: State, s: Sampling, c: 
         integral += s.sample_time / s.integral_time * (s.speed_gain * error + torque[i] - asked)
         old_angle = angle
         old_setpoint = setpoint[i]
-        new = torque[i - whole] if i >= whole else 0.0
-        old = torque[i - whole - 1] if i >= whole + 1 else 0.0
-        state, side = held_step(state, side, old, new, late, s, c)
-    return torque, states
+        new = acting(torque[i - whole], c) if i >= whole else 0.0
+        old = acting(torque[i - whole - 1], c) if i >= whole + 1 else 0.0
+        if s.reading > 0.0:
+            state, side = held(state, side, (old, new), late, (0.0, s.reading), s, c)
+        read[i] = state
+        state, side = held(state, side, (old, new), late, (s.reading, s.sample_time), s, c)
+    return torque, states, read

@@ -7,8 +7,8 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from tests.generator.axis import AXES, BENCH
-from tests.generator.cases import CASES, DEMO_EFFECTS, SOFT_SPEED_GAIN, Case
+from tests.generator.axis import BENCH
+from tests.generator.cases import CASES, DEMO_EFFECTS, Case
 from tests.generator.profile import train_profile
 from tests.generator.recording import simulate, write_csv
 
@@ -32,11 +32,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def write_case(case: Case) -> None:
     """Write the training and validation recording of one case."""
-    axis = AXES[case.axis]
-    gain = SOFT_SPEED_GAIN.get(case.name, axis.controller.speed_gain)
-    axis = dataclasses.replace(axis, controller=dataclasses.replace(axis.controller, speed_gain=gain))
-    for part, profile, seed in zip(("train", "validate"), case.profiles(), case.seeds, strict=True):
-        data = simulate(axis, case.effects, profile, seed)
+    for part, data in zip(("train", "validate"), case.recordings(), strict=True):
         write_csv(DATA / case.axis / f"{case.name}_{part}.csv.gz", data)
 
 
@@ -45,9 +41,10 @@ def truth() -> str:
     lines = ["# What is planted in each pair of recordings (SI units); written by tests.generator.write_all."]
     for case in CASES:
         lines += ["", f"[{case.axis}.{case.name}]"]
+        lines += [f"off.{name} = {factor!r}" for name, factor in case.off]
         for effect in case.effects.effects:
             lines += [f"[{case.axis}.{case.name}.{effect.name}]"]
-            values = dataclasses.asdict(effect)  # type: ignore[call-overload]
+            values = dataclasses.asdict(effect)
             lines += [f"{key} = {_toml(value)}" for key, value in values.items()]
     return "\n".join(lines) + "\n"
 

@@ -1,0 +1,38 @@
+"""The state of the equations of motion and the decorator that compiles them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple, TypeVar, cast
+
+import numba
+
+Function = TypeVar("Function", bound=Callable[..., object])
+
+
+class State(NamedTuple):
+    """What the equations of motion carry along, SI units; a new field at the end leaves the others where they are.
+
+    angle, speed: motor [rad], [rad/s]. screw_angle, screw_speed. position, velocity: table [m], [m/s].
+    bristle: deflection of the guide's bristle [m]. mass_deflection: of the further mass against the table [m].
+    mass_velocity: of the further mass, absolute [m/s]. time: since the first sample [s].
+    """
+
+    angle: float
+    speed: float
+    screw_angle: float
+    screw_speed: float
+    position: float
+    velocity: float
+    bristle: float = 0.0
+    mass_deflection: float = 0.0
+    mass_velocity: float = 0.0
+    time: float = 0.0
+
+
+WIDTH = len(State._fields)
+
+
+def compiled(function: Function) -> Function:
+    """Return `function` compiled by numba, keeping its type."""
+    return cast(Function, numba.njit(function))
