@@ -43,6 +43,8 @@ COMMANDS: dict[str, Entry] = {
     "demo": Entry("demo", "Diagnose a shipped machine from a shipped recording."),
     "list": Entry("list_plants", "List the machines that come with feeddrive."),
     "show": Entry("show", "Show a machine: stiffness budget, inertias, friction, modes."),
+    "modes": Entry("modes", "Natural frequencies of a machine along its stroke."),
+    "check": Entry("check", "Check a machine against rules of plausibility."),
     "run": Entry("run", "Run a scenario: a machine under control; figures, metrics."),
     "diagnose": Entry("diagnose", "Find what a machine's model lacks, from recordings of it."),
     "export": Entry("export", "Write a machine as state space, .mat, CasADi, C, FMU or JSON."),

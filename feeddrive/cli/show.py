@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Annotated, Any
 
@@ -11,22 +12,28 @@ from rich.table import Table
 
 from feeddrive.cli.output import JsonOption, OutOption, deliver, table, warnings_as_lines
 from feeddrive.files import find_plant
-from feeddrive.plant.files import read_plant, section_key
+from feeddrive.plant.files import read_plant
 from feeddrive.plant.modes import Modes
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.summary import Summary, summarise
-from feeddrive.quantity import format_quantity
+from feeddrive.quantity import format_quantity, parse
+
+MODES = 4
+"""Modes in the table, of each kind."""
+
+_KNOWN = ("motor", "screw", "axial", "table")
 
 
 def command(
     plant: Annotated[str, typer.Argument(help="Plant file, or the name of a shipped machine.")],
+    at: Annotated[str, typer.Option(help="Table position for stiffness and modes, such as 250mm.")] = "",
     as_json: JsonOption = False,
     out: OutOption = None,
 ) -> None:
     """Show a machine: values with their sources, stiffness budget, inertias, friction, modes."""
     with warnings_as_lines():
         machine = read_plant(find_plant(plant))
-        summary = summarise(machine)
+        summary = summarise(machine, parse(at, "m", "--at") if at else None)
     deliver(_content(machine, summary), _tables(machine, summary), as_json, out)
 
 
@@ -39,8 +46,14 @@ def _content(plant: Plant, summary: Summary) -> dict[str, Any]:
         "values": {
             key: {"value": value, "unit": unit, "source": source} for key, value, unit, source in _values(plant)
         },
+        "parts": {
+            key: {"value": datum.value, "unit": datum.unit, "source": plant.origins.get(key, "")}
+            for key, datum in plant.data.items()
+        },
+        "position": summary.position,
         "inertia_at_motor": summary.inertia_at_motor,
         "mass_at_table": summary.mass_at_table,
+        "inertias": [asdict(row) for row in summary.inertias],
         "stiffness": asdict(summary.stiffness) if summary.stiffness else None,
         "friction": [asdict(row) for row in summary.friction],
         "modes": {"braked": _modes_content(summary.braked), "free": _modes_content(summary.free)},
@@ -59,7 +72,7 @@ def _values(plant: Plant) -> list[tuple[str, Any, str, str]]:
     """Key, SI value, unit and source of every value of chain and effects."""
     rows: list[tuple[str, Any, str, str]] = []
     for value in plant.chain.required:
-        key = f"{value.section}.{section_key(value)}"
+        key = f"{value.section}.{value.section_key}"
         rows.append((key, plant.chain.values[value.key], value.unit, plant.origins.get(value.key, "")))
     if math.isfinite(plant.torque_limit):
         rows.append(("motor.torque_limit", plant.torque_limit, "N m", plant.origins.get("torque_limit", "")))
@@ -72,26 +85,57 @@ def _values(plant: Plant) -> list[tuple[str, Any, str, str]]:
 
 def _tables(plant: Plant, summary: Summary) -> list[Table]:
     values = [[key, _shown(value, unit), source] for key, value, unit, source in _values(plant)]
-    return [
+    at = f", table at {format_quantity(summary.position, 'm')}" if plant.chain.varies else ""
+    tables = [
         table(f"{plant.name}, {plant.chain.structure}", ("value", "quantity", "source"), values),
-        table("Inertia and stiffness", ("figure", "quantity", "share of compliance"), _stiffness_rows(summary)),
+        table("Parts as declared", ("part", "quantity", "source"), _part_rows(plant)),
+        table(f"Inertia{at}", ("moves with", "at the motor", "at the table", "share"), _inertia_rows(summary)),
+        table(f"Stiffness at the table, motor held{at}", ("part", "stiffness", "share of compliance"),
+              _stiffness_rows(summary)),
         table("Constant motion, + along + motion", ("speed", "force +", "force −", "torque +", "torque −"),
               _friction_rows(summary)),
-        table("Modes of the chain, in table travel", ("motor", "frequency", "damping", *plant.chain.coordinates),
-              [*_mode_rows("held", summary.braked), *_mode_rows("free", summary.free)]),
+        _mode_table(plant, summary, at),
     ]  # fmt: skip
+    for shown in tables:
+        shown.columns[0].no_wrap = True  # names are searched for, so they stay in one piece
+    return [shown for shown in tables if shown.row_count]
+
+
+def _mode_table(plant: Plant, summary: Summary, at: str) -> Table:
+    """Modes by the coordinates that people know; JSON has all modes and coordinates."""
+    names = plant.chain.coordinates
+    kept = [i for i, name in enumerate(names) if name in _KNOWN]
+    rows = [*_mode_rows("held", summary.braked, kept), *_mode_rows("free", summary.free, kept)]
+    headings = ("motor", "frequency", "damping", *(names[i] for i in kept))
+    return table(f"Modes of the chain, in table travel{at}", headings, rows)
+
+
+def _part_rows(plant: Plant) -> list[list[str]]:
+    return [
+        [key, format_quantity(datum.value, datum.unit), plant.origins.get(key, "")] for key, datum in plant.data.items()
+    ]
+
+
+def _inertia_rows(summary: Summary) -> list[list[str]]:
+    rows = [
+        [row.coordinate.replace("_", " "), format_quantity(row.at_motor, "kg m^2"), format_quantity(row.at_table, "kg"),
+         f"{row.share:.0%}"]
+        for row in summary.inertias
+    ]  # fmt: skip
+    whole = [format_quantity(summary.inertia_at_motor, "kg m^2"), format_quantity(summary.mass_at_table, "kg")]
+    return [*rows, ["all", *whole, "100%"]]
 
 
 def _stiffness_rows(summary: Summary) -> list[list[str]]:
-    rows = [
-        ["moving inertia at the motor", format_quantity(summary.inertia_at_motor, "kg m^2"), ""],
-        ["moving mass at the table", format_quantity(summary.mass_at_table, "kg"), ""],
-    ]
     budget = summary.stiffness
     if budget is None:
-        return rows
+        return []
+    parts = [
+        [f"{part.part}, {part.deformation}", format_quantity(1 / part.compliance, "N/m"), f"{part.share:.1%}"]
+        for part in budget.parts
+    ]
     return [
-        *rows,
+        *parts,
         ["axial stiffness", format_quantity(budget.axial, "N/m"), f"{budget.axial_share:.0%}"],
         ["torsional stiffness at the table", format_quantity(budget.torsional, "N/m"), f"{budget.torsional_share:.0%}"],
         ["combined stiffness, motor held", format_quantity(budget.total, "N/m"), "100%"],
@@ -111,10 +155,11 @@ def _friction_rows(summary: Summary) -> list[list[str]]:
     ]
 
 
-def _mode_rows(motor: str, modes: Modes) -> list[list[str]]:
+def _mode_rows(motor: str, modes: Modes, kept: Sequence[int]) -> list[list[str]]:
+    columns = zip(modes.frequencies[:MODES], modes.damping, modes.shapes.T[:, kept] + 0.0, strict=False)
     return [
-        [motor, format_quantity(frequency, "Hz"), f"{damping:.2%}", *(f"{part:+.2f}" for part in shape + 0.0)]
-        for frequency, damping, shape in zip(modes.frequencies, modes.damping, modes.shapes.T, strict=True)
+        [motor, format_quantity(frequency, "Hz"), f"{damping:.2%}", *(f"{part:+.2f}" for part in shape)]
+        for frequency, damping, shape in columns
     ]
 
 

@@ -56,7 +56,9 @@ and ratings for plausibility rules (`feeddrive.plant.ratings`). Nothing in the f
 from __future__ import annotations
 
 import warnings
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.plant.chain import CHAINS, Chain, ChainValue, DistributedScrew
@@ -73,7 +75,7 @@ from feeddrive.plant.ratings import RATINGS, read_data
 from feeddrive.plant.stroke import read_stroke
 from feeddrive.quantity import format_quantity
 
-__all__ = ["FORMAT", "plant_text_with_effects", "read_plant", "section_key"]
+__all__ = ["FORMAT", "plant_from_entries", "plant_text_with_effects", "read_plant", "section_key"]
 
 FORMAT = "feeddrive-plant/1"
 _SECTIONS = (
@@ -140,7 +142,17 @@ def read_plant(path: Path) -> Plant:
     Warns:
         ValidityWarning: a value far outside what is usual.
     """
-    top = _top(path)
+    return plant_from_entries(read_toml(path, "plant file"), path)
+
+
+def plant_from_entries(entries: Mapping[str, Any], path: Path) -> Plant:
+    """The plant of a file that is parsed already, values perhaps put in; else as `read_plant`.
+
+    Args:
+        entries: of the file.
+        path: of the file, for messages and the name.
+    """
+    top = _top(entries, path)
     _refuse_unknown_keys(top)
     chain, drive = read_chain(top)
     motor = top.table("motor")
@@ -171,8 +183,8 @@ def section_key(value: ChainValue) -> str:
     return value.section_key
 
 
-def _top(path: Path) -> Table:
-    where, entries = str(path), read_toml(path, "plant file")
+def _top(entries: Mapping[str, Any], path: Path) -> Table:
+    where = str(path)
     if entries.get("format") != FORMAT:
         raise InputError("is not a plant file of this version", where, f'write format = "{FORMAT}" in its first line')
     unread = Table(entries, where, Origins())

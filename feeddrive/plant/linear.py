@@ -12,6 +12,7 @@ everything, so the point moves unless asked otherwise.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import casadi as ca
@@ -139,12 +140,26 @@ def steady_motion(plant: Plant, velocity: float = MOVING, position: float = 0.0)
         InputError: no such state is found, for instance inside a free play that nothing loads, or the nut would not
             be on the screw.
     """
+    return steady_motions(plant, (velocity,), position)[0]
+
+
+def steady_motions(plant: Plant, velocities: Sequence[float], position: float = 0.0) -> tuple[SteadyMotion, ...]:
+    """Steady motion at several velocities [m/s], the equations made once; otherwise as `steady_motion`.
+
+    Raises:
+        InputError: as `steady_motion`.
+    """
     plant.chain.refuse_off_screw(position, plant.name)
-    if not (math.isfinite(velocity) and math.isfinite(position)):
+    if not (math.isfinite(position) and all(math.isfinite(velocity) for velocity in velocities)):
         raise InputError("velocity and position must be finite numbers", plant.name, "give e.g. 0.05 m/s at 0 m")
+    function = ode(plant)
+    return tuple(_steady(plant, function, velocity, position) for velocity in velocities)
+
+
+def _steady(plant: Plant, function: ca.Function, velocity: float, position: float) -> SteadyMotion:
     side = -1.0 if velocity < 0 else 1.0
     for flank in (side, -side):
-        found = _solve(plant, velocity, position, flank)
+        found = _solve(plant, function, velocity, position, flank)
         if found is not None:
             return found
     raise InputError(f"no steady motion at {velocity:g} m/s", plant.name, "choose another velocity or position")
@@ -177,9 +192,9 @@ def state_space(plant: Plant, velocity: float = MOVING, position: float = 0.0) -
     return control.ss(*matrices, states=list(state_names(plant)), inputs=list(INPUTS), outputs=list(OUTPUTS))
 
 
-def _solve(plant: Plant, velocity: float, position: float, flank: float) -> SteadyMotion | None:
+def _solve(plant: Plant, function: ca.Function, velocity: float, position: float, flank: float) -> SteadyMotion | None:
     """Newton from one flank of the free play: positions but that of the table, torque and bristles are unknown."""
-    function, n = ode(plant), len(plant.chain.coordinates)
+    n = len(plant.chain.coordinates)
     unknown = ca.SX.sym("unknown", n + bristle_count(plant))
     x = _moving_state(plant, velocity, position, unknown)
     xdot, _ = function(x, ca.vertcat(unknown[n - 1], 0), parameter_values(plant))

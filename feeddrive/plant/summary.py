@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feeddrive.plant.linear import steady_motion
+from feeddrive.plant.linear import steady_motions
 from feeddrive.plant.modes import Modes, braked_modes, free_modes
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.stiffness_budget import StiffnessBudget, stiffness_budget
@@ -84,7 +84,7 @@ def summarise(plant: Plant, position: float | None = None) -> Summary:
         mass_at_table=sum(row.at_table for row in inertias),
         inertias=inertias,
         stiffness=stiffness_budget(plant, at) if plant.chain.elastic else None,
-        friction=tuple(_friction(plant, speed, at) for speed in SPEEDS),
+        friction=_friction(plant, at),
         braked=braked_modes(plant, at),
         free=free_modes(plant, at),
     )
@@ -101,7 +101,11 @@ def _inertias(plant: Plant, position: float) -> tuple[InertiaRow, ...]:
     return tuple(InertiaRow(name, mass * r**2, mass, mass / whole) for name, mass in zip(names, masses, strict=True))
 
 
-def _friction(plant: Plant, speed: float, position: float) -> FrictionRow:
+def _friction(plant: Plant, position: float) -> tuple[FrictionRow, ...]:
     r = plant.chain.motor_radius
-    forward, backward = (steady_motion(plant, v, position).torque for v in (speed, -speed))
-    return FrictionRow(speed, forward / r, backward / r, forward, backward)
+    signed = [sign * speed for speed in SPEEDS for sign in (1, -1)]
+    torques = [motion.torque for motion in steady_motions(plant, signed, position)]
+    return tuple(
+        FrictionRow(speed, forward / r, backward / r, forward, backward)
+        for speed, forward, backward in zip(SPEEDS, torques[::2], torques[1::2], strict=True)
+    )

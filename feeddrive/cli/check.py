@@ -1,0 +1,65 @@
+"""`feeddrive check PLANT`: rules of plausibility, each with value, limit, verdict and source."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any
+
+import typer
+
+from feeddrive.cli.output import JsonOption, OutOption, deliver, table, warnings_as_lines
+from feeddrive.files import find_plant
+from feeddrive.plant.files import read_plant
+from feeddrive.plant.plausibility import Finding, Verdict, check_plant
+from feeddrive.quantity import format_quantity, parse
+
+
+def command(
+    plant: Annotated[str, typer.Argument(help="Plant file, or the name of a shipped machine.")],
+    position_gain: Annotated[
+        str, typer.Option(help="Position gain of the controller, such as '50 1/s'; the declared one if left out.")
+    ] = "",
+    as_json: JsonOption = False,
+    out: OutOption = None,
+) -> None:
+    """Check a machine against rules of plausibility; warnings do not change the exit status."""
+    with warnings_as_lines():
+        machine = read_plant(find_plant(plant))
+        gain = parse(position_gain, "1/s", "--position-gain") if position_gain else None
+        findings = check_plant(machine, gain)
+    broken = sum(finding.verdict is Verdict.BROKEN for finding in findings)
+    content = {
+        "format": "feeddrive-check/1",
+        "name": machine.name,
+        "warnings": broken,
+        "rules": [_content(finding) for finding in findings],
+    }
+    shown = table(f"{machine.name}: {broken or 'no'} warning{'s' * (broken != 1)}",
+                  ("rule", "value", "limit", "verdict", "source"), [_row(finding) for finding in findings])  # fmt: skip
+    shown.columns[0].min_width = 18  # no word of a rule is longer
+    deliver(content, [shown], as_json, out)
+
+
+def _content(finding: Finding) -> dict[str, Any]:
+    return {
+        "rule": finding.rule,
+        "value": finding.value,
+        "limit": finding.limit,
+        "unit": finding.unit,
+        "sense": finding.sense.name.lower(),
+        "verdict": finding.verdict.value,
+        "source": finding.source,
+    }
+
+
+def _row(finding: Finding) -> list[str]:
+    value = "" if finding.value is None else _shown(finding.value, finding.unit)
+    limit = "" if finding.limit is None else f"{finding.sense.value} {_shown(finding.limit, finding.unit)}"
+    return [finding.rule, value, limit, finding.verdict.value, finding.source]
+
+
+def _shown(number: float, unit: str) -> str:
+    """As it is written in catalogues: the DN value counts millimetres and revolutions per minute."""
+    if unit == "m rad/s":
+        return f"{number * 1e3 * 30 / math.pi:.0f} mm rev/min"
+    return format_quantity(number, unit)
