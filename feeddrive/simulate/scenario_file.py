@@ -32,7 +32,8 @@ from feeddrive.errors import InputError
 from feeddrive.files import find_plant
 from feeddrive.plant.effect_sections import read_effects
 from feeddrive.plant.entries import Origins, Table, read_toml
-from feeddrive.plant.files import read_plant
+from feeddrive.plant.files import plant_from_entries
+from feeddrive.plant.plant import Plant
 from feeddrive.recording.channels import channel_unit
 from feeddrive.servo.cascade import Cascade, divider
 from feeddrive.servo.linear_loop import refuse_unstable
@@ -65,7 +66,8 @@ def read_scenario(path: Path, overrides: Mapping[str, str] | None = None) -> Sce
 
     Args:
         path: of the file.
-        overrides: dotted key to text, put in place of what the file says.
+        overrides: dotted key to text, put in place of what the file says; "plant.table.mass" and the like lead into
+            the plant file.
 
     Raises:
         InputError: not found, not TOML, unknown key, a value missing or impossible, rates that do not fit, a motion
@@ -78,6 +80,7 @@ def read_scenario(path: Path, overrides: Mapping[str, str] | None = None) -> Sce
             "is not a scenario file of this version", where, f'write format = "{FORMAT}" in its first line'
         )
     wanted = dict(overrides or {})
+    of_plant = {key.removeprefix("plant."): wanted.pop(key) for key in list(wanted) if key.startswith("plant.")}
     if "controller" in wanted:
         entries["controller"] = wanted.pop("controller")
     controller_where = _insert_controller(entries, path)
@@ -85,7 +88,7 @@ def read_scenario(path: Path, overrides: Mapping[str, str] | None = None) -> Sce
     top = Table(entries, where, Origins())
     top.refuse_unknown(_KEYS)
     plant_path = _plant_path(top, path.parent)
-    plant = read_plant(plant_path).with_effects(*read_effects(top))
+    plant = _plant(plant_path, of_plant).with_effects(*read_effects(top))
     written = top.table("controller")
     cascade, unstable = read_cascade(Table(written.entries, controller_where, top.origins), plant)
     _require(top, "trajectory")
@@ -101,7 +104,7 @@ def read_scenario(path: Path, overrides: Mapping[str, str] | None = None) -> Sce
         name=top.text("name", path.stem), description=top.text("description", ""), plant=plant, cascade=cascade,
         trajectory=trajectory, force=read_forces(top.tables("force"), path.parent), excitation=excitation,
         recorder=_recorder(top, cascade), ticks=ticks, evaluations=read_evaluations(top.tables("evaluate")),
-        digest=_digest(entries, path.parent, plant_path),
+        digest=_digest(entries, path.parent, plant_path, of_plant),
     )  # fmt: skip
 
 
@@ -142,6 +145,10 @@ def _plant_path(top: Table, folder: Path) -> Path:
     return beside if beside.is_file() else find_plant(named)
 
 
+def _plant(path: Path, overrides: Mapping[str, str]) -> Plant:
+    return plant_from_entries(with_overrides(read_toml(path, "plant file"), overrides), path)
+
+
 def _ticks(top: Table, cascade: Cascade, trajectory: float) -> int:
     run = top.table("run")
     run.refuse_unknown(("duration",))
@@ -179,10 +186,10 @@ def _recorder(top: Table, cascade: Cascade) -> Recorder:
     return Recorder(ticks, channels, noise, boolean(table, "quantised", False), whole(table, "seed", 0))
 
 
-def _digest(entries: Mapping[str, Any], folder: Path, plant: Path) -> str:
-    """Checksum of the version, the scenario with its controller and overrides, the plant and the files of forces."""
+def _digest(entries: Mapping[str, Any], folder: Path, plant: Path, overrides: Mapping[str, str]) -> str:
+    """Checksum of the version, the scenario with its controller, the plant, overrides, and the files of forces."""
     content = hashlib.sha256(__version__.encode())
-    content.update(json.dumps(entries, sort_keys=True, default=str).encode())
+    content.update(json.dumps([entries, overrides], sort_keys=True, default=str).encode())
     content.update(plant.read_bytes())
     for force in entries.get("force", []):
         if "path" in force:

@@ -28,7 +28,9 @@ def parse_overrides(texts: list[str]) -> dict[str, str]:
 
 
 def with_overrides(entries: Mapping[str, Any], overrides: Mapping[str, str]) -> dict[str, Any]:
-    """The entries with values put in; tables that are not there are made, entries of lists are counted from 1.
+    """The entries with values put in; tables that are not there are made.
+
+    Entries of lists are counted from 1, or called by their `name`.
 
     Raises:
         InputError: a key that leads into something that is no table, or to an entry that a list does not have.
@@ -40,8 +42,7 @@ def with_overrides(entries: Mapping[str, Any], overrides: Mapping[str, str]) -> 
         for step in path:
             at = _inside(at, step, key)
         if isinstance(at, list):
-            _inside(at, last, key)
-            at[int(last) - 1] = _value(text)
+            at[_place(at, last, key)] = _value(text)
         else:
             at[last] = _value(text)
     return result
@@ -50,13 +51,22 @@ def with_overrides(entries: Mapping[str, Any], overrides: Mapping[str, str]) -> 
 def _inside(at: Any, step: str, key: str) -> Any:
     """The table or list one step further."""
     if isinstance(at, list):
-        if not step.isdigit() or not 1 <= int(step) <= len(at):
-            raise InputError(f"no entry {step}", f"--set {key}", f"count from 1 to {len(at)}")
-        return at[int(step) - 1]
+        return at[_place(at, step, key)]
     inner = at.setdefault(step, {})
     if not isinstance(inner, dict | list):
         raise InputError(f'"{step}" is a value, not a table', f"--set {key}", "leave out what follows it")
     return inner
+
+
+def _place(entries: list[Any], step: str, key: str) -> int:
+    """Where in a list an entry stands that is called by its number or its name."""
+    names = [entry.get("name") for entry in entries if isinstance(entry, dict)]
+    if names.count(step) == 1:
+        return names.index(step)
+    if not step.isdecimal() or not 1 <= int(step) <= len(entries):
+        named = f", or name one of {', '.join(map(str, names))}" if any(names) else ""
+        raise InputError(f"no entry {step}", f"--set {key}", f"count from 1 to {len(entries)}{named}")
+    return int(step) - 1
 
 
 def _value(text: str) -> Any:

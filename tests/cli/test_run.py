@@ -170,3 +170,21 @@ def test_recorded_force_is_read_from_a_file(tmp_path: Path, capsys: pytest.Captu
     (tmp_path / "own.toml").write_text(text, encoding="utf-8")
     assert main(["run", str(tmp_path / "own.toml"), "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["following_error"]["maximum"] > 1e-7
+
+
+def test_values_of_the_plant_are_set_too(capsys: pytest.CaptureFixture[str]) -> None:
+    """Twice the guide's friction takes its 2π/lead part more torque; entries are called by number or by name."""
+    torque = {}
+    for setting in ("plant.name=x", "plant.effect.1.coulomb=120 N", "plant.effect.guide_friction.coulomb=120 N"):
+        assert main(["run", "step_velocity", "--json", "--set", setting]) == 0
+        torque[setting] = json.loads(capsys.readouterr().out)["motor_torque"]["rms"]
+    plain, by_number, by_name = torque.values()
+    # the lead of 20 mm per revolution; the rest of the torque adds to it in the rms
+    assert by_number == by_name and 0.5 < (by_number - plain) / (60 * 0.02 / 6.2832) < 1.001
+    for setting, message in [
+        ("plant.tabel.mass=1 kg", 'unknown key "tabel"; did you mean "table"?'),
+        ("plant.table.mass=-1 kg", "table.mass"),
+        ("plant.effect.guide.coulomb=1 N", "no entry guide; count from 1 to 3, or name one of guide_friction"),
+    ]:
+        assert main(["run", "step_velocity", "--set", setting]) == 2
+        assert message in capsys.readouterr().err
