@@ -25,9 +25,13 @@ from feeddrive.typing import Expression, FloatArray
 
 @dataclass(frozen=True)
 class Cells:
-    """Numbers of cells: along the shaft and the nut, over their radii."""
+    """Numbers of cells: along the shaft and the nut, over their radii.
 
-    shaft_axial: int = 100
+    The default suits a shaft of about half a metre: 2.5 mm along it, so that the heated surface of a bearing's seat is
+    resolved (with 5 mm the seat is 20 mK per watt off), 2 mm over the radii.
+    """
+
+    shaft_axial: int = 200
     shaft_radial: int = 4
     nut_axial: int = 20
     nut_radial: int = 6

@@ -70,25 +70,44 @@ def moving_system(
     """
     refuse_unless_positive(feed, "m/s", "feed")
     travel = travel or parts.rig.travel
-    model = model_of(parts, travel)
-    slow = model.projected(basis).at(conductances)
+    slow = model_of(parts, travel).projected(basis).at(conductances)
     if travel.stroke == 0:
         return slow
-    _warn_of_slowness(ripple_number(parts, conductances, feed, travel))
-    averaged = model.at(conductances)
-    ω = np.pi * feed / travel.stroke
-    lost_K, lost_B = np.zeros((slow.order, slow.order)), np.zeros_like(slow.gains)
-    for k in range(1, harmonics + 1):
-        K_k, B_k = _harmonic(parts, conductances, travel, k, averaged.input_names)
-        swung = np.asarray(K_k @ basis)
-        answer = averaged.shifted_solve(1j * k * ω, np.hstack([swung, B_k])).real
-        lost = 2 * swung.T @ answer
-        lost_K += lost[:, : slow.order]
-        lost_B += lost[:, slow.order :]
-    felt = slow.conductance - (lost_K + lost_K.T) / 2
+    lost_K, lost_B = ripple_loss(parts, conductances, feed, basis, travel, harmonics)
+    return lowered(slow, lost_K, lost_B)
+
+
+def lowered(slow: HeatSystem, lost_K: FloatArray, lost_B: FloatArray) -> HeatSystem:
+    """An averaged system less what the ripple takes away.
+
+    Raises:
+        InputError: nothing of the slow system is left: the nut is too slow for its contact.
+    """
+    felt = slow.conductance - lost_K
     if np.linalg.eigvalsh(felt)[0] <= 0:
         raise InputError("the nut is too slow for its contact: no slow system", "feed", "use the explicit scheme")
     return replace(slow, conductance=felt, gains=slow.gains - lost_B)
+
+
+def ripple_loss(
+    parts: Discretisation, conductances: Mapping[Path, float], feed: float, basis: FloatArray, travel: Travel,
+    harmonics: int = HARMONICS,
+) -> tuple[FloatArray, FloatArray]:  # fmt: skip
+    """What the ripple takes from K₀ and B₀ on a basis, (r, r) symmetric and (r, m); arguments as `moving_system`.
+
+    Warns:
+        ValidityWarning: the nut is too slow for the contact.
+    """
+    _warn_of_slowness(ripple_number(parts, conductances, feed, travel))
+    averaged = model_of(parts, travel).at(conductances)
+    ω, order = np.pi * feed / travel.stroke, basis.shape[1]
+    lost = np.zeros((order, order + len(averaged.input_names)))
+    for k in range(1, harmonics + 1):
+        K_k, B_k = _harmonic(parts, conductances, travel, k, averaged.input_names)
+        swung = np.asarray(K_k @ basis)
+        lost += 2 * swung.T @ averaged.shifted_solve(1j * k * ω, np.hstack([swung, B_k])).real
+    lost_K = lost[:, :order]
+    return (lost_K + lost_K.T) / 2, lost[:, order:]
 
 
 def ripple_number(parts: Discretisation, conductances: Mapping[Path, float], feed: float, travel: Travel) -> float:
@@ -100,7 +119,7 @@ def ripple_number(parts: Discretisation, conductances: Mapping[Path, float], fee
 def _warn_of_slowness(number: float) -> None:
     if number > LARGEST_RIPPLE:
         told = f"the nut is slow for its contact (ripple number {number:.2g}, up to {LARGEST_RIPPLE} is covered)"
-        warnings.warn(f"{told}: the moving contact is extrapolated", ValidityWarning, stacklevel=3)
+        warnings.warn(f"{told}: the moving contact is extrapolated", ValidityWarning, stacklevel=4)
 
 
 def _harmonic(

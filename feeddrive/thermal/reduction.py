@@ -72,6 +72,16 @@ def reduce_model(
     Returns:
         The reduced models, in the order given; they warn outside `limits`.
     """
+    full = tuple(models)
+    basis = common_basis(full, limits, order, sizes)
+    return tuple(replace(model.projected(basis), limits=dict(limits)) for model in full)
+
+
+def common_basis(
+    models: Iterable[HeatModel], limits: Mapping[Path, tuple[float, float]], order: int = DEFAULT_ORDER,
+    sizes: Sizes | None = None,
+) -> FloatArray:  # fmt: skip
+    """The basis V of `reduce_model`, (n, order), VᵀCV = 1; arguments as there."""
     full, sizes = tuple(models), sizes or Sizes()
     inputs, outputs = sizes.of_inputs(full[0].input_names), sizes.of_outputs(full[0].readings)
     points = list(operating_points(limits))
@@ -80,8 +90,7 @@ def reduce_model(
     wide = orthonormal(np.hstack(columns), full[0].capacity)
     small = [model.projected(wide) for model in full]
     strong = [_directions(model.at(point), inputs, outputs) for model, point in product(small, points)]
-    dominant = orthonormal(np.hstack(strong), np.ones(wide.shape[1]), order)
-    return tuple(replace(model.projected(dominant), limits=dict(limits)) for model in small)
+    return np.asarray(wide @ orthonormal(np.hstack(strong), np.ones(wide.shape[1]), order))
 
 
 def operating_points(limits: Mapping[Path, tuple[float, float]]) -> Iterable[dict[Path, float]]:

@@ -1,0 +1,172 @@
+"""Expansion between bearings, preload of the nut, friction, films, contact, and the thermal section of plant files."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path as FilePath
+
+import numpy as np
+import pytest
+
+from feeddrive.errors import InputError, ValidityWarning
+from feeddrive.thermal.contact_conductance import (
+    conductance_at_preload,
+    conductance_per_area,
+    constriction_resistance,
+)
+from feeddrive.thermal.expansion import FIXED_FREE, Supports, expansion, fixed_fixed, fixed_supported
+from feeddrive.thermal.files import read_thermal_plant
+from feeddrive.thermal.films import Films, rotating_cylinder_film
+from feeddrive.thermal.friction import Friction
+from feeddrive.thermal.full_model import full_model
+from feeddrive.thermal.nut_preload import Spacer, preload_change
+from feeddrive.thermal.occupancy import cell_edges
+from tests.analytic.thermal_cases import BENCH, BENCH_FILE, RPM, conductances
+
+RIG = BENCH.rig
+EDGES = cell_edges(RIG.length, 50)
+ALPHA, STIFFNESS = RIG.steel.expansion, RIG.steel.elasticity * math.pi * RIG.radius**2
+
+
+def test_free_end_grows_by_the_integral_of_the_rise() -> None:
+    middle = (EDGES[1:] + EDGES[:-1]) / 2
+    found = expansion(RIG, 10 * middle / RIG.length, EDGES)
+    # A linear rise: the integral is a parabola, exact at the edges of the cells.
+    assert found.growth(0.3)[0] == pytest.approx(ALPHA * 10 * 0.3**2 / (2 * RIG.length), rel=1e-12)
+    assert found.force[0] == 0.0
+    assert found.stretch_lost[0] == 0.0
+
+
+def test_growth_is_that_of_the_model() -> None:
+    model = full_model(RIG)
+    states = model.at(conductances(500)).simulate(np.tile(np.eye(5)[0], (3, 1)), 600.0)
+    found = expansion(RIG, states @ model.profile.T, model.edges)
+    np.testing.assert_allclose(found.growth(0.25), states @ model.readings["growth_250mm"], rtol=1e-10)
+
+
+def test_rigid_bearings_hold_a_uniform_rise_completely() -> None:
+    found = expansion(RIG, np.full(50, 4.0), EDGES, fixed_fixed(math.inf, math.inf))
+    assert found.force[0] == pytest.approx(STIFFNESS * ALPHA * 4.0, rel=1e-12)
+    for position in (0.1, 0.25, 0.4):
+        assert found.growth(position)[0] == pytest.approx(0.0, abs=1e-18)
+
+
+def test_yielding_bearings_share_the_expansion_like_springs() -> None:
+    front, rear = 80e6, 120e6
+    found = expansion(RIG, np.full((2, 50), 4.0), EDGES, fixed_fixed(front, rear))
+    total = ALPHA * 4.0 * RIG.length
+    force = total / (RIG.length / STIFFNESS + 1 / front + 1 / rear)
+    assert found.force == pytest.approx([force, force], rel=1e-12)
+    # Each bearing yields by its force over its stiffness.
+    assert found.growth(0.0)[0] == pytest.approx(-force / front, rel=1e-12)
+    assert found.growth(RIG.length)[0] == pytest.approx(force / rear, rel=1e-12)
+
+
+def test_supports_go_over_into_each_other() -> None:
+    profile = np.linspace(6.0, 1.0, 50)
+    free = expansion(RIG, profile, EDGES, FIXED_FREE).growth(0.3)
+    np.testing.assert_allclose(expansion(RIG, profile, EDGES, fixed_supported(90e6)).growth(0.3), free)
+    np.testing.assert_allclose(expansion(RIG, profile, EDGES, fixed_supported(90e6, 1e-3)).growth(0.3), free, rtol=1e-9)
+
+
+def test_heat_takes_the_stretch_and_says_when_none_is_left() -> None:
+    supports = fixed_fixed(200e6, 200e6, tension=2000.0)
+    found = expansion(RIG, np.full(50, 2.0), EDGES, supports)
+    assert found.tension_left[0] == pytest.approx(2000.0 - found.force[0])
+    assert 0 < found.stretch_lost[0] < 1
+    with pytest.warns(ValidityWarning, match="the shaft is compressed"):
+        expansion(RIG, np.full(50, 20.0), EDGES, supports)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: Supports(front=-1.0), "supports.front"),
+        (lambda: Supports(tension=100.0), "free at one end"),
+        (lambda: expansion(RIG, np.zeros(50), EDGES).growth(0.6), "is not on the shaft"),
+        (lambda: expansion(RIG, np.zeros(7), EDGES), "profile and edges do not fit"),
+        (lambda: preload_change(1.0, -5.0, 260e6, 0.04, 0.01675, 0.8, Spacer.OVERSIZE), "preload"),
+        (lambda: Friction(-1.0, 10, 170e-6, 0.01675), "load_torque"),
+        (lambda: Films(-1.0, 0.0, 0.0, 0.0), "film.screw"),
+        (lambda: rotating_cylinder_film(10.0, 0.0), "diameter"),
+        (lambda: constriction_resistance(1e-4, 2e-4, 50, 50), "no ellipse"),
+    ],
+)  # fmt: skip
+def test_bad_input_is_refused(make: object, message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        make()  # type: ignore[operator]
+
+
+def test_preload_of_the_double_nut_per_kelvin() -> None:
+    # Recomputed independently for a 16 mm screw, 670 N: axial ±61, radial -25 N/K.
+    over, under = (preload_change(1.0, 670.0, 260e6, 0.040, 0.01675, math.radians(45), kind) for kind in Spacer)
+    assert (over - under) / 2 == pytest.approx(61, abs=0.5)
+    assert (over + under) / 2 == pytest.approx(-25, abs=0.6)
+    with pytest.warns(ValidityWarning, match="the nut is loose"):
+        preload_change(10.0, 670.0, 260e6, 0.040, 0.01675, math.radians(45), Spacer.UNDERSIZE)
+
+
+def test_heat_is_torque_times_speed_and_none_at_rest() -> None:
+    heats = BENCH.nut.heats(np.array([-500.0, 0.0, 500.0]) * RPM)
+    torque = BENCH.nut.load_torque + 1e-10 * 10 * (170 * 500) ** (2 / 3) * 16.75**3
+    np.testing.assert_allclose(heats, 0.609 * 500 * RPM * torque * np.array([1.0, 0.0, 1.0]), rtol=1e-9)
+
+
+def test_contact_grows_with_the_third_root_of_the_preload() -> None:
+    # A load twice as large: both axes of the ellipse grow by its third root, the resistance falls by it.
+    weak, strong = (constriction_resistance(230e-6 * f, 60e-6 * f, 50.0, 50.0) for f in (1.0, 2 ** (1 / 3)))
+    assert conductance_per_area(strong, 40, 4e-3) == pytest.approx(
+        conductance_at_preload(conductance_per_area(weak, 40, 4e-3), 2.0, 1.0), rel=1e-12
+    )
+    # A circle: two half spaces in series, K(0) = π/2, R = 1/(4 λ a) each.
+    assert constriction_resistance(1e-4, 1e-4, 50.0, 25.0) == pytest.approx(1 / (4 * 1e-4) * (1 / 50 + 1 / 25))
+
+
+def test_bench_file_is_the_declared_rig() -> None:
+    assert pytest.approx(0.5e-2 / (2 * math.pi)) == BENCH.lead
+    speed = np.array([500 * RPM])
+    assert BENCH.films.on_screw(speed)[0] == pytest.approx(0.29033 * 500 ** (2 / 3), rel=1e-6)
+    # 4.1364e-4·1300^1.33·d_m/cos γ
+    assert BENCH.nut.load_torque == pytest.approx(4.1364e-4 * 1300**1.33 * 0.01675 / math.cos(math.radians(5.43)),
+                                                  rel=1e-6)  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ('nut_length = "100 mm"', 'nut_length = "600 mm"', "stroke of 100 mm is longer than the 0 mm"),
+        ('travel = ["200 mm", "300 mm"]', 'travel = ["20 mm", "300 mm"]', "leaves the shaft"),
+        ('travel = ["200 mm", "300 mm"]', 'travel = "200 mm"', "not a pair"),
+        ('shaft_radius = "8 mm"', 'shaft_radius = "8"', "bare number"),
+        ('screw_least = "5 W/(m^2 K)"', 'screw_least = "-5 W/(m^2 K)"', "film.screw_least"),
+        ('preload = "1300 N"', 'prelaod = "1300 N"', 'did you mean "preload"'),
+        ("[thermal.nut]", "[thermal.front_bearing]", "load_torque"),
+        ("[thermal", "[other", r"has no \[thermal\] section"),
+        ('heat_share = "0.609"', 'heat_share = "1.4"', "no share"),
+    ],
+)  # fmt: skip
+def test_bad_files_are_refused_with_place_and_mend(tmp_path: FilePath, old: str, new: str, message: str) -> None:
+    text = BENCH_FILE.read_text(encoding="utf-8")
+    assert old in text
+    path = tmp_path / "bad.toml"
+    count = -1 if old == "[thermal" else 1
+    path.write_text(text.replace(old, new, count), encoding="utf-8")
+    with pytest.raises(InputError, match=message) as refusal:
+        read_thermal_plant(path)
+    assert str(path) in str(refusal.value)
+
+
+def test_bearings_may_have_heat_and_film(tmp_path: FilePath) -> None:
+    path = tmp_path / "bearing.toml"
+    path.write_text(
+        BENCH_FILE.read_text(encoding="utf-8")
+        + '\n[thermal.front_bearing]\nload_torque = "0.5 mN m"\nviscous_factor = "3.3"\nviscosity = "32 mm^2/s"\n'
+        'mean_diameter = "22 mm"\nfilm = "9.7 W/(m^2 K)"\nseat_length = "12 mm"\n'
+        '[thermal.rear_bearing]\nfilm = "9.7 W/(m^2 K)"\n',
+        encoding="utf-8",
+    )
+    plant = read_thermal_plant(path)
+    assert plant.front is not None and plant.rear is None
+    assert plant.rig.front.length == pytest.approx(0.012)
+    assert plant.rig.rear.film == pytest.approx(9.7)
+    assert plant.heats(np.array([500 * RPM]))["front"][0] > 0
