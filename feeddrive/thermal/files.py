@@ -28,6 +28,12 @@
     viscosity = "170 mm^2/s"
     mean_diameter = "16.75 mm"
     heat_share = "0.609"
+    [[thermal.body]]                           # may be left out: motor, housing, table
+    name = "motor"
+    port = "front"                             # or "rear", "nut"
+    capacity = "900 J/K"
+    conductance = "0.5 W/K"                    # to the surface at the port
+    to_air = "0.2 W/K"                         # may be left out
 
 A file with `[thermal]` need not declare a chain. Nothing in it is evaluated.
 """
@@ -43,16 +49,17 @@ from feeddrive.plant.entries import Origins, Table, read_toml
 from feeddrive.thermal.films import Films
 from feeddrive.thermal.friction import Friction
 from feeddrive.thermal.plant import ThermalPlant
-from feeddrive.thermal.rig import Nut, Rig, Seat, Steel, Travel, refuse_unless
+from feeddrive.thermal.rig import Body, Nut, Rig, Seat, Steel, Travel, refuse_unless
 
 SECTION = "thermal"
 _LENGTHS = ("shaft_radius", "shaft_length", "nut_outer_radius", "nut_length")
 _STEEL = {"conductivity": "W/(m K)", "heat_capacity": "J/(m^3 K)", "expansion": "1/K", "elasticity": "Pa"}
 _OTHER = (
     "travel", "growth_positions", "contact_conductance", "preload", "lead", "ambient", "highest_speed",
-    "nut_heat_share", "nut_end_share", "film", "nut", "front_bearing", "rear_bearing", "source",
+    "nut_heat_share", "nut_end_share", "film", "nut", "front_bearing", "rear_bearing", "body", "source",
 )  # fmt: skip
 _FRICTION = {"load_torque": "N m", "viscous_factor": "1", "viscosity": "m^2/s", "mean_diameter": "m", "heat_share": "1"}
+_BODY = {"capacity": "J/K", "conductance": "W/K", "to_air": "W/K"}
 _SEAT = {"seat_length": "m", "film": "W/(m^2 K)", "end_share": "1"}
 
 
@@ -94,6 +101,7 @@ def thermal_plant(top: Table, name: str) -> ThermalPlant:
             rear=_bearing(table, "rear_bearing"),
             ambient=_value(table, "ambient", "degC"),
             highest_speed=_optional(table, "highest_speed", "rad/s", 1500 * math.pi / 30),
+            bodies=tuple(_body(inner) for inner in table.tables("body")),
         )
     except InputError as error:
         # What the rig refuses is told with the file and the section in front.
@@ -156,6 +164,13 @@ def _seat(table: Table, key: str) -> Seat:
     film = _value(inner, "film", _SEAT["film"]) if "film" in inner.entries else None
     length = _optional(inner, "seat_length", "m", Seat().length)
     return Seat(length, film, _optional(inner, "end_share", "1", 0.0))
+
+
+def _body(table: Table) -> Body:
+    table.refuse_unknown(("name", "port", "source", *_BODY))
+    port = table.choice("port", ("front", "rear", "nut"))
+    values = {key: _value(table, key, unit) for key, unit in _BODY.items() if key != "to_air" or key in table.entries}
+    return Body(table.text("name"), port, **values)
 
 
 def _value(table: Table, key: str, unit: str) -> float:

@@ -25,6 +25,7 @@ import numpy as np
 import scipy.sparse as sparse
 
 from feeddrive.errors import InputError, ValidityWarning
+from feeddrive.thermal.rig import Body, refuse_unless
 from feeddrive.thermal.system import HeatSystem
 from feeddrive.typing import Expression, FloatArray
 
@@ -160,47 +161,30 @@ class HeatModel:
             air=self.air @ basis,
         )
 
-    def with_body(self, name: str, port: str, capacity: float, conductance: float, to_air: float) -> HeatModel:
-        """The model with a body attached: motor, bearing housing or table; its own heat is the input `name`.
-
-        Args:
-            name: of its heat and of its temperature among the outputs.
-            port: where it is attached.
-            capacity: of the body [J/K].
-            conductance: between the body and the port [W/K].
-            to_air: between the body and the surroundings [W/K].
+    def with_body(self, body: Body) -> HeatModel:
+        """The model with a body attached; full or reduced, its own heat is the input of its name.
 
         Raises:
-            InputError: an unknown port, a capacity that is not positive, a negative conductance, a name in use.
+            InputError: a name in use.
         """
-        self._refuse_body(name, port, capacity, conductance, to_air)
-        place = self.ports[port]
-        link = np.concatenate([place, [-1.0]])
+        name = body.name
+        free = name not in self.readings and name not in self.input_names
+        refuse_unless(free, f'"{name}" is in use', "body", "give the body another name")
+        link = np.append(self.ports[body.port], -1.0)
         own = np.zeros(self.order + 1)
         own[-1] = 1.0
-        conduction = _grown(self.conduction) + conductance * _outer(link, self.conduction)
+        conduction = _grown(self.conduction) + body.conductance * _outer(link, self.conduction)
         return replace(
             self,
-            capacity=np.append(self.capacity, capacity),
-            conduction=conduction + to_air * _outer(own, self.conduction),
+            capacity=np.append(self.capacity, body.capacity),
+            conduction=conduction + body.to_air * _outer(own, self.conduction),
             ways={p: Way(_grown(w.matrix), np.append(w.facing, 0.0), w.source) for p, w in self.ways.items()},
             heats={**_lengthened(self.heats), name: own},
             readings={**_lengthened(self.readings), name: own},
             profile=_widened(self.profile),
             ports=_lengthened(self.ports),
-            air=np.append(self.air, to_air),
+            air=np.append(self.air, body.to_air),
         )
-
-    def _refuse_body(self, name: str, port: str, capacity: float, conductance: float, to_air: float) -> None:
-        if port not in self.ports:
-            raise InputError(f'no port "{port}"', name, f"known are {', '.join(self.ports)}")
-        if name in self.readings or name in self.heats:
-            raise InputError(f'"{name}" is in use', "body", "give the body another name")
-        if not capacity > 0:
-            raise InputError(f"{capacity:g} J/K is not possible", f"{name}.capacity", "write a value above zero")
-        for value in (conductance, to_air):
-            if not 0 <= value < np.inf:
-                raise InputError(f"{value:g} W/K is negative", f"{name}.conductance", "write zero or a value above it")
 
 
 def refuse_negative_conductances(conductances: Mapping[Path, float]) -> None:

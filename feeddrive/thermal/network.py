@@ -21,9 +21,11 @@ import numpy as np
 from feeddrive.thermal.full_model import END, FRONT, NUT, REAR, SHAFT, growth_name
 from feeddrive.thermal.model import AMBIENT, COOLANT, Path
 from feeddrive.thermal.occupancy import covered_share, overlap
-from feeddrive.thermal.rig import Rig, Travel, refuse_unless
+from feeddrive.thermal.rig import Body, Rig, Travel, refuse_unless
 from feeddrive.thermal.system import HeatSystem
 from feeddrive.typing import FloatArray
+
+_SEGMENT = "shaft_"
 
 
 @dataclass(frozen=True)
@@ -76,10 +78,13 @@ class Network:
             difference[names.index(link.first)], difference[names.index(link.second)] = 1.0, -1.0
             K += link.conductance * np.outer(difference, difference)
         readings = self._readings()
-        heats = np.column_stack([self._nut_heat(), readings[FRONT], readings[REAR], air, np.zeros(len(names))])
+        bodies = names[len(self.edges) :]
+        own = [readings[name] for name in bodies]
+        none = np.zeros(len(names))
+        heats = np.column_stack([self._nut_heat(), readings[FRONT], readings[REAR], *own, air, none])
         return HeatSystem(
             np.array([lump.capacity for lump in self.lumps]), K, heats, np.vstack(list(readings.values())),
-            (NUT, FRONT, REAR, AMBIENT, COOLANT), tuple(readings),
+            (NUT, FRONT, REAR, *bodies, AMBIENT, COOLANT), tuple(readings),
         )  # fmt: skip
 
     def _nut_heat(self) -> FloatArray:
@@ -87,29 +92,36 @@ class Network:
         rig = self.rig
         half = rig.nut.length / 2
         covered = overlap(np.array([-half, half]), self.edges, rig.travel)[0] / rig.nut.length
-        return np.concatenate([[rig.nut_heat_share], (1 - rig.nut_heat_share) * covered])
+        others = np.zeros(len(self.lumps) - 1 - len(covered))
+        return np.concatenate([[rig.nut_heat_share], (1 - rig.nut_heat_share) * covered, others])
 
     def _readings(self) -> dict[str, FloatArray]:
         def mean(low: float, high: float) -> FloatArray:
             lengths = covered_share(low, high, self.edges) * np.diff(self.edges)
-            return np.concatenate([[0.0], lengths / lengths.sum()])
+            others = np.zeros(len(self.lumps) - 1 - len(lengths))
+            return np.concatenate([[0.0], lengths / lengths.sum(), others])
 
         rig, travel = self.rig, self.rig.travel
         α = rig.steel.expansion
         grown = {growth_name(x): α * x * mean(0.0, x) for x in rig.growth_positions}
         swept = mean(travel.low - 1e-6, travel.high + 1e-6)
         ends = {FRONT: mean(0.0, rig.front.length), REAR: mean(rig.length - rig.rear.length, rig.length)}
-        nut = np.eye(len(self.lumps))[0]
-        return {NUT: nut, **ends, SHAFT: swept, **grown, END: α * rig.length * mean(0.0, rig.length)}
+        single = np.eye(len(self.lumps))
+        bodies = {lump.name: single[i] for i, lump in enumerate(self.lumps) if i >= len(self.edges)}
+        end = α * rig.length * mean(0.0, rig.length)
+        return {NUT: single[0], **ends, SHAFT: swept, **grown, END: end, **bodies}
 
 
-def network(rig: Rig, conductances: Mapping[Path, float], segments: int = 10) -> Network:
+def network(
+    rig: Rig, conductances: Mapping[Path, float], segments: int = 10, bodies: tuple[Body, ...] = ()
+) -> Network:  # fmt: skip
     """Lump a rig at one operating point.
 
     Args:
         rig: geometry and material.
         conductances: path to g.
         segments: of the shaft, at least three.
+        bodies: motor, bearing housings, table; each a lump of its own.
 
     Raises:
         InputError: fewer than three segments.
@@ -119,7 +131,7 @@ def network(rig: Rig, conductances: Mapping[Path, float], segments: int = 10) ->
     half = rig.nut.length / 2
     covered = overlap(np.array([-half, half]), edges, rig.travel)[0]
     λ, R = rig.steel.conductivity, rig.radius
-    names = [f"shaft_{i + 1}" for i in range(segments)]
+    names = [f"{_SEGMENT}{i + 1}" for i in range(segments)]
     along = [
         Link(names[i], names[i + 1], λ * math.pi * R**2 / ((lengths[i] + lengths[i + 1]) / 2))
         for i in range(segments - 1)
@@ -129,7 +141,10 @@ def network(rig: Rig, conductances: Mapping[Path, float], segments: int = 10) ->
     air = _to_air(rig, conductances, edges, covered)
     ρc_A = rig.steel.heat_capacity * math.pi * R**2
     shaft = [Lump(name, float(ρc_A * Δ), float(g)) for name, Δ, g in zip(names, lengths, air, strict=True)]
-    return Network((_nut(rig, conductances), *shaft), (*across, *along), edges, rig)
+    places = {NUT: NUT, FRONT: names[0], REAR: names[-1]}
+    others = [Lump(body.name, body.capacity, body.to_air) for body in bodies]
+    ties = [Link(body.name, places[body.port], body.conductance) for body in bodies]
+    return Network((_nut(rig, conductances), *shaft, *others), (*across, *along, *ties), edges, rig)
 
 
 def _nut(rig: Rig, conductances: Mapping[Path, float]) -> Lump:

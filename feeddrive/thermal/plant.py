@@ -11,10 +11,10 @@ import numpy as np
 from feeddrive.thermal.contact_conductance import conductance_at_preload
 from feeddrive.thermal.films import Films
 from feeddrive.thermal.friction import LOAD_EXPONENT, Friction
-from feeddrive.thermal.full_model import FRONT, NUT, REAR
+from feeddrive.thermal.full_model import FRONT, NUT, REAR, full_model
 from feeddrive.thermal.grid import Cells
-from feeddrive.thermal.model import Path
-from feeddrive.thermal.rig import Rig, refuse_negative, refuse_unless_positive
+from feeddrive.thermal.model import HeatModel, Path
+from feeddrive.thermal.rig import Body, Rig, Travel, refuse_negative, refuse_unless_positive
 from feeddrive.typing import FloatArray
 
 
@@ -34,6 +34,7 @@ class ThermalPlant:
         ambient: reference temperature [degC].
         highest_speed: up to which the reduced model is made [rad/s].
         cells: grid of the full model.
+        bodies: attached to nut and seats.
     """
 
     name: str
@@ -48,12 +49,20 @@ class ThermalPlant:
     ambient: float = 23.0
     highest_speed: float = 1500 * math.pi / 30
     cells: Cells = field(default_factory=Cells)
+    bodies: tuple[Body, ...] = ()
 
     def __post_init__(self) -> None:
         refuse_negative(self.contact, "W/(m^2 K)", "contact_conductance")
         refuse_unless_positive(self.preload, "N", "preload")
         refuse_unless_positive(self.lead, "m/rad", "lead")
         refuse_unless_positive(self.highest_speed, "rad/s", "highest_speed")
+
+    def full_model(self, travel: Travel | None = None) -> HeatModel:
+        """The full model with the bodies, the nut averaged over a travel, None for the rig's."""
+        model = full_model(self.rig, self.cells, travel)
+        for body in self.bodies:
+            model = model.with_body(body)
+        return model
 
     def conductances(self, speeds: FloatArray, preload: float | None = None) -> dict[Path, FloatArray]:
         """Film coefficients and contact conductance at speeds (k,) [rad/s], (k,) each."""

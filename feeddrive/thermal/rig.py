@@ -122,6 +122,32 @@ class Travel:
 
 
 @dataclass(frozen=True)
+class Body:
+    """A body attached to the nut or to a seat: motor, bearing housing, table; of one temperature.
+
+    Attributes:
+        name: of its heat among the inputs and of its rise among the outputs.
+        port: "nut", "front" or "rear".
+        capacity: [J/K].
+        conductance: to the surface at the port [W/K].
+        to_air: to the surroundings [W/K].
+    """
+
+    name: str
+    port: str
+    capacity: float
+    conductance: float
+    to_air: float = 0.0
+
+    def __post_init__(self) -> None:
+        ports = ("nut", "front", "rear")
+        refuse_unless(self.port in ports, f'no port "{self.port}"', self.name, f"known are {', '.join(ports)}")
+        refuse_unless_positive(self.capacity, "J/K", f"{self.name}.capacity")
+        refuse_negative(self.conductance, "W/K", f"{self.name}.conductance")
+        refuse_negative(self.to_air, "W/K", f"{self.name}.to_air")
+
+
+@dataclass(frozen=True)
 class Rig:
     """Geometry and material of shaft and nut.
 

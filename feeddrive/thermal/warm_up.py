@@ -7,12 +7,14 @@ taken at the middle of its row, extrapolated from the two rows before.
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from feeddrive.errors import InputError
+from feeddrive.errors import InputError, ValidityWarning
+from feeddrive.quantity import format_quantity
 from feeddrive.thermal.full_model import FRONT, NUT, REAR
 from feeddrive.thermal.model import AMBIENT, HeatModel, Path
 from feeddrive.thermal.plant import ThermalPlant
@@ -99,9 +101,21 @@ def simulate(
 
 
 def declared_rows(plant: ThermalPlant, step: float, speeds: FloatArray, ambient: FloatArray) -> Rows:
-    """What acts on the declared plant; arguments as `simulate`."""
+    """What acts on the declared plant; arguments as `simulate`.
+
+    Raises:
+        InputError: no rows, or series of unequal length.
+
+    Warns:
+        ValidityWarning: a speed above the highest that the plant declares.
+    """
     if len(speeds) != len(ambient) or len(speeds) == 0:
         raise InputError(f"{len(speeds)} speeds and {len(ambient)} ambient temperatures", "", "give one of each a row")
+    fastest = float(np.max(np.abs(speeds)))
+    if fastest > plant.highest_speed * (1 + 1e-9):
+        told = f"{format_quantity(fastest, 'rad/s')} is above the highest speed declared"
+        shown = format_quantity(plant.highest_speed, "rad/s")
+        warnings.warn(f"{told}, {shown}: films and friction are extrapolated", ValidityWarning, stacklevel=2)
     inputs = {**plant.heats(speeds), AMBIENT: ambient - ambient[0]}
     return Rows(step, plant.conductances(speeds), inputs)
 

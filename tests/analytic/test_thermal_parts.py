@@ -162,10 +162,13 @@ def test_bearings_may_have_heat_and_film(tmp_path: FilePath) -> None:
         BENCH_FILE.read_text(encoding="utf-8")
         + '\n[thermal.front_bearing]\nload_torque = "0.5 mN m"\nviscous_factor = "3.3"\nviscosity = "32 mm^2/s"\n'
         'mean_diameter = "22 mm"\nfilm = "9.7 W/(m^2 K)"\nseat_length = "12 mm"\n'
-        '[thermal.rear_bearing]\nfilm = "9.7 W/(m^2 K)"\n',
+        '[thermal.rear_bearing]\nfilm = "9.7 W/(m^2 K)"\n'
+        '[[thermal.body]]\nname = "motor"\nport = "front"\ncapacity = "900 J/K"\nconductance = "0.5 W/K"\n',
         encoding="utf-8",
     )
     plant = read_thermal_plant(path)
+    assert plant.bodies[0].capacity == pytest.approx(900.0)
+    assert "motor" in plant.full_model().readings
     assert plant.front is not None and plant.rear is None
     assert plant.rig.front.length == pytest.approx(0.012)
     assert plant.rig.rear.film == pytest.approx(9.7)

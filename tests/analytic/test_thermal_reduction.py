@@ -19,7 +19,7 @@ from feeddrive.thermal.moving_family import moving_family
 from feeddrive.thermal.network import network
 from feeddrive.thermal.reduction import Sizes, compressed, compressed_basis, reduce_model, reduced_system
 from feeddrive.thermal.reduction_error import reduction_error
-from feeddrive.thermal.rig import Travel
+from feeddrive.thermal.rig import Body, Travel
 from feeddrive.thermal.system import HeatSystem
 from feeddrive.typing import FloatArray
 from tests.analytic.thermal_cases import BENCH, QUICK, RPM, bench_parts, conductances, nut_heat
@@ -137,6 +137,26 @@ def test_network_reads_well_and_is_near_the_full_model() -> None:
     assert np.abs(shown[:, nut] - truth[:, nut]).max() < 0.04 * truth[-1, nut]
     assert np.abs(shown[:, end] - truth[:, end]).max() < 0.04 * truth[-1, end]
     assert lumped.gain()[0, 3] == pytest.approx(1.0)
+
+
+def test_body_on_the_reduced_model_is_one_on_the_full_one(reduced: HeatModel) -> None:
+    body = Body("heat_sink", "nut", 500.0, 2.0, 0.3)
+    full, small = (model.with_body(body).at(conductances(500)) for model in (FULL, reduced))
+    error = reduction_error(full, small, WORKING)
+    assert error.largest(growth=False) < 10e-3
+    assert "heat_sink" in error.input_names and "heat_sink" in error.output_names
+
+
+def test_network_takes_bodies_too() -> None:
+    g, motor = conductances(500), Body("motor", "front", 900.0, 0.5, 0.2)
+    net = network(BENCH.rig, g, 10, (motor,))
+    assert "motor    - shaft_1" in net.text()
+    lumped, full = net.system(), FULL.with_body(motor).at(g)
+    assert lumped.input_names == full.input_names
+    assert set(lumped.output_names) == set(full.output_names)
+    rises = [system.gain()[system.row("motor"), system.column("motor")] for system in (lumped, full)]
+    # A segment's mean in place of the seat's surface.
+    assert rises[0] == pytest.approx(rises[1], rel=0.05)
 
 
 def _at(run: ExplicitRun, system: HeatSystem, heat: float) -> FloatArray:

@@ -10,11 +10,11 @@ from pathlib import Path as FilePath
 import numpy as np
 import pytest
 
-from feeddrive.errors import InputError
+from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.thermal.full_model import FRONT, NUT, full_model
 from feeddrive.thermal.model import HeatModel
 from feeddrive.thermal.reduction import reduce_model
-from feeddrive.thermal.warm_up import declared_rows, readings, run, simulate
+from feeddrive.thermal.warm_up import Rows, declared_rows, readings, run, simulate
 from feeddrive.typing import FloatArray
 from tests.analytic.thermal_cases import BENCH, RPM
 
@@ -88,6 +88,14 @@ def test_cooling_from_a_row_on_takes_heat_away(reduced: HeatModel) -> None:
     before, after = (run(reduced, one) @ reduced.readings[NUT] for one in (rows, replace(rows, conductances=cooled)))
     np.testing.assert_allclose(after[:200], before[:200], atol=1e-12)
     assert after[-1] < 0.7 * before[-1]
+
+
+def test_speed_above_the_declared_one_is_said(reduced: HeatModel) -> None:
+    with pytest.warns(ValidityWarning, match="above the highest speed declared"):
+        declared_rows(BENCH, STEP, np.array([1600 * RPM]), np.array([23.0]))
+    with pytest.warns(ValidityWarning, match="lies outside"):
+        fast = {path: np.full(1, value) for path, value in BENCH.at_speed(4000 * RPM).items()}
+        run(reduced, Rows(STEP, fast, {}))
 
 
 def test_input_that_the_model_does_not_have_is_refused(reduced: HeatModel) -> None:
