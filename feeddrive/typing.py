@@ -10,6 +10,9 @@ from numpy.typing import NDArray
 FloatArray: TypeAlias = NDArray[np.float64]
 """Array of SI values in double precision."""
 
+ComplexArray: TypeAlias = NDArray[np.complex128]
+"""Array of complex values, such as a frequency response."""
+
 BoolArray: TypeAlias = NDArray[np.bool_]
 """Mask over samples."""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -43,7 +44,7 @@ def linear_response(result: ScenarioResult, given: str, output: str, frequency: 
         command, speed = (
             frequency_response(loop[name, "speed_excitation"], frequency) for name in ("speed_command", "motor_speed")
         )
-        ratio: FloatArray = speed / command
+        ratio: Any = speed / command
         return ratio
     return None
 

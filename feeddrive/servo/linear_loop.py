@@ -96,9 +96,9 @@ def closed_loop(plant: Plant, cascade: Cascade, velocity: float = MOVING, positi
     whole = steps[0]
     for step in steps[1:]:
         whole = Matrices(step.a @ whole.a, step.a @ whole.b + step.b, whole.c, whole.d)
-    position = _position_row(cascade, whole)
+    measured = _position_row(cascade, whole)
     names = (*OUTPUTS, *controller.signals, "measured_position")
-    c, d = (np.vstack([rows, extra]) for rows, extra in ((whole.c, position[0]), (whole.d, position[1])))
+    c, d = (np.vstack([rows, extra]) for rows, extra in ((whole.c, measured[0]), (whole.d, measured[1])))
     period = cascade.sample_time * cascade.position_divider
     inputs = [*controller.references, INPUTS[1]]
     return control.ss(whole.a, whole.b, c, d, period, inputs=inputs, outputs=list(names))

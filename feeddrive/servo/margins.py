@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import control
 import numpy as np
 
-from feeddrive.typing import FloatArray
+from feeddrive.typing import ComplexArray, FloatArray
 
 GROWTH = 0.1
 """[1/s] above which a loop counts as unstable.
@@ -44,12 +44,12 @@ class Margins:
     stable: bool
 
 
-def frequency_response(system: control.StateSpace, frequency: FloatArray) -> FloatArray:
+def frequency_response(system: control.StateSpace, frequency: FloatArray) -> ComplexArray:
     """Complex response D + C (z - A)^-1 B of a system of one input and one output at frequencies [Hz], shape (n,)."""
     s = 2j * math.pi * np.atleast_1d(np.asarray(frequency, dtype=float))
     z = np.exp(s * system.dt) if system.dt else s
     a, b, c, d = (np.asarray(matrix, dtype=float) for matrix in (system.A, system.B, system.C, system.D))
-    response = np.full(z.shape, d[0, 0], dtype=complex)
+    response: ComplexArray = np.full(z.shape, d[0, 0], dtype=np.complex128)
     for first in range(0, len(z) if len(a) else 0, _AT_ONCE):
         part = slice(first, first + _AT_ONCE)
         response[part] += (c @ np.linalg.solve(z[part, None, None] * np.eye(len(a)) - a, b))[:, 0, 0]
@@ -69,7 +69,7 @@ def margins(loop: control.StateSpace, lowest: float = 0.1) -> Margins:
     return margins_of(frequency, frequency_response(loop, frequency), _stable(loop))
 
 
-def margins_of(frequency: FloatArray, response: FloatArray, stable: bool) -> Margins:
+def margins_of(frequency: FloatArray, response: ComplexArray, stable: bool) -> Margins:
     """Margins of an open loop from its response.
 
     Args:

@@ -38,8 +38,8 @@ from feeddrive.recording.channels import channel_unit
 from feeddrive.servo.cascade import Cascade, divider
 from feeddrive.servo.linear_loop import refuse_unstable
 from feeddrive.servo.vendor_names import with_own_names
+from feeddrive.simulate.controller_file import insert_controller
 from feeddrive.simulate.scenario import Recorder, Scenario
-from feeddrive.simulate.scenario_controller import FORMAT as CONTROLLER_FORMAT
 from feeddrive.simulate.scenario_controller import read_cascade
 from feeddrive.simulate.scenario_evaluations import read_evaluations
 from feeddrive.simulate.scenario_motion import read_excitation, read_forces, read_trajectory
@@ -83,7 +83,7 @@ def read_scenario(path: Path, overrides: Mapping[str, str] | None = None) -> Sce
     of_plant = {key.removeprefix("plant."): wanted.pop(key) for key in list(wanted) if key.startswith("plant.")}
     if "controller" in wanted:
         entries["controller"] = wanted.pop("controller")
-    controller_where = _insert_controller(entries, path)
+    controller_where = insert_controller(entries, path)
     entries = with_overrides(entries, _own_keys(wanted))
     top = Table(entries, where, Origins())
     top.refuse_unknown(_KEYS)
@@ -119,24 +119,6 @@ def _own_keys(overrides: Mapping[str, str]) -> dict[str, str]:
 def _require(top: Table, key: str) -> None:
     if key not in top.entries:
         raise InputError(f"{key} is missing", top.where, f"write a table [{key}]")
-
-
-def _insert_controller(entries: dict[str, Any], path: Path) -> str:
-    """Put the controller of another file in the place of its name; where it stands, for messages."""
-    named = entries.get("controller")
-    if named is None:
-        raise InputError("controller is missing", str(path), "write a table [controller] or the name of a file")
-    changes = dict(named) if isinstance(named, dict) else {"file": named}
-    if "file" not in changes:
-        return f"{path}, controller"
-    file = path.parent / str(changes.pop("file"))
-    read = read_toml(file, "controller file")
-    if read.get("format") != CONTROLLER_FORMAT:
-        what = "is not a controller file of this version"
-        raise InputError(what, str(file), f'write format = "{CONTROLLER_FORMAT}" in its first line')
-    own = with_own_names(read, str(file))
-    entries["controller"] = own | with_own_names(changes, f"{path}, controller")
-    return str(file) if not changes else f"{path}, controller"
 
 
 def _plant_path(top: Table, folder: Path) -> Path:
