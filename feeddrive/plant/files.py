@@ -61,7 +61,7 @@ from pathlib import Path
 from typing import Any
 
 from feeddrive.errors import InputError, ValidityWarning
-from feeddrive.plant.chain import CHAINS, Chain, ChainValue, DistributedScrew
+from feeddrive.plant.chain import CHAINS, Chain, ChainValue, DistributedScrew, Rigid, ThreeInertias
 from feeddrive.plant.chain_sections import positive, read_chain
 from feeddrive.plant.composition import refuse_what_cannot_compose
 from feeddrive.plant.derived_effects import WEIGHT_KEYS, derived_effects
@@ -96,16 +96,6 @@ _TOP_KEYS = (
     "format", "name", "structure", "source", "description", *_SECTIONS, *_NESTED, "effect", "sensor",
     "controller", "thermal",
 )  # fmt: skip
-_FURTHER = {
-    "motor": ("torque_limit",),
-    "ball_screw": ("elements",),
-    "transmission": ("nut_position",),
-    "table": ("stroke", "first_nut_position", *WEIGHT_KEYS),
-    "support": ("kind",),
-    "damping": ("ratio", "frequency"),
-}
-"""Keys of a section that are neither values of a chain nor of a part."""
-
 _USUAL = {
     "lead": (5e-4, 0.2),
     "motor_inertia": (1e-8, 10.0),
@@ -196,20 +186,37 @@ def _top(entries: Mapping[str, Any], path: Path) -> Table:
 def _refuse_unknown_keys(top: Table) -> None:
     """Refuse keys that nothing reads; the message tells where they would have a meaning."""
     structure = CHAINS[top.choice("structure", CHAINS)]
-    parts = structure is DistributedScrew or describes_parts(top)
+    parts = describes_parts(top)
+    if structure is Rigid and (parts or "damping" in top.entries):
+        mend = "leave its sections out, or use another structure"
+        raise InputError("a rigid machine has neither springs nor dampers", top.where, mend)
     for section in _SECTIONS:
         known = [value.section_key for value in structure.required if value.section == section]
-        further = _FURTHER.get(section, ())
+        known += [value.key for value in RATINGS.get(section, ())]
         if parts:
             known += [value.key for value in PART_VALUES.get(section, ())]
-        known += [value.key for value in RATINGS.get(section, ())]
         elsewhere = {
             value.section_key: f'leave it out, or use structure = "{other.structure}"'
             for other in CHAINS.values()
             for value in other.required
             if value.section == section
         }
+        further = _further(section, structure, parts)
         top.table(section).refuse_unknown((*known, *further, "source"), elsewhere)
+
+
+def _further(section: str, structure: type[Chain], parts: bool) -> tuple[str, ...]:
+    """Keys of a section that are neither values of a chain nor of a part, where something reads them."""
+    placed = structure is DistributedScrew or parts
+    keys = {
+        "motor": ("torque_limit",),
+        "ball_screw": ("elements",) if structure is DistributedScrew else (),
+        "transmission": ("nut_position",) if structure is ThreeInertias and parts else (),
+        "table": ("stroke", *WEIGHT_KEYS, *(("first_nut_position",) if placed else ())),
+        "support": ("kind",) if parts else (),
+        "damping": ("ratio", "frequency"),
+    }
+    return keys.get(section, ())
 
 
 def _refuse_moving_mass(plant: Plant, where: str) -> None:

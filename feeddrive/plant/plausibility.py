@@ -13,10 +13,10 @@ from typing import cast
 import numpy as np
 
 from feeddrive.effects.constant_force import ConstantForce
-from feeddrive.plant.linear import steady_motions
 from feeddrive.plant.mode_map import mode_map
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.screw_limits import buckling_force, critical_speed
+from feeddrive.plant.steady import steady_motions
 from feeddrive.plant.summary import Summary, summarise
 
 USUAL_DN = 70_000 * 1e-3 * math.pi / 30

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feeddrive.plant.linear import steady_motions
 from feeddrive.plant.modes import Modes, braked_modes, free_modes
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.steady import steady_motions
 from feeddrive.plant.stiffness_budget import StiffnessBudget, stiffness_budget
 
 SPEEDS = (0.001, 0.01, 0.05, 0.1, 0.3)

@@ -179,3 +179,21 @@ def test_force_is_handed_to_friction_and_refused_in_a_rigid_structure() -> None:
         friction = EFFECTS["load_dependent_friction"].of(coefficient=0.5)
         more = steady_motion(KIMM.with_effects(friction), v, 0.5).torque - steady_motion(KIMM, v, 0.5).torque
         assert more == pytest.approx(0.5 * math.copysign(75, v) * KIMM.chain.radius, rel=1e-6)
+
+
+def test_every_value_of_the_chain_may_be_written_instead(tmp_path: Path) -> None:
+    """A machine known by measured values alone: the chain's own keys, no parts."""
+    sections: dict[str, list[str]] = {}
+    for value in KIMM.chain.required:
+        number = KIMM.chain.values[value.key]
+        written = repr(number) if value.unit == "1" else f'"{number!r} {value.unit}"'
+        sections.setdefault(value.section, []).append(f"{value.section_key} = {written}")
+    lines = ['format = "feeddrive-plant/1"', 'structure = "distributed_screw"']
+    for section, entries in sections.items():
+        lines += [f"[{section}]", *entries]
+    path = tmp_path / "machine.toml"
+    path.write_text("\n".join(lines), encoding="utf-8")
+    plant = read_plant(path)
+    assert plant.chain == KIMM.chain
+    assert plant.drive is None
+    assert stiffness_budget(plant, TESTED).total == pytest.approx(stiffness_budget(KIMM, TESTED).total, rel=1e-9)

@@ -135,3 +135,26 @@ def test_show_tells_what_is_computed_and_what_is_declared(capsys: pytest.Capture
     shown = capsys.readouterr().out
     for words in ("computed from motor shaft, coupling", "assumed", "Parts as declared", "table at 464 mm", "185.6 Hz"):
         assert words in shown
+
+
+@pytest.mark.parametrize(
+    ("name", "block", "told"),
+    [
+        ("emps", '[nut]\naxial_stiffness = "900 N/µm"', "rigid machine has neither springs"),
+        ("emps", "[damping]\nratio = 0.02", "rigid machine has neither springs"),
+        ("bench_axis", '[support]\nkind = "fixed-fixed"', "ball_screw"),
+        ("bench_axis", "[damping]\nratios = 0.02", 'did you mean "ratio"'),
+        ("kimm_testbed", "[belt]\nratio = 2", "torsional_stiffness"),
+        ("kimm_testbed", '[guide]\ncarriage = "HSR-30R"\ncarriages = 4', "guide and guide_friction"),
+        ("hsr_axis", '[brake]\nholding_torque = "20 N m"', "brake.stiffness: is missing"),
+    ],
+)
+def test_sections_that_cannot_be(
+    name: str, block: str, told: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = (plants_folder() / f"{name}.toml").read_text(encoding="utf-8")
+    path = tmp_path / "machine.toml"
+    path.write_text(f"{text}\n{block}\n", encoding="utf-8")
+    assert main(["show", str(path)]) == 2
+    shown = capsys.readouterr().err
+    assert shown.startswith(f"error: {path}") and shown.count("\n") == 1 and told in shown
