@@ -33,8 +33,12 @@ from feeddrive.plant.entries import Table
 
 Made = TypeVar("Made")
 
-CATALOGUE_SECTIONS = ("brake", "coupling", "belt", "gear", "support", "bearing", "nut")
-"""Sections that a machine described by its parts has, and one described by measured values has not."""
+_PART_SECTIONS = ("brake", "coupling", "belt", "gear", "bearing")
+_MEASURED = {
+    "support": ("near_stiffness", "far_stiffness", "source"),
+    "nut": ("combined_stiffness", "damping", "source"),
+}
+"""Keys by which sections of parts hold measured values of the chain instead."""
 
 _PRELOADED = ("catalogue_stiffness", "catalogue_preload", "preload", "accuracy_factor")
 _NUT_VALUES = (
@@ -62,7 +66,9 @@ PART_VALUES: dict[str, tuple[PartValue, ...]] = {
 
 def describes_parts(top: Table) -> bool:
     """Whether the file describes the drive by its parts."""
-    return any(section in top.entries for section in CATALOGUE_SECTIONS)
+    if any(section in top.entries for section in _PART_SECTIONS):
+        return True
+    return any(set(top.table(section).entries) - set(measured) for section, measured in _MEASURED.items())
 
 
 def read_drive(top: Table) -> BallScrewDrive:
