@@ -20,7 +20,7 @@ import scipy.sparse as sparse
 from feeddrive.errors import InputError
 from feeddrive.thermal.full_model import Discretisation, model_of
 from feeddrive.thermal.model import HeatModel, Path
-from feeddrive.thermal.rig import Travel, refuse_unless_positive
+from feeddrive.thermal.rig import Travel, refuse_unless, refuse_unless_positive
 from feeddrive.thermal.system import HeatSystem
 from feeddrive.typing import Expression, FloatArray
 
@@ -89,7 +89,7 @@ def run_explicitly(
         conductances: path to g.
         heats: input name to its constant value [W, K].
         feed: speed of the nut along the shaft [m/s].
-        duration: rounded down to whole periods [s].
+        duration: at least one period, rounded down to whole ones [s].
         step: Δt [s]; None for the longest that is stable and divides the time in a cell.
         reports: how many periods are averaged, evenly over the run, the last one among them.
         travel: in place of the rig's.
@@ -98,6 +98,8 @@ def run_explicitly(
         InputError: a step that is not stable, a nut that leaves the shaft, an unknown heat, a negative conductance.
     """
     refuse_unless_positive(feed, "m/s", "feed")
+    refuse_unless_positive(duration, "s", "duration")
+    refuse_unless(reports >= 1, f"{reports} reports are none", "reports", "write at least 1")
     travel = travel or parts.rig.travel
     parts.rig.refuse_travel(travel)
     places, _ = places_of(travel, parts.nut.spacing)
@@ -153,7 +155,10 @@ def _march(
     in_cell: int, duration: float, reports: int,
 ) -> ExplicitRun:  # fmt: skip
     in_period = len(there_and_back) * in_cell
-    periods = max(int(duration / (in_period * Δt) + 1e-9), 1)
+    period_time = in_period * Δt
+    periods = int(duration / period_time + 1e-9)
+    short = f"{duration:g} s is less than a period of the nut"
+    refuse_unless(periods >= 1, short, "duration", f"write at least {period_time:.4g} s")
     reported = set(np.linspace(0, periods, min(reports, periods) + 1).astype(int)[1:] - 1)
     state = np.zeros(system.order + 2)
     state[-2] = 1.0

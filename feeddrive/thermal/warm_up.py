@@ -139,6 +139,8 @@ def _inputs(model: HeatModel, rows: Rows) -> FloatArray:
             raise InputError(f'no input "{name}"', "", f"known are {', '.join(model.input_names)}")
         if np.shape(values) != (len(rows),):
             raise InputError(f"{np.size(values)} values for {len(rows)} rows", name, "give one a row")
+        if not np.all(np.isfinite(values)):
+            raise InputError("a value is not finite", name, "leave out or mend the rows that have none")
         table[:, model.input_names.index(name)] = values
     return table
 

@@ -199,6 +199,9 @@ def test_very_long_step_lands_in_the_steady_state() -> None:
         (lambda: Body("motor", "front", 1.0, -1.0), "motor.conductance"),
         (lambda: full_model(BENCH.rig).with_body(Body("nut", "front", 1.0, 1.0)), '"nut" is in use'),
         (lambda: run_explicitly(bench_parts(), conductances(500), {}, 0.04, 60.0, step=0.2), "is not stable"),
+        (lambda: run_explicitly(bench_parts(), conductances(500), {}, 0.04, 1.0), "less than a period"),
+        (lambda: run_explicitly(bench_parts(), conductances(500), {"spindle": 1.0}, 0.04, 60.0), 'no input "spindle"'),
+        (lambda: full_model(BENCH.rig).at(conductances(500)).simulate(np.zeros((2, 3)), 1.0), "give one column each"),
         (lambda: Steel(conductivity=math.nan), "conductivity"),
     ],
 )  # fmt: skip

@@ -104,6 +104,8 @@ def test_input_that_the_model_does_not_have_is_refused(reduced: HeatModel) -> No
         run(reduced, replace(rows, inputs={"spindle": np.zeros(3)}))
     with pytest.raises(InputError, match="2 values for 3 rows"):
         run(reduced, replace(rows, inputs={FRONT: np.zeros(2)}))
+    with pytest.raises(InputError, match="not finite"):
+        run(reduced, replace(rows, inputs={FRONT: np.array([0.0, np.nan, 0.0])}))
     with pytest.raises(InputError, match="2 speeds and 3 ambient"):
         declared_rows(BENCH, STEP, np.zeros(2), np.zeros(3))
 
