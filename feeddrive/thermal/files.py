@@ -35,23 +35,27 @@
     conductance = "0.5 W/K"                    # to the surface at the port
     to_air = "0.2 W/K"                         # may be left out
 
-A file with `[thermal]` need not declare a chain. Nothing in it is evaluated.
+A file with `[thermal]` and no `structure` declares heat alone, no chain. Nothing in it is evaluated.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import fields
 from pathlib import Path
+from typing import Any
 
 from feeddrive.errors import InputError
 from feeddrive.plant.entries import Origins, Table, read_toml
+from feeddrive.plant.files import FORMAT
 from feeddrive.thermal.films import Films
 from feeddrive.thermal.friction import Friction
 from feeddrive.thermal.plant import ThermalPlant
 from feeddrive.thermal.rig import Body, Nut, Rig, Seat, Steel, Travel, refuse_unless
 
 SECTION = "thermal"
+_TOP_OF_HEAT_ALONE = ("format", "name", "source", "description", "ball_screw", SECTION)
 _LENGTHS = ("shaft_radius", "shaft_length", "nut_outer_radius", "nut_length")
 _STEEL = {"conductivity": "W/(m K)", "heat_capacity": "J/(m^3 K)", "expansion": "1/K", "elasticity": "Pa"}
 _OTHER = (
@@ -70,11 +74,22 @@ def read_thermal_plant(path: Path) -> ThermalPlant:
         path: of the file; its other sections are not looked at, but for the lead and the name.
 
     Raises:
-        InputError: no such file, not TOML, no thermal section, unknown key, a value that is missing, without unit, of
-            another dimension or impossible.
+        InputError: no such file, not TOML, another format, no thermal section, unknown key, a value that is missing,
+            without unit, of another dimension or impossible.
     """
     entries = read_toml(path, "plant file")
+    if entries.get("format") != FORMAT:
+        raise InputError(
+            "is not a plant file of this version", str(path), f'write format = "{FORMAT}" in its first line'
+        )
+    if declares_heat_alone(entries):
+        Table(entries, str(path), Origins()).refuse_unknown(_TOP_OF_HEAT_ALONE)
     return thermal_plant(Table(entries, str(path), Origins(), str(entries.get("source", ""))), path.stem)
+
+
+def declares_heat_alone(entries: Mapping[str, Any]) -> bool:
+    """Whether a plant file has a thermal section and no structure: no chain can be made of it, only a thermal plant."""
+    return SECTION in entries and "structure" not in entries
 
 
 def thermal_plant(top: Table, name: str) -> ThermalPlant:

@@ -140,8 +140,10 @@ def test_bench_file_is_the_declared_rig() -> None:
         ('shaft_radius = "8 mm"', 'shaft_radius = "8"', "bare number"),
         ('screw_least = "5 W/(m^2 K)"', 'screw_least = "-5 W/(m^2 K)"', "film.screw_least"),
         ('preload = "1300 N"', 'prelaod = "1300 N"', 'did you mean "preload"'),
+        ('name = "thermal bench"', 'nmae = "thermal bench"', 'did you mean "name"'),
+        ("feeddrive-plant/1", "feeddrive-plant/9", "not a plant file of this version"),
         ("[thermal.nut]", "[thermal.front_bearing]", "load_torque"),
-        ("[thermal", "[other", r"has no \[thermal\] section"),
+        ("[thermal", "[other", "unknown key|no .thermal. section"),
         ('heat_share = "0.609"', 'heat_share = "1.4"', "no share"),
     ],
 )  # fmt: skip
