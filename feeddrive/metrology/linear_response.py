@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -13,10 +12,10 @@ from feeddrive.servo.linear_loop import closed_loop
 from feeddrive.servo.margins import frequency_response
 from feeddrive.servo.sampled_plant import sampled_plant
 from feeddrive.simulate.scenario_result import ScenarioResult
-from feeddrive.typing import FloatArray
+from feeddrive.typing import ComplexArray, FloatArray
 
 
-def linear_response(result: ScenarioResult, given: str, output: str, frequency: FloatArray) -> FloatArray | None:
+def linear_response(result: ScenarioResult, given: str, output: str, frequency: FloatArray) -> ComplexArray | None:
     """The response of the linear plant, or of the closed velocity loop, sampled like the recording.
 
     Args:
@@ -44,13 +43,13 @@ def linear_response(result: ScenarioResult, given: str, output: str, frequency: 
         command, speed = (
             frequency_response(loop[name, "speed_excitation"], frequency) for name in ("speed_command", "motor_speed")
         )
-        ratio: Any = speed / command
+        ratio: ComplexArray = speed / command
         return ratio
     return None
 
 
-def _transfer(a: FloatArray, b: FloatArray, c: FloatArray, frequency: FloatArray, step: float) -> FloatArray:
+def _transfer(a: FloatArray, b: FloatArray, c: FloatArray, frequency: FloatArray, step: float) -> ComplexArray:
     """c (z - A)^-1 b."""
     z = np.exp(2j * np.pi * frequency * step)
-    values: FloatArray = np.array([c @ np.linalg.solve(one * np.eye(len(a)) - a, b) for one in z])
+    values: ComplexArray = np.array([c @ np.linalg.solve(one * np.eye(len(a)) - a, b) for one in z])
     return values

@@ -19,7 +19,7 @@ from feeddrive.report.drawing import AFTER, BEFORE, MEASURED, NOISE, ReportFigur
 from feeddrive.report.people import significant, with_unit
 from feeddrive.report.reduction import envelope
 from feeddrive.simulate.scenario_result import SERIES, ScenarioResult
-from feeddrive.typing import FloatArray
+from feeddrive.typing import ComplexArray, FloatArray
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -210,7 +210,13 @@ def response_figure(result: ScenarioResult, one: Evaluated) -> ReportFigure:
 
 
 def _response_curve(
-    top: Axes, middle: Axes, frequency: FloatArray, response: FloatArray, colour: str, label: str, width: float
+    top: Axes,
+    middle: Axes,
+    frequency: FloatArray,
+    response: ComplexArray | FloatArray,
+    colour: str,
+    label: str,
+    width: float,
 ) -> None:
     options: dict[str, Any] = {"color": colour, "linewidth": width}
     top.plot(frequency, 20 * np.log10(np.abs(response)), label=label, **options)
