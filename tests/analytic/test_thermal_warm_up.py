@@ -14,7 +14,7 @@ from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.thermal.full_model import FRONT, NUT, full_model
 from feeddrive.thermal.model import HeatModel
 from feeddrive.thermal.reduction import reduce_model
-from feeddrive.thermal.warm_up import Rows, declared_rows, readings, run, simulate
+from feeddrive.thermal.warm_up import Rows, declared_rows, grouped, readings, run, simulate
 from feeddrive.typing import FloatArray
 from tests.analytic.thermal_cases import BENCH, RPM
 
@@ -78,6 +78,24 @@ def test_feedback_converges_with_the_rows(reduced: HeatModel) -> None:
 
     # A heat that follows the temperature is taken at the middle of each row; 30 s rows are then good to 2 mK.
     assert at_the_end(30.0) == pytest.approx(at_the_end(3.0), abs=2e-3)
+
+
+def test_noisy_speed_costs_little_and_shifts_nothing(reduced: HeatModel, generator: np.random.Generator) -> None:
+    noisy = SPEEDS * (1 + 1e-3 * generator.normal(size=SPEEDS.size))
+    rows = declared_rows(BENCH, STEP, noisy, AMBIENT)
+    groups, which = grouped(np.column_stack(list(rows.conductances.values())))
+    assert len(groups) < 40 and which.shape == noisy.shape
+    truth = declared_rows(BENCH, STEP, SPEEDS, AMBIENT)
+    shown, wanted = (run(reduced, one) @ reduced.readings[NUT] for one in (rows, truth))
+    # The heat itself is 0.1 % noisy: some millikelvin of 14 K.
+    assert np.abs(shown - wanted).max() < 0.01
+
+
+def test_negative_conductance_of_a_row_is_refused(reduced: HeatModel) -> None:
+    rows = declared_rows(BENCH, STEP, np.zeros(3), np.full(3, 23.0))
+    bad = {**rows.conductances, next(iter(rows.conductances)): np.array([1.0, -1.0, 1.0])}
+    with pytest.raises(InputError, match="negative or not finite"):
+        run(reduced, replace(rows, conductances=bad))
 
 
 def test_cooling_from_a_row_on_takes_heat_away(reduced: HeatModel) -> None:
