@@ -27,7 +27,7 @@ from feeddrive.export.fmu_description import description_text, fixed_parameters,
 from feeddrive.export.model import Model
 
 _WRAPPER = "fmi2_model_exchange.c"
-_FLAGS = ("-O2", "-ffp-contract=off", "-fPIC", "-shared", "-fvisibility=hidden")
+_FLAGS = ("-O1", "-ffp-contract=off", "-fPIC", "-shared", "-fvisibility=hidden")
 _EARLIEST = (1980, 1, 1, 0, 0, 0)  # of a zip file; the same export gives the same file
 
 

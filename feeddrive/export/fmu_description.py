@@ -51,7 +51,8 @@ def description_text(model: Model, guid: str, sources: tuple[str, ...]) -> str:
     _add_variables(Tree.SubElement(root, "ModelVariables"), model)
     _add_structure(Tree.SubElement(root, "ModelStructure"), model)
     Tree.indent(root)
-    return Tree.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
+    text: str = Tree.tostring(root, encoding="utf-8", xml_declaration=True).decode()
+    return text + "\n"
 
 
 def nominals(model: Model) -> FloatArray:

@@ -2,7 +2,7 @@
 
     x' = f(t, x, u, p),   y = g(t, x, p)
 
-f and g are those that the plant itself is linearised from (`feeddrive.plant.linear.timed_ode`).
+f and g are those that the plant itself is linearised from (`feeddrive.plant.ode.timed_ode`).
 """
 
 from __future__ import annotations

@@ -26,7 +26,9 @@ def left_out(plant: Plant) -> tuple[str, ...]:
     for effect in plant.effects:
         if isinstance(effect, TimingEffect):
             delay = effect.delay({key: _number(value) for key, value in effect.values.items()})
-            lines.append(f"{effect.label}: the motor torque acts {format_quantity(delay, 's')} late; delay the input")
+            lines.append(
+                f"{effect.label}: the motor torque acts {format_quantity(delay, 's')} late; shift the input so"
+            )
     if math.isfinite(plant.torque_limit):
         limit = format_quantity(plant.torque_limit, "N m")
         lines.append(f"the motor's torque limit of {limit}; limit the input")

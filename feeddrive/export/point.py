@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 
 from feeddrive.errors import InputError
@@ -10,6 +11,7 @@ from feeddrive.plant.plant import Plant
 from feeddrive.quantity import format_quantity, parse
 
 _UNITS = {"x": "m", "v": "m/s"}
+_SEPARATOR = re.compile(r",(?!\d)")  # a comma before a digit is a decimal one, which is refused by its name
 _MEND = 'write e.g. --at "x=200 mm,v=3 m/min"'
 
 
@@ -49,7 +51,7 @@ def export_point(plant: Plant, text: str = "", where: str = "--at") -> Point:
         InputError: unknown or repeated key, a number without unit, or a position outside the stroke or off the screw.
     """
     written: dict[str, float] = {}
-    for part in text.split(",") if text.strip() else []:
+    for part in _SEPARATOR.split(text) if text.strip() else []:
         key, equals, value = (piece.strip() for piece in part.partition("="))
         if not equals or key not in _UNITS or key in written:
             what = f"{key} is given twice" if key in written else f'"{part.strip()}" is neither x=... nor v=...'
