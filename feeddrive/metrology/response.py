@@ -17,6 +17,9 @@ from scipy import signal
 from feeddrive.errors import InputError
 from feeddrive.typing import FloatArray
 
+_LEAKING = 3
+"""Lowest lines into which a Hann window lets what is left of the mean and of a drift leak."""
+
 
 @dataclass(frozen=True)
 class Response:
@@ -61,7 +64,7 @@ def measured_response(given: FloatArray, output: FloatArray, sample_time: float,
     if averages < 2:
         coherence = np.full_like(coherence, np.nan)
     with np.errstate(divide="ignore", invalid="ignore"):
-        inside = slice(1, -1)  # neither at rest nor at half the sample rate
+        inside = slice(_LEAKING, -1)  # nor at half the sample rate
         return Response(frequency[inside], (cross / power)[inside], coherence[inside], averages)
 
 

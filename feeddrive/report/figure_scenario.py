@@ -61,8 +61,10 @@ def motion_figure(result: ScenarioResult) -> ReportFigure:
     _line(panels[0], time, 1e3 * series["table_position"], MEASURED, "table")
     dress(panels[0], "", "position [mm]", result.scenario.name)
     legend_above(panels[0], 2)
-    _line(panels[1], time, 1e6 * (series["setpoint"] - series["table_position"]), AFTER)
-    dress(panels[1], "", "following error [µm]", "set-point minus table position")
+    error = series["setpoint"] - series["table_position"]
+    factor, unit = (1e6, "µm") if np.max(np.abs(error)) < 2e-3 else (1e3, "mm")
+    _line(panels[1], time, factor * error, AFTER)
+    dress(panels[1], "", f"following error [{unit}]", "set-point minus table position")
     _line(panels[2], time, 60 * series["table_velocity"], AFTER)
     dress(panels[2], "", "velocity [m/min]")
     _line(panels[3], time, series["motor_torque"], AFTER)
