@@ -6,7 +6,8 @@
 
 Inputs: `time` [s], `x`, the inputs of the plant and every parameter by its name, with an underscore for a dot or an
 index. Outputs: `xdot`, and the outputs of the plant by their names. The rows of x, units and default values stand in
-NAME_casadi.json. CasADi 3.6 or newer; feeddrive is not needed.
+NAME_casadi.json, and the version of CasADi that wrote the file: that one or a newer one loads it, an older one refuses.
+feeddrive is not needed.
 """
 
 from __future__ import annotations
@@ -58,6 +59,7 @@ def casadi_notes(model: Model) -> str:
     content = {
         "format": "feeddrive-casadi/1",
         "version": __version__,
+        "casadi": ca.__version__,
         "plant": model.plant.name,
         "states": rows(model.states),
         "inputs": rows([Quantity(name, row.unit, row.value, row.name) for name, row in named]),

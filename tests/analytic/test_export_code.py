@@ -58,6 +58,7 @@ def test_casadi_function_is_the_plant(name: str, tmp_path: Path) -> None:
     assert np.array_equal(given["xdot"].full(), xdot.full())  # the same operations in the same order
     assert [float(given[row.name]) for row in model.outputs] == y.full()[:, 0].tolist()
     notes = json.loads(paths[1].read_text(encoding="utf-8"))
+    assert notes["casadi"] == ca.__version__
     assert [row["name"] for row in notes["inputs"]] == function.name_in()[2:]
     assert [row["value"] for row in notes["inputs"]] == [function.default_in(i) for i in range(2, function.n_in())]
 
