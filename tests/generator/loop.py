@@ -39,22 +39,22 @@ def acting(torque: float, c: Constants) -> float:
 
 @compiled
 def held(
-    state: State,
-    side: int,
-    torques: tuple[float, float],
-    late: float,
-    span: tuple[float, float],
-    s: Sampling,
-    c: Constants,
+    state: State, side: int, torques: tuple[float, float], late: float, span: float, s: Sampling, c: Constants
 ) -> tuple[State, int]:
-    """Return state and gap side after the part `span` = (start, end) [s] of one sample.
+    """Return state and gap side `span` seconds after the beginning of a sample.
 
     `torques` = (old, new) act one after the other, changing `late` seconds after the sample's beginning.
     """
-    start, end = span
     old, new = torques
-    state, side = advance_many(state, old, side, min(late, end) - start, s.longest_step, c)
-    return advance_many(state, new, side, end - max(late, start), s.longest_step, c)
+    state, side = advance_many(state, old, side, min(late, span), s.longest_step, c)
+    return advance_many(state, new, side, span - late, s.longest_step, c)
+
+
+@compiled
+def keep(states: Array, row: int, state: State) -> None:
+    """Write the state to a row; number by number, as numba takes seconds to compile the assignment of a tuple."""
+    for column in range(WIDTH):
+        states[row, column] = state[column]
 
 
 def open_loop(torque: Array, state: State, s: Sampling, c: Constants) -> Array:
@@ -79,9 +79,9 @@ def compiled_open_loop(torque: Array, state: State, s: Sampling, c: Constants) -
     states = np.empty((torque.size + 1, WIDTH))
     side = 0
     for i in range(torque.size):
-        states[i] = state
-        state, side = held(state, side, (0.0, acting(torque[i], c)), 0.0, (0.0, s.sample_time), s, c)
-    states[torque.size] = state
+        keep(states, i, state)
+        state, side = held(state, side, (0.0, acting(torque[i], c)), 0.0, s.sample_time, s, c)
+    keep(states, torque.size, state)
     return states
 
 
@@ -101,7 +101,7 @@ def compiled_closed_loop(
     old_angle = round(state.angle / s.encoder_step) * s.encoder_step
     old_setpoint = setpoint[0]
     for i in range(count):
-        states[i] = state
+        keep(states, i, state)
         angle = round(state.angle / s.encoder_step) * s.encoder_step
         wanted_speed = (setpoint[i] - old_setpoint) / (c.transmission * s.sample_time)
         wanted_speed += s.position_gain * (setpoint[i] / c.transmission - angle)
@@ -113,8 +113,7 @@ def compiled_closed_loop(
         old_setpoint = setpoint[i]
         new = acting(torque[i - whole], c) if i >= whole else 0.0
         old = acting(torque[i - whole - 1], c) if i >= whole + 1 else 0.0
-        if s.reading > 0.0:
-            state, side = held(state, side, (old, new), late, (0.0, s.reading), s, c)
-        read[i] = state
-        state, side = held(state, side, (old, new), late, (s.reading, s.sample_time), s, c)
+        # Beside the run, so that reading does not touch it, not even in its rounding.
+        keep(read, i, held(state, side, (old, new), late, s.reading, s, c)[0])
+        state, side = held(state, side, (old, new), late, s.sample_time, s, c)
     return torque, states, read
