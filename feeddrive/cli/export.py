@@ -47,7 +47,8 @@ def command(
       c       NAME.h, .c   cc -ffp-contract=off NAME.c NAME_selftest.c -lm && ./a.out
       fmu     NAME.fmu     fmpy.simulate_fmu("NAME.fmu", start_values={"motor_torque": 1.5})
 
-    All in SI units. CasADi loads files of its own version or an older one. The FMU is FMI 2.0 for model exchange, with sources; its binary is for this platform.
+    All in SI units. CasADi loads files of its own version or an older one. The FMU is FMI 2.0 for model exchange, with
+    sources; its binary is for this platform.
     """
     with warnings_as_lines():
         machine = read_plant(find_plant(plant))

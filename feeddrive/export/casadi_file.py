@@ -59,7 +59,7 @@ def casadi_notes(model: Model) -> str:
     content = {
         "format": "feeddrive-casadi/1",
         "version": __version__,
-        "casadi": ca.__version__,
+        "casadi": ca.CasadiMeta.version(),
         "plant": model.plant.name,
         "states": rows(model.states),
         "inputs": rows([Quantity(name, row.unit, row.value, row.name) for name, row in named]),
