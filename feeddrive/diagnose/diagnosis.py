@@ -62,7 +62,7 @@ def diagnose(
         InputError: recordings that cannot be used with this plant.
     """
     for recording in (*recordings, *validation):
-        check_against_lead(recording, plant.chain.values["lead"], recording.name)
+        check_against_lead(recording, 2 * np.pi * plant.chain.motor_radius, recording.name)
     if not 0.2 <= split <= 0.95:
         raise InputError(f"--split is {split:g}", "", "use a share between 0.2 and 0.95, such as 0.75")
     fitted = tuple(prepare(recording, plant, 1.0 if validation else split) for recording in recordings)

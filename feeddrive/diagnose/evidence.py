@@ -114,6 +114,6 @@ def _with_motor_angle(recording: Recording, plant: Plant) -> Recording:
         mend = 'record the motor angle, or declare the plant with structure = "rigid"'
         raise InputError("no channel motor_angle, and the plant is elastic", recording.name, mend)
     channels = dict(recording.channels)
-    channels["motor_angle"] = channels.pop("table_position") / plant.chain.radius
+    channels["motor_angle"] = channels.pop("table_position") / plant.chain.motor_radius
     note = "no motor encoder: the motor angle is taken from the table position"
     return replace(recording, channels=channels, notes=(*recording.notes, note))

@@ -71,7 +71,7 @@ def _reference(name: str, judged: Judged) -> FloatArray:
     if name != "table_position":
         torque: FloatArray = evidence.measured[name][rows]
         return torque
-    geared = judged.before.chain.radius * evidence.band.filter(evidence.recording["motor_angle"])
+    geared = judged.before.chain.motor_radius * evidence.band.filter(evidence.recording["motor_angle"])
     beyond = (evidence.measured[name] - geared)[rows]
     about_mean: FloatArray = beyond - beyond.mean()
     return about_mean

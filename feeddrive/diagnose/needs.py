@@ -24,7 +24,7 @@ def both_directions(scene: Scene) -> str:
     """The table must move both ways."""
     moved = [_moved(run, evidence) for run, evidence in zip(scene.runs, scene.problem.evidence, strict=True)]
     forward, backward = sum(m[0] for m in moved), sum(m[1] for m in moved)
-    least = 5 * scene.problem.plant.chain.radius
+    least = 5 * scene.problem.plant.chain.motor_radius
     if min(forward, backward) < least:
         return f"the recording moves {forward * 1e3:.2g} mm forward and {backward * 1e3:.2g} mm back; it needs both"
     return ""

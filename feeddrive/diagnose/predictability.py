@@ -36,7 +36,7 @@ def predictable_samples(plant: Plant, evidence: Evidence) -> BoolArray:
     moved = evidence.motion.angle + TINY_ANGLE * generator.standard_normal(len(evidence.motion.angle))
     base = simulate_driven(plant, evidence.motion).table_position
     other = simulate_driven(plant, replace(evidence.motion, angle=moved)).table_position
-    growth = np.abs(evidence.band.filter(other - base)) / (TINY_ANGLE * plant.chain.radius)
+    growth = np.abs(evidence.band.filter(other - base)) / (TINY_ANGLE * plant.chain.motor_radius)
     length = max(1, int(WINDOW / evidence.recording.sample_time))
     blocks = -(-n // length)
     padded = np.zeros(blocks * length)

@@ -37,5 +37,5 @@ def _relative(plant: Plant, judged: Sequence[Judged]) -> float:
 
 def _start(j: Judged) -> tuple[float, float]:
     """Table position [m] and velocity [m/s] that the recording starts from."""
-    r = j.before.chain.radius
+    r = j.before.chain.motor_radius
     return r * float(j.evidence.motion.angle[0]), r * float(j.evidence.motion.speed[0])

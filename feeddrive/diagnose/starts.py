@@ -104,7 +104,7 @@ def over_position(scene: Scene) -> list[list[Effect]]:
     at = scene.longest
     evidence, run = scene.problem.evidence[at], scene.runs[at]
     rows = evidence.fit_rows
-    radius = scene.problem.plant.chain.radius
+    radius = scene.problem.plant.chain.motor_radius
     curve = friction_over_position(
         run.table_position[rows], run.table_velocity[rows], scene.residuals[at]["motor_torque"][rows] / radius
     )

@@ -22,7 +22,7 @@ def position_spring(scene: Scene) -> list[list[Effect]]:
     """The straight line of the residual force over the position."""
     at = scene.longest
     rows, run = scene.problem.evidence[at].fit_rows, scene.runs[at]
-    force = scene.residuals[at]["motor_torque"][rows] / scene.problem.plant.chain.radius
+    force = scene.residuals[at]["motor_torque"][rows] / scene.problem.plant.chain.motor_radius
     position = run.table_position[rows]
     slope, offset = np.polyfit(position, force, 1)
     zero = -offset / slope if slope else float(np.mean(position))

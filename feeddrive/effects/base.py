@@ -208,7 +208,7 @@ class TransmissionEffect(Effect):
 class FrictionEffect(Effect):
     """An effect that fills a slot of the one friction law of its port.
 
-    The law: (level0 * factors + increments) * shape + viscous0 * viscous factors + viscous increments. Declared friction
+    The law: (level0 * factors + increments) * shape + viscous0 * viscous factors + viscous increments. What is declared
     carries level0, viscous0 and a shape; factors and increments of others apply to it.
     """
 

@@ -20,6 +20,7 @@ from feeddrive.plant.equations import friction_force, parameter_symbols, paramet
 from feeddrive.plant.files import read_plant
 from feeddrive.plant.linear import ode, ode_parameters, state_names
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.stiffness_budget import stiffness_budget
 
 BENCH = read_plant(plants_folder() / "bench_axis.toml")
 DECLARED = ("guide_friction", "nut_drag", "bearing_drag", "nut_friction")
@@ -239,3 +240,11 @@ def test_one_effect_a_file() -> None:
 def test_misspelt_effect_names_the_nearest() -> None:
     with pytest.raises(InputError, match="did you mean backlash"):
         find_effect("backlsh")
+
+
+def test_stiffness_deviation_scales_the_combined_stiffness_of_every_structure() -> None:
+    for name in ("bench_axis", "kimm_testbed"):
+        plant = read_plant(plants_folder() / f"{name}.toml")
+        softer = plant.with_effects(EFFECTS["stiffness_deviation"].of(factor=0.8))
+        before, after = (stiffness_budget(p).axial for p in (plant, softer))
+        assert after == pytest.approx(0.8 * before, rel=1e-12)  # the same series with every member scaled
