@@ -46,6 +46,7 @@ COMMANDS: dict[str, Entry] = {
     "modes": Entry("modes", "Natural frequencies of a machine along its stroke."),
     "check": Entry("check", "Check a machine against rules of plausibility."),
     "run": Entry("run", "Run a scenario: a machine under control; figures, metrics."),
+    "sweep": Entry("sweep", "Run a scenario over varied values: one table, one figure."),
     "diagnose": Entry("diagnose", "Find what a machine's model lacks, from recordings of it."),
     "export": Entry("export", "Write a machine as state space, .mat, CasADi, C, FMU or JSON."),
     "reproduce": Entry("reproduce", "Compare the source papers' numbers with computed ones."),

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import time as clock
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from feeddrive.errors import InputError
 from feeddrive.files import write_text_atomically
+from feeddrive.plant.entries import nearest
 from feeddrive.servo.cascade_function import cascade_controller
 from feeddrive.simulate.controlled import TorqueLoop, resting_state
 from feeddrive.simulate.scenario_file import read_scenario
@@ -47,7 +49,10 @@ class Sweep:
     resumed: int
 
 
-def run_sweep(design: Design, measure: Measure, folder: Path, workers: Workers, told: Told | None = None) -> Sweep:
+def run_sweep(
+    design: Design, measure: Measure, folder: Path, workers: Workers, told: Told | None = None,
+    needed: Sequence[str] = (),
+) -> Sweep:  # fmt: skip
     """All runs of a sweep, or those that an earlier start has left.
 
     Args:
@@ -56,10 +61,11 @@ def run_sweep(design: Design, measure: Measure, folder: Path, workers: Workers, 
         folder: for the units; that of an earlier start of the same sweep is gone on with.
         workers: `in_this_process`, `processes(n)` or `on_cluster(address)`; the results are the same, bit for bit.
         told: of the progress.
+        needed: metrics that must be among those of the first run, if that finishes.
 
     Raises:
-        InputError: a folder of another sweep, files that change while the sweep runs, workers that cannot be reached
-            or were ended.
+        InputError: a metric that the runs do not give, a folder of another sweep, files that change while the sweep
+            runs, workers that cannot be reached or were ended.
     """
     cut, total = read_cut(folder, design), len(design.rows)
     there = {} if cut is None else read_units(folder, design, cut)
@@ -69,6 +75,7 @@ def run_sweep(design: Design, measure: Measure, folder: Path, workers: Workers, 
             if cut is None:
                 cut = _begin(design, measure, folder)
                 there = read_units(folder, design, cut)
+            _refuse_missing(needed, there.get(0, []))
             left = [unit for unit in range(cut.units) if unit not in there]
             units = [Unit(unit_task(design, *cut.span(unit), measure), unit_path(folder, unit)) for unit in left]
             done = sum(len(runs) for runs in there.values())
@@ -78,6 +85,13 @@ def run_sweep(design: Design, measure: Measure, folder: Path, workers: Workers, 
                     told(done, total)
     found = read_units(folder, design, cut)
     return Sweep(design, table_of(design, [run for unit in range(cut.units) for run in found[unit]]), resumed)
+
+
+def _refuse_missing(needed: Sequence[str], runs: Sequence[Mapping[str, Any]]) -> None:
+    for run in runs:
+        for name in needed:
+            if not run["reason"] and name not in run["metrics"]:
+                raise InputError(f'no metric "{name}"', "--metric", nearest(name, run["metrics"]))
 
 
 def _begin(design: Design, measure: Measure, folder: Path) -> Cut:

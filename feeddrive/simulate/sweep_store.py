@@ -52,6 +52,16 @@ def unit_path(folder: Path, unit: int) -> Path:
     return folder / "units" / f"{unit:04d}.json"
 
 
+def refuse_file(folder: Path) -> None:
+    """Refuse a file where a folder is needed.
+
+    Raises:
+        InputError: it is a file.
+    """
+    if folder.exists() and not folder.is_dir():
+        raise InputError("is a file, not a folder", str(folder), "name another folder for --out")
+
+
 def write_cut(folder: Path, design: Design, cut: Cut) -> None:
     """Begin a sweep's folder.
 
@@ -70,8 +80,7 @@ def read_cut(folder: Path, design: Design) -> Cut | None:
         InputError: the folder is a file, or holds another sweep or something unreadable.
     """
     path = folder / _PLAN
-    if folder.exists() and not folder.is_dir():
-        raise InputError("is a file, not a folder", str(folder), "name another folder for --out")
+    refuse_file(folder)
     if not path.exists():
         return None
     content = _json(path)

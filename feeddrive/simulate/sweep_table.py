@@ -56,6 +56,28 @@ class SweepTable:
         return [row for row in self.rows if not row.reason]
 
 
+_MAIN_OF_EACH = 2
+_WHOLE_RUN = ("following_error.maximum", "motor_torque.maximum")
+
+
+def main_metrics(table: SweepTable, most: int) -> list[str]:
+    """What to look at first: two numbers of each figure that the scenario asks for, then those of the whole run.
+
+    Metrics that are the same for all runs are left out.
+    """
+    taken: dict[str, int] = {}
+    found = []
+    whole = tuple(name.partition(".")[0] + "." for name in _WHOLE_RUN)
+    for name in (*(name for name in table.units if not name.startswith(whole)), *_WHOLE_RUN):
+        stem = name.partition(".")[0]
+        values = [row.metrics.get(name) for row in table.finished]
+        if taken.get(stem, 0) >= _MAIN_OF_EACH or len(set(values)) < 2 or set(values) == {None}:
+            continue
+        taken[stem] = taken.get(stem, 0) + 1
+        found.append(name)
+    return found[:most] or [_WHOLE_RUN[0]]
+
+
 def table_of(design: Design, runs: Sequence[Mapping[str, Any]]) -> SweepTable:
     """The table of the runs of all units, in order (see `simulate.sweep_unit`)."""
     units: dict[str, str] = {}
