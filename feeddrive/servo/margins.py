@@ -16,7 +16,7 @@ GROWTH = 0.1
 A free position has an eigenvalue of 1, known to about 1e-7 after rounding, which is 1e-3 1/s at 8 kHz.
 """
 
-_POINTS = 20_000
+POINTS = 20_000
 """Of the grid; crossings are interpolated between them."""
 
 _AT_ONCE = 1000
@@ -56,7 +56,7 @@ def frequency_response(system: control.StateSpace, frequency: FloatArray) -> Com
     return response
 
 
-def margins(loop: control.StateSpace, lowest: float = 0.1) -> Margins:
+def margins(loop: control.StateSpace, lowest: float = 0.1, points: int = POINTS) -> Margins:
     """Margins of an open loop with negative feedback.
 
     Gain margins count above 0 dB only (gain that may be added); every crossing up to half the sample rate is seen.
@@ -64,8 +64,9 @@ def margins(loop: control.StateSpace, lowest: float = 0.1) -> Margins:
     Args:
         loop: discrete, one input and one output.
         lowest: frequency from which crossings count [Hz].
+        points: of the grid, even on a logarithmic axis.
     """
-    frequency = np.geomspace(lowest, 0.5 / loop.dt, _POINTS)
+    frequency = np.geomspace(lowest, 0.5 / loop.dt, points)
     return margins_of(frequency, frequency_response(loop, frequency), _stable(loop))
 
 

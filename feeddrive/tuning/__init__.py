@@ -1,0 +1,1 @@
+"""Recommended settings of controllers, and why."""

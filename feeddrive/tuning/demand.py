@@ -1,0 +1,86 @@
+"""What is asked of a tuned cascade, and the cases in which it must hold."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from feeddrive.errors import InputError
+from feeddrive.plant.linear import MOVING
+from feeddrive.plant.plant import Plant
+from feeddrive.servo.frequency_response import Case
+
+PHASE, GAIN = 45.0, 8.0
+"""Usual margins of automatic tuning in drives: 45 degrees and 8 dB."""
+
+POSITIONS = 3
+"""Table positions along the stroke, where the chain depends on them: the stiffest and softest are at ends or middle."""
+
+
+@dataclass(frozen=True)
+class Demand:
+    """Margins that must hold in every case.
+
+    Attributes:
+        phase: least phase margin of either loop [deg].
+        gain: least gain margin of either loop [dB].
+        magnification: most by which the closed position loop may magnify a set-point, at the encoder and at the table
+            [dB]; near 0, since a contour must not be overshot.
+
+    Raises:
+        InputError: a margin outside the range in which it has a meaning.
+    """
+
+    phase: float = PHASE
+    gain: float = GAIN
+    magnification: float = 0.1
+
+    def __post_init__(self) -> None:
+        if not 0 < self.phase < 90:
+            what = f"a phase margin of {self.phase:g}° is not between 0° and 90°"
+            raise InputError(what, "--margin-phase", "usual are 45° to 60°")
+        if not 0 < self.gain < 60:
+            raise InputError(f"a gain margin of {self.gain:g} dB is not between 0 dB and 60 dB", "--margin-gain",
+                             "usual are 6 dB to 12 dB")  # fmt: skip
+
+
+def cases_of(
+    plant: Plant, positions: Sequence[float] = (), payloads: Sequence[float] = (), velocity: float = MOVING
+) -> tuple[Case, ...]:
+    """Every position with every payload.
+
+    Args:
+        plant: the machine.
+        positions: of the table [m]; if empty, along the stroke where the chain depends on it, else mid-stroke alone.
+        payloads: masses on the table beyond the declared one [kg]; none if empty.
+        velocity: of the table [m/s].
+
+    Raises:
+        InputError: a position off the screw or outside the stroke.
+    """
+    places = tuple(positions) or _along_stroke(plant)
+    for place in places:
+        refuse_off_stroke(plant, place)
+    return tuple(Case(place, velocity, mass) for place, mass in itertools.product(places, tuple(payloads) or (0.0,)))
+
+
+def refuse_off_stroke(plant: Plant, position: float) -> None:
+    """Refuse a table position [m] outside the declared stroke, or with the nut off the screw.
+
+    Raises:
+        InputError: it is.
+    """
+    if plant.stroke is not None and not plant.stroke[0] <= position <= plant.stroke[1]:
+        low, high = (f"{1e3 * end:g} mm" for end in plant.stroke)
+        raise InputError(f"the table at {1e3 * position:g} mm is outside the stroke of {plant.name}", "--positions",
+                         f"choose from {low} to {high}")  # fmt: skip
+    plant.chain.refuse_off_screw(position, "--positions")
+
+
+def _along_stroke(plant: Plant) -> tuple[float, ...]:
+    if plant.stroke is None or not plant.chain.varies:
+        return (plant.middle,)
+    return tuple(float(place) for place in np.linspace(*plant.stroke, POSITIONS))

@@ -1,0 +1,169 @@
+"""Why each setting of a recommended cascade is what it is, in words, and the controller file that holds them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from feeddrive.plant.modes import braked_modes
+from feeddrive.plant.plant import Plant
+from feeddrive.quantity import format_quantity
+from feeddrive.servo.cascade import KV_UNIT, Cascade
+from feeddrive.servo.frequency_response import Case
+from feeddrive.simulate.scenario_controller import inertia_at_motor
+from feeddrive.tuning.largest_gain import GainLimit, Limit
+from feeddrive.tuning.recommendation import Recommendation
+from feeddrive.tuning.velocity_loop import NotchChoice
+
+
+@dataclass(frozen=True)
+class Setting:
+    """A setting with its why.
+
+    Attributes:
+        key: in a controller file.
+        symbol: for people.
+        shown: value with its units.
+        why: one sentence.
+    """
+
+    key: str
+    symbol: str
+    shown: str
+    why: str
+
+
+def settings(plant: Plant, found: Recommendation) -> tuple[Setting, ...]:
+    """Every recommended setting with its why."""
+    cascade, demand = found.cascade, found.demand
+    asked = f"{demand.phase:g}° and {demand.gain:g} dB in {_cases(len(found.reached))}"
+    rows = [
+        Setting("velocity_gain", "K_p", f"{cascade.velocity_gain:.4g} N m s/rad",
+                f"most K_p/T_n that keeps {asked}; held back by {_held_back(found, found.velocity.limit)}"),
+        Setting("reset_time", "T_n", format_quantity(cascade.reset_time, "s"),
+                _why_reset(plant, found)),
+        *(_notch_setting(choice) for choice in found.velocity.notches),
+        Setting("position_gain", "K_v",
+                f"{_kv(cascade)} = {cascade.position_gain:.4g} 1/s",
+                _why_position(found)),
+        Setting("feed_forward", "k_s, k_a", "1, 1",
+                f"without it the table lags {format_quantity(1 / 6 / cascade.position_gain, 'm')} at 10 m/min; "
+                "changes no margin"),
+    ]  # fmt: skip
+    return tuple(rows)
+
+
+def rules(plant: Plant, found: Recommendation) -> tuple[str, ...]:
+    """What rules of thumb say to the recommendation, one sentence each."""
+    modes = [braked_modes(one.case.on(plant), one.case.position).frequencies for one in found.reached]
+    first = min((float(some[0]) for some in modes if len(some)), default=math.inf)
+    if math.isinf(first):
+        return ("the plant is declared rigid: no mode limits K_v here; on the machine one will",)
+    gain = found.cascade.position_gain
+    relation = "below" if gain <= first else "ABOVE"
+    return (
+        f"K_v in 1/s is {relation} the first natural frequency with the motor held, {gain:.3g} and {first:.3g} Hz "
+        "(a rule of drive manuals: not above)",
+    )
+
+
+def controller_text(found: Recommendation, name: str) -> str:
+    """The recommendation as a controller file, which a scenario names or holds as [controller].
+
+    Args:
+        found: the recommendation.
+        name: of the controller.
+    """
+    cascade, (phase, gain) = found.cascade, found.worst
+    worst = f"velocity loop {phase.velocity.phase:.0f}° and {min(one.velocity.gain for one in found.reached):.1f} dB"
+    lines = [
+        'format = "feeddrive-controller/1"',
+        f'name = "{name}"',
+        f"# least margins over {_cases(len(found.reached))}: {worst}, position loop {gain.position.gain:.1f} dB",
+        f'velocity_rate = "{_exact(1 / cascade.sample_time)} Hz"',
+        f'position_rate = "{_exact(1 / (cascade.sample_time * cascade.position_divider))} Hz"',
+        f'position_gain = "{_exact(cascade.position_gain)} 1/s"    # K_v, {_kv(cascade)}',
+        f'velocity_gain = "{_exact(cascade.velocity_gain)} N m s/rad"    # K_p',
+        f'reset_time = "{_exact(1e3 * cascade.reset_time)} ms"    # T_n',
+        f'position_feedback = "{cascade.feedback}"',
+        *_current_loop(cascade),
+        "",
+        "[feed_forward]",
+        "speed = 1.0",
+        "torque = 1.0    # of the plant's inertia",
+        *(line for choice in found.velocity.notches for line in _notch_lines(choice)),
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def describe(case: Case) -> str:
+    """A case in words."""
+    load = f", payload {case.payload:g} kg" if case.payload else ""
+    return f"table at {format_quantity(case.position, 'm')}{load}"
+
+
+def _cases(count: int) -> str:
+    return "one case" if count == 1 else f"{count} cases"
+
+
+def _held_back(found: Recommendation, limit: GainLimit) -> str:
+    return f"the {limit.limit} at {limit.frequency:.0f} Hz, {describe(found.reached[limit.case].case)}"
+
+
+def _why_reset(plant: Plant, found: Recommendation) -> str:
+    inertia = max(inertia_at_motor(one.case.on(plant)) for one in found.reached)
+    times = found.cascade.reset_time * found.cascade.velocity_gain / inertia
+    taken = math.degrees(math.atan(1 / times))
+    return f"{times:.1f} J/K_p, so the integrator takes {taken:.0f}° at the crossover of a rigid axis (14° at most)"
+
+
+def _why_position(found: Recommendation) -> str:
+    limit = found.position
+    if limit.limit is Limit.MAGNIFICATION:
+        most = f"{found.demand.magnification:g} dB"
+        return f"largest that magnifies no set-point by more than {most}; held back {_at(found, limit)}"
+    return f"largest that keeps the margins; held back by {_held_back(found, limit)}"
+
+
+def _at(found: Recommendation, limit: GainLimit) -> str:
+    return f"at {limit.frequency:.0f} Hz, {describe(found.reached[limit.case].case)}"
+
+
+def _notch_setting(choice: NotchChoice) -> Setting:
+    low, high = choice.resonance
+    where = f"{low:.0f} Hz" if high - low < 1 else f"{low:.0f} to {high:.0f} Hz over the cases"
+    shown = f"{choice.frequency:g} Hz, {choice.bandwidth:g} Hz wide, {choice.depth:g} dB"
+    return Setting("filter", "notch", shown, f"resonance at {where}; allows {choice.brings:.2g} times the K_p/T_n")
+
+
+def _notch_lines(choice: NotchChoice) -> list[str]:
+    return [
+        "",
+        "[[filter]]",
+        'at = "torque"',
+        'kind = "notch"',
+        f'frequency = "{choice.frequency:g} Hz"',
+        f'bandwidth = "{choice.bandwidth:g} Hz"',
+        f'depth = "{choice.depth:g} dB"',
+    ]
+
+
+def _current_loop(cascade: Cascade) -> list[str]:
+    lines = []
+    if cascade.current_lag:
+        lines.append(f'current_bandwidth = "{_exact(1 / (2 * math.pi * cascade.current_lag))} Hz"')
+    if cascade.dead_time:
+        lines.append(f'dead_time = "{_exact(1e6 * cascade.dead_time)} us"')
+    if math.isfinite(cascade.torque_limit):
+        lines.append(f'torque_limit = "{_exact(cascade.torque_limit)} N m"')
+    if math.isfinite(cascade.speed_limit):
+        lines.append(f'speed_limit = "{_exact(cascade.speed_limit)} rad/s"')
+    return lines
+
+
+def _kv(cascade: Cascade) -> str:
+    return f"{cascade.position_gain / KV_UNIT:.3g} (m/min)/mm"
+
+
+def _exact(value: float) -> str:
+    return f"{value:.10g}"
