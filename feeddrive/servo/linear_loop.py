@@ -110,11 +110,14 @@ def worst_eigenvalue(
     """The eigenvalue of largest magnitude of the closed loop over T_s, its growth [1/s] and its frequency [Hz].
 
     A growth above zero means an unstable loop. Without position loop the position is free and its eigenvalue is 1.
+    The frequency is as the position ticks see it: one above half their rate appears folded about it.
 
     Raises:
-        InputError: as `sampled_plant`.
+        InputError: as `sampled_plant`, and gains so large that the matrices overflow.
     """
     system = closed_loop(plant, cascade, velocity, position)
+    if not np.isfinite(system.A).all():
+        raise InputError("the gains are too large for numbers", "controller", "check their units")
     values = np.linalg.eigvals(system.A)
     worst = complex(values[np.argmax(np.abs(values))])
     period = float(system.dt)
@@ -129,7 +132,7 @@ def refuse_unstable(plant: Plant, cascade: Cascade, where: str, position: float 
     """
     value, growth, frequency = worst_eigenvalue(plant, cascade, position=position)
     if growth > GROWTH:
-        what = f"the loop is unstable: eigenvalue {value:.4g} grows by {growth:.3g} 1/s at {frequency:.0f} Hz"
+        what = f"the loop is unstable: eigenvalue {value:.4g} grows by {growth:.3g} 1/s, seen at {frequency:.0f} Hz"
         raise InputError(what, where, "lower position_gain or velocity_gain, or set allow_unstable = true")
 
 

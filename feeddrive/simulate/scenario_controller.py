@@ -82,7 +82,7 @@ def read_cascade(written: Table, plant: Plant) -> tuple[Cascade, bool]:
     table.refuse_unknown(_KEYS)
     fast, slow = positive(table, "velocity_rate", "Hz"), positive(table, "position_rate", "Hz")
     reset = optional(table, "reset_time", "s", math.inf)
-    bandwidth = optional(table, "current_bandwidth", "Hz", math.inf)
+    bandwidth = positive(table, "current_bandwidth", "Hz") if "current_bandwidth" in table.entries else math.inf
     try:
         cascade = Cascade(
             radius=plant.chain.motor_radius,

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from feeddrive.errors import InputError
 from feeddrive.recording.channels import CHANNEL_UNITS
 from feeddrive.recording.recording import Recording
 from feeddrive.simulate.scenario import Scenario
@@ -43,6 +44,9 @@ def recorded(scenario: Scenario, time: FloatArray, series: Mapping[str, FloatArr
         scenario: says which channels, noise and seed; each channel has a random sequence of its own.
         time: [s], shape (n,).
         series: exact, shape (n,).
+
+    Raises:
+        InputError: a noise so large that numbers overflow.
     """
     recorder, channels = scenario.recorder, {}
     resolution = {sensor.channel: sensor.resolution for sensor in scenario.plant.sensors}
@@ -52,7 +56,10 @@ def recorded(scenario: Scenario, time: FloatArray, series: Mapping[str, FloatArr
         samples = series[name]
         if recorder.noise.get(name, 0.0) > 0:
             generator = np.random.default_rng([recorder.seed, place])
-            samples = samples + recorder.noise[name] * generator.standard_normal(len(samples))
+            with np.errstate(over="ignore"):
+                samples = samples + recorder.noise[name] * generator.standard_normal(len(samples))
+            if not np.isfinite(samples).all():
+                raise InputError(f"the noise of {name} is too large", scenario.name, "check its unit")
         step = resolution.get(name, 0.0) if recorder.quantised else 0.0
         channels[name] = step * np.round(samples / step) if step > 0 else samples
     ordered = {name: channels[name] for name in recorder.channels}

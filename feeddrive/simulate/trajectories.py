@@ -23,6 +23,9 @@ from feeddrive.simulate.waveforms import Waveform
 from feeddrive.typing import FloatArray
 
 
+_MOST_LOOKED_AT = 1_000_000
+
+
 def moves(start: float, targets: Sequence[tuple[float, Limits]], dwell: float) -> Pieces:
     """Fastest moves from target to target, standing for `dwell` [s] at the start and after each.
 
@@ -218,12 +221,14 @@ class Wave:
 
 
 def refuse_beyond_travel(trajectory: Trajectory, travel: tuple[float, float], tick: float, where: str) -> None:
-    """Refuse a trajectory that leaves the travel [m], seen at ticks [s].
+    """Refuse a trajectory that leaves the travel [m], seen at ticks [s], at most a million, and at every stop.
 
     Raises:
         InputError: it does; says by how much and when.
     """
-    time = np.arange(0.0, trajectory.duration + tick, tick)
+    count = min(math.ceil(trajectory.duration / tick) + 1, _MOST_LOOKED_AT)
+    arrivals = [stop.arrival for stop in trajectory.stops]
+    time = np.concatenate([np.linspace(0.0, trajectory.duration, max(count, 2)), arrivals])
     position = trajectory.at(time).position
     beyond = np.maximum(travel[0] - position, position - travel[1])
     worst = int(np.argmax(beyond))
