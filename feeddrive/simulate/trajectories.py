@@ -22,7 +22,6 @@ from feeddrive.simulate.motion import Motion, Piece, Pieces, Stop, Trajectory, r
 from feeddrive.simulate.waveforms import Waveform
 from feeddrive.typing import FloatArray
 
-
 _MOST_LOOKED_AT = 1_000_000
 
 

@@ -156,7 +156,7 @@ def test_following_error_is_velocity_over_position_gain() -> None:
 
 
 def test_unstable_loop_is_refused_with_its_eigenvalue() -> None:
-    with pytest.raises(InputError, match=r"the loop is unstable: eigenvalue .* grows by .* 1/s at .* Hz"):
+    with pytest.raises(InputError, match=r"the loop is unstable: eigenvalue .* grows by .* 1/s, seen at .* Hz"):
         refuse_unstable(PLANT, replace(SERVO, velocity_gain=30.0), "scenario")
 
 
