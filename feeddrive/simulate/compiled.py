@@ -22,7 +22,7 @@ import numpy as np
 from feeddrive.simulate.program import CELL, Position, Program, Run, Status, Stop, Task
 from feeddrive.typing import FloatArray
 
-FLAGS = ("-O1", "-ffp-contract=off", "-fPIC", "-shared")
+FLAGS = ("-O2", "-ftree-vectorize", "-ffp-contract=off", "-fPIC", "-shared")
 """No fused or reordered arithmetic: the compiled numbers are those of the virtual machine."""
 
 _NULL_CHECK = re.compile(r"arg\[(\d+)\]\? (arg\[\1\]\[\d+\]) : 0")
@@ -54,6 +54,8 @@ def source_of(program: Program) -> str:
     # the driver passes every argument and result, so that what may be absent need not be asked for
     functions = _RESULT_CHECK.sub("", _NULL_CHECK.sub(r"\2", generator.dump()))
     sizes = "".join(f"#define {name} {size}\n" for name, size in program.sizes.items())
+    for name, rows in zip(("NEEDED_FIRST", "NEEDED_SECOND"), program.step.needed, strict=True):
+        sizes += f"#define {name} {{{', '.join(str(row) for row in (*rows, 0))}}}\n"
     return functions + sizes + (Path(__file__).parent / "driver.c").read_text(encoding="utf-8")
 
 

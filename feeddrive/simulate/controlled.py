@@ -266,12 +266,11 @@ def _told(
     plant: Plant, controller: SampledController, time: FloatArray, seen: FloatArray, end: ControlledState,
     report: StepReport,
 ) -> ControlledRun:  # fmt: skip
-    columns = np.ascontiguousarray(seen.T)
     names = state_names(plant)
     count = 2 * len(plant.chain.coordinates) + bristle_count(plant)
-    signals = dict(zip(controller.signals, columns[6 + count :], strict=True))
-    command, torque, angle, speed, position, velocity = columns[:6]
-    states = seen[:, 6 : 6 + count].copy()
+    signals = dict(zip(controller.signals, np.ascontiguousarray(seen[:, 6 + count :].T), strict=True))
+    command, torque, angle, speed, position, velocity = np.ascontiguousarray(seen[:, :6].T)
+    states = seen[:, 6 : 6 + count]
     return ControlledRun(
         time, command, torque, angle, speed, position, velocity, signals, states, names, end, report
     )  # fmt: skip

@@ -28,7 +28,7 @@ from feeddrive.simulate.program import (
     Stop,
     Task,
 )
-from feeddrive.simulate.step_constants import SimulationError, linear_part, step_constants
+from feeddrive.simulate.step_constants import Linear, SimulationError, linear_part, step_constants
 from feeddrive.typing import FloatArray
 
 
@@ -112,9 +112,13 @@ def run_machine(machine: Machine, plant: Plant, feed: Feed, start: Position, tol
     program = machine.program
     task = _task(program, plant, feed)
     seen, report = np.empty((len(feed.fed), program.sizes["N_BEFORE"] + program.sizes["N_AFTER"])), np.zeros(REPORTS)
+    linears: dict[int, Linear] = {}
     stop = machine.run(task, start, 0, seen, report)
     while stop.status == Status.NEEDS_CONSTANTS:
-        _make_constants(task, program, plant, feed, stop, tolerance)
+        if stop.cell not in linears:
+            reference = CELL * (task.first_cell + stop.cell) if program.varies else 0.0
+            linears[stop.cell] = linear_part(plant, program.step.layout, feed.torque_lag, reference)
+        _make_constants(task, program, linears[stop.cell], feed, stop, tolerance)
         stop = machine.run(task, stop.position, stop.sample, seen, report)
     _refuse_failure(plant, feed, stop, seen)
     return Outcome(seen, stop.position, _told(report, len(seen), tolerance))
@@ -136,10 +140,8 @@ def _cells(plant: Plant) -> tuple[int, int]:
     return first, last - first + 1
 
 
-def _make_constants(task: Task, program: Program, plant: Plant, feed: Feed, stop: Stop, tolerance: float) -> None:
+def _make_constants(task: Task, program: Program, linear: Linear, feed: Feed, stop: Stop, tolerance: float) -> None:
     """Fill in what the driver has asked for."""
-    reference = CELL * (task.first_cell + stop.cell) if program.varies else 0.0
-    linear = linear_part(plant, program.step.layout, feed.torque_lag, reference)
     for part, span in enumerate(feed.spans):
         step, share = span / 2**stop.level, 0.5**stop.level
         constants = step_constants(linear, program.step.layout, step, share, tolerance)
@@ -150,10 +152,9 @@ def _make_constants(task: Task, program: Program, plant: Plant, feed: Feed, stop
 def _refuse_failure(plant: Plant, feed: Feed, stop: Stop, seen: FloatArray) -> None:
     at = stop.sample
     if stop.status == Status.DONE:
-        finite = np.isfinite(seen).all(axis=1)
-        if finite.all():
+        if np.isfinite(seen.sum()):
             return
-        at = int(np.argmin(finite))
+        at = int(np.argmin(np.isfinite(seen).all(axis=1)))
     time = feed.fed[min(at, len(feed.fed) - 1), -1]
     if stop.status == Status.OFF_GRID:
         table = float(stop.position.memory[len(plant.chain.coordinates) - 1])

@@ -125,22 +125,28 @@ def run_samples(
 
 def initial_state(plant: Plant, position: float, velocity: float) -> FloatArray:
     """Coordinates and rates [SI] with the table at `position` [m] and `velocity` [m/s] and no stretch anywhere."""
-    symbols = parameter_symbols(plant)
-    phi, x = ca.SX.sym("phi"), ca.SX.sym("x")
-    delta = travel_deviation(plant, symbols, phi, x, 0.0)
-    slopes = [delta, ca.jacobian(delta, phi), ca.jacobian(delta, x)]
-    travel = ca.Function("travel", [phi, x, symbols.vector], slopes)
     values, r = parameter_values(plant), plant.chain.radius
-    angle = position / r
-    for _ in range(20):  # delta' is far below r: each pass gains some three digits
-        angle = (position - float(travel(angle, position, values)[0])) / r
-    _, by_angle, by_position = (float(value) for value in travel(angle, position, values))
+    travel = _travel(plant) if plant.has_travel else None
+    angle, by_angle, by_position = position / r, 0.0, 0.0
+    if travel is not None:
+        for _ in range(20):  # delta' is far below r: each pass gains some three digits
+            angle = (position - float(travel(angle, position, values)[0])) / r
+        _, by_angle, by_position = (float(value) for value in travel(angle, position, values))
     if not plant.chain.elastic:
         return np.array([r * angle, velocity])
     speed = velocity * (1 - by_position) / (r + by_angle)
     motion = np.array(plant.chain.rigid_motion(plant.chain_values()), dtype=float)
     # the shafts turn as for r angle, the table is where it is wanted
     return np.concatenate([r * angle * motion[:-1], [position], r * speed * motion[:-1], [velocity]])
+
+
+@per_structure
+def _travel(plant: Plant) -> ca.Function:
+    """(phi, x, parameters) -> travel deviation [m] and its slopes with phi and x."""
+    symbols = parameter_symbols(plant)
+    phi, x = ca.SX.sym("phi"), ca.SX.sym("x")
+    delta = travel_deviation(plant, symbols, phi, x, 0.0)
+    return ca.Function("travel", [phi, x, symbols.vector], [delta, ca.jacobian(delta, phi), ca.jacobian(delta, x)])
 
 
 @per_structure

@@ -162,7 +162,7 @@ class _Interpreter:
         if not change < 1.0:
             return memory, -1.0
         report[7] = max(report[7], change)
-        after, error = _called(step.finish, memory, held, place, guess, fixed, time, values)
+        after, error = _called(step.finish, memory, held, place, guess, fixed)
         return after, float(error[0]) if error[0] < 1e290 else -1.0
 
 
@@ -184,7 +184,7 @@ def _stretch(program: Program, count: int) -> ca.Function:
     change = ca.SX(0)
     for _ in range(STRETCH_SWEEPS):
         guess, change = step.iterate(memory, base, guess, time, fixed, values)
-    after, error = step.finish(memory, held, 0, guess, fixed, time, values)
+    after, error = step.finish(memory, held, 0, guess, fixed)
     seen = ca.vertcat(shown, program.after(after, own_after, fed, settings, values))
     one = ca.Function(
         "one",

@@ -56,27 +56,35 @@ class Program:
 
     @property
     def functions(self) -> tuple[ca.Function, ...]:
-        """Every function that a run calls."""
-        step = self.step
-        return (self.before, step.watch, step.begin, step.iterate, step.finish, self.after)
+        """Functions that are generated for the driver; what is the same for every plant stands in it."""
+        return (self.before, self.step.watch, self.step.iterate, self.after)
 
     @property
     def sizes(self) -> dict[str, int]:
         """Sizes by the names that the C driver gives them."""
+        layout, step = self.step.layout, self.step
         return {
-            "N_MEMORY": self.step.layout.memory,
+            "N_MEMORY": layout.memory,
+            "N_STATES": layout.states,
+            "N_FORCED": len(layout.forced),
+            "N_BRISTLES": layout.bristles,
+            "N_SOLVED": max(len(layout.forced), layout.bristles),
+            "N_WATCHED": layout.watched,
+            "N_HELD": layout.inputs,
+            "N_UNKNOWN": layout.unknowns,
+            "N_FIXED": step.begin.size1_in(4),
+            "N_BASE": step.begin.size1_out(0),
+            "N_NEEDED_FIRST": len(step.needed[0]),
+            "N_NEEDED_SECOND": len(step.needed[1]),
             "N_OWN": self.before.size1_in(1),
             "N_FED": self.before.size1_in(2),
             "N_PARTS": self.parts,
-            "N_HELD": self.step.layout.inputs,
-            "N_FIXED": self.step.begin.size1_in(4),
-            "N_BASE": self.step.begin.size1_out(0),
-            "N_UNKNOWN": self.step.layout.unknowns,
             "N_BEFORE": self.before.size1_out(2),
             "N_AFTER": self.after.size1_out(0),
             "DEEPEST": DEEPEST,
+            "DRIVEN": int(layout.driven),
             "VARIES": int(self.varies),
-            "TABLE": self.step.layout.coordinates - 1,
+            "TABLE": layout.coordinates - 1,
         }
 
 

@@ -29,24 +29,21 @@ HERMITE_BASIS = np.array([[1, 0, -3, 2], [0, 1, -2, 1], [0, 0, 3, -2], [0, 0, -1
 """Rows: monomial coefficients of value and scaled slope at the start, value and scaled slope at the end of a step."""
 
 
-def monomial_propagators(
-    a: FloatArray, b: FloatArray, step: float, degree: int, node: float
-) -> tuple[FloatArray, FloatArray]:
-    """E(c) and P_k(c) for k = 0..degree at c = node.
+def monomial_propagators(a: FloatArray, b: FloatArray, step: float, degree: int) -> list[tuple[FloatArray, FloatArray]]:
+    """E(c) and P_k(c) for k = 0..degree at both nodes c.
 
     Args:
         a: A, shape (n, n) [1/s].
         b: B, shape (n, m).
         step: h [s].
         degree: highest power.
-        node: c, between 0 and 1.
 
     Returns:
-        E, shape (n, n), and P, shape (degree + 1, n, m).
+        Per node E, shape (n, n), and P, shape (degree + 1, n, m).
     """
     n, m = b.shape
     if n == 0:
-        return np.zeros((0, 0)), np.zeros((degree + 1, 0, m))
+        return [(np.zeros((0, 0)), np.zeros((degree + 1, 0, m)))] * 2
     size = n + m * (degree + 1)
     generator = np.zeros((size, size))
     generator[:n, :n] = step * a
@@ -57,8 +54,11 @@ def monomial_propagators(
             generator[:n, start : start + m] = step * b
         else:
             generator[n + (k - 1) * m : n + k * m, start : start + m] = k * np.eye(m)
-    full = expm(node * generator)
-    return full[:n, :n], np.stack([full[:n, n + k * m : n + (k + 1) * m] for k in range(degree + 1)])
+    third = expm(NODES[0] * generator)
+    maps = [third, third @ third @ third]  # the second node is three times as far
+    return [
+        (full[:n, :n], np.stack([full[:n, n + k * m : n + (k + 1) * m] for k in range(degree + 1)])) for full in maps
+    ]
 
 
 def basis_propagators(propagators: FloatArray, basis: FloatArray) -> FloatArray:

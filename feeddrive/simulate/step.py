@@ -32,6 +32,7 @@ from feeddrive.plant.plant import Plant
 from feeddrive.simulate.algebra import cubic, newton_correction, part
 from feeddrive.simulate.propagators import NODES, RADAU
 from feeddrive.simulate.step_constants import CONVERGED, Layout, constant_shapes, unflatten
+from feeddrive.simulate.structure import without_left_out
 from feeddrive.typing import Expression
 
 
@@ -41,15 +42,18 @@ class StepModel:
 
     Attributes:
         layout: sizes.
+        needed: per node, the rows of the state without node forces that the effects read; where the motor is driven,
+            its angle and speed follow the states.
         watch: (memory, input, place, time, fixed, values) -> memory, its watched part set from the state. At a start,
             and where the fixed constants are those of another reference.
         begin: (memory, input, place, time, fixed) -> (what the coordinates at the nodes are without node forces,
             first guess of the unknowns).
         iterate: (memory, base, guess, time, fixed, values) -> (better guess, correction over its limit).
-        finish: (memory, input, place, guess, fixed, time, values) -> (memory after, error over the tolerance).
+        finish: (memory, input, place, guess, fixed) -> (memory after, error over the tolerance).
     """
 
     layout: Layout
+    needed: tuple[tuple[int, ...], tuple[int, ...]]
     watch: ca.Function
     begin: ca.Function
     iterate: ca.Function
@@ -75,7 +79,7 @@ def torque_step(plant: Plant, lagging: bool = False) -> StepModel:
 
 
 def _build(plant: Plant, driven: bool, lagging: bool) -> StepModel:
-    symbols = parameter_symbols(plant)
+    symbols = without_left_out(plant, parameter_symbols(plant))
     layout = _layout(plant, symbols, driven, lagging)
     return _Maker(plant, symbols, layout).model()
 
@@ -117,6 +121,7 @@ class _Maker:
         after, error = self._finished()
         return StepModel(
             self.layout,
+            (tuple(needed[0]), tuple(needed[1])),
             self._watch(),
             ca.Function("feeddrive_begin", begin, [base, self._first_guess()]),
             ca.Function(
@@ -124,7 +129,7 @@ class _Maker:
             ),
             ca.Function(
                 "feeddrive_finish",
-                [self.memory, self.input, self.place, self.guess, self.fixed, self.time, values],
+                [self.memory, self.input, self.place, self.guess, self.fixed],
                 [after, error],
             ),
         )
@@ -233,7 +238,10 @@ class _Maker:
 
     def _corrected(self, responses: list[Expression]) -> tuple[Expression, Expression]:
         """A Newton correction, and the largest correction over its limit."""
-        correction = newton_correction(self._residual(responses), self.guess)
+        pairs = self._pairs()
+        in_pairs = newton_correction(self._residual(responses)[pairs], self.guess[pairs])
+        correction = ca.SX.zeros(len(pairs), 1)
+        correction[pairs] = in_pairs
         improved = self.guess - correction
         count = 2 * (self.count or self.layout.bristles)
         ratios = []
@@ -244,6 +252,12 @@ class _Maker:
         for ratio in ratios:
             largest = ca.fmax(largest, ratio)
         return improved, largest
+
+    def _pairs(self) -> list[int]:
+        """The unknowns, each quantity at both nodes: first the bristles, which their own equations hold best."""
+        m, nz = self.count, self.layout.bristles
+        bristles = [2 * m + node * nz + k for k in range(nz) for node in range(2)]
+        return [*bristles, *(node * m + k for k in range(m) for node in range(2))]
 
     def _first_guess(self) -> Expression:
         """Node forces on the parabola of the last step, bristles where they are."""
@@ -257,12 +271,13 @@ class _Maker:
 
     def _finished(self) -> tuple[Expression, Expression]:
         m = self.count
-        responses = [self._free_response(i) for i in range(2)]
-        end = self._node_state(1, responses[1])
+        end = self._node_state(1, self._free_response(1))
         if m:
             first, second = part(self.guess, 0, m), part(self.guess, m, m)
-        else:
-            first, second = (found.bristle_rates for found in self._node_effects(responses))
+        else:  # rates of the bristles, from what Radau made of them
+            z0 = part(self.memory, self.layout.states, self.layout.bristles)
+            one, two = self._node_bristles(0) - z0, self._node_bristles(1) - z0
+            first, second = (1.5 * one + 0.5 * two) / self.step, (2.5 * two - 4.5 * one) / self.step
         missed = self._history(0) - 1.5 * first + 0.5 * second
         curvature = missed / self.step**2
         change = missed - self._history(1) * self.step**2

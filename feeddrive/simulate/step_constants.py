@@ -20,7 +20,7 @@ import numpy as np
 
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
-from feeddrive.simulate.propagators import HERMITE_BASIS, NODE_BASIS, NODES, basis_propagators, monomial_propagators
+from feeddrive.simulate.propagators import HERMITE_BASIS, NODE_BASIS, basis_propagators, monomial_propagators
 from feeddrive.typing import Expression, FloatArray
 
 FORGETTING = 100.0
@@ -198,10 +198,13 @@ def step_constants(linear: Linear, layout: Layout, step: float, share: float, to
     """
     blocks: list[FloatArray] = []
     curved = np.zeros((layout.states, len(layout.forced)))
-    for node in NODES:
-        exponential, on_force = monomial_propagators(linear.a, linear.on_force, step, 2, node)
+    count, degree = len(layout.forced), 3 if layout.driven else 2
+    both = np.hstack([linear.on_force, linear.on_input])
+    for exponential, monomials in monomial_propagators(linear.a, both, step, degree):
+        on_force, on_input = monomials[:3, :, :count], monomials[:, :, count:]
         on_nodes = basis_propagators(on_force[:2], NODE_BASIS)
-        blocks += [exponential, _input_propagator(linear, layout, step, node), on_nodes[0], on_nodes[1]]
+        from_input = _of_cubic(on_input, step) if layout.driven else on_input[0]
+        blocks += [exponential, from_input, on_nodes[0], on_nodes[1]]
         curved = basis_propagators(on_force, _CURVATURE[None, :])[0]
     blocks.append(np.array([step, share, linear.reference]))
     blocks += _weights(linear, layout, step, curved, tolerance)
@@ -233,13 +236,10 @@ def _energy_norm(linear: Linear, columns: FloatArray) -> FloatArray:
     return norm
 
 
-def _input_propagator(linear: Linear, layout: Layout, step: float, node: float) -> FloatArray:
-    if not layout.driven:
-        on_held: FloatArray = monomial_propagators(linear.a, linear.on_input, step, 0, node)[1][0]
-        return on_held
-    # value, rate and acceleration of the cubic are polynomials in the same four end values
+def _of_cubic(monomials: FloatArray, step: float) -> FloatArray:
+    """Response to (value, rate) at both ends of the motor's cubic, shape (n, 4)."""
+    # value, rate and acceleration are polynomials in the same four end values
     basis = [HERMITE_BASIS, _derivative(HERMITE_BASIS) / step, _derivative(_derivative(HERMITE_BASIS)) / step**2]
-    monomials = monomial_propagators(linear.a, linear.on_input, step, 3, node)[1]
     parts = [basis_propagators(monomials[:, :, k : k + 1], basis[k])[:, :, 0] for k in range(3)]
     response: FloatArray = np.sum(parts, axis=0).T * np.array([1.0, step, 1.0, step])
     return response

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import lru_cache
 from typing import TypeVar, TypeVarTuple
 
+import casadi as ca
+
 from feeddrive.effects.base import Effect
+from feeddrive.plant.equations import Symbols
 from feeddrive.plant.plant import Plant
 
 Options = TypeVarTuple("Options")
@@ -58,10 +62,26 @@ def forget_machines() -> None:
 
 
 def structure_key(plant: Plant) -> tuple[object, ...]:
-    """What makes two plants the same equations: chain, and per effect its name, port and table lengths."""
+    """What makes two plants the same equations: chain; per effect its name, port, table lengths and parts left out."""
     return (plant.chain.key, *(_effect_key(effect) for effect in plant.effects))
 
 
 def _effect_key(effect: Effect) -> tuple[object, ...]:
     lengths = tuple(len(value) if isinstance(value, tuple) else 1 for value in effect.values.values())
-    return (effect.name, str(effect.port), effect.label, lengths)
+    return (effect.name, str(effect.port), effect.label, lengths, left_out(effect))
+
+
+def left_out(effect: Effect) -> tuple[str, ...]:
+    """Keys of an effect that may be left out, and are: their value is the default, 0."""
+    return tuple(
+        p.key for p in effect.parameters if p.default == 0.0 and not p.table and effect.values.get(p.key) == 0.0
+    )
+
+
+def without_left_out(plant: Plant, symbols: Symbols) -> Symbols:
+    """The symbols with a plain 0 for what is left out, so that nothing is computed for it; the vector stays."""
+    effects = {
+        effect.label: {**symbols.effects[effect.label], **dict.fromkeys(left_out(effect), ca.SX(0))}
+        for effect in plant.effects
+    }
+    return replace(symbols, effects=effects)
