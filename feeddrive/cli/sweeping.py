@@ -111,7 +111,7 @@ def _finish(sweep: Sweep, wanted: Wanted) -> None:
         )
     shown = _metrics(found, wanted.metrics)
     if out is not None:
-        _draw(found, shown, out)
+        _draw(sweep, shown, out)
     tables = [] if wanted.as_json else _tables(sweep, shown)
     if not wanted.as_json and out is not None:
         typer.echo(f"table.csv, results.json and sweep.png are in {out}")
@@ -125,11 +125,11 @@ def _metrics(found: SweepTable, names: list[str]) -> list[str]:
     return list(dict.fromkeys(names)) or main_metrics(found, MOST_METRICS)
 
 
-def _draw(found: SweepTable, shown: list[str], out: Path) -> None:
+def _draw(sweep: Sweep, shown: list[str], out: Path) -> None:
     from feeddrive.report.drawing import render
     from feeddrive.report.figure_sweep import sweep_figure
 
-    write_bytes_atomically(out / "sweep.png", render(sweep_figure(found, shown)).png)
+    write_bytes_atomically(out / "sweep.png", render(sweep_figure(sweep.design.path.stem, sweep.table, shown)).png)
 
 
 def _tables(sweep: Sweep, shown: list[str]) -> list[Table]:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from textwrap import wrap
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from feeddrive.report.drawing import AFTER, BEFORE, MEASURED, NOISE, ReportFigure, dress, new_figure
-from feeddrive.report.words import plain
+from feeddrive.report.words import figure_text, plain
 from feeddrive.simulate.sweep_table import SweepRow, SweepTable
 from feeddrive.simulate.sweep_values import Parameter
 from feeddrive.typing import FloatArray
@@ -17,20 +18,26 @@ from feeddrive.unit_display import shown_unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.colors import Normalize
     from matplotlib.figure import Figure
 
 _MOST_COLUMNS = 4
 """Parameters side by side; the figure names those that have no place."""
+
+_DECADE = 10.0
+_LETTERS = 115
+"""Of a line of the title."""
 
 _MANY_WORDS = 6
 _RUNS_OF_A_SCATTER = 400
 """Runs up to which points are drawn full."""
 
 
-def sweep_figure(table: SweepTable, metrics: Sequence[str]) -> ReportFigure:
+def sweep_figure(name: str, table: SweepTable, metrics: Sequence[str]) -> ReportFigure:
     """One figure of a sweep.
 
     Args:
+        name: of the scenario.
         table: with at least one finished run.
         metrics: names out of `table.units`, one to four.
     """
@@ -38,15 +45,24 @@ def sweep_figure(table: SweepTable, metrics: Sequence[str]) -> ReportFigure:
     count = len(table.parameters)
     draw: Callable[[SweepTable, Sequence[str]], Figure]
     draw = _maps if count == 2 and not drawn else _curves if count == 1 else _multiples
+    text = _caption(table, metrics, bars=draw is _multiples)
+    figure = draw(table, metrics)
+    title = "\n".join(wrap(figure_text(f"{name}: {text}"), _LETTERS))
+    figure.suptitle(title, fontsize=9.5, x=0.01, ha="left")
+    return ReportFigure("sweep", "Metrics over the varied values", text, figure)
+
+
+def _caption(table: SweepTable, metrics: Sequence[str], bars: bool) -> str:
     failed = len(table.rows) - len(table.finished)
     text = f"{len(table.rows)} runs"
     if failed:
         text += f", {failed} failed (orange crosses; the reasons are in the table)"
-    if draw is _multiples:
-        text += ". " + ("Bar" if not drawn else "Bar, of listed values") + ": mean over all other values"
-        left_out = [one.key for one in table.parameters[_MOST_COLUMNS:]]
-        text += f". Not shown: {', '.join(left_out)}" if left_out else ""
-    return ReportFigure("sweep", "Metrics over the varied values", text, draw(table, metrics))
+    if any(row.metrics.get(name) is None for row in table.finished for name in metrics):
+        text += "; nothing drawn, or grey: never reached"
+    if bars and not all(one.random for one in table.parameters):
+        text += "; bar: mean over all other values"
+    left_out = [one.key for one in table.parameters[_MOST_COLUMNS:]] if bars else []
+    return f"{text}; not shown: {', '.join(left_out)}" if left_out else text
 
 
 def _scaled(table: SweepTable, name: str) -> tuple[FloatArray, str]:
@@ -54,8 +70,8 @@ def _scaled(table: SweepTable, name: str) -> tuple[FloatArray, str]:
     values = np.array([_number(row.metrics.get(name)) for row in table.rows])
     largest = float(np.nanmax(np.abs(values))) if np.isfinite(values).any() else 0.0
     factor, _, unit = shown_unit(largest, table.units[name])
-    label = plain(name.replace(".", " "))
-    return factor * values, f"{label} [{unit}]" if unit else label
+    label = plain(name.replace(".", " ", 1))
+    return factor * values, f"{label}\n[{unit}]" if unit else label
 
 
 def _number(value: float | None) -> float:
@@ -74,8 +90,9 @@ def _places(one: Parameter, rows: Sequence[SweepRow], column: int) -> FloatArray
     return np.array([float(one.values.index(value)) for value in values])
 
 
-def _name(one: Parameter, long: bool = True) -> str:
-    words = plain(one.key.replace(".", " ") if long else one.key.rpartition(".")[2])
+def _name(one: Parameter, between: str = " ") -> str:
+    """The last two words of a key and the unit."""
+    words = between.join(plain(word) for word in one.key.split(".")[-2:])
     return f"{words} [{one.unit}]" if one.unit not in ("", "1") else words
 
 
@@ -91,18 +108,27 @@ def _word_ticks(axes: Axes, one: Parameter, vertical: bool = False) -> None:
             axes.tick_params(axis="x", rotation=60)
 
 
+def _labelled(axes: Axes, x_label: str, y_label: str, title: str = "") -> None:
+    """The look of all figures, with labels of two lines."""
+    dress(axes, "", "", title)
+    across, up = ("\n".join(figure_text(line) for line in label.split("\n")) for label in (x_label, y_label))
+    axes.set_xlabel(across, fontsize=9)
+    axes.set_ylabel(up, fontsize=9)
+
+
 def _curves(table: SweepTable, metrics: Sequence[str]) -> Figure:
     (one,) = table.parameters
-    figure = new_figure(1.0 + 1.7 * len(metrics))
+    figure = new_figure(1.0 + 1.8 * len(metrics))
     places = _places(one, table.rows, 0)
     order, mark = np.argsort(places, kind="stable"), "o" if len(places) <= 60 else ""
     line = "" if one.random or not one.unit else "-"
     panels = figure.subplots(len(metrics), 1, sharex=True, squeeze=False)[:, 0]
     for axes, name in zip(panels, metrics, strict=True):
         values, label = _scaled(table, name)
-        axes.plot(places[order], values[order], marker=mark or ("." if not line else ""), ls=line, color=AFTER, ms=4)
+        axes.plot(places[order], values[order], marker=mark or ("." if not line else ""), ls=line, color=AFTER, ms=4,
+                  clip_on=False)  # fmt: skip
         _crosses(axes, places[_failed(table)])
-        dress(axes, _name(one) if axes is panels[-1] else "", label)
+        _labelled(axes, _name(one) if axes is panels[-1] else "", label)
         _from_zero(axes, values)
     _word_ticks(panels[-1], one)
     return figure
@@ -130,7 +156,7 @@ def _maps(table: SweepTable, metrics: Sequence[str]) -> Figure:
     panels = figure.subplots(lines, columns, squeeze=False).ravel()
     for axes, name in zip(panels, metrics, strict=False):
         _map(figure, axes, table, name)
-        dress(axes, _name(across), _name(up))
+        _labelled(axes, _name(across), _name(up))
         axes.grid(False)
         _word_ticks(axes, across)
         _word_ticks(axes, up, vertical=True)
@@ -141,6 +167,9 @@ def _maps(table: SweepTable, metrics: Sequence[str]) -> Figure:
 
 def _map(figure: Figure, axes: Axes, table: SweepTable, name: str) -> None:
     """One metric over two parameters, a field for each run."""
+    from matplotlib.colors import LogNorm
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
     values, label = _scaled(table, name)
     places = [_places(one, table.rows, column) for column, one in enumerate(table.parameters)]
     levels = [np.unique(place) for place in places]
@@ -149,12 +178,27 @@ def _map(figure: Figure, axes: Axes, table: SweepTable, name: str) -> None:
     grid[at[1], at[0]] = values
     edges = [_edges(level) for level in levels]
     axes.set_facecolor("#dddddd")
-    fields = axes.pcolormesh(edges[0], edges[1], np.ma.masked_invalid(grid), cmap="viridis", rasterized=True)
+    known = np.ma.masked_invalid(grid)
+    fields = axes.pcolormesh(edges[0], edges[1], known, cmap="viridis", norm=_shading(values), rasterized=True)
     bar = figure.colorbar(fields, ax=axes)
-    bar.set_label(label, fontsize=9)
-    bar.ax.tick_params(labelsize=8)
+    bar.set_label(figure_text(label.replace("\n", " ")), fontsize=9)
+    bar.ax.tick_params(labelsize=8, which="both")
+    if isinstance(fields.norm, LogNorm):
+        bar.ax.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    bar.ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    bar.ax.yaxis.set_minor_formatter(NullFormatter())
     failed = _failed(table)
     axes.plot(places[0][failed], places[1][failed], "x", color=BEFORE, ms=5)
+
+
+def _shading(values: FloatArray) -> Normalize:
+    """Logarithmic where the values are positive over more than a decade."""
+    from matplotlib.colors import LogNorm, Normalize
+
+    known = values[np.isfinite(values)]
+    if len(known) and known.min() > 0 and known.max() > _DECADE * known.min():
+        return LogNorm(known.min(), known.max())
+    return Normalize(known.min(), known.max()) if len(known) else Normalize(0, 1)
 
 
 def _edges(levels: FloatArray) -> FloatArray:
@@ -165,7 +209,7 @@ def _edges(levels: FloatArray) -> FloatArray:
 
 def _multiples(table: SweepTable, metrics: Sequence[str]) -> Figure:
     shown = table.parameters[:_MOST_COLUMNS]
-    figure = new_figure(0.7 + 1.9 * len(metrics))
+    figure = new_figure(0.9 + 1.9 * len(metrics))
     panels = figure.subplots(len(metrics), len(shown), sharey="row", sharex="col", squeeze=False)
     for line, name in enumerate(metrics):
         values, label = _scaled(table, name)
@@ -177,7 +221,7 @@ def _multiples(table: SweepTable, metrics: Sequence[str]) -> Figure:
             _crosses(axes, places[_failed(table)])
             title = _rank_text(places, values) if random else ""
             last = line == len(metrics) - 1
-            dress(axes, _name(one, long=False) if last else "", label if column == 0 else "", title)
+            _labelled(axes, _name(one, between="\n") if last else "", label if column == 0 else "", title)
             if not random:
                 _level_means(axes, places, values)
             _word_ticks(axes, one)

@@ -57,6 +57,9 @@ class SweepTable:
 
 
 _MAIN_OF_EACH = 2
+_SAME = 1e-3
+"""Share of its size by which a metric must vary to be worth a look."""
+
 _WHOLE_RUN = ("following_error.maximum", "motor_torque.maximum")
 
 
@@ -70,12 +73,18 @@ def main_metrics(table: SweepTable, most: int) -> list[str]:
     whole = tuple(name.partition(".")[0] + "." for name in _WHOLE_RUN)
     for name in (*(name for name in table.units if not name.startswith(whole)), *_WHOLE_RUN):
         stem = name.partition(".")[0]
-        values = [row.metrics.get(name) for row in table.finished]
-        if taken.get(stem, 0) >= _MAIN_OF_EACH or len(set(values)) < 2 or set(values) == {None}:
+        if taken.get(stem, 0) >= _MAIN_OF_EACH or not _varies([row.metrics.get(name) for row in table.finished]):
             continue
         taken[stem] = taken.get(stem, 0) + 1
         found.append(name)
     return found[:most] or [_WHOLE_RUN[0]]
+
+
+def _varies(values: Sequence[float | None]) -> bool:
+    known = [value for value in values if value is not None]
+    if not known or len(known) < len(values):
+        return bool(known)
+    return max(known) - min(known) > _SAME * max(abs(value) for value in known)
 
 
 def table_of(design: Design, runs: Sequence[Mapping[str, Any]]) -> SweepTable:
