@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from functools import cache
 
 import numpy as np
 import numpy.typing as npt
@@ -11,7 +12,7 @@ import pytest
 from scipy.interpolate import CubicSpline
 
 from tests.analytic.frictionless import DAMPED, FRICTIONLESS, SAMPLE, moving, run
-from tests.generator.axis import AXES, BENCH, Sensors
+from tests.generator.axis import BENCH, Sensors
 from tests.generator.effects import (
     ChannelDelay,
     LeadErrorCumulative,
@@ -21,8 +22,8 @@ from tests.generator.effects import (
     StiffnessVsPosition,
     ThermalGrowth,
 )
-from tests.generator.pair import profiles
-from tests.generator.recording import simulate
+from tests.generator.profile import validate_profile
+from tests.generator.recording import QUICK_STEP, simulate
 from tests.generator.transmission import spring
 
 Array = npt.NDArray[np.float64]
@@ -80,11 +81,12 @@ def test_thermal_growth() -> None:
 NOISELESS = Sensors(torque_noise=0.0, encoder_bits=44, scale_step=1e-14, scale_noise=0.0)
 
 
-def recorded(axis: str, *effects: ChannelDelay) -> dict[str, Array]:
+@cache
+def recorded(*effects: ChannelDelay) -> dict[str, Array]:
     """Return a noiseless recording of 6 s without the chirp."""
-    quiet = dataclasses.replace(AXES[axis], sensors=NOISELESS)
-    planted = PlantedEffects(effects)
-    return simulate(quiet, planted, profiles(quiet, planted, (6.0, 6.0))[1].without_chirp(), seed=1)
+    quiet = dataclasses.replace(BENCH, sensors=NOISELESS)
+    profile = validate_profile(quiet, 6.0).without_chirp()
+    return simulate(quiet, PlantedEffects(effects), profile, seed=1, longest_step=QUICK_STEP)
 
 
 def at(values: Array, shift: float) -> Array:
@@ -97,7 +99,7 @@ def at(values: Array, shift: float) -> Array:
 @pytest.mark.parametrize("channel", ["motor_angle", "table_position"])
 def test_late_position(channel: str, delay: float) -> None:
     """The row at t holds the position at t - delay, and nothing else changes."""
-    plain, late = recorded("bench"), recorded("bench", ChannelDelay(channel, delay))
+    plain, late = recorded(), recorded(ChannelDelay(channel, delay))
     scale = R if channel == "motor_angle" else 1.0
     # A spline between samples is good to 2.5 nm where the table stops; a sample at full speed is 150 µm.
     assert np.max(np.abs(late[channel][20:-20] - at(plain[channel], -delay))) * scale < 5e-9
@@ -107,7 +109,7 @@ def test_late_position(channel: str, delay: float) -> None:
 @pytest.mark.parametrize("delay", [1.5e-3, 0.3e-3, 1.3e-3])
 def test_late_torque(delay: float) -> None:
     """Whole samples move the torque's rows down; the rest shows as positions read that much after it changed."""
-    plain, late = recorded("bench"), recorded("bench", ChannelDelay("motor_torque", delay))
+    plain, late = recorded(), recorded(ChannelDelay("motor_torque", delay))
     rows = math.floor(delay / SAMPLE + 1e-9)
     assert np.array_equal(late["motor_torque"][rows:], plain["motor_torque"][: plain["motor_torque"].size - rows])
     # As above.
