@@ -36,7 +36,7 @@ from feeddrive.errors import InputError
 from feeddrive.servo.filters import Filter
 
 _MOST_TICKS = 1000
-"""Of dead time: each is a state of the loop."""
+"""Of dead time, each of which is a state of the loop, and per position tick."""
 
 KV_UNIT = 1000.0 / 60.0
 """1/s per (m/min)/mm."""
@@ -123,6 +123,9 @@ class Cascade:
         _refuse_unless(self.position_divider >= 1, "position_divider", "write 1 or more")
         _refuse_unless(self.feed_forward.smoothing_speed > 0, "smoothing_speed", "write a value above zero")
         _refuse_unless(self.tracking_time > self.sample_time, "tracking_time", "write more than the sample time")
+        if self.position_divider > _MOST_TICKS:
+            what = f"the position loop is {self.position_divider} times slower than the velocity loop"
+            raise InputError(what, "controller.position_rate", f"at most {_MOST_TICKS} times is possible")
         if self.dead_time > _MOST_TICKS * self.sample_time:
             what = f"a dead time of {self.dead_time:g} s is more than {_MOST_TICKS} ticks"
             raise InputError(what, "controller.dead_time", "check its unit")

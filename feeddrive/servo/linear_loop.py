@@ -90,11 +90,10 @@ def closed_loop(plant: Plant, cascade: Cascade, velocity: float = MOVING, positi
     """
     controller = cascade_controller(cascade)
     machine = sampled_plant(plant, cascade, velocity, position)
-    steps = [
-        _tick(machine, _Linear.of(controller, cascade.position_divider + k)) for k in range(cascade.position_divider)
-    ]
-    whole = steps[0]
-    for step in steps[1:]:
+    ticks = cascade.position_divider
+    # the ticks between two of the position loop are all alike
+    whole, step = (_tick(machine, _Linear.of(controller, tick)) for tick in (ticks, ticks + 1))
+    for _ in range(ticks - 1):
         whole = Matrices(step.a @ whole.a, step.a @ whole.b + step.b, whole.c, whole.d)
     measured = _position_row(cascade, whole)
     names = (*OUTPUTS, *controller.signals, "measured_position")
