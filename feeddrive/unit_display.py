@@ -13,6 +13,7 @@ _SCALES: dict[str, tuple[tuple[float, float, str], ...]] = {
     "m/s": ((0.0, 1e6, "µm/s"), (1e-5, 1e3, "mm/s"), (1e-3, 60.0, "m/min")),
     "rad": ((0.0, 180 / math.pi, "°"),),
     "rad/s": ((0.0, 30 / math.pi, "rev/min"),),
+    "m rad/s": ((0.0, 3e4 / math.pi, "mm rev/min"),),
     "Hz": ((0.0, 1.0, "Hz"), (1e4, 1e-3, "kHz")),
     "W": ((0.0, 1.0, "W"), (1e4, 1e-3, "kW")),
     "Pa": ((0.0, 1.0, "Pa"), (1e5, 1e-6, "MPa"), (1e9, 1e-9, "GPa")),

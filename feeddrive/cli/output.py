@@ -63,9 +63,12 @@ def warnings_as_lines() -> Iterator[None]:
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", ValidityWarning)
         yield
+    told: set[str] = set()
     for warning in caught:
         if issubclass(warning.category, ValidityWarning):
-            typer.echo(f"warning: {warning.message}", err=True)
+            if str(warning.message) not in told:  # a plant is made more than once on the way to its figures
+                typer.echo(f"warning: {warning.message}", err=True)
+            told.add(str(warning.message))
         else:
             warnings.warn_explicit(warning.message, warning.category, warning.filename, warning.lineno)
 

@@ -60,6 +60,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.plant.chain import CHAINS, Chain, ChainValue, DistributedScrew, Rigid, ThreeInertias
 from feeddrive.plant.chain_sections import positive, read_chain
@@ -75,7 +76,7 @@ from feeddrive.plant.ratings import RATINGS, read_data
 from feeddrive.plant.stroke import read_stroke
 from feeddrive.quantity import format_quantity
 
-__all__ = ["FORMAT", "plant_from_entries", "plant_text_with_effects", "read_plant", "section_key"]
+__all__ = ["FORMAT", "declares_heat_alone", "plant_from_entries", "plant_text_with_effects", "read_plant", "section_key"]
 
 FORMAT = "feeddrive-plant/1"
 _SECTIONS = (
@@ -102,7 +103,7 @@ _USUAL = {
     "screw_inertia": (1e-8, 10.0),
     "torsional_stiffness": (1.0, 1e8),
     "axial_stiffness": (1e5, 1e11),
-    "table_mass": (1e-2, 1e5),
+    "table_mass": (0.2, 1e5),
     "drive_stiffness": (1.0, 1e8),
     "nut_stiffness": (1e6, 1e11),
     "bearing_stiffness": (1e6, 1e11),
@@ -147,7 +148,7 @@ def plant_from_entries(entries: Mapping[str, Any], path: Path) -> Plant:
     chain, drive = read_chain(top)
     motor = top.table("motor")
     limit = positive(motor, "torque_limit", "N m", "torque_limit") if "torque_limit" in motor.entries else float("inf")
-    declared = read_effects(top)
+    declared = read_effects(top, EFFECTS)
     effects = (*declared, *derived_effects(top, declared))
     refuse_what_cannot_compose(effects, chain.elastic, top.where)
     plant = Plant(
@@ -168,6 +169,11 @@ def plant_from_entries(entries: Mapping[str, Any], path: Path) -> Plant:
     return plant
 
 
+def declares_heat_alone(entries: Mapping[str, Any]) -> bool:
+    """Whether a plant file has a thermal section and no structure: no chain can be made of it, only a thermal plant."""
+    return "thermal" in entries and "structure" not in entries
+
+
 def section_key(value: ChainValue) -> str:
     """Key of a chain value inside its section: `motor_inertia` is `inertia` in [motor]."""
     return value.section_key
@@ -177,6 +183,9 @@ def _top(entries: Mapping[str, Any], path: Path) -> Table:
     where = str(path)
     if entries.get("format") != FORMAT:
         raise InputError("is not a plant file of this version", where, f'write format = "{FORMAT}" in its first line')
+    if declares_heat_alone(entries):
+        what = "declares heat alone, and this needs a machine with masses and drives"
+        raise InputError(what, where, 'name another plant, or add structure = "..." with its sections')
     unread = Table(entries, where, Origins())
     unread.refuse_unknown(_TOP_KEYS)
     unread.text("description", "")

@@ -161,7 +161,7 @@ def test_critical_speed_and_buckling_of_a_catalogue() -> None:
 
 def test_effect_on_a_value_that_the_structure_lacks() -> None:
     with pytest.raises(InputError, match="stiffness_deviation changes axial_stiffness, which the structure"):
-        KIMM.with_effects(EFFECTS["stiffness_deviation"].of(factor=0.9))
+        read_plant(plants_folder() / "emps.toml").with_effects(EFFECTS["stiffness_deviation"].of(factor=0.9))
 
 
 def test_force_is_handed_to_friction_and_refused_in_a_rigid_structure() -> None:
@@ -197,3 +197,32 @@ def test_every_value_of_the_chain_may_be_written_instead(tmp_path: Path) -> None
     assert plant.chain == KIMM.chain
     assert plant.drive is None
     assert stiffness_budget(plant, TESTED).total == pytest.approx(stiffness_budget(KIMM, TESTED).total, rel=1e-9)
+
+
+GEOMETRY = """ball_diameter = "5.556 mm"
+rail_conformity = {conformity}
+carriage_conformity = 0.52
+contact_angle = "{angle}"
+preload_oversize = "5 µm"
+balls_per_row = 12"""
+
+
+def _with_geometry(tmp_path: Path, conformity: str, angle: str) -> Path:
+    """hsr_axis with its carriage described by geometry in place of the name."""
+    text = (plants_folder() / "hsr_axis.toml").read_text(encoding="utf-8")
+    written = GEOMETRY.format(conformity=conformity, angle=angle)
+    changed = tmp_path / "geometry.toml"
+    changed.write_text(text.replace('carriage = "HSR-30R"', written), encoding="utf-8")
+    return changed
+
+
+def test_a_carriage_may_be_written_as_its_geometry(tmp_path: Path) -> None:
+    named = read_plant(plants_folder() / "hsr_axis.toml")
+    written = read_plant(_with_geometry(tmp_path, "0.52", "45 deg"))
+    assert written.effect_values() == named.effect_values()  # the same numbers reach the same formulas
+
+
+@pytest.mark.parametrize(("conformity", "angle"), [("0.49", "45 deg"), ("0.52", "0 deg"), ("1.2", "45 deg")])
+def test_impossible_grooves_are_refused_with_the_range(tmp_path: Path, conformity: str, angle: str) -> None:
+    with pytest.raises(InputError, match="write a value between"):
+        read_plant(_with_geometry(tmp_path, conformity, angle))
