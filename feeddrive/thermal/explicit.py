@@ -3,8 +3,9 @@
     θ' = θ + Δt C⁻¹ (b - K_p θ)        (paper 002, equations (7), (10), (13))
 
 with the matrix K_p of the place p where the nut stands. It is stable, and free of overshoot, while every node keeps a
-non-negative share of its own temperature, Δt ≤ min C/K_ii (equation (14)). A step is one sparse product; the constant 1
-and the heat lost to the air ride along as two more states, so that the energy is audited in every run.
+non-negative share of its own temperature, Δt ≤ min C/K_ii (equation (14)). The heat lost to the air is summed step by
+step, so that the energy is audited in every run. The steps are taken by `marching`: 180 min on the paper's own grid,
+2.2 million steps of 4400 nodes, in a fraction of a minute where there is a C compiler, else in minutes.
 """
 
 from __future__ import annotations
@@ -12,17 +13,17 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from itertools import cycle, islice
 
 import numpy as np
 import scipy.sparse as sparse
 
 from feeddrive.errors import InputError
 from feeddrive.thermal.full_model import Discretisation, model_of
+from feeddrive.thermal.marching import March, Progressing, Step, march_of
 from feeddrive.thermal.model import HeatModel, Path
 from feeddrive.thermal.rig import Travel, refuse_unless, refuse_unless_positive
 from feeddrive.thermal.system import HeatSystem
-from feeddrive.typing import Expression, FloatArray
+from feeddrive.typing import FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,10 +108,10 @@ def run_explicitly(
     limit = min(stability_limit(system) for system in systems)
     dwell = _dwell(places, feed, limit)
     Δt, in_cell = _step(step, limit, dwell)
-    products = [_product(system, heats, Δt) for system in systems]
-    there_and_back = [*products, *products[-2:0:-1]]
+    march = march_of([_explicit_step(system, heats, Δt) for system in systems])
+    there_and_back = [*range(len(systems)), *range(len(systems) - 2, 0, -1)]
     averaged = model_of(parts, travel)
-    return _march(there_and_back, averaged, averaged.at(conductances), heats, Δt, in_cell, duration, reports)
+    return _march(march, there_and_back, averaged, averaged.at(conductances), heats, Δt, in_cell, duration, reports)
 
 
 def _dwell(places: FloatArray, feed: float, limit: float) -> float:
@@ -129,8 +130,7 @@ def _step(wanted: float | None, limit: float, dwell: float) -> tuple[float, int]
     return dwell / count, count
 
 
-def _product(system: HeatSystem, heats: Mapping[str, float], Δt: float) -> Expression:
-    """The step's matrix on (θ, 1, heat lost)."""
+def _explicit_step(system: HeatSystem, heats: Mapping[str, float], Δt: float) -> Step:
     given = np.zeros(len(system.input_names))
     for name, value in heats.items():
         given[system.column(name)] = value
@@ -141,18 +141,12 @@ def _product(system: HeatSystem, heats: Mapping[str, float], Δt: float) -> Expr
     surroundings = np.array([name in ("ambient", "coolant") for name in system.input_names])
     gained = float(np.sum(system.gains[:, surroundings] @ given[surroundings]))
     leak[np.abs(leak) < 1e-12 * system.conductance.diagonal()] = 0.0
-    return sparse.block_array(
-        [
-            [inner, sparse.csr_array((rate * (system.gains @ given))[:, None]), None],
-            [None, np.ones((1, 1)), None],
-            [sparse.csr_array(Δt * leak[None, :]), np.array([[-Δt * gained]]), np.ones((1, 1))],
-        ]
-    ).tocsr()
+    return Step(inner.tocsr(), rate * (system.gains @ given), Δt * leak, Δt * gained)
 
 
 def _march(
-    there_and_back: list[Expression], model: HeatModel, system: HeatSystem, heats: Mapping[str, float], Δt: float,
-    in_cell: int, duration: float, reports: int,
+    march: March, there_and_back: list[int], model: HeatModel, system: HeatSystem, heats: Mapping[str, float],
+    Δt: float, in_cell: int, duration: float, reports: int,
 ) -> ExplicitRun:  # fmt: skip
     in_period = len(there_and_back) * in_cell
     period_time = in_period * Δt
@@ -160,25 +154,20 @@ def _march(
     short = f"{duration:g} s is less than a period of the nut"
     refuse_unless(periods >= 1, short, "duration", f"write at least {period_time:.4g} s")
     reported = set(np.linspace(0, periods, min(reports, periods) + 1).astype(int)[1:] - 1)
-    state = np.zeros(system.order + 2)
-    state[-2] = 1.0
+    state = Progressing(np.zeros(system.order))
     means: list[FloatArray] = []
     times: list[float] = []
     for period in range(periods):
-        wanted = period in reported
-        total = np.zeros_like(state)
-        for product in islice(cycle(there_and_back), len(there_and_back)):
-            for _ in range(in_cell):
-                state = product @ state
-                if wanted:
-                    total += state
-        if wanted:
-            means.append(total[:-2] / in_period)
+        total = np.zeros(system.order) if period in reported else None
+        for place in there_and_back:
+            march(place, in_cell, state, total)
+        if total is not None:
+            means.append(total / in_period)
             times.append((period + 0.5) * in_period * Δt)
     duration = periods * in_period * Δt
     heat_in = duration * sum(value for name, value in heats.items() if name not in ("ambient", "coolant"))
     return ExplicitRun(
         np.array(times), system.outputs(np.array(means)), system.output_names,
         np.asarray(model.profile @ means[-1]),
-        periods * in_period, Δt, heat_in, float(state[-1]), float(system.capacity @ state[:-2]),
+        periods * in_period, Δt, heat_in, state.lost, float(system.capacity @ state.rises),
     )  # fmt: skip
