@@ -248,4 +248,6 @@ def _warn_of_unusual(chain: Chain, where: str) -> None:
         if number != 0 and not low <= number <= high:
             place = f"{where}, {value.section}.{value.section_key}"
             shown = format_quantity(number, value.unit)
-            warnings.warn(f"{place}: {shown} is unusual; check its unit", ValidityWarning, stacklevel=3)
+            usual = " to ".join(format_quantity(end, value.unit) for end in (low, high))
+            text = f"{place}: {shown} is unusual, {usual} is usual; check its unit"
+            warnings.warn(text, ValidityWarning, stacklevel=3)

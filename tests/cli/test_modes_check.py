@@ -100,7 +100,7 @@ SLIPS = {
     "diameter in metres": ('diameter = "40 mm"', 'diameter = "40 m"', ["ball_screw.diameter", "not possible"]),
     "nut in N/m": ('"1499 N/µm"', '"1499 N/m"', ["nut.axial_stiffness", "not possible", "0.1 N/µm"]),
     "bearing in N/mm": ('"780 N/µm"', '"780 N/mm"', ["bearing, near.axial_stiffness", "unusual", "10 N/µm"]),
-    "mass in grams": ('mass = "134 kg"', 'mass = "134 g"', ["table.table_mass", "unusual", "0.2 kg"]),
+    "mass in grams": ('mass = "134 kg"', 'mass = "134 g"', ["table.mass", "unusual", "0.2 kg"]),
     "coupling as a torque": ('"27000 N m/rad"', '"27000 N m"', ["coupling.torsional_stiffness", "N m/rad"]),
     "ratio as a number in per cent": ("value = 0.03", "value = 3", ["damping.ratio", "0 to 1"]),
     "unknown support": ('"fixed-supported"', '"fixed-suported"', ["support.kind", 'did you mean "fixed-supported"']),
