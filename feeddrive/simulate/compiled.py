@@ -40,6 +40,16 @@ def find_compiler() -> str | None:
     return None
 
 
+@lru_cache(maxsize=1)
+def processor() -> str:
+    """What this processor can do, where Linux tells it for an x86; a binary made for it serves it alone."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        return ""
+    return next((line for line in lines if line.startswith("flags")), "")
+
+
 def compiled_run(program: Program, compiler: str) -> Run | None:
     """The driver of a program in C; None if the compiler fails or no folder can hold what it makes."""
     library = _library(source_of(program), compiler)
@@ -61,12 +71,13 @@ def source_of(program: Program) -> str:
 
 def _library(source: str, compiler: str) -> ctypes.CDLL | None:
     """The shared library, from the cache or made now."""
-    key = hashlib.sha256((source + compiler + " ".join(FLAGS)).encode()).hexdigest()[:24]
+    flags = (*FLAGS, "-march=native") if processor() else FLAGS
+    key = hashlib.sha256("\n".join([source, compiler, *flags, processor()]).encode()).hexdigest()[:24]
     for folder in _cache_folders():
         library = folder / f"{key}.so"
         try:
             if not library.exists():
-                _compile(source, compiler, library)
+                _compile(source, (compiler, *flags), library)
             return ctypes.CDLL(str(library))
         except (OSError, subprocess.CalledProcessError):
             continue
@@ -78,12 +89,12 @@ def _cache_folders() -> list[Path]:
     return [Path(base) / "feeddrive", Path(tempfile.gettempdir()) / f"feeddrive-{os.getuid()}"]
 
 
-def _compile(source: str, compiler: str, library: Path) -> None:
+def _compile(source: str, command: tuple[str, ...], library: Path) -> None:
     library.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
     with tempfile.TemporaryDirectory(dir=library.parent) as folder:
         text, made = Path(folder) / "step.c", Path(folder) / "step.so"
         text.write_text(source)
-        subprocess.run([compiler, *FLAGS, "-o", str(made), str(text), "-lm"], check=True, capture_output=True)
+        subprocess.run([*command, "-o", str(made), str(text), "-lm"], check=True, capture_output=True)
         made.replace(library)
 
 
