@@ -149,10 +149,10 @@ def _friction_map(result: ScenarioResult, wanted: Evaluation) -> tuple[FrictionP
 
 def _without_first(mask: BoolArray, count: int) -> BoolArray:
     """The mask without the first `count` samples of each of its runs, nor the last one."""
-    kept = np.array(mask, dtype=bool)
-    for shift in range(1, count + 1):
-        kept[shift:] &= mask[:-shift]
-        kept[:shift] = False
+    index = np.arange(len(mask))
+    begins = mask & ~np.concatenate([[False], mask[:-1]])
+    since = index - np.maximum.accumulate(np.where(begins, index, 0))
+    kept: BoolArray = mask & (since >= count)
     kept[:-1] &= mask[1:]
     return kept
 
