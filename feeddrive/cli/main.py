@@ -44,6 +44,8 @@ COMMANDS: dict[str, Entry] = {
     "list": Entry("list_plants", "List the machines that come with feeddrive."),
     "show": Entry("show", "Show a machine: stiffness budget, inertias, friction, modes."),
     "modes": Entry("modes", "Natural frequencies of a machine along its stroke."),
+    "bode": Entry("bode", "Frequency response, resonances and margins, of machine or loop."),
+    "tune": Entry("tune", "Recommend gains and filters of the cascade, each with its why."),
     "check": Entry("check", "Check a machine against rules of plausibility."),
     "run": Entry("run", "Run a scenario: a machine under control; figures, metrics."),
     "sweep": Entry("sweep", "Run a scenario over varied values: one table, one figure."),

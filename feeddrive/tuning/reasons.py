@@ -158,6 +158,8 @@ def _current_loop(cascade: Cascade) -> list[str]:
         lines.append(f'torque_limit = "{_exact(cascade.torque_limit)} N m"')
     if math.isfinite(cascade.speed_limit):
         lines.append(f'speed_limit = "{_exact(cascade.speed_limit)} rad/s"')
+    if cascade.torque_offset:
+        lines.append(f'torque_offset = "{_exact(cascade.torque_offset)} N m"')
     return lines
 
 

@@ -1,0 +1,59 @@
+"""Compensation from a model alone: the temperatures follow from the speed that the controller knows.
+
+It is only as good as the declared heats and films: 10 % of heat are 10 % of the error, and air that warms unseen goes
+through in full. It costs no sensor, and it is the prediction inside the observer (`thermal_observer`).
+"""
+
+from __future__ import annotations
+
+from feeddrive.thermal.model import HeatModel, Path
+from feeddrive.thermal.plant import ThermalPlant
+from feeddrive.thermal.reduction import Sizes, reduce_model
+from feeddrive.thermal.warm_up import declared_rows, run
+from feeddrive.tuning.thermal_error import TableError
+from feeddrive.typing import FloatArray
+
+ORDER = 10
+"""States of the model on the controller: 0.1 µm from the full one; 36 are within 5 nm at 13 times the work a row."""
+
+_FILMS = 1.25
+"""Range of the films beyond that from rest to the highest speed: the tolerance twice, and some."""
+
+
+def compensation_model(plant: ThermalPlant, order: int = ORDER, sizes: Sizes | None = None) -> HeatModel:
+    """The reduced model that a compensation runs: its films may vary with speed, its contact is the declared one.
+
+    Args:
+        plant: the machine.
+        order: number of states.
+        sizes: working sizes; None for those of a small axis.
+
+    Raises:
+        InputError: an order that is not possible.
+    """
+    limits = dict(plant.limits(_FILMS))
+    limits[Path.CONTACT] = (plant.contact, plant.contact)
+    limits[Path.COOLING] = (0.0, 0.0)
+    return reduce_model([plant.full_model()], limits, order, sizes)[0]
+
+
+def model_alone(
+    plant: ThermalPlant, model: HeatModel, error: TableError, step: float, speeds: FloatArray, ambient: FloatArray
+) -> FloatArray:  # fmt: skip
+    """Error of the table that the model foretells at the end of each row, (k, p) [m].
+
+    Args:
+        plant: what the file declares.
+        model: on which it runs, such as `compensation_model` gives.
+        error: of this model.
+        step: length of a row [s].
+        speeds: of the screw over each row, (k,) [rad/s].
+        ambient: recorded over each row, (k,) [degC]; all the same where it is not recorded.
+
+    Raises:
+        InputError: no rows, or series of unequal length.
+
+    Warns:
+        ValidityWarning: a speed above the highest that the plant declares.
+    """
+    return error.of(run(model, declared_rows(plant, step, speeds, ambient)))
