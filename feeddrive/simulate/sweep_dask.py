@@ -6,6 +6,7 @@ What they give is written here, so that only the units in their hands are lost w
 from __future__ import annotations
 
 import logging
+import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from importlib import import_module
@@ -17,6 +18,7 @@ from feeddrive.files import write_text_atomically
 from feeddrive.simulate.sweep_unit import Measure, run_unit
 from feeddrive.simulate.sweep_workers import Unit, Work, Workers
 
+_EXAMPLE = "give the address of a scheduler, e.g. tcp://127.0.0.1:8786"
 _PATIENCE = 10.0
 """Seconds until a scheduler that does not answer is given up."""
 
@@ -41,17 +43,20 @@ def on_cluster(address: str) -> Workers:
 
 
 def _client(address: str) -> Any:
+    where = f"--scheduler {address}"
+    if not re.fullmatch(r"(\w+://)?\S+:\d+", address):
+        raise InputError("is not an address", where, _EXAMPLE)
     try:
         distributed: Any = import_module("distributed")
     except ImportError:
         mend = "pip install 'feeddrive[dask]', or leave out --scheduler"
-        raise InputError("Dask is not installed", f"--scheduler {address}", mend) from None
+        raise InputError("Dask is not installed", where, mend) from None
     logging.getLogger("distributed").setLevel(logging.CRITICAL + 1)  # what goes wrong is told in one line instead
     try:
         return distributed.Client(address, timeout=_PATIENCE, set_as_default=False)
     except (OSError, ValueError, TypeError) as error:
         what = f"no Dask scheduler answers ({' '.join(str(error).split()) or type(error).__name__})"
-        raise InputError(what, f"--scheduler {address}", "give its address, e.g. tcp://127.0.0.1:8786") from None
+        raise InputError(what, where, _EXAMPLE) from None
 
 
 def _version_here() -> str:
@@ -77,7 +82,7 @@ def _refuse_unfit(client: Any, address: str) -> None:
 def _as_finished(client: Any, units: Sequence[Unit], address: str) -> Iterator[int]:
     distributed: Any = import_module("distributed")
     pending = {client.submit(run_unit, unit.task, pure=False): unit for unit in units}
-    for future in distributed.as_completed(list(pending)):
+    for future in distributed.as_completed(list(pending), loop=client.loop):
         unit = pending.pop(future)
         try:
             text = future.result()

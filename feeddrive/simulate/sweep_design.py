@@ -13,8 +13,10 @@ import json
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
+import feeddrive
 from feeddrive.errors import InputError
 from feeddrive.simulate.scenario_file import read_scenario
 from feeddrive.simulate.sweep_values import MOST_RUNS, Parameter, Value
@@ -32,7 +34,7 @@ class Design:
         settings: overrides of all runs.
         parameters: that are varied.
         rows: of each run, one value per parameter.
-        digest: checksum of the version, all files and all rows.
+        digest: checksum of the program, all files and all rows.
         base_digest: of the first row's scenario, by which a worker knows that it sees the same files.
     """
 
@@ -76,8 +78,18 @@ def make_design(
         for value in one.values if not one.unit else (one.values[0], one.values[-1]):
             at = (*rows[0][:place], value, *rows[0][place + 1 :])
             seen.append(scenario_digest(path, bare.overrides(at), f"--vary {one.key}"))
-    content = json.dumps([seen, [(one.key, one.unit) for one in parameters], rows])
+    content = json.dumps([_program_digest(), seen, [(one.key, one.unit) for one in parameters], rows])
     return Design(path, settings, parameters, rows, hashlib.sha256(content.encode()).hexdigest(), seen[0])
+
+
+@cache
+def _program_digest() -> str:
+    """Checksum of feeddrive's own files: runs before and behind a change of the program are not put into one table."""
+    content = hashlib.sha256()
+    for path in sorted(Path(feeddrive.__file__).parent.rglob("*")):
+        if path.suffix in (".py", ".c"):
+            content.update(path.read_bytes())
+    return content.hexdigest()
 
 
 def scenario_digest(path: Path, overrides: Mapping[str, str], where: str) -> str:

@@ -92,7 +92,7 @@ def read_cut(folder: Path, design: Design) -> Cut | None:
     if not known or content.get("format") != SWEEP_FORMAT:
         raise InputError("is not the beginning of a sweep", str(path), "name another folder for --out")
     if digest != design.digest or cut.runs != len(design.rows):
-        what = "holds another sweep: scenario, plant, values or version differ"
+        what = "holds another sweep: scenario, plant, values or program differ"
         raise InputError(what, str(folder), "name another folder for --out, or remove this one")
     return cut
 
