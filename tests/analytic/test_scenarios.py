@@ -137,6 +137,9 @@ class _StoppedError(Exception):
 def test_resumed_run_is_bit_identical(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("feeddrive.simulate.scenario_run.STRETCH", 4000)
     monkeypatch.setattr("feeddrive.simulate.scenario_run.CHECKPOINT_EVERY", 0.0)
+    monkeypatch.setattr(
+        "feeddrive.simulate.scenario_run.CHECKPOINT_SHARE", 1e9
+    )  # at every stretch, however slow the disk
     wanted, checkpoint = scenario("sine_tracking"), tmp_path / "state.npz"
     whole = run_scenario(wanted)
 
@@ -160,6 +163,9 @@ def test_resumed_run_is_bit_identical(tmp_path: Path, monkeypatch: pytest.Monkey
 def test_checkpoint_of_another_scenario_is_not_used(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("feeddrive.simulate.scenario_run.STRETCH", 1000)
     monkeypatch.setattr("feeddrive.simulate.scenario_run.CHECKPOINT_EVERY", 0.0)
+    monkeypatch.setattr(
+        "feeddrive.simulate.scenario_run.CHECKPOINT_SHARE", 1e9
+    )  # at every stretch, however slow the disk
     checkpoint = tmp_path / "state.npz"
 
     def stop(share: float) -> None:
