@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -112,13 +113,10 @@ def run_machine(machine: Machine, plant: Plant, feed: Feed, start: Position, tol
     program = machine.program
     task = _task(program, plant, feed)
     seen, report = np.empty((len(feed.fed), program.sizes["N_BEFORE"] + program.sizes["N_AFTER"])), np.zeros(REPORTS)
-    linears: dict[int, Linear] = {}
+    source = _Source(plant, program, feed.torque_lag, tolerance)
     stop = machine.run(task, start, 0, seen, report)
     while stop.status == Status.NEEDS_CONSTANTS:
-        if stop.cell not in linears:
-            reference = CELL * (task.first_cell + stop.cell) if program.varies else 0.0
-            linears[stop.cell] = linear_part(plant, program.step.layout, feed.torque_lag, reference)
-        _make_constants(task, program, linears[stop.cell], feed, stop, tolerance)
+        _make_constants(task, source, feed, stop)
         stop = machine.run(task, stop.position, stop.sample, seen, report)
     _refuse_failure(plant, feed, stop, seen)
     return Outcome(seen, stop.position, _told(report, len(seen), tolerance))
@@ -140,13 +138,39 @@ def _cells(plant: Plant) -> tuple[int, int]:
     return first, last - first + 1
 
 
-def _make_constants(task: Task, program: Program, linear: Linear, feed: Feed, stop: Stop, tolerance: float) -> None:
+class _Source:
+    """All that the constants of steps depend on, as the key under which they are kept."""
+
+    def __init__(self, plant: Plant, program: Program, torque_lag: float, tolerance: float) -> None:
+        self.plant, self.layout = plant, program.step.layout
+        self.varies, self.torque_lag, self.tolerance = program.varies, torque_lag, tolerance
+        chain = (type(plant.chain), plant.chain.key, tuple(plant.chain_values().items()))
+        self._key = (chain, self.layout, torque_lag, tolerance)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Source) and self._key == other._key
+
+    def __hash__(self) -> int:
+        return hash(self._key)
+
+
+def _make_constants(task: Task, source: _Source, feed: Feed, stop: Stop) -> None:
     """Fill in what the driver has asked for."""
+    cell = task.first_cell + stop.cell
     for part, span in enumerate(feed.spans):
-        step, share = span / 2**stop.level, 0.5**stop.level
-        constants = step_constants(linear, program.step.layout, step, share, tolerance)
-        task.fixed[part, stop.cell, stop.level] = constants
+        task.fixed[part, stop.cell, stop.level] = _constants(source, cell, float(span), stop.level)
     task.made[stop.cell, stop.level] = 1
+
+
+@lru_cache(maxsize=2048)  # of some thousand numbers each; a fit asks for the same ones again and again
+def _constants(source: _Source, cell: int, span: float, level: int) -> FloatArray:
+    linear = _linear(source, cell)
+    return step_constants(linear, source.layout, span / 2**level, 0.5**level, source.tolerance)
+
+
+@lru_cache(maxsize=256)
+def _linear(source: _Source, cell: int) -> Linear:
+    return linear_part(source.plant, source.layout, source.torque_lag, CELL * cell if source.varies else 0.0)
 
 
 def _refuse_failure(plant: Plant, feed: Feed, stop: Stop, seen: FloatArray) -> None:

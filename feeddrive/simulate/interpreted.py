@@ -20,7 +20,8 @@ CHUNKS = (512, 16)
 
 SWEEPS = 12
 COARSER = 0.02
-STRETCH_SWEEPS = 3
+STRETCH_SWEEPS = 2
+"""Newton corrections of a step in a stretch; a step that needs more is taken by Python."""
 
 
 @dataclass
@@ -79,12 +80,14 @@ class _Interpreter:
         part = task.fed[at : at + count]
         padded = part if len(part) == count else np.vstack([part, np.repeat(part[-1:], count - len(part), axis=0)])
         fixed = task.fixed[0, place.cell - task.first_cell, 0]
-        out = self.stretches[size](place.memory, place.own, padded.T, fixed, task.settings, task.values)
-        memories, owns, shown, judged = (np.array(block).T for block in out)
-        change, error = judged[: len(part)].T
+        still = np.concatenate([fixed, task.settings, task.values])
+        out = self.stretches[size](np.concatenate([place.memory, place.own]), padded.T, still)
+        states, judged = (np.array(block).T[: len(part)] for block in out)
+        memories, owns = np.split(states, [len(place.memory)], axis=1)
+        shown, (change, error) = judged[:, :-2], judged[:, -2:].T
         held = (change < 1.0) & (error <= 1.0)
         if self.program.varies:
-            starts = np.vstack([place.memory, memories[: len(part) - 1]])
+            starts = np.vstack([place.memory, memories[:-1]])
             held &= np.array([self._cell(task, memory) == place.cell for memory in starts])
         good = len(part) if held.all() else int(np.argmin(held))
         if good == 0:
@@ -171,7 +174,7 @@ def _called(function: ca.Function, *arguments: Expression) -> list[FloatArray]:
 
 
 def _stretch(program: Program, count: int) -> ca.Function:
-    """So many samples of one step each: (memory, own, fed, fixed, settings, values) -> ..., [correction, error]."""
+    """So many samples of one step each: (memory and own, fed, constants) -> (the same after, [seen, sweep, error])."""
     step = program.step
     fed_size, own_size = program.before.size1_in(2), program.before.size1_in(1)
     names = {"memory": step.layout.memory, "own": own_size, "fed": fed_size, "fixed": step.begin.size1_in(4)}
@@ -186,25 +189,11 @@ def _stretch(program: Program, count: int) -> ca.Function:
         guess, change = step.iterate(memory, base, guess, time, fixed, values)
     after, error = step.finish(memory, held, 0, guess, fixed)
     seen = ca.vertcat(shown, program.after(after, own_after, fed, settings, values))
-    one = ca.Function(
-        "one",
-        [memory, own, fed, fixed, settings, values],
-        [after, own_after, seen, ca.vertcat(change, error)],
-    )
-    return _repeated(one, count)
-
-
-def _repeated(one: ca.Function, count: int) -> ca.Function:
-    """`one` over so many samples, without wide copies of what does not change."""
-    sizes = [one.size1_in(i) for i in range(6)]
-    state = ca.MX.sym("state", sizes[0] + sizes[1])
-    fed, still = ca.MX.sym("fed", sizes[2]), [ca.MX.sym(f"still_{i}", sizes[i]) for i in (3, 4, 5)]
-    after, own_after, seen, judged = one(state[: sizes[0]], state[sizes[0] :], fed, *still)
-    body = ca.Function("body", [state, fed, *still], [ca.vertcat(after, own_after), seen, judged])
-    chunk = body.mapaccum("chunk", count)
-    memory, own = ca.MX.sym("memory", sizes[0]), ca.MX.sym("own", sizes[1])
-    series = ca.MX.sym("series", sizes[2], count)
-    wide = [ca.repmat(symbol, 1, count) for symbol in still]
-    states, seen_all, judged_all = chunk(ca.vertcat(memory, own), series, *wide)
-    split = ca.vertsplit(states, [0, sizes[0], sizes[0] + sizes[1]])
-    return ca.Function("stretch", [memory, own, series, *still], [split[0], split[1], seen_all, judged_all])
+    # one column of states and one of constants: mapaccum hands them on without a function around each sample
+    state, still = ca.vertcat(memory, own), ca.vertcat(fixed, settings, values)
+    one = ca.Function("one", [state, fed, still], [ca.vertcat(after, own_after), ca.vertcat(seen, change, error)])
+    chunk = one.mapaccum("chunk", count)
+    begin, series = ca.MX.sym("begin", one.size1_in(0)), ca.MX.sym("fed", one.size1_in(1), count)
+    constants = ca.MX.sym("still", one.size1_in(2))
+    outputs = chunk(begin, series, ca.repmat(constants, 1, count))
+    return ca.Function("stretch", [begin, series, constants], [outputs[0], outputs[1]])
