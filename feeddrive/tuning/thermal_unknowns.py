@@ -5,8 +5,8 @@ as the tolerances have, and is forgotten where no sensor sees it (a heat while t
 
 | unknown | σ | T | reasoning |
 |---|---|---|---|
-| heat of nut and bearings | 10 % | 8 h | friction coefficients of catalogues are no better; it drifts with the lubricant over a shift |
-| film of screw and seats | 10 % | 8 h | correlations of turning cylinders scatter by as much; it changes with the draught in the hall |
+| heat of nut and bearings | 10 % | 8 h | catalogues' friction is no better; it drifts with the lubricant over a shift |
+| film of screw and seats | 10 % | 8 h | correlations scatter by as much; it changes with the draught in the hall |
 | film of the nut | 10 % | 8 h | as above; the nut's surroundings are others than the screw's |
 | surroundings | 2 K | 4 h | a hall without air conditioning between morning and noon |
 | heats of no declared size | given | 8 h | such as a motor's, where one is declared |
