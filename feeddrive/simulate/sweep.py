@@ -70,6 +70,8 @@ def run_sweep(
     cut, total = read_cut(folder, design), len(design.rows)
     there = {} if cut is None else read_units(folder, design, cut)
     resumed = sum(len(runs) for runs in there.values())
+    if told is not None:
+        told(resumed, total)
     if cut is None or len(there) < cut.units:
         with workers(measure) as work:
             if cut is None:

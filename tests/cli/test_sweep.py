@@ -120,10 +120,9 @@ def _living(session: int) -> list[str]:
     return found
 
 
-def test_ended_worker_is_told_and_what_is_finished_is_kept(
+def test_missing_unit_is_done_again_and_a_foreign_one_refused(
     serial: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """All units but two are there; one of these is another sweep's, another is damaged."""
     out = tmp_path / "copy"
     shutil.copytree(serial, out)
     (out / "units" / "0003.json").unlink()
