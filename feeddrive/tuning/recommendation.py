@@ -24,6 +24,9 @@ from feeddrive.tuning.largest_gain import GainLimit
 from feeddrive.tuning.position_loop import position_gain
 from feeddrive.tuning.velocity_loop import VelocityGains, velocity_gains
 
+USABLE = 1.0
+"""Least K_v worth recommending [1/s]; machine tools have 10 to 100."""
+
 _LOWERED = 0.98
 _TRIES = 12
 _POINTS = 4000
@@ -92,6 +95,9 @@ def recommend(plant: Plant, drive: Cascade, cases: Sequence[Case], demand: Deman
     )  # fmt: skip
     with_velocity = _lowered_velocity(plant, with_velocity, cases, demand)
     limit = position_gain(plant, with_velocity, cases, demand)
+    if limit.gain < USABLE:
+        what = f"only K_v = {limit.gain:.2g} 1/s keeps {demand.phase:g}° and {demand.gain:g} dB, which is of no use"
+        raise InputError(what, plant.name, "ask for less, or make the drive faster (rates, dead time)")
     complete = replace(with_velocity, position_gain=_rounded(0.995 * limit.gain), feed_forward=_forward(plant))
     cascade, reached = _lowered_position(plant, complete, cases, demand)
     return Recommendation(cascade, demand, found, limit, reached)
