@@ -46,6 +46,7 @@ COMMANDS: dict[str, Entry] = {
     "modes": Entry("modes", "Natural frequencies of a machine along its stroke."),
     "bode": Entry("bode", "Frequency response, resonances and margins, of machine or loop."),
     "tune": Entry("tune", "Recommend gains and filters of the cascade, each with its why."),
+    "thermal": Entry("thermal", "Warm a machine up: temperatures, error at the table, warm-up time."),
     "check": Entry("check", "Check a machine against rules of plausibility."),
     "run": Entry("run", "Run a scenario: a machine under control; figures, metrics."),
     "sweep": Entry("sweep", "Run a scenario over varied values: one table, one figure."),
