@@ -23,6 +23,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import casadi as ca
 import numpy as np
@@ -30,10 +31,11 @@ import numpy as np
 from feeddrive.effects.base import FrictionEffect, Motion, Parameter, Port, Signature, Value
 from feeddrive.effects.smooth_table import smooth_curve
 from feeddrive.errors import InputError
-from feeddrive.parts.guide_carriage import table_friction
-from feeddrive.parts.guide_coefficients import GuideCoefficients
-from feeddrive.parts.guide_geometry import BallGuide
 from feeddrive.typing import Expression
+
+if TYPE_CHECKING:
+    from feeddrive.parts.guide_coefficients import GuideCoefficients
+    from feeddrive.parts.guide_geometry import BallGuide
 
 REST_VELOCITY = 1e-5
 """eps [m/s]: below this velocity the force of the film is linear."""
@@ -111,6 +113,8 @@ def guide_effect(
     Warns:
         ValidityWarning: contact pressure that dents the races.
     """
+    from feeddrive.parts.guide_carriage import table_friction  # Hertz's contacts take time to import
+
     low, high = 0.01, 1.0
     forces = table_friction(guide, coefficients, carriages, np.array([low, high]), load_per_carriage, seal_drag)
     coulomb = float(forces.coulomb[0])

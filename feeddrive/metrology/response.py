@@ -12,7 +12,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import signal
 
 from feeddrive.errors import InputError
 from feeddrive.typing import FloatArray
@@ -57,6 +56,8 @@ def measured_response(given: FloatArray, output: FloatArray, sample_time: float,
     if len(given) < segment:
         raise InputError(f"{len(given)} samples for windows of {segment}", "frequency response", "record longer")
     options = {"fs": 1 / sample_time, "nperseg": segment, "detrend": "constant"}
+    from scipy import signal  # takes a second to import
+
     frequency, cross = signal.csd(given, output, **options)
     _, power = signal.welch(given, **options)
     _, coherence = signal.coherence(given, output, **options)

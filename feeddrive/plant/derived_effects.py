@@ -14,8 +14,10 @@ from feeddrive.effects.constant_force import ConstantForce
 from feeddrive.errors import InputError
 from feeddrive.plant.effect_sections import next_label
 from feeddrive.plant.entries import Table
-from feeddrive.plant.guide_section import GRAVITY, guide_friction_of
 from feeddrive.quantity import format_quantity
+
+GRAVITY = 9.80665
+"""Standard acceleration of fall [m/s^2]."""
 
 WEIGHT_KEYS = ("inclination", "counterbalance")
 
@@ -31,7 +33,7 @@ def derived_effects(top: Table, before: Sequence[Effect]) -> tuple[Effect, ...]:
         InputError: a value that is missing, without unit or not possible, or friction declared twice.
     """
     made: list[Effect] = []
-    for effect, origin in [*_weight(top), *guide_friction_of(top, before)]:
+    for effect, origin in [*_weight(top), *_guide(top, before)]:
         label = next_label(effect.name, [*before, *made])
         for key in effect.values:
             top.origins.found[f"{label}.{key}"] = origin
@@ -58,3 +60,11 @@ def _weight(top: Table) -> list[tuple[Effect, str]]:
     if held:
         origin += f", less the counterbalance of {format_quantity(abs(held), 'N')}"
     return [(ConstantForce.of(force=weight - held), origin)]
+
+
+def _guide(top: Table, before: Sequence[Effect]) -> list[tuple[Effect, str]]:
+    if "guide" not in top.entries:
+        return []
+    from feeddrive.plant.guide_section import guide_friction_of  # Hertz's contacts take time to import
+
+    return guide_friction_of(top, GRAVITY, before)

@@ -29,9 +29,6 @@ from feeddrive.plant.drive_sections import placed
 from feeddrive.plant.entries import Table
 from feeddrive.quantity import format_quantity
 
-GRAVITY = 9.80665
-"""Standard acceleration of fall [m/s^2]."""
-
 CARRIAGES = {"HSR-20R": HSR_20R, "HSR-30R": HSR_30R}
 COEFFICIENTS = {"A": SET_A, "B": SET_B}
 _GEOMETRY = tuple(value.key for value in GUIDE_VALUES)
@@ -40,11 +37,12 @@ _OTHERS = ("carriage", "carriages", "seal_drag", "smoothing_velocity", "load", "
 _TURNING = 5e-4  # where tanh of the guide friction turns unless it is said [m/s]
 
 
-def guide_friction_of(top: Table, before: Sequence[Effect]) -> list[tuple[Effect, str]]:
+def guide_friction_of(top: Table, gravity: float, before: Sequence[Effect]) -> list[tuple[Effect, str]]:
     """The guide friction of a plant file and where it comes from; none without a [guide].
 
     Args:
         top: the file.
+        gravity: acceleration of fall [m/s^2].
         before: effects that it declares itself.
 
     Raises:
@@ -60,7 +58,7 @@ def guide_friction_of(top: Table, before: Sequence[Effect]) -> list[tuple[Effect
     coefficients = COEFFICIENTS[table.choice("coefficients", COEFFICIENTS, "A")]
     count = _whole(table, "carriages", "carriages = 4")
     seal = table.quantity("seal_drag", "N", "guide.seal_drag") if "seal_drag" in table.entries else 0.0
-    load, turning = _load(top, count), _TURNING
+    load, turning = _load(top, gravity, count), _TURNING
     if "smoothing_velocity" in table.entries:
         turning = table.quantity("smoothing_velocity", "m/s", "guide.smoothing_velocity")
     effect = placed(table.where, lambda: guide_effect(guide, coefficients, count, load, seal, turning))
@@ -95,10 +93,10 @@ def _whole(table: Table, key: str, example: str) -> int:
     return count
 
 
-def _load(top: Table, count: int) -> float:
+def _load(top: Table, gravity: float, count: int) -> float:
     """Vertical load of one carriage [N]: written, or the table's weight across the guide, shared evenly."""
     guide, table = top.table("guide"), top.table("table")
     if "load" in guide.entries:
         return guide.quantity("load", "N", "guide.load")
     angle = table.quantity("inclination", "rad", "table.inclination") if "inclination" in table.entries else 0.0
-    return table.quantity("mass", "kg", "table_mass") * GRAVITY * math.cos(angle) / count
+    return table.quantity("mass", "kg", "table_mass") * gravity * math.cos(angle) / count

@@ -8,20 +8,26 @@ times that of sliding friction and swamps everything, so the point moves unless 
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import casadi as ca
-import control
 import numpy as np
 
 from feeddrive.plant.equations import parameter_values
 from feeddrive.plant.ode import INPUTS, OUTPUTS, ode, ode_parameters, state_names, timed_ode
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.steady import MOVING, SteadyMotion, steady_motion, steady_motions
+from feeddrive.typing import FloatArray
+
+if TYPE_CHECKING:
+    import control
 
 __all__ = [
     "INPUTS",
     "MOVING",
     "OUTPUTS",
     "SteadyMotion",
+    "linear_matrices",
     "ode",
     "ode_parameters",
     "state_names",
@@ -49,11 +55,22 @@ def state_space(plant: Plant, velocity: float = MOVING, position: float = 0.0) -
     Raises:
         InputError: no steady motion is found there.
     """
+    import control  # takes half a second, with the plotting that it brings
+
+    matrices = linear_matrices(plant, velocity, position)
+    return control.ss(*matrices, states=list(state_names(plant)), inputs=list(INPUTS), outputs=list(OUTPUTS))
+
+
+def linear_matrices(plant: Plant, velocity: float = MOVING, position: float = 0.0) -> tuple[FloatArray, ...]:
+    """A, B, C, D of `state_space`, shapes (n, n), (n, m), (p, n), (p, m).
+
+    Raises:
+        InputError: as `state_space`.
+    """
     function, point = ode(plant), steady_motion(plant, velocity, position)
     x, u, p = (ca.SX.sym(name, function.size1_in(name)) for name in ("x", "u", "p"))
     xdot, y = function(x, u, p)
     pairs = [(xdot, x), (xdot, u), (y, x), (y, u)]
     jacobians = ca.Function("jacobians", [x, u, p], [ca.jacobian(of, to) for of, to in pairs])
     at = jacobians(point.state, [point.torque, 0.0], parameter_values(plant))
-    matrices = [np.array(matrix.full()) for matrix in at]
-    return control.ss(*matrices, states=list(state_names(plant)), inputs=list(INPUTS), outputs=list(OUTPUTS))
+    return tuple(np.array(matrix.full()) for matrix in at)

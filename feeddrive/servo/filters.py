@@ -13,7 +13,7 @@ biquad (s^2 / wz^2 + 2 Dz s / wz + 1) / (s^2 / wn^2 + 2 Dn s / wn + 1)
 | D | damping | 1 |
 | T | time constant, corner at f = 1 / (2 pi T) | s |
 
-Discrete form: the bilinear map (scipy.signal.bilinear), prewarped so that gain and phase are exact at the matched
+Discrete form: the bilinear map s = c (z - 1) / (z + 1), prewarped so that gain and phase are exact at the matched
 frequency: the corner of PT1 and PT2, the notch, the denominator of the biquad. Elsewhere it is compressed towards half
 the sample rate. Source: Franklin, Powell, Workman, Digital Control of Dynamic Systems, 3rd ed., section 6.1.
 """
@@ -24,7 +24,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import signal
 
 from feeddrive.errors import InputError
 from feeddrive.typing import FloatArray
@@ -63,16 +62,24 @@ class Filter:
             raise InputError(what, "filter", f"choose a frequency below {_HIGHEST / sample_time:g} Hz")
         warped = math.pi * self.frequency / math.tan(math.pi * self.frequency * sample_time)
         first = 1 if self.numerator[0] == self.denominator[0] == 0.0 else 0
-        b, a = signal.bilinear(self.numerator[first:], self.denominator[first:], warped)
-        padded = np.zeros(6)
-        padded[: len(b)], padded[3 : 3 + len(a)] = b, a
-        return np.delete(padded, 3)
+        b, a = (_bilinear(part, first, 2 * warped) for part in (self.numerator, self.denominator))
+        coefficients: FloatArray = np.concatenate([b, a[1:]]) / a[0]
+        return coefficients
 
     def response(self, frequency: FloatArray) -> FloatArray:
         """Complex F(j 2 pi f) of the continuous filter at frequencies [Hz], shape (n,)."""
         s = 2j * math.pi * np.asarray(frequency)
         values: FloatArray = np.polyval(self.numerator, s) / np.polyval(self.denominator, s)
         return values
+
+
+def _bilinear(polynomial: tuple[float, float, float], first: int, scale: float) -> FloatArray:
+    """Coefficients of 1, z^-1, z^-2 for s = scale (z - 1) / (z + 1), times (z + 1)^order; the order is 2 - first.
+
+    scipy.signal has the same and takes a second to import, longer than a whole run.
+    """
+    p2, p1, p0 = polynomial[0] * scale**2, polynomial[1] * scale, polynomial[2]
+    return np.array([p1 + p0, p0 - p1, 0.0] if first else [p2 + p1 + p0, 2 * (p0 - p2), p2 - p1 + p0])
 
 
 def pt1(frequency: float) -> Filter:

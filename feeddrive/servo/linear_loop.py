@@ -17,9 +17,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import casadi as ca
-import control
 import numpy as np
 
 from feeddrive.errors import InputError
@@ -31,6 +31,9 @@ from feeddrive.servo.margins import GROWTH
 from feeddrive.servo.sampled import SampledController
 from feeddrive.servo.sampled_plant import Matrices, sampled_plant
 from feeddrive.typing import FloatArray
+
+if TYPE_CHECKING:
+    import control
 
 
 def open_velocity_loop(
@@ -51,6 +54,8 @@ def open_velocity_loop(
                   controller.a]])  # fmt: skip
     b = np.vstack([machine.b[:, :1], np.zeros((len(controller.a), 1))])
     c = -np.hstack([controller.torque_by_reading @ readings, controller.torque])
+    import control
+
     return control.ss(a, b, c, 0, alone.sample_time, inputs=["torque"], outputs=["torque_command"])
 
 
@@ -71,6 +76,8 @@ def open_position_loop(
     Returns:
         Discrete state space of one input and one output, T_s.
     """
+    import control
+
     bare = replace(cascade, feed_forward=FeedForward(), balancing_time=0.0)
     followed = closed_loop(plant, bare, velocity, position)["measured_position", "position"]
     return control.feedback(followed, control.ss([], [], [], 1, bare.sample_time * bare.position_divider), sign=1)
@@ -88,6 +95,18 @@ def closed_loop(plant: Plant, cascade: Cascade, velocity: float = MOVING, positi
     Raises:
         InputError: as `sampled_plant`.
     """
+    import control  # takes half a second, with the plotting that it brings
+
+    whole = _closed(plant, cascade, velocity, position)
+    period = cascade.sample_time * cascade.position_divider
+    controller = cascade_controller(cascade)
+    names = (*OUTPUTS, *controller.signals, "measured_position")
+    inputs = [*controller.references, INPUTS[1]]
+    return control.ss(whole.a, whole.b, whole.c, whole.d, period, inputs=inputs, outputs=list(names))
+
+
+def _closed(plant: Plant, cascade: Cascade, velocity: float, position: float) -> Matrices:
+    """Matrices of `closed_loop`."""
     controller = cascade_controller(cascade)
     machine = sampled_plant(plant, cascade, velocity, position)
     ticks = cascade.position_divider
@@ -96,11 +115,8 @@ def closed_loop(plant: Plant, cascade: Cascade, velocity: float = MOVING, positi
     for _ in range(ticks - 1):
         whole = Matrices(step.a @ whole.a, step.a @ whole.b + step.b, whole.c, whole.d)
     measured = _position_row(cascade, whole)
-    names = (*OUTPUTS, *controller.signals, "measured_position")
     c, d = (np.vstack([rows, extra]) for rows, extra in ((whole.c, measured[0]), (whole.d, measured[1])))
-    period = cascade.sample_time * cascade.position_divider
-    inputs = [*controller.references, INPUTS[1]]
-    return control.ss(whole.a, whole.b, c, d, period, inputs=inputs, outputs=list(names))
+    return Matrices(whole.a, whole.b, c, d)
 
 
 def worst_eigenvalue(
@@ -114,12 +130,12 @@ def worst_eigenvalue(
     Raises:
         InputError: as `sampled_plant`, and gains so large that the matrices overflow.
     """
-    system = closed_loop(plant, cascade, velocity, position)
-    if not np.isfinite(system.A).all():
+    a = _closed(plant, cascade, velocity, position).a
+    if not np.isfinite(a).all():
         raise InputError("the gains are too large for numbers", "controller", "check their units")
-    values = np.linalg.eigvals(system.A)
+    values = np.linalg.eigvals(a)
     worst = complex(values[np.argmax(np.abs(values))])
-    period = float(system.dt)
+    period = cascade.sample_time * cascade.position_divider
     return worst, math.log(abs(worst)) / period, abs(math.atan2(worst.imag, worst.real)) / (2 * math.pi * period)
 
 

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-import control
 import numpy as np
 
 from feeddrive.typing import ComplexArray, FloatArray
+
+if TYPE_CHECKING:
+    import control
 
 GROWTH = 0.1
 """[1/s] above which a loop counts as unstable.

@@ -14,12 +14,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import control
 import numpy as np
 from scipy.linalg import expm
 
 from feeddrive.effects.base import TimingEffect
-from feeddrive.plant.linear import MOVING, state_space
+from feeddrive.plant.linear import MOVING, linear_matrices
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade
 from feeddrive.typing import FloatArray
@@ -52,7 +51,7 @@ def sampled_plant(plant: Plant, cascade: Cascade, velocity: float = MOVING, posi
     Raises:
         InputError: as `plant.linear.state_space`.
     """
-    a, b, c = _with_lag(state_space(plant, velocity, position), cascade.current_lag)
+    a, b, c = _with_lag(linear_matrices(plant, velocity, position), cascade.current_lag)
     tick = cascade.sample_time
     delays = (effect.delay(effect.values) for effect in plant.effects if isinstance(effect, TimingEffect))
     dead = (cascade.dead_time + max(0.0, float(sum(delays)))) / tick
@@ -67,9 +66,9 @@ def sampled_plant(plant: Plant, cascade: Cascade, velocity: float = MOVING, posi
     return _with_torques_under_way(whole, torques, held[:, 1:], c, late)
 
 
-def _with_lag(system: control.StateSpace, lag: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _with_lag(matrices: tuple[FloatArray, ...], lag: float) -> tuple[FloatArray, FloatArray, FloatArray]:
     """A, B, C with the torque through a first-order lag [s]."""
-    a, b, c = (np.asarray(matrix, dtype=float) for matrix in (system.A, system.B, system.C))
+    a, b, c, _ = matrices
     if not lag:
         return a, b, c
     n = len(a)

@@ -14,9 +14,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import accumulate
 
 import numpy as np
-from scipy.signal import lfilter
 
 from feeddrive.servo.cascade import Cascade
 from feeddrive.simulate.timing import SPLIT
@@ -51,8 +51,9 @@ class ActingTorque:
         h = cascade.sample_time / cascade.current_lag
         driven = math.exp(-(1 - part) * h) * -math.expm1(-part * h) * older - math.expm1(-(1 - part) * h) * newer
         decay = math.exp(-h)
-        ends, _ = lfilter([1.0], [1.0, -decay], driven, zi=[decay * self.state[0]])
-        starts = np.concatenate([self.state[:1], ends[:-1]])
+        lagged = accumulate(driven.tolist(), lambda torque, new: decay * torque + new, initial=float(self.state[0]))
+        torques = np.fromiter(lagged, dtype=float, count=len(driven) + 1)
+        starts, ends = torques[:-1], torques[1:]
         return entered - (ends - starts) / h, ActingTorque(np.concatenate([ends[-1:], after]))
 
 

@@ -24,7 +24,6 @@ from functools import cached_property
 from typing import Protocol
 
 import numpy as np
-from scipy import signal, special
 
 from feeddrive.errors import InputError
 from feeddrive.typing import FloatArray
@@ -62,6 +61,8 @@ class Sweep:
         k = math.log(self.high / self.low) / self.duration
         b = 2 * math.pi * self.low / k
         u = b * np.exp(k * np.asarray(time))
+        from scipy import special  # takes time to import
+
         sine_integral, cosine_integral = special.sici(u)
         first_sine, first_cosine = special.sici(b)
         integral = math.cos(b) * (sine_integral - first_sine) - math.sin(b) * (cosine_integral - first_cosine)
@@ -147,7 +148,9 @@ class Prbs:
         return self.bit * self.periods * ((1 << self.order) - 1)
 
     def values(self, time: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        bits = 2.0 * signal.max_len_seq(self.order)[0] - 1.0
+        from scipy.signal import max_len_seq  # takes a second to import
+
+        bits = 2.0 * max_len_seq(self.order)[0] - 1.0
         place = np.asarray(time) / self.bit
         index = np.floor(place + 1e-6).astype(np.int64)  # a tick that rounding puts just before its bit belongs to it
         whole = np.concatenate([[0.0], np.cumsum(bits)])
