@@ -22,8 +22,10 @@ def part(column: Expression, start: int, count: int) -> Expression:
     return ca.reshape(column[start : start + count], count, 1)
 
 
-def newton_correction(residual: Expression, unknown: Expression) -> Expression:
+def newton_correction(residual: Expression, unknown: Expression, right_side: Expression | None = None) -> Expression:
     """J^-1 r by elimination in pairs without pivoting: the diagonal of J is 1 plus dissipation.
+
+    With a right side, J^-1 times that.
 
     Unknowns 2k and 2k + 1 belong together (the same quantity at both nodes). A pair is inverted with one division,
     since one division takes as long as ten products.
@@ -31,7 +33,8 @@ def newton_correction(residual: Expression, unknown: Expression) -> Expression:
     n = unknown.numel()
     if n == 0:
         return ca.SX.zeros(0, 1)
-    rows = ca.SX(ca.horzcat(ca.jacobian(residual, unknown), residual))
+    side = residual if right_side is None else right_side
+    rows = ca.SX(ca.horzcat(ca.jacobian(residual, unknown), side))
     pairs, inverted = range(0, n, 2), []
     for k in pairs:
         inverted.append(_inverse(rows[k : k + 2, k : k + 2]))

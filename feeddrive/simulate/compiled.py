@@ -113,10 +113,19 @@ class _Constants(ctypes.Structure):
     ]  # fmt: skip
 
 
+class _Tangents(ctypes.Structure):
+    """`tangents_of_run` of the driver."""
+
+    _fields_ = [
+        ("directions", ctypes.c_longlong), ("stride", ctypes.c_longlong),
+        *((name, ctypes.c_void_p) for name in ("memory", "own", "seen", "settings", "values", "fixed", "on_fixed")),
+    ]  # fmt: skip
+
+
 def _bound(program: Program, library: ctypes.CDLL) -> Run:
     """The driver as a Python function on arrays."""
     function = library.feeddrive_run
-    function.argtypes = [ctypes.c_longlong, *[ctypes.c_void_p] * 12]
+    function.argtypes = [ctypes.c_longlong, *[ctypes.c_void_p] * 14]
     function.restype = ctypes.c_int
     work_size = max(f.sz_w() for f in program.functions) + 1, max(f.sz_iw() for f in program.functions) + 1
 
@@ -125,15 +134,28 @@ def _bound(program: Program, library: ctypes.CDLL) -> Run:
         cells = task.made.shape[0]
         table = _Constants(task.fixed.ctypes.data, task.made.ctypes.data, task.first_cell, cells, CELL)
         memory, own = position.memory.copy(), position.own.copy()
+        tangents, room = _tangents(program, task)
         given = [np.ascontiguousarray(array) for array in (task.fed, task.spans, task.settings, task.values)]
         fed, spans, settings, values = (array.ctypes.data for array in given)
         work, integers = np.empty(work_size[0]), np.empty(work_size[1], dtype=np.int64)
         status = function(
             len(task.fed), ctypes.addressof(place), memory.ctypes.data, own.ctypes.data, fed, spans,
-            ctypes.addressof(table), settings, values, seen.ctypes.data, report.ctypes.data, integers.ctypes.data,
-            work.ctypes.data,
+            ctypes.addressof(table), settings, values, ctypes.addressof(tangents), seen.ctypes.data,
+            report.ctypes.data, room.ctypes.data, integers.ctypes.data, work.ctypes.data,
         )  # fmt: skip
         at = Position(memory, own, place.level, place.cell)
         return Stop(Status(status), place.sample, at, place.needed_cell, place.needed_level)
 
     return run
+
+
+def _tangents(program: Program, task: Task) -> tuple[_Tangents, FloatArray]:
+    """The directions of a task as the driver takes them, and the room that it needs for them."""
+    t, sizes = task.tangents, program.sizes
+    if t is None:
+        return _Tangents(), np.empty(0)
+    arrays = (t.memory, t.own, t.seen, t.settings, t.values, t.fixed, t.on_fixed)
+    count = len(t.values)
+    carried = sizes["N_STATES"] + sizes["N_BRISTLES"]
+    room = np.empty(count * (sizes["N_PARTS"] * sizes["N_HELD"] + sizes["N_OWN"] + carried) + 1)
+    return _Tangents(count, t.fixed[0].size if count else 0, *(array.ctypes.data for array in arrays)), room

@@ -137,16 +137,16 @@ def simulate_controlled(
         SimulationError: a motion that cannot be followed; says when, and which effect to look at.
     """
     loop = torque_loop or TorqueLoop()
-    steps = _resolutions(plant, controller) if quantised else {}
-    machine, timing = _machine_for(plant, controller, loop, steps)
+    steps = resolutions_of(plant, controller) if quantised else {}
+    machine, timing = machine_for(plant, controller, loop, steps)
     begin = start or resting_state(plant, controller, loop)
-    fed = _fed(plant, controller, reference, load, begin.tick)
+    fed = fed_of(plant, controller, reference, load, begin.tick)
     _refuse_foreign(machine, begin, plant)
     settings = np.concatenate([controller.parameters, list(steps.values()), [plant.torque_limit]])
     feed = Feed(fed, controller.sample_time * np.array(timing.parts), settings, loop.lag)
     outcome = run_machine(machine, plant, feed, begin.position, tolerance)
     end = ControlledState(begin.tick + len(fed), outcome.position)
-    return _told(plant, controller, fed[:, -1], outcome.seen, end, outcome.report)
+    return told_run(plant, controller, fed[:, -1], outcome.seen, end, outcome.report)
 
 
 def resting_state(
@@ -162,20 +162,21 @@ def resting_state(
         position: of the table [m].
         velocity: of the table [m/s].
     """
-    machine, timing = _machine_for(plant, controller, torque_loop or TorqueLoop(), _resolutions(plant, controller))
+    machine, timing = machine_for(plant, controller, torque_loop or TorqueLoop(), resolutions_of(plant, controller))
     own = np.concatenate([controller.initial, np.zeros(timing.past)])
     return ControlledState(0, rested(machine, initial_state(plant, position, velocity), own))
 
 
-def _machine_for(
-    plant: Plant, controller: SampledController, loop: TorqueLoop, steps: Mapping[str, float]
+def machine_for(
+    plant: Plant, controller: SampledController, loop: TorqueLoop, steps: Mapping[str, float], tangents: bool = False
 ) -> tuple[Machine, Timing]:
+    """The machine of a controlled run and how its torque meets the samples."""
     timing = timing_of(plant, controller.sample_time, loop.dead_time)
-    key = _ControllerKey(controller.function, controller.measurements, tuple(steps))
-    return _machine(plant, key, loop.lag > 0, timing.late, len(timing.parts)), timing
+    key = ControllerKey(controller.function, controller.measurements, tuple(steps))
+    return controlled_machine(plant, key, loop.lag > 0, timing.late, len(timing.parts), tangents), timing
 
 
-class _ControllerKey:
+class ControllerKey:
     """A controller's equations; two functions with the same content are one."""
 
     def __init__(self, function: ca.Function, measurements: tuple[str, ...], quantised: tuple[str, ...]) -> None:
@@ -183,14 +184,17 @@ class _ControllerKey:
         self._content = (function.serialize(), measurements, quantised)
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, _ControllerKey) and self._content == other._content
+        return isinstance(other, ControllerKey) and self._content == other._content
 
     def __hash__(self) -> int:
         return hash(self._content)
 
 
 @per_structure
-def _machine(plant: Plant, key: _ControllerKey, lagging: bool, late: int, parts: int) -> Machine:
+def controlled_machine(
+    plant: Plant, key: ControllerKey, lagging: bool, late: int, parts: int, tangents: bool
+) -> Machine:
+    """What runs a plant under a controller; `late` and `parts` as in `Timing`."""
     step, function = torque_step(plant, lagging), key.function
     layout, past, kept = step.layout, late + parts - 1, function.size1_in(0)
     references = function.size1_in(1)
@@ -214,10 +218,10 @@ def _machine(plant: Plant, key: _ControllerKey, lagging: bool, late: int, parts:
     own_after = ca.vertcat(after, torques[1:] if past else ca.SX.zeros(0, 1))
     before = ca.Function("feeddrive_before", arguments, [own_after, held, seen])
     nothing = ca.Function("feeddrive_after", arguments, [ca.SX.zeros(0, 1)])
-    return machine_of(Program(step, before, nothing, parts, plant.chain.varies))
+    return machine_of(Program(step, before, nothing, parts, plant.chain.varies, tangents))
 
 
-def _measured(key: _ControllerKey, readings: Expression, steps: Expression) -> Expression:
+def _measured(key: ControllerKey, readings: Expression, steps: Expression) -> Expression:
     """What the controller reads, in whole steps where a sensor has them."""
     columns = []
     for name in key.measurements:
@@ -229,13 +233,13 @@ def _measured(key: _ControllerKey, readings: Expression, steps: Expression) -> E
     return ca.vertcat(*columns)
 
 
-def _resolutions(plant: Plant, controller: SampledController) -> dict[str, float]:
+def resolutions_of(plant: Plant, controller: SampledController) -> dict[str, float]:
     """Measurement to resolution, of those that have one."""
     declared = {sensor.channel: sensor.resolution for sensor in plant.sensors}
     return {name: declared[name] for name in controller.measurements if declared.get(name, 0.0) > 0}
 
 
-def _fed(
+def fed_of(
     plant: Plant, controller: SampledController, reference: FloatArray, load: FloatArray | None, tick: int
 ) -> FloatArray:
     """References, cutting force, tick and time per sample."""
@@ -262,7 +266,7 @@ def _refuse_foreign(machine: Machine, start: ControlledState, plant: Plant) -> N
         raise InputError("a start state of another plant or controller", plant.name, mend)
 
 
-def _told(
+def told_run(
     plant: Plant, controller: SampledController, time: FloatArray, seen: FloatArray, end: ControlledState,
     report: StepReport,
 ) -> ControlledRun:  # fmt: skip

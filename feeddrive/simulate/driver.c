@@ -137,16 +137,69 @@ static double solve(in memory, in base, double *guess, in time, in fixed, in val
   return change;
 }
 
+/* How the run changes with parameters, per direction; `stride` between the constants of two directions. */
+typedef struct {
+  long long directions, stride;
+  double *memory, *own, *seen;
+  const double *settings, *values, *fixed;
+  const unsigned char *on_fixed;
+} tangents_of_run;
+
+/* What a step was solved with. */
+typedef struct {
+  double input[N_HELD + BLANK], base[N_BASE + BLANK], guess[N_UNKNOWN + BLANK];
+} solved_step;
+
+#if TANGENTS
+/* The states of all directions over one accepted step; `fixed` and `offset` say where the constants are. */
+static void move_tangents(in memory, const solved_step *step, double start, in fixed, long long offset, in values,
+                          in held_changes, const tangents_of_run *t, long long *iw, double *w) {
+  static const double nothing[N_FIXED];
+  for (long long d = 0; d < t->directions; ++d) {
+    double *mine = t->memory + d * (N_STATES + N_BRISTLES), change[N_MEMORY + BLANK] = {0}, base[N_BASE + BLANK];
+    double guess[N_UNKNOWN + BLANK], input[N_HELD];
+    in other = t->on_fixed[d] ? t->fixed + d * t->stride + offset : nothing;
+    for (int k = 0; k < N_STATES + N_BRISTLES; ++k) change[k] = mine[k];
+    for (int k = 0; k < N_HELD; ++k) input[k] = held_changes[d * N_PARTS * N_HELD + k];
+    for (int n = 0; n < 2; ++n) {
+      const int *rows = n ? needed_second : needed_first, count = n ? N_NEEDED_SECOND : N_NEEDED_FIRST;
+      for (int k = 0; k < count; ++k) {
+        double sum = free_row(change, input, fixed + n * NODE, rows[k]);
+        if (t->on_fixed[d]) sum += free_row(memory, step->input, other + n * NODE, rows[k]);
+        base[n * N_NEEDED_FIRST + k] = sum;
+      }
+    }
+    {
+      in arg[] = {memory, step->base, step->guess, &start, fixed, values, change, base, other, t->values + d * N_VALUES};
+      double *res[] = {guess};
+      if (N_UNKNOWN) feeddrive_tangent(arg, res, iw, w, 0);
+    }
+    in node = fixed + NODE, moved = other + NODE;
+    for (int i = 0; i < N_STATES; ++i) {
+      double sum = free_row(change, input, node, i);
+      for (int k = 0; k < 2 * N_FORCED; ++k)
+        sum += node[SQUARE + N_STATES * (N_HELD + k) + i] * guess[k];
+      if (t->on_fixed[d]) {
+        sum += free_row(memory, step->input, moved, i);
+        for (int k = 0; k < 2 * N_FORCED; ++k)
+          sum += moved[SQUARE + N_STATES * (N_HELD + k) + i] * step->guess[k];
+      }
+      mine[i] = sum;
+    }
+    for (int k = 0; k < N_BRISTLES; ++k) mine[BRISTLE + k] = guess[2 * N_FORCED + N_BRISTLES + k];
+  }
+}
+#endif
+
 /* One step from memory to after; its error over the tolerance, or a negative number where Newton found nothing. */
 static double attempt(in memory, in held, double place, double start, in fixed, in values, double *after,
-                      long long *iw, double *w, double *report) {
-  double input[N_HELD + BLANK], base[N_BASE + BLANK], guess[N_UNKNOWN + BLANK];
-  step_input(held, place, fixed, input);
-  begin(memory, held, input, place, fixed, base, guess);
-  double change = N_UNKNOWN ? solve(memory, base, guess, &start, fixed, values, iw, w, report) : 0.0;
+                      solved_step *step, long long *iw, double *w, double *report) {
+  step_input(held, place, fixed, step->input);
+  begin(memory, held, step->input, place, fixed, step->base, step->guess);
+  double change = N_UNKNOWN ? solve(memory, step->base, step->guess, &start, fixed, values, iw, w, report) : 0.0;
   if (!(change < 1.0)) return -1.0;
   if (change > report[LAST_SWEEP]) report[LAST_SWEEP] = change;
-  double error = finish(memory, input, fixed, guess, after);
+  double error = finish(memory, step->input, fixed, step->guess, after);
   return error < 1e290 ? error : -1.0;
 }
 
@@ -174,10 +227,12 @@ static void watch(double *memory, in held, double place, double start, in fixed,
 
 /* One part of a sample, in steps; the level of the last one is kept for the next part. */
 static int advance(double *memory, in held, double start, double span, int part, const constants_of_run *table,
-                   in values, place_of_run *run, long long *iw, double *w, double *report) {
+                   in values, in held_changes, const tangents_of_run *tangents, place_of_run *run, long long *iw,
+                   double *w, double *report) {
   const long long whole = 1LL << DEEPEST;
   long long at = 0;
   double after[N_MEMORY + BLANK];
+  solved_step step;
   while (at < whole) {
     long long length = whole >> run->level;
     double place = (double)at / (double)whole, now = start + place * span;
@@ -185,12 +240,13 @@ static int advance(double *memory, in held, double start, double span, int part,
     if (cell < 0 || cell >= table->cells) return OFF_GRID;
     run->needed_cell = cell;
     if (!table->made[cell * (DEEPEST + 1) + run->level]) return NEEDS_CONSTANTS;
-    in fixed = table->fixed + ((part * table->cells + cell) * (DEEPEST + 1) + run->level) * N_FIXED;
+    long long offset = ((part * table->cells + cell) * (DEEPEST + 1) + run->level) * N_FIXED;
+    in fixed = table->fixed + offset;
     if (run->cell != cell + table->first_cell) {
       watch(memory, held, place, now, fixed, values, iw, w);
       run->cell = cell + table->first_cell;
     }
-    double error = attempt(memory, held, place, now, fixed, values, after, iw, w, report);
+    double error = attempt(memory, held, place, now, fixed, values, after, &step, iw, w, report);
     if (!(error >= 0.0 && error <= 1.0) && run->level < DEEPEST) {
       run->level += 1;
       report[REFUSED] += 1;
@@ -204,6 +260,11 @@ static int advance(double *memory, in held, double start, double span, int part,
     if (error > report[WORST]) report[WORST] = error;
     if ((double)run->level > report[FINEST]) report[FINEST] = (double)run->level;
     report[STEPS] += 1;
+#if TANGENTS
+    move_tangents(memory, &step, now, fixed, offset, values, held_changes, tangents, iw, w);
+#else
+    (void)held_changes, (void)tangents, (void)offset;
+#endif
     for (int k = 0; k < N_MEMORY; ++k) memory[k] = after[k];
     at += length;
     if (run->level > 0 && error < COARSER && at % (2 * length) == 0) run->level -= 1;
@@ -213,8 +274,16 @@ static int advance(double *memory, in held, double start, double span, int part,
 
 /* Samples from run->sample on; on return run says where it ended, and memory and own are those at its start. */
 int feeddrive_run(long long samples, place_of_run *run, double *memory, double *own, in fed, in spans,
-                  const constants_of_run *table, in settings, in values, double *seen, double *report, long long *iw,
-                  double *w) {
+                  const constants_of_run *table, in settings, in values, const tangents_of_run *tangents, double *seen,
+                  double *report, double *room, long long *iw, double *w) {
+#if TANGENTS
+  /* room: changes of the held inputs, of the commands' memory, and the states kept for another try */
+  const long long directions = tangents->directions, carried = N_STATES + N_BRISTLES;
+  double *held_changes = room, *own_changes = held_changes + directions * N_PARTS * N_HELD,
+         *kept_changes = own_changes + directions * N_OWN;
+#else
+  double *held_changes = room;
+#endif
   double kept[N_MEMORY + BLANK], next[N_OWN + BLANK], held[N_PARTS * N_HELD + BLANK];
   for (; run->sample < samples; ++run->sample) {
     in row = fed + run->sample * N_FED;
@@ -227,9 +296,25 @@ int feeddrive_run(long long samples, place_of_run *run, double *memory, double *
       double *res[] = {next, held, shown};
       feeddrive_before(arg, res, iw, w, 0);
     }
+#if TANGENTS
+    for (long long k = 0; k < directions * carried; ++k) kept_changes[k] = tangents->memory[k];
+    for (long long d = 0; d < directions; ++d) {
+      double change[N_MEMORY + BLANK] = {0};
+      for (int k = 0; k < carried; ++k) change[k] = tangents->memory[d * carried + k];
+      in arg[] = {memory, own, row, settings, values, change, tangents->own + d * N_OWN,
+                  tangents->settings + d * N_SETTINGS, tangents->values + d * N_VALUES};
+      double *res[] = {own_changes + d * N_OWN, held_changes + d * N_PARTS * N_HELD,
+                       tangents->seen + (d * samples + run->sample) * N_BEFORE};
+      feeddrive_before_tangent(arg, res, iw, w, 0);
+    }
+#endif
     for (int part = 0; part < N_PARTS; ++part) {
-      int status = advance(memory, held + part * N_HELD, start, spans[part], part, table, values, run, iw, w, report);
+      int status = advance(memory, held + part * N_HELD, start, spans[part], part, table, values,
+                           held_changes + part * N_HELD, tangents, run, iw, w, report);
       if (status != DONE) {
+#if TANGENTS
+        for (long long k = 0; k < directions * carried; ++k) tangents->memory[k] = kept_changes[k];
+#endif
         for (int k = 0; k < N_MEMORY; ++k) memory[k] = kept[k];
         run->needed_level = run->level;
         run->level = level_before;
@@ -239,6 +324,9 @@ int feeddrive_run(long long samples, place_of_run *run, double *memory, double *
       start += spans[part];
     }
     for (int k = 0; k < N_OWN; ++k) own[k] = next[k];
+#if TANGENTS
+    for (long long k = 0; k < directions * N_OWN; ++k) tangents->own[k] = own_changes[k];
+#endif
     if (N_AFTER) {
       in arg[] = {memory, own, row, settings, values};
       double *res[] = {shown + N_BEFORE};

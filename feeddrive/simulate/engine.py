@@ -6,11 +6,13 @@ Constants of finer steps are made when the first step asks for them, so that a r
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
+from typing import Protocol
 
 import numpy as np
 
+from feeddrive.errors import InputError
 from feeddrive.plant.chain import DistributedScrew
 from feeddrive.plant.equations import parameter_values
 from feeddrive.plant.plant import Plant
@@ -27,6 +29,7 @@ from feeddrive.simulate.program import (
     Status,
     StepReport,
     Stop,
+    Tangents,
     Task,
 )
 from feeddrive.simulate.step_constants import Linear, SimulationError, linear_part, step_constants
@@ -58,6 +61,16 @@ class Feed:
     torque_lag: float = 0.0
 
 
+class Along(Protocol):
+    """What is carried along with a run."""
+
+    def begun(self, task: Task) -> Tangents:
+        """How the run changes at its start, with room for the rest."""
+
+    def make_constants(self, task: Task, stop: Stop) -> None:
+        """Fill in how the constants change that the driver has asked for."""
+
+
 @dataclass(frozen=True)
 class Outcome:
     """Samples of a run.
@@ -74,9 +87,15 @@ class Outcome:
 
 
 def machine_of(program: Program) -> Machine:
-    """The fastest that this computer offers."""
+    """The fastest that this computer offers.
+
+    Raises:
+        InputError: tangents without a compiler.
+    """
     compiler = find_compiler()
     made = compiled_run(program, compiler) if compiler is not None else None
+    if made is None and program.tangents:
+        raise InputError("sensitivities need a C compiler", "", "install cc, gcc or clang, or name one in CC")
     return Machine(program, made if made is not None else interpreted_run(program))
 
 
@@ -93,7 +112,10 @@ def rested(machine: Machine, states: FloatArray, own: FloatArray) -> Position:
     return Position(memory, np.asarray(own, dtype=float))
 
 
-def run_machine(machine: Machine, plant: Plant, feed: Feed, start: Position, tolerance: float = TOLERANCE) -> Outcome:
+def run_machine(
+    machine: Machine, plant: Plant, feed: Feed, start: Position, tolerance: float = TOLERANCE,
+    along: Along | None = None,
+) -> Outcome:  # fmt: skip
     """All samples of a feed.
 
     Args:
@@ -102,6 +124,7 @@ def run_machine(machine: Machine, plant: Plant, feed: Feed, start: Position, tol
         feed: inputs and settings.
         start: from `rested`, or where another run ended.
         tolerance: error of the table position that a step may make [m]; infinite for steps of fixed length.
+        along: what is carried along, for a program with tangents.
 
     Returns:
         What was seen, where it ended, how the steps went.
@@ -112,11 +135,15 @@ def run_machine(machine: Machine, plant: Plant, feed: Feed, start: Position, tol
     """
     program = machine.program
     task = _task(program, plant, feed)
+    if along is not None:
+        task = replace(task, tangents=along.begun(task))
     seen, report = np.empty((len(feed.fed), program.sizes["N_BEFORE"] + program.sizes["N_AFTER"])), np.zeros(REPORTS)
     source = _Source(plant, program, feed.torque_lag, tolerance)
     stop = machine.run(task, start, 0, seen, report)
     while stop.status == Status.NEEDS_CONSTANTS:
         _make_constants(task, source, feed, stop)
+        if along is not None:
+            along.make_constants(task, stop)
         stop = machine.run(task, stop.position, stop.sample, seen, report)
     _refuse_failure(plant, feed, stop, seen)
     return Outcome(seen, stop.position, _told(report, len(seen), tolerance))

@@ -46,6 +46,7 @@ class Program:
         after: (memory, own, fed, settings, values) -> seen, at the end of the sample.
         parts: parts of a sample with an input of their own.
         varies: whether the chain depends on the table position.
+        tangents: whether runs carry along how they change with parameters.
     """
 
     step: StepModel
@@ -53,11 +54,23 @@ class Program:
     after: ca.Function
     parts: int
     varies: bool
+    tangents: bool = False
 
     @property
     def functions(self) -> tuple[ca.Function, ...]:
         """Functions that are generated for the driver; what is the same for every plant stands in it."""
-        return (self.before, self.step.watch, self.step.iterate, self.after)
+        functions = (self.before, self.step.watch, self.step.iterate, self.after)
+        return (*functions, self.step.tangent, self.before_tangent) if self.tangents else functions
+
+    @property
+    def before_tangent(self) -> ca.Function:
+        """(arguments of `before`, then how memory, own, settings, values change) -> how its results change."""
+        symbols = [ca.SX.sym(f"given_{i}", self.before.size1_in(i)) for i in range(5)]
+        moving = [symbols[i] for i in (0, 1, 3, 4)]
+        changes = [ca.SX.sym(f"change_{i}", symbol.numel()) for i, symbol in enumerate(moving)]
+        outputs = self.before.call(symbols)
+        changed = [ca.jtimes(output, ca.vertcat(*moving), ca.vertcat(*changes)) for output in outputs]
+        return ca.Function("feeddrive_before_tangent", [*symbols, *changes], changed)
 
     @property
     def sizes(self) -> dict[str, int]:
@@ -84,6 +97,9 @@ class Program:
             "DEEPEST": DEEPEST,
             "DRIVEN": int(layout.driven),
             "VARIES": int(self.varies),
+            "TANGENTS": int(self.tangents),
+            "N_SETTINGS": self.before.size1_in(3),
+            "N_VALUES": self.before.size1_in(4),
             "TABLE": layout.coordinates - 1,
         }
 
@@ -138,6 +154,7 @@ class Task:
         fixed: constants of the steps, shape (p, cells, levels, c); filled in place when they are asked for.
         made: which of them are there, shape (cells, levels).
         first_cell: number of the first cell; cell k is `CELL` wide about the table position k `CELL`.
+        tangents: where the program has them.
     """
 
     fed: FloatArray
@@ -147,6 +164,29 @@ class Task:
     fixed: FloatArray
     made: NDArray[np.uint8]
     first_cell: int
+    tangents: Tangents | None = None
+
+
+@dataclass(frozen=True)
+class Tangents:
+    """How a run changes in d directions; filled in by the driver, which moves `memory` and `own` on.
+
+    Attributes:
+        memory: states and bristles, shape (d, m).
+        own: of the commands, shape (d, o).
+        settings, values: the directions, shapes (d, s) and (d, v).
+        fixed: of the constants, shape (d, p, cells, levels, c), filled in as those are.
+        on_fixed: whether a direction changes the constants, shape (d,).
+        seen: shape (d, n, before).
+    """
+
+    memory: FloatArray
+    own: FloatArray
+    settings: FloatArray
+    values: FloatArray
+    fixed: FloatArray
+    on_fixed: NDArray[np.uint8]
+    seen: FloatArray
 
 
 @dataclass(frozen=True)

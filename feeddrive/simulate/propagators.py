@@ -45,7 +45,7 @@ def monomial_propagators(a: FloatArray, b: FloatArray, step: float, degree: int)
     if n == 0:
         return [(np.zeros((0, 0)), np.zeros((degree + 1, 0, m)))] * 2
     size = n + m * (degree + 1)
-    generator = np.zeros((size, size))
+    generator = np.zeros((size, size), dtype=np.result_type(a, b))  # complex where a change is carried along
     generator[:n, :n] = step * a
     # the monomials tau^k obey d/dtau tau^k = k tau^(k-1); P_k is the response to tau^k alone
     for k in range(degree + 1):

@@ -49,6 +49,8 @@ class StepModel:
         begin: (memory, input, place, time, fixed) -> (what the coordinates at the nodes are without node forces,
             first guess of the unknowns).
         iterate: (memory, base, guess, time, fixed, values) -> (better guess, correction over its limit).
+        tangent: (memory, base, guess, time, fixed, values, then how memory, base, fixed and values change) -> how
+            the solved guess changes.
         finish: (memory, input, place, guess, fixed) -> (memory after, error over the tolerance).
     """
 
@@ -57,6 +59,7 @@ class StepModel:
     watch: ca.Function
     begin: ca.Function
     iterate: ca.Function
+    tangent: ca.Function
     finish: ca.Function
 
 
@@ -127,6 +130,7 @@ class _Maker:
             ca.Function(
                 "feeddrive_iterate", [self.memory, known, self.guess, self.time, self.fixed, values], [improved, change]
             ),
+            self._tangent(known, spread),
             ca.Function(
                 "feeddrive_finish",
                 [self.memory, self.input, self.place, self.guess, self.fixed],
@@ -252,6 +256,17 @@ class _Maker:
         for ratio in ratios:
             largest = ca.fmax(largest, ratio)
         return improved, largest
+
+    def _tangent(self, known: Expression, responses: list[Expression]) -> ca.Function:
+        """The implicit function theorem at the nodes: J d(guess) = -d(residual)."""
+        given = [self.memory, known, self.fixed, self.symbols.vector]
+        changes = [ca.SX.sym(f"change_{i}", symbol.numel()) for i, symbol in enumerate(given)]
+        residual, pairs = self._residual(responses), self._pairs()
+        changed = ca.jtimes(residual, ca.vertcat(*given), ca.vertcat(*changes))
+        change = ca.SX.zeros(len(pairs), 1)
+        change[pairs] = -newton_correction(residual[pairs], self.guess[pairs], changed[pairs])
+        arguments = [self.memory, known, self.guess, self.time, self.fixed, self.symbols.vector, *changes]
+        return ca.Function("feeddrive_tangent", arguments, [change])
 
     def _pairs(self) -> list[int]:
         """The unknowns, each quantity at both nodes: first the bristles, which their own equations hold best."""

@@ -13,12 +13,14 @@ The error of a step is told as a table position. An error e in position and e' i
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import casadi as ca
 import numpy as np
 
 from feeddrive.errors import InputError
+from feeddrive.plant.chain import Chain
 from feeddrive.plant.plant import Plant
 from feeddrive.simulate.propagators import HERMITE_BASIS, NODE_BASIS, basis_propagators, monomial_propagators
 from feeddrive.typing import Expression, FloatArray
@@ -145,27 +147,37 @@ def linear_part(plant: Plant, layout: Layout, torque_lag: float = 0.0, reference
     Raises:
         SimulationError: a mass matrix with which nothing can move.
     """
-    p, n = plant.chain_values(), layout.coordinates
-    whole = [plant.chain.mass(p, reference), plant.chain.damping(p, reference), plant.chain.stiffness(p, reference)]
-    mass, damping, stiffness = (np.array(matrix, dtype=float) for matrix in whole)
-    first = 1 if layout.driven else 0
+    p, n, first = plant.chain_values(), layout.coordinates, int(layout.driven)
     free = slice(first, None)
-    if not (np.isfinite(mass).all() and (n == 0 or np.linalg.eigvalsh(mass[free, free])[0] > 0)):
+    mass = np.array(plant.chain.mass(p, reference), dtype=float)[free, free]
+    if not (np.isfinite(mass).all() and (n == 0 or np.linalg.eigvalsh(mass)[0] > 0)):
         raise SimulationError("masses or inertias are not positive", plant.name, "check them and what adds to them")
+    inverse = np.linalg.inv(mass) if n else np.zeros((0, 0))
+    first_order = state_matrices(plant.chain, p, layout, torque_lag, reference)
+    table = np.array(plant.chain.table(p), dtype=float)[free]
+    felt = 1 / float(table @ inverse @ table) if n else 1.0
+    forgetting = _lowest_frequency(-first_order[0][n : 2 * n, :n]) if layout.driven and n else FORGETTING
+    return Linear(mass, inverse, *first_order, felt, forgetting, reference)
+
+
+def state_matrices(
+    chain: Chain, p: Mapping[str, Expression], layout: Layout, torque_lag: complex, reference: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """A, G and B of `Linear` for chain values that may be complex."""
+    whole = [chain.mass(p, reference), chain.damping(p, reference), chain.stiffness(p, reference)]
+    kind = np.result_type(*[np.asarray(value).dtype for value in p.values()], type(torque_lag))
+    mass, damping, stiffness = (np.array(matrix, dtype=kind) for matrix in whole)
+    n, first = layout.coordinates, int(layout.driven)
+    free = slice(first, None)
     inverse = np.linalg.inv(mass[free, free]) if n else np.zeros((0, 0))
     a = np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ stiffness[free, free], -inverse @ damping[free, free]]])
     on_force = np.vstack([np.zeros((n, len(layout.forced))), inverse[:, [i - first for i in layout.forced]]])
     if layout.driven:
         columns = -np.column_stack([matrix[free, 0] for matrix in (stiffness, damping, mass)])
     else:
-        columns = np.column_stack([plant.chain.motor(p), plant.chain.table(p)])  # virtual work: force = L' torque
-    on_input = np.vstack([np.zeros((n, columns.shape[1])), inverse @ columns.astype(float)])
-    if layout.lagging:
-        a, on_force, on_input = _with_lag(a, on_force, on_input, torque_lag)
-    table = np.array(plant.chain.table(p), dtype=float)[free]
-    felt = 1 / float(table @ inverse @ table) if n else 1.0
-    forgetting = _lowest_frequency(inverse @ stiffness[free, free]) if layout.driven and n else FORGETTING
-    return Linear(mass[free, free], inverse, a, on_force, on_input, felt, forgetting, reference)
+        columns = np.column_stack([chain.motor(p), chain.table(p)])  # virtual work: force = L' torque
+    on_input = np.vstack([np.zeros((n, columns.shape[1])), inverse @ columns.astype(kind)])
+    return _with_lag(a, on_force, on_input, torque_lag) if layout.lagging else (a, on_force, on_input)
 
 
 def _lowest_frequency(dynamic: FloatArray) -> float:
@@ -175,13 +187,14 @@ def _lowest_frequency(dynamic: FloatArray) -> float:
 
 
 def _with_lag(
-    a: FloatArray, on_force: FloatArray, on_input: FloatArray, lag: float
+    a: FloatArray, on_force: FloatArray, on_input: FloatArray, lag: complex
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """The torque as a further state, T' = (u - T) / lag."""
     n = len(a)
-    larger = np.zeros((n + 1, n + 1))
+    kind = np.result_type(a, on_input, type(lag))
+    larger = np.zeros((n + 1, n + 1), dtype=kind)
     larger[:n, :n], larger[:n, n], larger[n, n] = a, on_input[:, 0], -1 / lag
-    fed = np.zeros((n + 1, 2))
+    fed = np.zeros((n + 1, 2), dtype=kind)
     fed[:n, 1], fed[n, 0] = on_input[:, 1], 1 / lag
     return larger, np.vstack([on_force, np.zeros((1, on_force.shape[1]))]), fed
 
@@ -196,19 +209,32 @@ def step_constants(linear: Linear, layout: Layout, step: float, share: float, to
         share: of the step in the span over which the input is given.
         tolerance: error of the table position that a step may make [m].
     """
-    blocks: list[FloatArray] = []
-    curved = np.zeros((layout.states, len(layout.forced)))
-    count, degree = len(layout.forced), 3 if layout.driven else 2
-    both = np.hstack([linear.on_force, linear.on_input])
-    for exponential, monomials in monomial_propagators(linear.a, both, step, degree):
-        on_force, on_input = monomials[:3, :, :count], monomials[:, :, count:]
-        on_nodes = basis_propagators(on_force[:2], NODE_BASIS)
-        from_input = _of_cubic(on_input, step) if layout.driven else on_input[0]
-        blocks += [exponential, from_input, on_nodes[0], on_nodes[1]]
-        curved = basis_propagators(on_force, _CURVATURE[None, :])[0]
+    blocks, curved = propagator_blocks((linear.a, linear.on_force, linear.on_input), layout, step)
     blocks.append(np.array([step, share, linear.reference]))
     blocks += _weights(linear, layout, step, curved, tolerance)
+    return flattened(blocks)
+
+
+def flattened(blocks: list[FloatArray]) -> FloatArray:
+    """Blocks one after the other, column-major."""
     return np.concatenate([block.ravel(order="F") for block in blocks])
+
+
+def propagator_blocks(
+    first_order: tuple[FloatArray, FloatArray, FloatArray], layout: Layout, step: float
+) -> tuple[list[FloatArray], FloatArray]:
+    """The blocks of `propagator_shapes` from A, G and B, and what a parabola of each force does, shape (n, m)."""
+    blocks: list[FloatArray] = []
+    a, on_force, on_input = first_order
+    curved = np.zeros((layout.states, len(layout.forced)))
+    count, degree = len(layout.forced), 3 if layout.driven else 2
+    for exponential, monomials in monomial_propagators(a, np.hstack([on_force, on_input]), step, degree):
+        by_force, by_input = monomials[:3, :, :count], monomials[:, :, count:]
+        on_nodes = basis_propagators(by_force[:2], NODE_BASIS)
+        from_input = _of_cubic(by_input, step) if layout.driven else by_input[0]
+        blocks += [exponential, from_input, on_nodes[0], on_nodes[1]]
+        curved = basis_propagators(by_force, _CURVATURE[None, :])[0]
+    return blocks, curved
 
 
 def _weights(
