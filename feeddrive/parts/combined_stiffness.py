@@ -30,6 +30,7 @@ from enum import Enum
 
 import numpy as np
 
+from feeddrive.errors import InputError
 from feeddrive.parts.screw_drive import BallScrewDrive
 from feeddrive.typing import FloatArray
 
@@ -143,7 +144,14 @@ def axial_from_torsional(stiffness: float, lead: float) -> float:
 
 
 def natural_frequency(stiffness: float, mass: float) -> float:
-    """sqrt(k / m) / 2 pi [Hz] of a stiffness [N/m] and a mass [kg]."""
+    """sqrt(k / m) / 2 pi [Hz] of a stiffness [N/m] and a mass [kg].
+
+    Raises:
+        InputError: a stiffness that is negative or a mass that is not positive.
+    """
+    if not (0.0 <= stiffness < math.inf and 0.0 < mass < math.inf):
+        what = f"{stiffness:g} N/m with {mass:g} kg has no natural frequency"
+        raise InputError(what, "natural frequency", "write a stiffness of 0 or more and a mass above 0")
     return math.sqrt(stiffness / mass) / (2.0 * math.pi)
 
 

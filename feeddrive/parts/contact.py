@@ -28,6 +28,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import TypeVar
 
+import numpy as np
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipkm1, elliprd
 
@@ -37,6 +38,9 @@ from feeddrive.typing import FloatArray
 
 LONGEST_ELLIPSE = 1e4
 """Ellipticity beyond which a contact is called a line: F(rho) is within 1e-6 of 1."""
+
+_LARGEST_LOAD, _LARGEST_APPROACH = 1e12, 1.0
+"""Load [N] and approach [m] that no contact of a machine reaches; beyond them powers would overflow."""
 
 Number = TypeVar("Number", float, FloatArray)
 """A load or an approach, one or an array of them."""
@@ -139,25 +143,26 @@ class PointContact:
         return 0.5 * self.numbers.approach * total * float((1.5 * self.compliance / total) ** (2 / 3))
 
     def approach(self, load: Number) -> Number:
-        """delta [m] under the load [N], which is not negative."""
-        result: Number = self.constant * load ** (2 / 3)
+        """delta [m] under the load [N]; refuses one that is negative or not finite."""
+        result: Number = self.constant * _checked(load, "load", _LARGEST_LOAD) ** (2 / 3)
         return result
 
     def load(self, approach: Number) -> Number:
-        """Q [N] at an approach [m], which is not negative."""
-        result: Number = (approach / self.constant) ** 1.5
+        """Q [N] at an approach [m]; refuses one that is negative or not finite."""
+        result: Number = (_checked(approach, "approach", _LARGEST_APPROACH) / self.constant) ** 1.5
         return result
 
     def semi_axes(self, load: Number) -> tuple[Number, Number]:
-        """a and b [m] under the load [N]."""
-        size: Number = (1.5 * self.compliance / self.curvatures.total * load) ** (1 / 3)
+        """a and b [m] under the load [N]; refuses one that is negative or not finite."""
+        pressing = _checked(load, "load", _LARGEST_LOAD)
+        size: Number = (1.5 * self.compliance / self.curvatures.total * pressing) ** (1 / 3)
         return self.numbers.semi_major * size, self.numbers.semi_minor * size
 
     def maximum_pressure(self, load: Number) -> Number:
-        """p_max [Pa] under the load [N]."""
+        """p_max [Pa] under the load [N]; refuses one that is negative or not finite."""
         area = math.pi * self.numbers.semi_major * self.numbers.semi_minor
         size = 1.5 * self.compliance / self.curvatures.total
-        result: Number = 1.5 / (area * size ** (2 / 3)) * load ** (1 / 3)
+        result: Number = 1.5 / (area * size ** (2 / 3)) * _checked(load, "load", _LARGEST_LOAD) ** (1 / 3)
         return result
 
 
@@ -178,13 +183,24 @@ def ball_in_groove(diameter: float, conformity: float, material: Material = BEAR
     """A ball in a straight groove of radius `conformity` times the ball's diameter [m], both of one material.
 
     Raises:
-        InputError: conformity of 0.5 or less, or so near that the contact is a line.
+        InputError: a diameter that is not positive, conformity of 0.5 or less, or so near that the contact is a line.
     """
+    check_values("ball", _BALL, {"diameter": diameter})
     if not conformity > 0.5:
         mend = "write a conformity above 0.5, such as 0.52"
         raise InputError(f"a groove of {conformity:g} ball diameters is narrower than the ball", "conformity", mend)
     ball = 2.0 / diameter
     return point_contact(Curvatures((ball, ball), (0.0, -1.0 / (conformity * diameter))), material, material)
+
+
+_BALL = (PartValue("diameter", "m", 0.0, 10.0),)
+
+
+def _checked(value: Number, name: str, largest: float) -> Number:
+    """The value, where all of it lies from 0 to `largest`: a power of less than 0 would be complex."""
+    if not np.all((np.asarray(value) >= 0.0) & (np.asarray(value) <= largest)):
+        raise InputError(f"a {name} that is negative or not finite", "contact", f"write a {name} of 0 or more")
+    return value
 
 
 @lru_cache(maxsize=256)

@@ -23,6 +23,12 @@ def arcsine(ratio: Expression) -> Expression:
     return ca.asin(ratio) if _symbolic(ratio) else np.arcsin(ratio)
 
 
+def power(base: float, exponent: float) -> float:
+    """A number of 0 or more to a positive exponent; infinite beyond the range of numbers in place of an error."""
+    with np.errstate(over="ignore", under="ignore"):
+        return float(np.float64(base) ** exponent)
+
+
 def positive_part(value: Expression) -> Expression:
     """The value where it is positive, else 0; any shape."""
     return ca.fmax(value, 0) if _symbolic(value) else np.maximum(value, 0.0)

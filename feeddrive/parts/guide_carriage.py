@@ -37,6 +37,8 @@ from feeddrive.parts.guide_film import film_thickness
 from feeddrive.parts.guide_geometry import BallGuide
 from feeddrive.typing import FloatArray
 
+_MOST_CARRIAGES = 1000
+
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
 _S, _S_WEIGHTS = 0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS
 """Nodes and weights from 0 to 1; the slip radius is smooth, 20 of them leave rounding."""
@@ -122,7 +124,7 @@ def table_friction(
         carriages: how many, at least one.
         load_per_carriage: vertical [N].
     """
-    if carriages < 1 or carriages != int(carriages):
+    if not (1 <= carriages <= _MOST_CARRIAGES and carriages == int(carriages)):
         raise InputError(f"{carriages:g} carriages", "guide carriages", "write a whole number, at least 1")
     one = carriage_friction(guide, coefficients, speed, load_per_carriage, seal_drag=seal_drag)
     parts = (carriages * part for part in (one.rolling, one.viscous, one.slip, one.seal))

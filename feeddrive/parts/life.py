@@ -22,6 +22,7 @@ import warnings
 from dataclasses import dataclass
 
 from feeddrive.errors import InputError, ValidityWarning
+from feeddrive.parts.elementary import power
 from feeddrive.parts.life_exponents import BALL_SCREW, LifeExponents
 from feeddrive.parts.values import PartValue, check_values
 
@@ -31,6 +32,10 @@ MILLION = 1e6
 HIGHEST_LOAD = 0.5
 """Load over rating up to which the life law is used in design."""
 
+_SHARE = (PartValue("probability", "1", 0.0, 1.0),)
+_LEAD = (PartValue("lead", "m", 0.0, 1.0),)
+_SPEED = (PartValue("speed", "rad/s", 0.0, 1e6),)
+_TEST = (PartValue("force", "N", 0.0, 1e9), PartValue("revolutions", "1", 0.0, 1e30))
 _LOAD = (PartValue("rating", "N", 0.0, usual=(10.0, 5e6)), PartValue("force", "N", 0.0, open_ends=False))
 
 
@@ -74,17 +79,36 @@ def rated_revolutions(rating: float, force: float, exponents: LifeExponents = BA
 
 
 def rating_of_test(force: float, revolutions: float, exponents: LifeExponents = BALL_SCREW) -> float:
-    """C [N] of what 90 % survived for `revolutions` [rev] under `force` [N], both above 0."""
+    """C [N] of what 90 % survived for `revolutions` [rev] under `force` [N].
+
+    Raises:
+        InputError: a force or revolutions that are not positive.
+    """
+    check_values("life test", _TEST, {"force": force, "revolutions": revolutions})
     return float(force * (revolutions / MILLION) ** (1.0 / exponents.load))
 
 
 def survival(revolutions: float, rated: float, exponents: LifeExponents = BALL_SCREW) -> float:
-    """Probability S of surviving `revolutions` where 90 % survive `rated` [rev]."""
-    return float(0.9 ** ((revolutions / rated) ** exponents.slope))
+    """Probability S of surviving `revolutions` where 90 % survive `rated` [rev], which may be infinite.
+
+    Raises:
+        InputError: negative revolutions, or a rated life that is not positive.
+    """
+    if not (0.0 <= revolutions < math.inf and rated > 0.0):
+        what = f"{revolutions:g} revolutions of {rated:g} rated ones"
+        raise InputError(what, "life", "write revolutions of 0 or more and a rated life above 0")
+    return math.exp(math.log(0.9) * power(revolutions / rated, exponents.slope))
 
 
 def revolutions_at(probability: float, rated: float, exponents: LifeExponents = BALL_SCREW) -> float:
-    """Revolutions that the share `probability` (0 to 1, ends excluded) survives where 90 % survive `rated` [rev]."""
+    """Revolutions that the share `probability` survives where 90 % survive `rated` [rev].
+
+    Raises:
+        InputError: a probability that does not lie between 0 and 1, or a rated life that is not positive.
+    """
+    check_values("life", _SHARE, {"probability": probability})
+    if not rated > 0.0:
+        raise InputError(f"{rated:g} rated revolutions", "life", "write a rated life above 0")
     return float(rated * (math.log(probability) / math.log(0.9)) ** (1.0 / exponents.slope))
 
 
@@ -92,8 +116,10 @@ def equivalent_load(duty: tuple[DutyPhase, ...], exponents: LifeExponents = BALL
     """F_m [N] of a duty.
 
     Raises:
-        InputError: a duty that turns the screw nowhere.
+        InputError: a duty that turns the screw nowhere, or a force that is not finite.
     """
+    if not all(math.isfinite(phase.force) for phase in duty):
+        raise InputError("a force is not finite", "duty", "write it as a number of newtons")
     total = sum(phase.revolutions for phase in duty)
     if not (total > 0.0 and math.isfinite(total)):
         raise InputError("the screw does not turn", "duty", "give one phase a speed and a duration")
@@ -103,10 +129,27 @@ def equivalent_load(duty: tuple[DutyPhase, ...], exponents: LifeExponents = BALL
 
 
 def distance(revolutions: float, lead: float) -> float:
-    """Travel of the table [m] in `revolutions` [rev] of a screw of this lead [m]."""
+    """Travel of the table [m] in `revolutions` [rev] of a screw of this lead [m]; infinite where they are.
+
+    Raises:
+        InputError: negative revolutions, or a lead that is not possible.
+    """
+    check_values("screw", _LEAD, {"lead": lead})
+    _refuse_negative(revolutions)
     return revolutions * lead
 
 
 def running_time(revolutions: float, speed: float) -> float:
-    """Time [s] for `revolutions` [rev] at a speed [rad/s] above 0."""
+    """Time [s] for `revolutions` [rev] at a speed [rad/s]; infinite where they are.
+
+    Raises:
+        InputError: negative revolutions, or a speed that is not positive.
+    """
+    _refuse_negative(revolutions)
+    check_values("life", _SPEED, {"speed": speed})
     return revolutions * 2.0 * math.pi / speed
+
+
+def _refuse_negative(revolutions: float) -> None:
+    if not revolutions >= 0.0:
+        raise InputError(f"{revolutions:g} revolutions", "life", "write 0 or more")

@@ -61,6 +61,8 @@ _VALUES = (
     PartValue("slope", "1", 0.1, 20.0, usual=(0.7, 6.0)),
 )
 
+_LAW = (PartValue("stress", "1", 5.0, 1e3), PartValue("depth", "1", 0.0, 5.0, open_ends=False))
+
 BALL_SCREW = LifeExponents(3.0, 3.6)
 """Ball screws, table 2 of paper 001: p taken over from bearings, e of its ten specimens (90 % interval 2.0 to 4.9)."""
 
@@ -69,10 +71,20 @@ BALL_BEARING = LifeExponents(3.0, 10.0 / 9.0)
 
 
 def load_exponent(stress: float, slope: float, depth: float = 1.0) -> float:
-    """p [1] from c, e and h; h = 1 is eq. (8)."""
+    """p [1] from c, e and h; h = 1 is eq. (8).
+
+    Raises:
+        InputError: c, e or h that is not possible.
+    """
+    check_values("life exponents", (*_LAW, _VALUES[1]), {"stress": stress, "depth": depth, "slope": slope})
     return (stress - depth + 2.0) / (3.0 * slope)
 
 
 def diameter_exponent(stress: float, depth: float = 1.0) -> float:
-    """Exponent of the ball diameter in the rating [1] from c and h; h = 1 is eq. (11)."""
+    """Exponent of the ball diameter in the rating [1] from c and h; h = 1 is eq. (11).
+
+    Raises:
+        InputError: c or h that is not possible.
+    """
+    check_values("life exponents", _LAW, {"stress": stress, "depth": depth})
     return (2.0 * stress + depth - 5.0) / (stress - depth + 2.0)

@@ -79,6 +79,7 @@ _VALUES = (
     PartValue("contact_constant", "m/N^(2/3)", 0.0),
     PartValue("elastic_modulus", "Pa", 0.0, usual=(5e10, 4.5e11)),
 )
+_FORCE = (PartValue("force", "N", 0.0, 1e9),)
 
 
 def nut_body(track: BallTrack, outer_diameter: float) -> NutBody:
@@ -128,7 +129,7 @@ def load_distribution(body: NutBody, force: float, loading: Loading = Loading.OP
     Raises:
         InputError: a force that is not positive.
     """
-    check_values("nut", (PartValue("force", "N", 0.0),), {"force": force})
+    check_values("nut", _FORCE, {"force": force})
     alone = _deflection(body, force)
 
     def surplus(last: float) -> float:
@@ -148,7 +149,11 @@ def continuum_extremes(body: NutBody, force: float) -> tuple[float, float]:
 
     lambda L coth(lambda L) and lambda L / sinh(lambda L), lambda^2 = (k_b / s)(1/A_s + 1/A_n) / E, L the loaded length:
     the closed form that the recursion meets for many balls and small differences.
+
+    Raises:
+        InputError: a force that is not positive.
     """
+    check_values("nut", _FORCE, {"force": force})
     pitch = body.track.loaded_length / body.track.balls
     compliance = (1.0 / body.screw_section + 1.0 / body.nut_section) / body.elastic_modulus
     product = math.sqrt(body.ball_stiffness(force) / pitch * compliance) * body.track.loaded_length

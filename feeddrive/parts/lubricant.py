@@ -36,6 +36,7 @@ KELVIN = 273.15
 LOWEST, HIGHEST = -20.0, 150.0
 """Temperatures between which the law is trusted [degC]."""
 
+_HOTTEST = 500.0  # no oil is left [degC]
 _SHIFT = 0.7
 _SQUARE_MILLIMETRE = 1e-6
 _LEAST = 2e-6
@@ -80,7 +81,7 @@ class Lubricant:
             ValidityWarning: outside -20 to 150 degC, or thinner than 2 mm^2/s.
 
         Raises:
-            InputError: at or below absolute zero.
+            InputError: at or below absolute zero, or above 500 degC.
         """
         nu = _SQUARE_MILLIMETRE * (self._shifted(temperature) - _SHIFT)
         if not LOWEST <= temperature <= HIGHEST or nu < _LEAST:
@@ -94,14 +95,19 @@ class Lubricant:
         """d nu/dT [m^2/s/K] at a temperature [degC], negative.
 
         Raises:
-            InputError: at or below absolute zero.
+            InputError: at or below absolute zero, or above 500 degC.
         """
         shifted = self._shifted(temperature)
         slope = -self.walther_slope * shifted * math.log(shifted) / (temperature + KELVIN)
         return _SQUARE_MILLIMETRE * slope
 
     def density(self, temperature: float) -> float:
-        """rho [kg/m^3] at a temperature [degC]."""
+        """rho [kg/m^3] at a temperature [degC].
+
+        Raises:
+            InputError: at or below absolute zero, or above 500 degC.
+        """
+        _check_temperature(temperature)
         return self.density_15 * (1.0 - self.expansion * (temperature - 15.0))
 
     def dynamic_viscosity(self, temperature: float) -> float:
@@ -110,8 +116,7 @@ class Lubricant:
 
     def _shifted(self, temperature: float) -> float:
         """nu + 0.7 in mm^2/s."""
-        if not temperature > -KELVIN:
-            raise InputError(f"{temperature:g} °C is below absolute zero", "lubricant", "write the temperature in degC")
+        _check_temperature(temperature)
         fall = self.walther_slope * math.log10((temperature + KELVIN) / (40.0 + KELVIN))
         return float(10.0 ** min(10.0 ** (_double_logarithm(self.viscosity_40) - fall), 300.0))
 
@@ -123,9 +128,10 @@ _VALUES = (
     PartValue("expansion", "1/K", 0.0, 0.01, usual=(5e-4, 1e-3)),
 )
 
-MINERAL_OILS = {10: 2.6, 15: 3.4, 22: 4.3, 32: 5.3, 46: 6.7, 68: 8.6, 100: 11.2, 150: 14.8, 220: 19.0}
-"""Grade -> nu at 100 degC [mm^2/s] typical of mineral oils of a viscosity index of 95 to 100; oils differ by 5 per cent
-and more, and a data sheet's two viscosities in `Lubricant` are better."""
+MINERAL_OILS = {10: 2.65, 15: 3.4, 22: 4.3, 32: 5.3, 46: 6.7, 68: 8.6, 100: 11.2, 150: 14.8, 220: 19.0}
+"""Grade -> nu at 100 degC [mm^2/s] of a mineral oil of a viscosity index of 95 to 101 by ASTM D2270, typical of
+circulating and hydraulic oils; oils differ by 5 per cent and more, and the two viscosities of a data sheet in
+`Lubricant` are better."""
 
 
 def mineral_oil(grade: float) -> Lubricant:
@@ -146,6 +152,13 @@ def mineral_oil(grade: float) -> Lubricant:
         grades = ", ".join(str(one) for one in MINERAL_OILS)
         raise InputError(f"VG {grade:g}: {kind}", "lubricant.grade", f"take one of {grades}, or give both viscosities")
     return Lubricant(grade * _SQUARE_MILLIMETRE, MINERAL_OILS[int(grade)] * _SQUARE_MILLIMETRE)
+
+
+def _check_temperature(temperature: float) -> None:
+    """Refuse a temperature [degC] at which there is no oil, the unit being the likeliest cause."""
+    if not -KELVIN < temperature <= _HOTTEST:
+        where = "below absolute zero" if temperature <= -KELVIN else f"no temperature of an oil up to {_HOTTEST:g} °C"
+        raise InputError(f"{temperature:g} °C is {where}", "lubricant", "write the temperature in degC")
 
 
 def _double_logarithm(viscosity: float) -> float:

@@ -18,10 +18,14 @@ found its failures by the preload torque.
 
 from __future__ import annotations
 
+import math
+
 from feeddrive.errors import InputError
 from feeddrive.parts.double_nut import OPENING
+from feeddrive.parts.elementary import power
 from feeddrive.parts.values import PartValue, check_values
 
+_PRELOAD = PartValue("preload", "N", 0.0, 1e9, open_ends=False)
 _SHARE = PartValue("preload_share", "1", 0.0, 10.0, usual=(0.0, 1.1), open_ends=False)
 
 
@@ -53,11 +57,11 @@ def preload_share_from_torque(torque: float, new_torque: float, drag: float = 0.
         drag: load-independent part of both, from the regression of torque on preload [N m].
 
     Raises:
-        InputError: a torque below the drag.
+        InputError: a torque below the drag, or not finite.
     """
-    if not (new_torque > drag and torque >= drag):
+    if not (math.inf > new_torque > drag >= 0.0 and math.inf > torque >= drag):
         what = f"preload torques of {torque:g} and {new_torque:g} N m at a drag of {drag:g} N m"
-        raise InputError(what, "preload loss", "both torques must exceed the load-independent drag")
+        raise InputError(what, "preload loss", "both torques must exceed the load-independent drag, itself 0 or more")
     return (torque - drag) / (new_torque - drag)
 
 
@@ -67,14 +71,14 @@ def preload_share_from_stiffness(stiffness: float, new_stiffness: float) -> floa
     An error of the stiffness comes back threefold.
 
     Raises:
-        InputError: a stiffness that is not positive.
+        InputError: a stiffness that is not possible.
     """
-    if not (stiffness > 0.0 and new_stiffness > 0.0):
-        what = f"stiffnesses of {stiffness:g} and {new_stiffness:g} N/m"
-        raise InputError(what, "preload loss", "write values above 0")
-    return float((stiffness / new_stiffness) ** 3)
+    for key, value in (("stiffness", stiffness), ("new_stiffness", new_stiffness)):
+        check_values("nut", (PartValue(key, "N/m", 0.0),), {key: value})
+    return power(stiffness / new_stiffness, 3.0)
 
 
 def opening_force(preload: float) -> float:
-    """F_open [N] of a rigidly preloaded double nut at a preload [N]."""
+    """F_open [N] of a rigidly preloaded double nut at a preload [N]; refuses a negative one."""
+    check_values("nut", (_PRELOAD,), {"preload": preload})
     return OPENING * preload

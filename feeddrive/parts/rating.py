@@ -30,6 +30,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from feeddrive.errors import InputError
 from feeddrive.parts.contact import PointContact
 from feeddrive.parts.life_exponents import BALL_SCREW, LifeExponents
 from feeddrive.parts.load_distribution import LoadDistribution
@@ -42,6 +43,10 @@ from feeddrive.parts.stress_cycles import (
     stressed_screw_groove,
 )
 from feeddrive.parts.subsurface_shear import greatest_shear_on_axis
+from feeddrive.parts.values import PartValue, check_values
+
+_CONSTANT = (PartValue("material_constant", "1", 0.0, 1e9),)
+_TESTED = (PartValue("tested", "N", 0.0, 1e9),)
 
 
 @dataclass(frozen=True)
@@ -68,7 +73,7 @@ def rating(
         exponents: of the fatigue law.
 
     Raises:
-        InputError: a stroke that is not positive.
+        InputError: a stroke or material constant that is not positive.
     """
     length = stressed_screw_groove(track, stroke)
     return _rating(track, loads, stroke, length, material_constant, exponents)
@@ -95,12 +100,19 @@ def material_constant_of_test(
     Raises:
         InputError: as `rating`.
     """
+    check_values("life test", _TESTED, {"tested": tested})
     return tested / rating(track, loads, stroke, 1.0, exponents).pair
 
 
 def combined_rating(ratings: tuple[float, ...], exponents: LifeExponents = BALL_SCREW) -> float:
-    """Rating [N] of several bodies that must all survive, eq. (17): C^-w is the sum of C_i^-w."""
+    """Rating [N] of several bodies that must all survive, eq. (17): C^-w is the sum of C_i^-w.
+
+    Raises:
+        InputError: no rating, or one that is not positive and finite.
+    """
     values = np.asarray(ratings, dtype=float)
+    if not (values.size and np.all(np.isfinite(values) & (values > 0.0))):
+        raise InputError("a rating is not positive and finite", "ratings", "write each above 0 N")
     least = float(values.min())
     return least * float(np.sum((values / least) ** -exponents.product) ** (-1.0 / exponents.product))
 
@@ -138,6 +150,7 @@ def _rating(
     exponents: LifeExponents,
 ) -> Rating:  # fmt: skip
     """Ratings with the stressed length of the screw given [m]."""
+    check_values("rating", _CONSTANT, {"material_constant": material_constant})
     average, of_screw, of_nut = load_integrals(track, loads, exponents)
     gamma, factor = track.curvature_ratio, material_constant * track.balls * average
     screw_shape = groove_factor(screw_contact(track), exponents) * _length_factor(

@@ -116,7 +116,12 @@ class BallTrack:
         return math.sin(self.contact_angle) * math.cos(self.lead_angle(self.pitch_diameter))
 
     def mean_ball_load(self, force: float) -> float:
-        """Q [N] normal to the contact where every ball carries its share of the axial force [N]."""
+        """Q [N] normal to the contact where every ball carries its share of the axial force [N].
+
+        Raises:
+            InputError: a force that is negative or not finite.
+        """
+        check_values("nut", (PartValue("force", "N", 0.0, 1e9, open_ends=False),), {"force": force})
         return force / (self.balls * self.axial_part)
 
 

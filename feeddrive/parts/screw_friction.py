@@ -41,6 +41,9 @@ GEOMETRY = (
 )
 """What a catalogue gives."""
 
+PRELOAD = PartValue("preload", "N", 0.0, 1e9, open_ends=False)
+"""What is set when it is mounted."""
+
 FRICTION = PartValue("friction_coefficient", "1", 0.0, 1.0, usual=(0.0, 0.1), open_ends=False)
 """What a measurement gives."""
 
@@ -137,7 +140,12 @@ class ScrewFriction:
         return float(back_driving_efficiency(self.geometry.groove, self.friction_coefficient))
 
     def preload_torque(self, preload: float) -> float:
-        """Torque [N m] of a double nut at a preload [N], without axial load."""
+        """Torque [N m] of a double nut at a preload [N], without axial load.
+
+        Raises:
+            InputError: a preload that is negative or not finite.
+        """
+        check_values("ball screw", (PRELOAD,), {"preload": preload})
         return float(preload_torque(self.geometry.groove, self.friction_coefficient, preload, self.geometry.lead))
 
     def torque(self, force: float, speed: float, preload: float = 0.0) -> float:

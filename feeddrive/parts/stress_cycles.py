@@ -51,6 +51,8 @@ def effective_screw_groove(track: BallTrack, stroke: float, slope: float) -> flo
     g_B / l (|l_s - l zeta| + 2 min(l_s, l zeta) / (e + 1)): the product of the survivals along the trapezoid of
     `screw_cycles_along`, to the Weibull slope e; derived here. Paper 001 counts all of l_0B as stressed most.
     """
+    if not (math.isfinite(slope) and slope > 0.0):
+        raise InputError(f"a Weibull slope of {slope:g}", "stress cycles", "write a slope above 0")
     ramp = min(_checked(stroke), track.loaded_length)
     plateau = abs(stroke - track.loaded_length)
     return screw_groove_per_turn(track) / track.lead * (plateau + 2.0 * ramp / (slope + 1.0))

@@ -35,6 +35,7 @@ from feeddrive.errors import InputError
 from feeddrive.typing import FloatArray
 
 POISSON = 0.3
+_LEAST_RATIO, _DEEPEST = 1e-6, 1e6  # beyond them the integrals leave the range of numbers
 
 
 @dataclass(frozen=True)
@@ -55,10 +56,13 @@ def axis_stresses(ratio: float, depth: float, poisson: float = POISSON) -> tuple
         poisson: Poisson's ratio.
 
     Raises:
-        InputError: ratio outside its range.
+        InputError: ratio, depth or Poisson's ratio outside its range.
     """
-    if not 0.0 < ratio <= 1.0:
+    if not _LEAST_RATIO <= ratio <= 1.0:
         raise InputError(f"an axis ratio of {ratio:g}", "contact ellipse", "b / a lies above 0 and is 1 at most")
+    if not (0.0 <= depth <= _DEEPEST and -1.0 < poisson < 0.5):
+        what = f"a depth of {depth:g} b with a Poisson's ratio of {poisson:g}"
+        raise InputError(what, "contact ellipse", "write a depth of 0 or more and a ratio such as 0.3")
     k, zeta, square = ratio, depth * ratio, 1.0 - ratio**2
     q = 1.0 + zeta**2
     T = float(np.sqrt((k**2 + zeta**2) / q))

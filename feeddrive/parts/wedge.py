@@ -56,7 +56,9 @@ def self_locking(friction_coefficient: float, lead: float, diameter: float) -> b
 
 
 def self_locking_lead(friction_coefficient: float, diameter: float) -> float:
-    """The largest lead that locks itself, mu pi d [m]."""
+    """The largest lead that locks itself, mu pi d [m]; arguments and errors as `wedge_efficiency`."""
+    given = {"friction_coefficient": friction_coefficient, "diameter": diameter}
+    check_values("screw", (_VALUES[0], _VALUES[2]), given)
     return friction_coefficient * math.pi * diameter
 
 

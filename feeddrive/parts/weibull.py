@@ -22,6 +22,7 @@ import numpy as np
 from scipy.stats import CensoredData, beta, weibull_min
 
 from feeddrive.errors import InputError
+from feeddrive.parts.elementary import power
 from feeddrive.typing import FloatArray
 
 RATED_FAILURE = 0.1
@@ -48,21 +49,31 @@ class WeibullLaw:
                 raise InputError(f"{value} is not possible", f"Weibull {key}", "write a value above 0")
 
     def survival(self, life: float) -> float:
-        """Probability of surviving `life` >= 0."""
-        return math.exp(-((life / self.scale) ** self.slope))
+        """Probability of surviving `life`; refuses a negative one."""
+        return math.exp(-self._hazard(life))
 
     def failure(self, life: float) -> float:
-        """Probability of having failed by `life` >= 0; exact also where it is tiny."""
-        return -math.expm1(-((life / self.scale) ** self.slope))
+        """Probability of having failed by `life`, exact also where it is tiny; refuses a negative one."""
+        return -math.expm1(-self._hazard(life))
 
     def life(self, failed: float = RATED_FAILURE) -> float:
-        """Life by which the share `failed` has failed, 0 < failed < 1; L10 by default."""
+        """Life by which the share `failed` has failed; L10 by default. Refuses a share outside 0 to 1."""
+        _check_share(failed)
         return float(self.scale * (-math.log1p(-failed)) ** (1.0 / self.slope))
 
     @classmethod
     def through(cls, life: float, failed: float, slope: float) -> WeibullLaw:
-        """The law of a known slope by which the share `failed` has failed at `life`."""
-        return cls(life / (-math.log1p(-failed)) ** (1.0 / slope), slope)
+        """The law of a known slope by which the share `failed` has failed at `life`; refuses what is not possible."""
+        _check_share(failed)
+        if not slope > 0.0:
+            raise InputError(f"{slope} is not possible", "Weibull slope", "write a value above 0")
+        return cls(life / max(power(-math.log1p(-failed), 1.0 / slope), 1e-300), slope)
+
+    def _hazard(self, life: float) -> float:
+        """(L / A)^e; infinite beyond the range of numbers."""
+        if not life >= 0.0:
+            raise InputError(f"a life of {life:g}", "Weibull law", "write a life of 0 or more")
+        return power(life / self.scale, self.slope)
 
 
 @dataclass(frozen=True, eq=False)
@@ -188,6 +199,12 @@ def log_likelihood(law: WeibullLaw, sample: LifeSample) -> float:
         # S(start) - S(end) = S(start) (1 - exp(-(difference of the hazards))), without the difference of two ones.
         between = (-hazard[:, 0] + np.log(-np.expm1(hazard[:, 0] - hazard[:, 1]))).sum()
     return float(exact + whole + between)
+
+
+def _check_share(failed: float) -> None:
+    """Refuse a share of failures outside 0 to 1, ends excluded, or so small that no law of lives holds for it."""
+    if not 1e-12 <= failed < 1.0:
+        raise InputError(f"a share of failures of {failed:g}", "Weibull law", "write one between 0 and 1, such as 0.1")
 
 
 def _require_spread(sample: LifeSample) -> None:

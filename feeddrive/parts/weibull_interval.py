@@ -76,9 +76,11 @@ def complete_slope_interval(slope: float, count: int, level: float = 0.9) -> Int
     By drawing a million lives; its ends are right to about 0.5 %.
 
     Raises:
-        InputError: fewer than 3 or more than 10 000 specimens, or a level outside 0 to 1.
+        InputError: a slope that is not positive, fewer than 3 or more than 10 000 specimens, or a level outside 0 to 1.
     """
     _check_level(level)
+    if not (math.isfinite(slope) and slope > 0.0):
+        raise InputError(f"a slope of {slope:g}", "Weibull interval", "write a slope above 0")
     ratio = _slopes_of_unit_samples(count)
     low, high = np.quantile(ratio, (0.5 - 0.5 * level, 0.5 + 0.5 * level))
     return Interval(slope / float(high), slope, slope / float(low), level)
