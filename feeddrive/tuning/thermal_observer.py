@@ -67,7 +67,7 @@ class ThermalObserver:
 
     def observe(
         self, speeds: FloatArray, ambient: FloatArray, readings: FloatArray,
-        start: tuple[FloatArray, FloatArray] | None = None,
+        start: tuple[FloatArray, FloatArray] | None = None, reference: float | None = None,
     ) -> Observation:  # fmt: skip
         """Run the filter.
 
@@ -75,8 +75,9 @@ class ThermalObserver:
             speeds: of the screw over each row, (k,) [rad/s].
             ambient: recorded over each row, (k,) [degC]; all the same where it is not recorded.
             readings: of the sensors at the end of each row, as rises over the temperature at the start, (k, m) [K]; nan
-                where a sensor failed.
+                where a sensor failed. A start that is read with noise shifts them all: average it over some minutes.
             start: z and P before the first row; None for a cold start.
+            reference: recorded ambient at the cold start [degC]; None for that of the first row.
 
         Raises:
             InputError: series of unequal length, or another number of sensors.
@@ -87,7 +88,7 @@ class ThermalObserver:
         if np.shape(readings) != (len(speeds), len(self.system.sensors)):
             told = f"readings of shape {np.shape(readings)} for {len(speeds)} rows"
             raise InputError(told, "readings", f"give {len(self.system.sensors)} columns, a row each")
-        rows, transitions = self.rows(speeds, ambient)
+        rows, transitions = self.rows(speeds, ambient, reference)
         z, P = self.system.cold() if start is None else start
         states, spread = np.empty((len(rows), len(z))), np.empty((len(rows), len(self.error.positions)))
         n = self.system.model.order
@@ -97,8 +98,13 @@ class ThermalObserver:
         found = dict(zip(self.system.unknowns.names, states[:, self.system.shown :].T, strict=True))
         return Observation(self.error.of(states[:, :n]), spread, found, z, P)
 
-    def rows(self, speeds: FloatArray, ambient: FloatArray) -> tuple[list[Row], list[Transition]]:
-        """What the controller knows of each row, and the row's transition; rows that agree to 0.2 % share one."""
+    def rows(
+        self, speeds: FloatArray, ambient: FloatArray, reference: float | None = None
+    ) -> tuple[list[Row], list[Transition]]:
+        """What the controller knows of each row, and its transition (rows that agree to 0.2 % share one).
+
+        Arguments as `observe`.
+        """
         given, model = declared_rows(self.plant, self.system.step, speeds, ambient), self.system.model
         heat = sum(
             np.multiply.outer(given.inputs[name], vector)
@@ -109,7 +115,8 @@ class ThermalObserver:
             self.system.transition(dict(zip(given.conductances, map(float, values), strict=True)))
             for values in distinct
         ]
-        rows = [Row(one, float(air)) for one, air in zip(np.asarray(heat), given.inputs[AMBIENT], strict=True)]
+        air = given.inputs[AMBIENT] + (0.0 if reference is None else ambient[0] - reference)
+        rows = [Row(one, float(rise)) for one, rise in zip(np.asarray(heat), air, strict=True)]
         return rows, [kinds[kind] for kind in which]
 
 

@@ -93,6 +93,6 @@ def simulated_readings(
         sensors: m of them.
         generator: of the noise.
     """
-    noise = generator.normal(size=np.shape(rises)) * [sensor.noise for sensor in sensors]
-    columns = [lagged(column, step, sensor.lag) for column, sensor in zip(rises.T, sensors, strict=True)]
-    return np.asarray(np.column_stack(columns) + noise)
+    noise = generator.normal(size=np.shape(rises)) * np.array([sensor.noise for sensor in sensors])
+    shown = [lagged(column, step, sensor.lag) for column, sensor in zip(rises.T, sensors, strict=True)]
+    return np.asarray(np.array(shown).reshape(rises.T.shape).T + noise)

@@ -47,9 +47,8 @@ class TriedMachine:
 
     def readings(self, sensors: Sequence[Sensor], generator: np.random.Generator) -> FloatArray:
         """Readings of sensors with lag and noise, as rises over the start, (k, m) [K]."""
-        return simulated_readings(
-            np.column_stack([self.rises[sensor.place] for sensor in sensors]), self.step, sensors, generator
-        )
+        rises = np.array([self.rises[sensor.place] for sensor in sensors]).reshape(len(sensors), len(self.speeds))
+        return simulated_readings(rises.T, self.step, sensors, generator)
 
 
 def tried_machine(

@@ -91,14 +91,15 @@ def test_sensor_that_fails_is_passed_over_and_a_run_goes_on() -> None:
     true = machine(0.9, 1.1, warming=True)
     readings = true.readings(TWO, np.random.default_rng(31))
     observer = thermal_observer(BENCH, MODEL, ERROR, TWO, step=STEP)
-    whole = observer.observe(DUTY, STILL, readings)
-    first = observer.observe(DUTY[:300], STILL[:300], readings[:300])
-    second = observer.observe(DUTY[300:], STILL[300:], readings[300:], (first.state, first.covariance))
+    whole = observer.observe(DUTY, WARMING, readings)
+    first = observer.observe(DUTY[:300], WARMING[:300], readings[:300])
+    left = (first.state, first.covariance)
+    second = observer.observe(DUTY[300:], WARMING[300:], readings[300:], left, reference=float(WARMING[0]))
     # Rows that share a propagator are grouped per run: 0.2 % of a conductance.
     np.testing.assert_allclose(np.vstack([first.error, second.error]), whole.error, atol=1e-9)
     failed = readings.copy()
     failed[300:, 1] = np.nan
-    found = observer.observe(DUTY, STILL, failed)
+    found = observer.observe(DUTY, WARMING, failed)
     assert np.all(found.deviation[-1] > 2 * whole.deviation[-1])
     assert smaller(left_over(true.error, found.error)) >= 10.0
 
