@@ -132,6 +132,7 @@ def main(folder: Path) -> None:
     print_left("no compensation", left_over(machine.error, np.zeros_like(machine.error)))
     for name, estimate in compensations.items():
         print_left(name, left_over(machine.error, estimate))
+    print("One run; what is expected above is the spread over all that the unknowns may be.\n")
     write_files(folder, plant, machine, compensations, table)
 
 
