@@ -1,0 +1,128 @@
+"""Recommended gains: closed forms for a rigid axis, margins that hold by another computation, files that come back."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from feeddrive.effects.guide_friction import GuideFriction
+from feeddrive.errors import InputError
+from feeddrive.files import find_plant
+from feeddrive.plant.chain import Rigid
+from feeddrive.plant.files import read_plant
+from feeddrive.plant.plant import Plant
+from feeddrive.servo.cascade import Cascade, Feedback
+from feeddrive.servo.frequency_response import Case
+from feeddrive.servo.linear_loop import open_position_loop, open_velocity_loop, worst_eigenvalue
+from feeddrive.servo.margins import margins
+from feeddrive.simulate.controller_file import read_controller
+from feeddrive.tuning.demand import Demand, cases_of
+from feeddrive.tuning.largest_gain import Limit, largest_gain
+from feeddrive.tuning.reasons import controller_text, settings
+from feeddrive.tuning.recommendation import Recommendation, recommend
+
+RADIUS = 0.020 / (2 * math.pi)
+MASS = 100.0
+RIGID = Plant("mass", Rigid({"lead": 0.020, "motor_inertia": 0.0, "screw_inertia": 0.0, "table_mass": MASS}), (
+    GuideFriction.of(coulomb=1e-9, smoothing_velocity=1e-3, viscous=1e-9),))  # fmt: skip
+DRIVE = Cascade(RADIUS, 125e-6, 4, 0.0, 0.0, math.inf, 1.0, current_lag=1 / (2 * math.pi * 1000), dead_time=125e-6,
+                feedback=Feedback.TABLE, torque_limit=30.0)  # fmt: skip
+BENCH_CASES = (Case(payload=0.0), Case(payload=50.0))
+
+
+@pytest.fixture(scope="module")
+def bench() -> Plant:
+    return read_plant(find_plant("bench_axis"))
+
+
+@pytest.fixture(scope="module")
+def found(bench: Plant) -> Recommendation:
+    return recommend(bench, DRIVE, BENCH_CASES, Demand())
+
+
+def test_largest_gain_of_an_integrator_with_delay() -> None:
+    """k e^(-s T) / s: the phase margin P is met at k T = 90 deg - P, the gain margin A at k T = 90 deg / A."""
+    frequency, delay = np.geomspace(0.1, 2000.0, 20_000), 1e-3
+    loop = (np.exp(-2j * math.pi * frequency * delay) / (2j * math.pi * frequency))[None, :]
+    by_phase = largest_gain(frequency, loop, 0.0, Demand(phase=60.0, gain=3.0))
+    assert by_phase.limit is Limit.PHASE
+    assert by_phase.gain == pytest.approx(math.radians(30.0) / delay, rel=1e-3)  # one step of the grid
+    by_gain = largest_gain(frequency, loop, 0.0, Demand(phase=20.0, gain=12.0))
+    assert by_gain.limit is Limit.GAIN
+    assert by_gain.gain == pytest.approx(0.5 * math.pi / delay / 10 ** (12 / 20), rel=1e-3)
+
+
+def test_rigid_axis_meets_the_textbook() -> None:
+    """Phase at the crossover w: 90 deg - w T_d - atan(1 / (w T_n)) = 45 deg; T_d is lag, dead time and one tick."""
+    cascade = recommend(RIGID, DRIVE, [Case()], Demand()).cascade
+    inertia = MASS * RADIUS**2
+    crossover = cascade.velocity_gain / inertia
+    delay = DRIVE.sample_time + DRIVE.dead_time + DRIVE.current_lag
+    phase = 90 - math.degrees(crossover * delay + math.atan(1 / (crossover * cascade.reset_time)))
+    # T_d takes atan(w T) of the lag for w T and the crossover for that of the gain alone: 2 deg
+    assert phase == pytest.approx(45.0, abs=3.0)
+    assert cascade.reset_time >= 3.9 * inertia / cascade.velocity_gain
+    assert not cascade.torque_filters
+
+
+def test_every_case_keeps_the_margins(bench: Plant, found: Recommendation) -> None:
+    """By the fine grid of `servo.margins`, and by eigenvalues, which know nothing of margins."""
+    for case in BENCH_CASES:
+        plant = case.on(bench)
+        for make in (open_velocity_loop, open_position_loop):
+            reached = margins(make(plant, found.cascade))
+            # 4000 instead of 20000 points, and rounding to three digits that is checked on the coarser grid
+            assert reached.phase > 45.0 - 0.1 and reached.gain > 8.0 - 0.02 and reached.stable
+        assert worst_eigenvalue(plant, found.cascade)[1] < 0
+
+
+def test_gains_are_the_largest(bench: Plant, found: Recommendation) -> None:
+    """A tenth more of either gain breaks a margin in some case."""
+    cascade = found.cascade
+    faster = replace(cascade, velocity_gain=1.1 * cascade.velocity_gain)
+    stiffer = replace(cascade, position_gain=1.1 * cascade.position_gain)
+    for bolder, make in ((faster, open_velocity_loop), (stiffer, open_position_loop)):
+        reached = [margins(make(case.on(bench), bolder), points=4000) for case in BENCH_CASES]
+        assert min(one.phase for one in reached) < 45.0 or min(one.gain for one in reached) < 8.0
+
+
+def test_notch_sits_on_the_torsional_mode_and_is_explained(bench: Plant, found: Recommendation) -> None:
+    (choice,) = found.velocity.notches
+    assert choice.resonance[0] - 1 < choice.frequency < choice.resonance[1] + 1
+    rows = {one.symbol: one for one in settings(bench, found)}
+    assert set(rows) == {"K_p", "T_n", "notch", "K_v", "k_s, k_a"}
+    assert "(m/min)/mm = " in rows["K_v"].shown and rows["K_v"].shown.endswith("1/s")
+    assert "held back by the" in rows["K_p"].why and "resonance at" in rows["notch"].why
+
+
+def test_controller_file_reads_back_as_the_recommendation(bench: Plant, found: Recommendation, tmp_path: Path) -> None:
+    path = tmp_path / "controller.toml"
+    path.write_text(controller_text(found, "x"), encoding="utf-8")
+    read = read_controller(path, bench)
+    for name in ("position_gain", "velocity_gain", "reset_time", "sample_time", "current_lag", "dead_time"):
+        assert getattr(read, name) == pytest.approx(getattr(found.cascade, name), rel=1e-9)
+    assert read.torque_filters == found.cascade.torque_filters and read.feedback is found.cascade.feedback
+    assert read.feed_forward == found.cascade.feed_forward
+
+
+def test_more_margin_and_more_delay_cost_gain() -> None:
+    gains = [recommend(RIGID, replace(DRIVE, dead_time=dead), [Case()], Demand(phase=phase)).cascade.velocity_gain
+             for phase, dead in ((45.0, 125e-6), (60.0, 125e-6), (60.0, 1e-3))]  # fmt: skip
+    assert gains[0] > gains[1] > gains[2]
+
+
+def test_what_cannot_be_kept_is_refused(bench: Plant) -> None:
+    for phase, message in ((89.0, "which is of no use; ask for less"), (89.5, "no position gain keeps 89.5° and 8 dB")):
+        with pytest.raises(InputError, match=message):
+            recommend(bench, DRIVE, [Case()], Demand(phase=phase))
+    for wrong in ({"phase": 0.0}, {"phase": 90.0}, {"gain": -1.0}):
+        with pytest.raises(InputError, match="margin of"):
+            Demand(**wrong)
+    kimm = read_plant(find_plant("kimm_testbed"))
+    assert [case.position for case in cases_of(kimm)] == [0.0, 0.5, 1.0]
+    with pytest.raises(InputError, match="outside the stroke of KIMM testbed; choose from 0 mm to 1000 mm"):
+        cases_of(kimm, [1.2])

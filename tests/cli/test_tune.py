@@ -1,0 +1,65 @@
+"""`feeddrive tune` as a user types it: what is recommended runs, and one line for everything that is wrong."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from feeddrive.cli.main import main
+
+
+def test_recommendation_is_written_and_runs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "tuned"
+    assert main(["tune", "bench_axis", "--payload", "0kg,50kg", "--out", str(out)]) == 0
+    shown = capsys.readouterr()
+    assert shown.err == ""
+    for text in ("K_p", "T_n", "notch", "(m/min)/mm", "1/s", "held back by", "Margins reached", "payload 50 kg"):
+        assert text in shown.out
+    names = {path.name for path in out.iterdir()}
+    assert names == {"controller.toml", "tune.json", "bode_velocity_open.png", "bode_position_open.png"}
+    content = json.loads((out / "tune.json").read_text(encoding="utf-8"))
+    assert content["format"] == "feeddrive-tune/1"
+    for one in content["reached"]:
+        for loop in ("velocity_loop", "position_loop"):
+            assert one[loop]["phase_deg"] >= 45 and one[loop]["gain_db"] >= 8 and one[loop]["stable"]
+    # the nonlinear machine under the recommended controller, with its feed-forward
+    controller = f"controller={(out / 'controller.toml').resolve()}"
+    assert main(["run", "s_curve_positioning", "--json", "--set", controller]) == 0
+    ran = json.loads(capsys.readouterr().out)
+    assert ran["controller"]["position_gain"]["1/s"] == pytest.approx(content["position_gain"]["1/s"])
+    assert all(point["time"] is not None and point["time"] < 0.1 for point in ran["evaluations"][0]["points"])
+
+
+def test_drive_of_a_scenario_and_json_alone(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["tune", "bench_axis", "--scenario", "step_position", "--feedback", "motor", "--json"]) == 0
+    content = json.loads(capsys.readouterr().out)
+    assert content["position_feedback"] == "motor"
+    assert 'position_feedback = "motor"' in content["controller"] and "speed_limit" in content["controller"]
+
+
+@pytest.mark.parametrize(
+    ("flags", "message"),
+    [
+        (["--margin-phase", "45"], "45 is a bare number"),
+        (["--margin-phase", "120deg"], "a phase margin of 120° is not between 0° and 90°"),
+        (["--margin-phase", "89deg"], "is of no use"),
+        (["--margin-gain", "-3dB"], "a gain margin of -3 dB is not between 0 dB and 60 dB"),
+        (["--position-rate", "3kHz"], "8000 Hz is no integer multiple of 3000 Hz; write 2666.67 Hz"),
+        (["--velocity-rate", "0 Hz"], "0 Hz is not above zero"),
+        (["--dead-time", "-1ms"], "-1ms is negative"),
+        (["--feedback", "tabel"], 'did you mean "table"?'),
+        (["--payload", "-200kg"], "leaves no mass"),
+        (["--scenario", "nothing"], "neither a file nor the name of a shipped scenario"),
+    ],
+)
+def test_what_is_wrong_is_told_in_one_line(
+    flags: list[str], message: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "out"
+    assert main(["tune", "bench_axis", *flags, "--out", str(out)]) == 2
+    shown = capsys.readouterr()
+    assert shown.out == "" and shown.err.startswith("error: ") and shown.err.count("\n") == 1
+    assert message in shown.err
+    assert not out.exists()
