@@ -14,7 +14,7 @@ from feeddrive.parts.preload_torque import relative_preload_torque
 from feeddrive.parts.screw_efficiency import back_driving_efficiency, driving_efficiency
 from feeddrive.parts.slip_angle import Groove, groove_at, slip_angles_nut_drives, slip_angles_screw_drives
 from feeddrive.parts.slip_forces import axial_force, screw_moment
-from feeddrive.reproduce.row import Paper, Row, claim, number
+from feeddrive.reproduce.row import Paper, Row, claim
 from feeddrive.typing import FloatArray
 
 PAPER = Paper.EFFICIENCY
@@ -130,8 +130,9 @@ def _inverse(grooves: Groove) -> tuple[Row, Row]:
     """(8) is the exact inverse of (7), and the stable form the same number."""
     relative = np.asarray(relative_preload_torque(grooves, FRICTION))
     found = np.asarray(friction_from_torque(relative, grooves))
-    exact = number(PAPER, "eq. 8", "f from the torque that eq. 7 makes with 0.034", "", "0.034",
-                   float(found.flat[np.argmax(np.abs(found - FRICTION))]), within=SAME)  # fmt: skip
+    shown, same = _difference(found, np.full_like(found, FRICTION))
+    exact = claim(PAPER, "eq. 8", "gives back any f put into eq. 7", "inverse of eq. 7", shown, same,
+                  assumption='"- f_a" of eq. 7 in the first denominator')  # fmt: skip
     t, a, b = relative, grooves.a_n, grooves.b_n
     shown, same = _difference(found, np.asarray(a * (np.sqrt(1 + t**2 * b**2) - 1) / (t * b**2)))
     form = claim(PAPER, "eq. 8", "as printed against the form without cancellation", "identical", shown, same)

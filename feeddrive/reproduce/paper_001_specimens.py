@@ -55,7 +55,8 @@ def _weibull() -> tuple[Row, ...]:
                      "the lives of the ten specimens are not printed; the line through first and last alone has "
                      f"{ends.slope:.1f}"),
         claim(_LIFE, "sec. 2.2", "slope of ball screws above the 10/9 of ball bearings", "3.6 against 1.11",
-              f"90 % interval {interval.low:.2f} to {interval.high:.2f}", interval.low > BALL_BEARING.slope),
+              f"90 % interval {interval.low:.2f} to {interval.high:.2f}", interval.low > BALL_BEARING.slope,
+              assumption="all ten failed, and the slope is that of maximum likelihood"),
         claim(_LIFE, "sec. 2.2", "lives of screws scatter less than those of bearings", "smaller",
               f"standard deviation over mean {scatter[0]:.2f} against {scatter[1]:.2f}", scatter[0] < scatter[1]),
         claim(_LIFE, "eq. (1), sec. 2.2", "F in per cent", "F (%)",

@@ -10,6 +10,7 @@ from feeddrive.reproduce.paper_004_measurement import measurement_rows
 from feeddrive.reproduce.row import Paper, Row, number
 
 _CUT = f"{MODULI}; {CUT_OFF}"
+_OF_SCREW = f"{MODULI}; E and G are the round values that give the printed stiffness of the screw"
 _SPLIT = f"{MODULI}; coupling and motor shaft chosen to give it, so this checks eq. (7), not the paper"
 
 
@@ -30,7 +31,7 @@ def rows() -> tuple[Row, ...]:
 def _axial_rows(drive: BallScrewDrive, found: CombinedStiffness) -> tuple[Row, ...]:
     screw = drive.screw.axial_stiffness(FORCE_LENGTH)
     return (
-        number(Paper.STIFFNESS, "sec. 3", "k_BS, screw", "N/µm", "468", screw / 1e6, assumption=MODULI),
+        number(Paper.STIFFNESS, "sec. 3", "k_BS, screw", "N/µm", "468", screw / 1e6, assumption=_OF_SCREW),
         number(Paper.STIFFNESS, "eq. (6)", "k_XS, axial chain", "N/µm", "244.7", found.axial / 1e6, assumption=MODULI),
     )
 
@@ -41,7 +42,7 @@ def _torsional_rows(drive: BallScrewDrive, found: CombinedStiffness) -> tuple[Ro
     return (
         # One unit of the last printed digit, since that is cut off.
         number(Paper.STIFFNESS, "sec. 3", "k_BS,T, screw", "N m/rad", "31134.5", screw, within=0.1 / 31134.5,
-               assumption=_CUT),
+               assumption=f"{_OF_SCREW}; {CUT_OFF}"),
         number(Paper.STIFFNESS, "eq. (7)", "k_TS, torsional chain", "N m/rad", "11982.4", chain, assumption=_SPLIT),
     )  # fmt: skip
 

@@ -331,7 +331,25 @@ def test_rows_say_what_became_of_every_number() -> None:
         ("L10 of 300 000, slope 3.6 and all ten failed by 500 000 rev", Status.CONTRADICTED),
         ("f_s at which the nut takes over from the screw", Status.CONTRADICTED),
         ("Weibull slope", Status.NOT_POSSIBLE),
+        ("life law from eqs. (1), (2)", Status.REPRODUCED),
+        ("power of T_1 in the material constant", Status.CONTRADICTED),
+        ("exponent of the load, named b", Status.ASSUMPTION),
+        ("two nuts loaded with C_d both survive 10^6 revolutions", Status.REPRODUCED),
+        ("temperature of the nuts under forced air", Status.NOT_POSSIBLE),
     ],
 )
 def test_status_of_known_rows(quantity: str, status: Status) -> None:
     assert [row.status for row in rows() if row.quantity == quantity] == [status]
+
+
+@pytest.mark.parametrize(
+    ("quantity", "texts"),
+    [
+        ("F(b/a) is the difference of curvatures, screw and nut", ("0.84688", "0.81998")),
+        ("angle between the screw's groove and the path of the balls", ("0.4562", "0.4506")),
+        ("power of T_1 in the material constant", ("-2.907",)),
+    ],
+)
+def test_equations_give_what_was_found_by_hand(quantity: str, texts: tuple[str, ...]) -> None:
+    (row,) = [row for row in rows() if row.quantity == quantity]
+    assert all(text in row.computed for text in texts)

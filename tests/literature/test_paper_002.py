@@ -27,6 +27,12 @@ CONTRADICTED = {
     "heat put in over friction power ωT",
     "heat that node n = 2 loses and its neighbour does not get, over the exchange",
     "T_v in N m",
+    "time constant at 1300 N, 250 rev/min",
+    "volume of a bearing's cell, at its outer surface",
+    "condition of class 8, a cell of the nut, holds C_bsg",
+    "number of nuts in (22) from (18) to (20)",
+    "unit of a friction torque",
+    "viscosities of 32 and 170",
 }
 
 
@@ -77,6 +83,28 @@ def test_time_constants_are_those_of_an_independent_run() -> None:
     fitted = [warm_up(Assumptions.FITTED, 670, speed).time_constant for speed in SPEEDS]
     assert printed == pytest.approx([43.2, 33.0, 28.0], abs=0.1)
     assert fitted == pytest.approx([44.8, 33.1, 27.3], abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ("quantity", "status", "text"),
+    [
+        ("k1 to k6 take from a cell what they give to its neighbour", Status.REPRODUCED, "of an exchange"),
+        ("volume of a bearing's cell, at its outer surface", Status.CONTRADICTED, "3.2%"),
+        ("settling time at 500 rev/min, three time constants", Status.REPRODUCED, "99"),
+        ("feed at 750 rev/min, lead 5 mm", Status.REPRODUCED, "3.75"),
+        ("number of nuts in (22) from (18) to (20)", Status.CONTRADICTED, "4 in place of 2"),
+        ("friction torque grows with preload and speed", Status.ASSUMPTION, "0.0457"),
+    ],
+)
+def test_scheme_and_arithmetic(found: tuple[Row, ...], quantity: str, status: Status, text: str) -> None:
+    (row,) = [row for row in found if row.quantity == quantity]
+    assert row.status is status
+    assert text in row.computed
+
+
+def test_time_constants_are_compared_at_both_preloads(found: tuple[Row, ...]) -> None:
+    constants = [row for row in found if row.quantity.startswith("time constant at")]
+    assert len(constants) == 12  # two sets, two preloads, three speeds
 
 
 @pytest.mark.slow
