@@ -72,7 +72,7 @@ def loops_of(cascade: Cascade) -> tuple[Loop, ...]:
     """The loops that a cascade closes.
 
     Raises:
-        InputError: none.
+        InputError: it closes none.
     """
     if not cascade.velocity_gain:
         raise InputError("the controller closes no loop", "controller", "give it a velocity_gain")
