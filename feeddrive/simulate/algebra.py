@@ -8,13 +8,13 @@ from feeddrive.simulate.propagators import HERMITE_BASIS
 from feeddrive.typing import Expression
 
 
-def cubic(ends: Expression, place: Expression, span: Expression) -> tuple[Expression, Expression]:
-    """Value and rate at a place in 0..1 of the cubic with (value, rate) at both ends, `span` [s] apart."""
+def cubic(ends: Expression, place: Expression, span: Expression) -> tuple[Expression, Expression, Expression]:
+    """Value, rate, acceleration at a place in 0..1 of the cubic with (value, rate) at both ends, `span` [s] apart."""
     scaled = ca.vertcat(ends[0], span * ends[1], ends[2], span * ends[3])
     monomials = ca.mtimes(ca.DM(HERMITE_BASIS).T, scaled)
     value = monomials[0] + place * (monomials[1] + place * (monomials[2] + place * monomials[3]))
     rate = (monomials[1] + place * (2 * monomials[2] + place * 3 * monomials[3])) / span
-    return value, rate
+    return value, rate, (2 * monomials[2] + place * 6 * monomials[3]) / span**2
 
 
 def part(column: Expression, start: int, count: int) -> Expression:

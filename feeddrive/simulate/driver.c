@@ -35,12 +35,13 @@ enum {
 static const int needed_first[] = NEEDED_FIRST, needed_second[] = NEEDED_SECOND;
 static const double nodes[2] = {1.0 / 3.0, 1.0};
 
-/* Value and rate at a place in 0..1 of the cubic with (value, rate) at both ends, span [s] apart. */
-static void cubic(in ends, double place, double span, double *value, double *rate) {
+/* Value, rate, acceleration at a place in 0..1 of the cubic with (value, rate) at both ends, span [s] apart. */
+static void cubic(in ends, double place, double span, double *motion) {
   double a = span * ends[1], b = span * ends[3], rise = ends[2] - ends[0];
   double c2 = 3 * rise - 2 * a - b, c3 = a + b - 2 * rise;
-  *value = ends[0] + place * (a + place * (c2 + place * c3));
-  *rate = (a + place * (2 * c2 + place * 3 * c3)) / span;
+  motion[0] = ends[0] + place * (a + place * (c2 + place * c3));
+  motion[1] = (a + place * (2 * c2 + place * 3 * c3)) / span;
+  motion[2] = (2 * c2 + place * 6 * c3) / (span * span);
 }
 
 /* The input as a step sees it: of a cubic, the part from place on. */
@@ -49,8 +50,10 @@ static void step_input(in held, double place, in fixed, double *input) {
 #if DRIVEN
   double share = fixed[SPAN + 1], span = fixed[SPAN] / share;
   if (share != 1.0) {
-    cubic(held, place, span, input, input + 1);
-    cubic(held, place + share, span, input + 2, input + 3);
+    double begin[3], end[3];
+    cubic(held, place, span, begin);
+    cubic(held, place + share, span, end);
+    input[0] = begin[0], input[1] = begin[1], input[2] = end[0], input[3] = end[1];
   }
 #endif
 }
@@ -63,18 +66,23 @@ static double free_row(in memory, in input, in node, int row) {
 }
 
 static void begin(in memory, in held, in input, double place, in fixed, double *base, double *guess) {
-  double motor[4] = {0, 0, 0, 0}, h = fixed[SPAN];
+  (void)held, (void)place;
+  double h = fixed[SPAN], given[2][N_HELD < 3 ? 3 : N_HELD]; /* held inputs, or the motion of a driven motor */
+  for (int n = 0; n < 2; ++n) {
 #if DRIVEN
-  double share = fixed[SPAN + 1];
-  for (int n = 0; n < 2; ++n) cubic(held, place + nodes[n] * share, h / share, motor + 2 * n, motor + 2 * n + 1);
+    double share = fixed[SPAN + 1];
+    cubic(held, place + nodes[n] * share, h / share, given[n]);
+#else
+    for (int k = 0; k < N_HELD; ++k) given[n][k] = input[k];
 #endif
+  }
   for (int k = 0; k < N_NEEDED_FIRST; ++k) {
     int row = needed_first[k];
-    base[k] = row < N_STATES ? free_row(memory, input, fixed, row) : motor[row - N_STATES];
+    base[k] = row < N_STATES ? free_row(memory, input, fixed, row) : given[0][row - N_STATES];
   }
   for (int k = 0; k < N_NEEDED_SECOND; ++k) {
     int row = needed_second[k];
-    base[N_NEEDED_FIRST + k] = row < N_STATES ? free_row(memory, input, fixed + NODE, row) : motor[2 + row - N_STATES];
+    base[N_NEEDED_FIRST + k] = row < N_STATES ? free_row(memory, input, fixed + NODE, row) : given[1][row - N_STATES];
   }
   for (int n = 0; n < 2; ++n) {
     double time = nodes[n] * h;
@@ -164,6 +172,10 @@ static void move_tangents(in memory, const solved_step *step, double start, in f
     for (int n = 0; n < 2; ++n) {
       const int *rows = n ? needed_second : needed_first, count = n ? N_NEEDED_SECOND : N_NEEDED_FIRST;
       for (int k = 0; k < count; ++k) {
+        if (rows[k] >= N_STATES) {
+          base[n * N_NEEDED_FIRST + k] = input[rows[k] - N_STATES];
+          continue;
+        }
         double sum = free_row(change, input, fixed + n * NODE, rows[k]);
         if (t->on_fixed[d]) sum += free_row(memory, step->input, other + n * NODE, rows[k]);
         base[n * N_NEEDED_FIRST + k] = sum;

@@ -161,7 +161,8 @@ def _cells(plant: Plant) -> tuple[int, int]:
     """First cell and number of cells of the positions that the chain allows; one where it does not vary."""
     if not isinstance(plant.chain, DistributedScrew):
         return 0, 1
-    first, last = (math.floor(end / CELL + 0.5) for end in plant.chain.positions_on_screw())
+    least, greatest = plant.chain.positions_on_screw()
+    first, last = math.floor(least / CELL) + 1, math.ceil(greatest / CELL) - 1  # references inside, where masses are
     return first, last - first + 1
 
 
@@ -198,6 +199,12 @@ def _constants(source: _Source, cell: int, span: float, level: int) -> FloatArra
 @lru_cache(maxsize=256)
 def _linear(source: _Source, cell: int) -> Linear:
     return linear_part(source.plant, source.layout, source.torque_lag, CELL * cell if source.varies else 0.0)
+
+
+def forget_constants() -> None:
+    """Make all constants of steps anew."""
+    _constants.cache_clear()
+    _linear.cache_clear()
 
 
 def _refuse_failure(plant: Plant, feed: Feed, stop: Stop, seen: FloatArray) -> None:

@@ -25,11 +25,11 @@ from feeddrive.plant.equations import (
     Symbols,
     bristle_count,
     chain_symbols,
-    effect_forces,
     parameter_symbols,
 )
 from feeddrive.plant.plant import Plant
 from feeddrive.simulate.algebra import cubic, newton_correction, part
+from feeddrive.simulate.node_forces import Pull, node_forces
 from feeddrive.simulate.propagators import NODES, RADAU
 from feeddrive.simulate.step_constants import CONVERGED, Layout, constant_shapes, unflatten
 from feeddrive.simulate.structure import without_left_out
@@ -42,8 +42,8 @@ class StepModel:
 
     Attributes:
         layout: sizes.
-        needed: per node, the rows of the state without node forces that the effects read; where the motor is driven,
-            its angle and speed follow the states.
+        needed: per node, the rows of the state without node forces that the effects read; the held inputs, or angle,
+            speed and acceleration of a driven motor, follow the states.
         watch: (memory, input, place, time, fixed, values) -> memory, its watched part set from the state. At a start,
             and where the fixed constants are those of another reference.
         begin: (memory, input, place, time, fixed) -> (what the coordinates at the nodes are without node forces,
@@ -90,7 +90,8 @@ def _build(plant: Plant, driven: bool, lagging: bool) -> StepModel:
 def _layout(plant: Plant, symbols: Symbols, driven: bool, lagging: bool) -> Layout:
     n = len(plant.chain.coordinates)
     q, rate, z = ca.SX.sym("q", n), ca.SX.sym("rate", n), ca.SX.sym("z", bristle_count(plant))
-    forces = effect_forces(plant, symbols, q, rate, z, ca.SX.sym("t"), ca.SX.sym("reference")).on_coordinates
+    pull = Pull(ca.SX.sym("torque"), ca.SX.sym("force"), driven)
+    forces = node_forces(plant, symbols, q, rate, z, ca.SX.sym("t"), ca.SX.sym("x"), pull).on_coordinates
     first = 1 if driven else 0
     forced = tuple(i for i in range(first, n) if not forces[i].is_zero())
     free = n - first
@@ -141,9 +142,11 @@ class _Maker:
     def _watch(self) -> ca.Function:
         """Memory whose watched part belongs to its state, at rest in curvature and slope."""
         layout = self.layout
-        motor = cubic(self.input, self.place, self.step / self.share) if layout.driven else (0, 0)
-        q, rate = self._with_motor(self._state(), *motor)
-        found = self._forces(q, rate, part(self.memory, layout.states, layout.bristles), self.time)
+        motor = self._motor_at(self.place)
+        q, rate = self._with_motor(self._state(), motor[0], motor[1])
+        bristles = part(self.memory, layout.states, layout.bristles)
+        held = motor if layout.driven else self.input
+        found = self._forces(q, rate, bristles, self.time, self._pull(self._state(), held))
         kept = self.memory[: layout.states + layout.bristles]
         after = ca.vertcat(kept, self._watched(found), ca.SX.zeros(2 * layout.watched, 1))
         arguments = [self.memory, self.input, self.place, self.time, self.fixed, self.symbols.vector]
@@ -157,8 +160,21 @@ class _Maker:
         at = self.layout.states + self.layout.bristles
         return part(self.memory, at + index * self.layout.watched, self.layout.watched)
 
-    def _forces(self, q: Expression, rate: Expression, z: Expression, time: Expression) -> Forces:
-        return effect_forces(self.plant, self.symbols, q, rate, z, time, self.reference)
+    def _forces(self, q: Expression, rate: Expression, z: Expression, time: Expression, pull: Pull) -> Forces:
+        return node_forces(self.plant, self.symbols, q, rate, z, time, self.reference, pull)
+
+    def _pull(self, state: Expression, held: Expression) -> Pull:
+        """From the state and the held inputs, or the motion of a driven motor."""
+        if self.layout.driven:
+            return Pull(held[2], ca.SX(0), True)
+        torque = state[self.layout.states - 1] if self.layout.lagging else held[0]
+        return Pull(torque, held[1], False)
+
+    def _motor_at(self, place: Expression) -> Expression:
+        """Angle, speed and acceleration of a driven motor at a place of its cubic; zeros where it is not driven."""
+        if not self.layout.driven:
+            return ca.SX.zeros(3, 1)
+        return ca.vertcat(*cubic(self.input, place, self.step / self.share))
 
     def _watched(self, found: Forces) -> Expression:
         on_coordinates = ca.reshape(found.on_coordinates[list(self.layout.forced)], self.count, 1)
@@ -178,28 +194,31 @@ class _Maker:
         """The input as this step sees it: of a cubic, the part from `place` on."""
         if not self.layout.driven:
             return self.input
-        ends = [cubic(self.input, self.place + end * self.share, self.step / self.share) for end in (0, 1)]
-        return ca.vertcat(*ends[0], *ends[1])
+        ends = [self._motor_at(self.place + end * self.share) for end in (0, 1)]
+        return ca.vertcat(ends[0][:2], ends[1][:2])
 
     def _free_response(self, node: int) -> Expression:
-        """State at a node without node forces; below it, where the motor is driven, its angle and speed there."""
+        """State at a node without node forces; below it the held inputs, or the motion of a driven motor there."""
         exponential, from_input = self.blocks[4 * node], self.blocks[4 * node + 1]
         state = ca.mtimes(exponential, self._state()) + ca.mtimes(from_input, self._step_input())
-        if not self.layout.driven:
-            return state
-        motor = cubic(self.input, self.place + NODES[node] * self.share, self.step / self.share)
-        return ca.vertcat(state, *motor)
+        held = self._motor_at(self.place + NODES[node] * self.share) if self.layout.driven else self.input
+        return ca.vertcat(state, held)
+
+    @property
+    def _rows(self) -> int:
+        """Rows of a free response."""
+        return self.layout.states + (3 if self.layout.driven else self.layout.inputs)
 
     def _needed_rows(self) -> list[list[int]]:
         """Rows of the free response, per node, that the effects read."""
-        rows = self.layout.states + (2 if self.layout.driven else 0)
+        rows = self._rows
         states = [ca.SX.sym(f"at_{i}", rows) for i in range(2)]
         residual = self._residual(states)
         return [[k for k, used in enumerate(ca.which_depends(residual, s, 1, False)) if used] for s in states]
 
     def _spread(self, known: Expression, needed: list[list[int]]) -> list[Expression]:
         """Free responses with the known rows in place; the other rows are not read."""
-        rows, at = self.layout.states + (2 if self.layout.driven else 0), 0
+        rows, at = self._rows, 0
         result = []
         for wanted in needed:
             response = ca.SX.zeros(rows, 1)
@@ -219,9 +238,10 @@ class _Maker:
         layout, found = self.layout, []
         for i, node in enumerate(NODES):
             state = self._node_state(i, responses[i])
-            motor = (responses[i][layout.states], responses[i][layout.states + 1]) if layout.driven else (0, 0)
-            q, rate = self._with_motor(state, *motor)
-            found.append(self._forces(q, rate, self._node_bristles(i), self.time + node * self.step))
+            held = responses[i][layout.states :]
+            q, rate = self._with_motor(state, held[0], held[1])
+            pull = self._pull(state, held)
+            found.append(self._forces(q, rate, self._node_bristles(i), self.time + node * self.step, pull))
         return found
 
     def _node_bristles(self, node: int) -> Expression:
