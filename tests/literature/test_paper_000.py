@@ -190,7 +190,7 @@ def test_rows_compute_what_was_found_by_hand(quantity: str, texts: tuple[str, ..
 
 
 def test_the_friction_coefficient_is_not_called_reproduced() -> None:
-    """It comes from measured torques that are not printed; putting it in and getting it back shows the inverse alone."""
+    """The measured torques are not printed; putting a coefficient in and getting it back shows the inverse alone."""
     (row,) = [row for row in rows() if row.quantity == "dry friction coefficient, mean of A and B"]
     assert row.status is Status.NOT_POSSIBLE
     assert "1.300 N m" in row.reason
