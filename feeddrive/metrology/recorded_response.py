@@ -9,8 +9,9 @@
 | W | response of the hold, which is in H1 and not in G | 1 |
 
 An answer that was not recorded is the difference of its integral (speed from angle), a mean over the sample, whose own
-sinc(w T / 2) exp(+j w T / 2) is taken out likewise. Valid to about 0.4 of the sample rate; beyond, folding shows.
-Recordings under control are biased by noise that runs round the loop; the coherence says where.
+sinc(w T / 2) exp(+j w T / 2) is taken out likewise. Told up to a quarter of the sample rate; beyond, what the sampling
+folds back shows (2 dB at 0.4). Recordings under control are biased by noise that runs round the loop; the coherence
+says where.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ _INTEGRALS = {"motor_speed": "motor_angle", "table_velocity": "table_position"}
 _HELD = ("motor_torque", "cutting_force")
 _AVERAGES = 16
 _SHORTEST, _LONGEST = 64, 2.0  # samples, s
-_HIGHEST = 0.4
+_HIGHEST = 0.25
 
 
 def recorded_response(recording: Recording, given: str, output: str) -> Response:
