@@ -87,7 +87,7 @@ def metrics(result: ScenarioResult, evaluated: tuple[Evaluated, ...], path: Path
     """Everything that was found, SI units, ready for JSON."""
     scenario, cascade = result.scenario, result.scenario.cascade
     whole = following(result.series["setpoint"], result.series["table_position"])
-    value, growth, frequency = worst_eigenvalue(scenario.plant, cascade)
+    value, growth, frequency = worst_eigenvalue(scenario.plant, cascade, position=scenario.plant.middle)
     return {
         "format": FORMAT,
         "version": __version__,

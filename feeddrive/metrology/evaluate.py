@@ -143,7 +143,7 @@ def _friction_map(result: ScenarioResult, wanted: Evaluation) -> tuple[FrictionP
     skipped = round(_number(wanted, "skip", 0.0) / result.scenario.sample_time)
     constant = _without_first(constant, skipped)
     velocity = np.where(constant, motion.velocity, 0.0)
-    lead = 2 * math.pi * result.scenario.plant.chain.radius
+    lead = 2 * math.pi * result.scenario.plant.chain.motor_radius
     return friction_map(velocity, result.series["motor_torque"], lead)
 
 
@@ -172,7 +172,7 @@ def _force_loop(result: ScenarioResult, wanted: Evaluation) -> ForceLoop:
 
 
 def _torque_loop(result: ScenarioResult, wanted: Evaluation) -> TorqueLoop:
-    chosen, lead = _loop(result, wanted), 2 * math.pi * result.scenario.plant.chain.radius
+    chosen, lead = _loop(result, wanted), 2 * math.pi * result.scenario.plant.chain.motor_radius
     return torque_loop(result.series["table_position"][chosen], result.series["motor_torque"][chosen], lead)
 
 

@@ -120,7 +120,7 @@ def friction_figure(result: ScenarioResult, one: Evaluated) -> ReportFigure:
     axes.set_ylim(bottom=0)
     dress(axes, "velocity [m/min]", "torque at the motor [N m]", "mean and standard deviation at constant velocity")
     legend_above(axes, 2)
-    factor = 1 / result.scenario.plant.chain.radius
+    factor = 1 / result.scenario.plant.chain.motor_radius
     right = axes.secondary_yaxis("right", functions=(_times(factor), _times(1 / factor)))
     right.set_ylabel("as a force at the table [N]", fontsize=9)
     right.tick_params(labelsize=8.5, color="#888888")

@@ -99,7 +99,7 @@ def read_scenario(path: Path, overrides: Mapping[str, str] | None = None) -> Sce
     if travel is not None:
         refuse_beyond_travel(trajectory, travel, cascade.sample_time * cascade.position_divider, where)
     if not unstable:
-        refuse_unstable(plant, cascade, controller_where)
+        refuse_unstable(plant, cascade, controller_where, plant.middle)
     return Scenario(
         name=top.text("name", path.stem), description=top.text("description", ""), plant=plant, cascade=cascade,
         trajectory=trajectory, force=read_forces(top.tables("force"), path.parent), excitation=excitation,
