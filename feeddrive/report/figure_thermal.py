@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.collections import QuadMesh
 
-HOURS_FROM = 5 * 3600.0
+HOURS_FROM = 4 * 3600.0
 """Duration from which time is drawn in hours [s]."""
 
 _MAP, _SHADES = "YlOrRd", 14

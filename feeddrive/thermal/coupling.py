@@ -1,0 +1,141 @@
+"""What temperatures do to the drive: thinner oil, another preload, a longer screw.
+
+    T_v / T_v0 = (ν(T) / ν(T_0))^(2/3)          viscous torque, Palmgren's law; ν by Walther's
+    F / F_0 = 1 + ΔF(T_nut - T_shaft) / F_0     preload of the double nut (`nut_preload`)
+    T_a / T_a0 = F / F_0,  k / k_0 = (F / F_0)^(1/3)      preload torque and stiffness (`parts.preload_loss`)
+
+| symbol | meaning | unit |
+|---|---|---|
+| T_0 | temperature for which the plant's friction and preload are declared: `ambient` of its thermal section | degC |
+| ν | kinematic viscosity of the oil, or of the grease's base oil | m²/s |
+
+Bearings change with their oil alone. Valid while the nut keeps preload: it is refused to run loose. The guide's
+friction is left as declared: its oil has the temperature of the machine's bed.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from feeddrive.errors import InputError
+from feeddrive.parts.lubricant import Lubricant
+from feeddrive.parts.preload_loss import stiffness_share, torque_share
+from feeddrive.quantity import format_quantity
+from feeddrive.thermal.nut_preload import Spacer, preload_change
+from feeddrive.thermal.rig import refuse_negative, refuse_unless, refuse_unless_positive
+
+_PALMGREN = 2 / 3
+LEAST_PRELOAD = 0.05
+"""Share of the preload below which the nut counts as loose, where none of these laws holds."""
+
+
+@dataclass(frozen=True)
+class Temperatures:
+    """Of the parts whose laws depend on them [degC]: nut, shaft under it, front and rear bearing."""
+
+    nut: float
+    shaft: float
+    front: float
+    rear: float
+
+
+@dataclass(frozen=True)
+class Changes:
+    """Factors on what the plant declares [1].
+
+    Attributes:
+        nut_viscous, bearing_viscous: on the lubricant torques.
+        preload: on the preload, and so on the preload torque.
+        nut_stiffness: on the nut's axial stiffness.
+    """
+
+    nut_viscous: float = 1.0
+    bearing_viscous: float = 1.0
+    preload: float = 1.0
+    nut_stiffness: float = 1.0
+
+    @property
+    def preload_torque(self) -> float:
+        """On the torque that the preload causes [1]."""
+        return torque_share(self.preload)
+
+
+@dataclass(frozen=True)
+class Coupling:
+    """How heat and drive are joined.
+
+    Attributes:
+        nut_at_zero: place of the nut's centre from the fixed end where the table is at 0 [m].
+        nut_oil, bearing_oil: lubricants.
+        nut_stiffness: axial, of the whole nut at its preload [N/m].
+        group_distance: of the two ball groups [m].
+        contact_angle: of the balls, from the radial direction [rad].
+        spacer: how the nut is preloaded.
+        rear_share: of the bearings' friction, at the rear one [1].
+        motor_constant: torque per root of the winding's heat [N m/W^½]; None where that heat is not counted.
+        guide_heat_to: body that takes the guide's friction heat; "" for the bed.
+    """
+
+    nut_at_zero: float
+    nut_oil: Lubricant
+    bearing_oil: Lubricant
+    nut_stiffness: float
+    group_distance: float
+    contact_angle: float
+    spacer: Spacer
+    rear_share: float = 0.5
+    motor_constant: float | None = None
+    guide_heat_to: str = ""
+
+    def __post_init__(self) -> None:
+        refuse_negative(self.nut_at_zero, "m", "coupling.nut_at_zero")
+        refuse_unless_positive(self.nut_stiffness, "N/m", "coupling.nut_stiffness")
+        refuse_unless_positive(self.group_distance, "m", "coupling.group_distance")
+        steep = 0 < self.contact_angle < math.pi / 2
+        refuse_unless(
+            steep, "the contact angle is not between 0 and 90 deg", "coupling.contact_angle", "check its unit"
+        )
+        share = 0 <= self.rear_share <= 1
+        refuse_unless(share, f"{self.rear_share} is no share", "coupling.rear_share", "write a number from 0 to 1")
+        if self.motor_constant is not None:
+            refuse_unless_positive(self.motor_constant, "N m/W^0.5", "coupling.motor_constant")
+
+    def changes(
+        self, at: Temperatures, reference: float, preload: float, pitch_diameter: float, expansion: float
+    ) -> Changes:
+        """What the drive is at some temperatures.
+
+        Args:
+            at: the temperatures.
+            reference: T_0 [degC].
+            preload: F_0 [N].
+            pitch_diameter: of the circle of ball centres [m].
+            expansion: of the steel [1/K].
+
+        Raises:
+            InputError: the nut has lost its preload.
+        """
+        # Two nuts share the load about zero, so that the whole is twice as stiff as one.
+        gained = preload_change(
+            at.nut - at.shaft, preload, self.nut_stiffness / 2, self.group_distance, pitch_diameter,
+            self.contact_angle, self.spacer, expansion,
+        )  # fmt: skip
+        share = 1 + gained / preload
+        if share < LEAST_PRELOAD:
+            told = f"a nut {at.nut - at.shaft:.3g} K warmer than its shaft keeps {share:.0%} of its preload"
+            raise InputError(told, "coupling", f"cool it, or preload it with more than {format_quantity(preload, 'N')}")
+        mean = (1 - self.rear_share) * at.front + self.rear_share * at.rear
+        return Changes(
+            viscous_share(self.nut_oil, at.nut, reference), viscous_share(self.bearing_oil, mean, reference),
+            share, stiffness_share(share),
+        )  # fmt: skip
+
+
+def viscous_share(oil: Lubricant, temperature: float, reference: float) -> float:
+    """T_v over that at the reference temperature [degC], at the same speed.
+
+    Warns:
+        ValidityWarning: a temperature outside Walther's law.
+    """
+    return float((oil.viscosity(temperature) / oil.viscosity(reference)) ** _PALMGREN)
