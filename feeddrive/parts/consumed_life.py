@@ -25,7 +25,7 @@ import numpy as np
 
 from feeddrive.errors import InputError
 from feeddrive.parts.double_nut import rigid_sharing
-from feeddrive.parts.life import MILLION
+from feeddrive.parts.life import MILLION, life_together
 from feeddrive.parts.life_exponents import BALL_SCREW, LifeExponents
 from feeddrive.parts.values import PartValue, check_values
 from feeddrive.typing import FloatArray
@@ -58,11 +58,7 @@ class ConsumedLife:
     @property
     def repetitions(self) -> float:
         """How often 90 % survive the recording, one after another; infinite where it takes no life."""
-        greatest = float(self.total.max())
-        if greatest == 0.0:
-            return math.inf
-        together = float(np.sum((self.total / greatest) ** self.exponents.slope))
-        return float(together ** (-1.0 / self.exponents.slope) / greatest)
+        return life_together([1.0 / used if used > 0.0 else math.inf for used in self.total], self.exponents)
 
 
 def consumed_life(

@@ -19,6 +19,7 @@ from __future__ import annotations
 
 import math
 import warnings
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from feeddrive.errors import InputError, ValidityWarning
@@ -110,6 +111,19 @@ def revolutions_at(probability: float, rated: float, exponents: LifeExponents = 
     if not rated > 0.0:
         raise InputError(f"{rated:g} rated revolutions", "life", "write a rated life above 0")
     return float(rated * (math.log(probability) / math.log(0.9)) ** (1.0 / exponents.slope))
+
+
+def life_together(lives: Sequence[float], exponents: LifeExponents = BALL_SCREW) -> float:
+    """Life that 90 % of sets of several bodies survive: L^-e is the sum of L_i^-e; infinite where all are.
+
+    Args:
+        lives: rated lives of the bodies, in any unit of work (revolutions, recordings), above 0.
+        exponents: of the life law.
+    """
+    shortest = min(lives)
+    if math.isinf(shortest):
+        return math.inf
+    return float(shortest * sum((life / shortest) ** -exponents.slope for life in lives) ** (-1.0 / exponents.slope))
 
 
 def equivalent_load(duty: tuple[DutyPhase, ...], exponents: LifeExponents = BALL_SCREW) -> float:

@@ -60,7 +60,7 @@ class BallScrewDrive:
     housing_stiffness: float | None = None
 
     values: ClassVar[tuple[PartValue, ...]] = (
-        PartValue("table_mass", "kg", 0.0, 1e6),
+        PartValue("table_mass", "kg", 1e-4, 1e6),
         PartValue("housing_stiffness", "N/m", 1e5, 1e14, usual=(1e7, 1e12)),
     )
 

@@ -11,6 +11,7 @@ RATINGS: dict[str, tuple[PartValue, ...]] = {
     "motor": (PartValue("max_speed", "rad/s", 0.0, 1e5, usual=(10.0, 3000.0)),),
     "ball_screw": (
         PartValue("static_rating", "N", 0.0, 1e8, usual=(500.0, 5e6)),
+        PartValue("dynamic_rating", "N", 0.0, 1e8, usual=(200.0, 2e6)),
         PartValue("ball_circle", "m", 1e-3, 0.5, usual=(4e-3, 0.2)),
         PartValue("dn_limit", "m rad/s", 0.0, 1e3, usual=(1.0, 40.0)),
     ),
@@ -20,7 +21,7 @@ RATINGS: dict[str, tuple[PartValue, ...]] = {
         PartValue("axial_load", "N", 0.0, 1e7, usual=(1.0, 1e6)),
     ),
 }
-"""Limits and ratings by section: greatest speeds and acceleration, C0 of the ball screw, largest process force."""
+"""Limits and ratings by section: greatest speeds and acceleration, C0 and C of the ball screw, largest process force."""
 
 
 def read_data(top: Table) -> dict[str, Datum]:

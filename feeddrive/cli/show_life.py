@@ -1,0 +1,35 @@
+"""The life of the ball screw as `feeddrive show` tells it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import Any
+
+from rich.table import Table
+
+from feeddrive.cli.output import table
+from feeddrive.parts.life import MILLION
+from feeddrive.plant.rated_life import LifeRow
+from feeddrive.quantity import format_quantity
+
+_HOUR = 3600.0
+_KILOMETRE = 1e3
+
+
+def life_content(rows: Sequence[LifeRow]) -> list[dict[str, Any]]:
+    """Rows as plain values, SI."""
+    return [asdict(row) for row in rows]
+
+
+def life_table(rows: Sequence[LifeRow]) -> Table:
+    """The same for people; without rows where no dynamic rating is declared."""
+    headings = ("axial force", "loads of the nuts", "10⁶ rev", "travel", "at greatest velocity")
+    return table("Rated life of the ball screw, survived by 90 %", headings, [_cells(row) for row in rows])
+
+
+def _cells(row: LifeRow) -> list[str]:
+    loads = " and ".join(format_quantity(load, "N") for load in row.nut_loads)
+    time = f"{row.time / _HOUR:.3g} h" if row.time is not None else ""
+    force = format_quantity(row.force, "N") if row.force else "none, preload alone"
+    return [force, loads, f"{row.revolutions / MILLION:.4g}", f"{row.travel / _KILOMETRE:.4g} km", time]
