@@ -31,6 +31,7 @@ from feeddrive.tuning.thermal_open_loop import compensation_model, model_alone
 from feeddrive.tuning.thermal_placement import placements
 from feeddrive.tuning.thermal_sensors import Sensor, mountable_places
 from feeddrive.tuning.thermal_trial import TriedMachine, random_duty, tried_machine
+from feeddrive.tuning.thermal_unknowns import Unknowns
 from feeddrive.typing import FloatArray
 
 PLANT = read_thermal_plant(find_plant("thermal_bench"))
@@ -78,7 +79,7 @@ def _placements(model: HeatModel, error: TableError) -> None:
 def _signs(model: HeatModel, error: TableError) -> None:
     table = _table(error)
     print("\nfactor of the error, rms / maximum; in brackets what is left, rms / maximum [um]")
-    print("duty, heat, film, drift | model alone, still air | model, air recorded | one sensor (nut), drift unseen | "
+    print("duty, heat, film, drift | model alone, still air | model, air recorded | one sensor (front), drift unseen | "
           "two sensors, drift unseen | line through two sensors' | table over nut, still air")  # fmt: skip
     worst: dict[str, float] = {}
     for (name, speeds), (heat, film), drift in product(DUTIES.items(), SIGNS, DRIFTS):
@@ -88,7 +89,7 @@ def _signs(model: HeatModel, error: TableError) -> None:
         found = {
             "model": left_over(still.error, model_alone(PLANT, model, error, STEP, speeds, STILL)),
             "recorded": left_over(warm.error, model_alone(PLANT, model, error, STEP, speeds, ambient)),
-            "one": left_over(warm.error, _observed(model, error, warm, "nut")),
+            "one": left_over(warm.error, _observed(model, error, warm, "front")),
         }
         two = _observed(model, error, warm, "nut", "front")
         found["two"] = left_over(warm.error, two)
@@ -101,9 +102,11 @@ def _signs(model: HeatModel, error: TableError) -> None:
     print("worst of both factors: " + ", ".join(f"{key} {value:.1f}" for key, value in worst.items()))
 
 
-def _observed(model: HeatModel, error: TableError, machine: TriedMachine, *places: str) -> FloatArray:
+def _observed(
+    model: HeatModel, error: TableError, machine: TriedMachine, *places: str, unknowns: Unknowns | None = None
+) -> FloatArray:
     sensors = [Sensor(place) for place in places]
-    observer = thermal_observer(PLANT, model, error, sensors, step=STEP)
+    observer = thermal_observer(PLANT, model, error, sensors, unknowns, STEP)
     return observer.observe(machine.speeds, STILL, machine.readings(sensors, np.random.default_rng(5))).error
 
 
@@ -120,7 +123,7 @@ def _orders() -> None:
     print("\norder of the model: states of the filter, factor with two sensors, ms for 6 h (worst sign, ramp)")
     ambient, speeds = STILL + DRIFTS["ramp"], DUTIES["random 11"]
     machine = tried_machine(PLANT, OTHER_MESH, STEP, speeds, ambient, heat=0.9, film=1.1)
-    for order in (6, 8, 10, 15, 36):
+    for order in (6, 8, 10, 16, 36):
         model = compensation_model(PLANT, order)
         error = table_error(PLANT, model)
         began = time.perf_counter()
@@ -146,9 +149,15 @@ def _beyond(model: HeatModel, error: TableError) -> None:
         machine = tried_machine(plant, full_model(plant.rig, cells), STEP, speeds, ambient, heat=0.9, film=1.1)
         true = np.array([np.interp(error.positions, machine.positions, row) for row in machine.error])
         found = left_over(true, _observed(model, error, machine, "nut", "front"))
-        print(f"{name:36} | {_shown(found)}")
+        print(f"{name:52} | {_shown(found)}")
 
-    print(f"{'nut moving, its ripple kept':36} | {_shown(_moving_nut(model, error, speeds, ambient))}")
+    motor = {"front": np.where(speeds > 0, 1.8, 0.0)}
+    warmed = tried_machine(PLANT, OTHER_MESH, STEP, speeds, ambient, heat=0.9, film=1.1, others=motor)
+    for name, unknowns in (("carried", None), ("not carried", Unknowns(heats=()))):
+        for places in (("nut", "front"), ("nut", "front", "rear")):
+            found = left_over(warmed.error, _observed(model, error, warmed, *places, unknowns=unknowns))
+            print(f"{f'1.8 W at the front, {name}, {len(places)} sensors':52} | {_shown(found)}")
+    print(f"{'nut moving, its ripple kept':52} | {_shown(_moving_nut(model, error, speeds, ambient))}")
 
 
 def _moving_nut(model: HeatModel, error: TableError, speeds: FloatArray, ambient: FloatArray) -> LeftOver:

@@ -80,7 +80,7 @@ class ThermalObserver:
             reference: recorded ambient at the cold start [degC]; None for that of the first row.
 
         Raises:
-            InputError: series of unequal length, or another number of sensors.
+            InputError: series of unequal length, another number of sensors, a speed or an ambient that is not finite.
 
         Warns:
             ValidityWarning: a speed above the highest that the plant declares.
@@ -105,6 +105,8 @@ class ThermalObserver:
 
         Arguments as `observe`.
         """
+        if not np.all(np.isfinite(ambient)):
+            raise InputError("a recorded ambient is not finite", "ambient", "give the last good value where it failed")
         given, model = declared_rows(self.plant, self.system.step, speeds, ambient), self.system.model
         heat = sum(
             np.multiply.outer(given.inputs[name], vector)

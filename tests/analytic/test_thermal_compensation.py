@@ -23,6 +23,7 @@ from tests.analytic.thermal_compensation_cases import (
     DUTY,
     ERROR,
     MODEL,
+    OTHER_MESH,
     RPM,
     SIGNS,
     STEP,
@@ -34,10 +35,10 @@ from tests.analytic.thermal_compensation_cases import (
 TWO = (Sensor("nut"), Sensor("front"))
 
 
-def observed(heat: float, film: float, sensors: tuple[Sensor, ...]) -> Observation:
+def observed(heat: float, film: float, sensors: tuple[Sensor, ...], unknowns: Unknowns | None = None) -> Observation:
     """The filter on readings of the warming machine; it is told that the air stays."""
     readings = machine(heat, film, warming=True).readings(sensors, np.random.default_rng(31))
-    return thermal_observer(BENCH, MODEL, ERROR, sensors, step=STEP).observe(DUTY, STILL, readings)
+    return thermal_observer(BENCH, MODEL, ERROR, sensors, unknowns, STEP).observe(DUTY, STILL, readings)
 
 
 def smaller(found: LeftOver) -> float:
@@ -58,41 +59,57 @@ def test_model_alone_takes_away_three_quarters(heat: float, film: float) -> None
 @pytest.mark.parametrize(("heat", "film"), SIGNS)
 def test_two_sensors_see_what_the_model_does_not_know(heat: float, film: float) -> None:
     found, true = observed(heat, film, TWO), machine(heat, film, warming=True)
-    # Asked are 10; measured 200 for the rms and 100 for the largest error, and the noise is of one seed.
-    assert smaller(left_over(true.error, found.error)) >= 50.0
+    # Asked are 10; measured 90 for the rms and 45 for the largest error at least, and the noise is of one seed.
+    assert smaller(left_over(true.error, found.error)) >= 25.0
     unseen = model_alone(BENCH, MODEL, ERROR, STEP, DUTY, STILL)
     assert smaller(left_over(true.error, found.error)) > 5 * smaller(left_over(true.error, unseen))
-    # What the filter says of itself: the mean square within a factor of two.
+
+
+@pytest.mark.parametrize(("heat", "film"), SIGNS)
+def test_filter_knows_how_good_it_is(heat: float, film: float) -> None:
+    true, found = machine(heat, film, warming=True), observed(heat, film, TWO, Unknowns(heats=()))
     stated = np.sqrt(np.mean(found.deviation**2) / np.mean((true.error - found.error) ** 2))
+    # Asked in the mean over all that may be; one run of one machine is within a factor of two.
     assert 0.5 < stated < 2.0
 
 
 @pytest.mark.parametrize(("heat", "film"), SIGNS)
-def test_one_sensor_on_the_nut_is_enough_for_ten(heat: float, film: float) -> None:
-    found = observed(heat, film, (Sensor("nut"),))
+def test_one_sensor_on_the_nut_is_enough_where_nothing_heats_the_front(heat: float, film: float) -> None:
+    found = observed(heat, film, (Sensor("nut"),), Unknowns(heats=()))
     assert smaller(left_over(machine(heat, film, warming=True).error, found.error)) >= 10.0
+
+
+def test_undeclared_heat_at_the_front_is_carried_by_default() -> None:
+    motor = {"front": np.where(DUTY > 0, 1.8, 0.0)}
+    true = tried_machine(BENCH, OTHER_MESH, STEP, DUTY, WARMING, heat=0.9, film=1.1, others=motor)
+    readings = true.readings(TWO, np.random.default_rng(31))
+    factors = []
+    for unknowns in (Unknowns(), Unknowns(heats=())):
+        observer = thermal_observer(BENCH, MODEL, ERROR, TWO, unknowns, STEP)
+        factors.append(smaller(left_over(true.error, observer.observe(DUTY, STILL, readings).error)))
+    assert factors[0] >= 10.0 > 5.0 > factors[1]
 
 
 def test_unknowns_are_found_within_what_the_filter_says() -> None:
     found = observed(0.9, 1.1, TWO)
     last = np.array([values[-1] for values in found.unknowns.values()])
     deviations = np.sqrt(np.diag(found.covariance)[-len(last) :])
-    assert list(found.unknowns) == ["heat", "screw_film", "nut_film", "ambient"]
-    # Four numbers within three standard deviations; two sensors hardly part the two films, and the filter says so.
-    assert np.all(np.abs(last - [-0.1, 0.1, 0.1, 2.0]) < 3 * deviations)
-    assert deviations[0] < 0.05 and deviations[3] < 0.5
+    assert list(found.unknowns) == ["heat", "screw_film", "nut_film", "ambient", "front"]
+    # Five numbers within three standard deviations; two sensors hardly part the two films, and the filter says so.
+    assert np.all(np.abs(last - [-0.1, 0.1, 0.1, 2.0, 0.0]) < 3 * deviations)
+    assert deviations[0] < 0.05 and deviations[4] < 1.0
 
 
 def test_straight_line_costs_little_on_a_short_stroke() -> None:
     estimate, true = observed(0.9, 1.1, TWO), machine(0.9, 1.1, warming=True)
     line = straight_line(estimate.error, ERROR.positions, 0.25)
-    assert smaller(left_over(true.error, line.at(ERROR.positions))) >= 50.0
+    assert smaller(left_over(true.error, line.at(ERROR.positions))) >= 25.0
 
 
 def test_sensor_that_fails_is_passed_over_and_a_run_goes_on() -> None:
     true = machine(0.9, 1.1, warming=True)
     readings = true.readings(TWO, np.random.default_rng(31))
-    observer = thermal_observer(BENCH, MODEL, ERROR, TWO, step=STEP)
+    observer = thermal_observer(BENCH, MODEL, ERROR, TWO, Unknowns(heats=()), STEP)
     whole = observer.observe(DUTY, WARMING, readings)
     first = observer.observe(DUTY[:300], WARMING[:300], readings[:300])
     left = (first.state, first.covariance)
@@ -143,13 +160,15 @@ def test_ten_states_are_enough_for_two_sensors() -> None:
     error, true = table_error(BENCH, model), machine(1.1, 0.9, warming=True)
     readings = true.readings(TWO, np.random.default_rng(31))
     found = thermal_observer(BENCH, model, error, TWO, step=STEP).observe(DUTY, STILL, readings)
-    assert smaller(left_over(true.error, found.error)) >= 50.0
+    assert smaller(left_over(true.error, found.error)) >= 25.0
 
 
 def test_readings_that_do_not_fit_are_refused() -> None:
     observer = thermal_observer(BENCH, MODEL, ERROR, TWO, step=STEP)
     with pytest.raises(InputError, match="give 2 columns"):
         observer.observe(DUTY, STILL, np.zeros((len(DUTY), 1)))
+    with pytest.raises(InputError, match="a recorded ambient is not finite"):
+        observer.observe(DUTY, np.where(DUTY > 0, STILL, np.nan), np.zeros((len(DUTY), 2)))
     with pytest.raises(InputError, match='no heat "spindle"'):
         thermal_observer(BENCH, MODEL, ERROR, TWO, Unknowns(heats=(("spindle", 1.0),))).observe(
             np.full(2, 100 * RPM), np.full(2, 23.0), np.zeros((2, 2))

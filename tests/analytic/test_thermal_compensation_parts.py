@@ -109,7 +109,7 @@ def test_walks_keep_their_spread() -> None:
 
 
 def test_expected_error_is_where_the_filter_settles() -> None:
-    hour = Unknowns(factor_time=3600.0, ambient_time=3600.0)
+    hour = Unknowns(factor_time=3600.0, ambient_time=3600.0, heats=())
     observer = thermal_observer(BENCH, MODEL, ERROR, [Sensor("nut"), Sensor("front")], hour, STEP)
     wanted = expected_deviation(observer, 750 * RPM)
     (row,), (at,) = observer.rows(np.array([750 * RPM]), np.array([BENCH.ambient]))
@@ -129,11 +129,11 @@ def test_expected_error_is_where_the_filter_settles() -> None:
 def test_places_are_ordered_by_what_is_left() -> None:
     best = [placements(BENCH, MODEL, ERROR, count, SPEEDS) for count in range(4)]
     assert [len(one) for one in best] == [1, 3, 3, 1]
-    assert best[1][0].places == ("nut",)
-    assert set(best[2][0].places) == {"nut", "front"} and best[2][-1].places == ("front", "rear")
+    assert best[1][0].places == ("front",)
+    assert set(best[2][0].places) == {"nut", "front"} and best[2][-1].places == ("nut", "rear")
     left = [one[0].rms for one in best]
-    # Each sensor helps: the error falls to a fifth, a ninth, and by a sixth.
-    assert left[1] < left[0] / 3 and left[2] < left[1] / 5 and left[3] < 0.9 * left[2]
+    # Measured 17, 4.1, 0.67, 0.14 µm: each sensor parts one more unknown from the others.
+    assert left[1] < left[0] / 3 and left[2] < left[1] / 5 and left[3] < left[2] / 3
     assert all(one.largest >= one.rms for group in best for one in group)
 
 
