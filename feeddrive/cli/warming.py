@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -142,7 +143,8 @@ def _write(found: ThermalStudy, content: dict[str, Any], out: Path) -> None:
     from feeddrive.report.figure_thermal import thermal_figures
 
     duty = found.duty
-    channels = {SPEED: duty.speeds, AMBIENT_CHANNEL: duty.ambient, **found.series}
+    series = {re.sub(r"[^a-z0-9_]+", "_", name.lower()): values for name, values in found.series.items()}
+    channels = {SPEED: duty.speeds, AMBIENT_CHANNEL: duty.ambient, **series}
     write_recording(Recording(found.plant.name, duty.times, channels, duty.step), out / "recording.csv")
     for figure in thermal_figures(found):
         drawn = render(figure)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from rich.console import RenderableType
@@ -21,24 +21,33 @@ _ROWS = 10
 
 def thermal_tables(found: ThermalStudy, lumps: Network) -> list[RenderableType]:
     """What people read, in the order in which they ask."""
-    return [_over_time(found), _warm_ups(found), _constants(found), _energy(found), _models(found), *_network(lumps)]
+    return [*_over_time(found), _warm_ups(found), _constants(found), _energy(found), _models(found), *_network(lumps)]
 
 
-def _over_time(found: ThermalStudy) -> Table:
+def _over_time(found: ThermalStudy) -> list[Table]:
+    """Temperatures, and the error at the table, at some times."""
     duty, travel = found.duty, found.plant.rig.travel
-    step = max(len(duty.times) // _ROWS, 1)
-    kept = range(len(duty.times) - 1, -1, -step)[::-1]
-    names = list(found.series)
-    rows = [[_time(duty.times[i]), *(_shown(name, float(found.series[name][i])) for name in names)] for i in kept]
     speed = format_quantity(float(np.mean(np.abs(duty.speeds))), "rad/s")
     what = f"{speed} constant" if duty.is_constant else f"{speed} on average ({duty.source})"
     title = f"{found.plant.name}: {what}, nut from {travel.low * 1e3:.4g} to {travel.high * 1e3:.4g} mm"
-    return table(title, ["time", *(_heading(name) for name in names)], rows)
+    grown = [name for name in found.series if name.startswith("table_growth")]
+    others = [name for name in found.series if name not in grown]
+    return [_series(title, others, found), _series("Error at the table, growth of the screw", grown, found)]
+
+
+def _series(title: str, names: Sequence[str], found: ThermalStudy) -> Table:
+    times = found.duty.times
+    step = max(len(times) // _ROWS, 1)
+    kept = range(len(times) - 1, -1, -step)[::-1]
+    rows = [[_time(times[i]), *(_shown(name, float(found.series[name][i])) for name in names)] for i in kept]
+    made = table(title, ["time", *(_heading(name) for name in names)], rows)
+    made.columns[0].no_wrap = True
+    return made
 
 
 def _heading(name: str) -> str:
     if name.startswith("table_growth"):
-        return f"growth {name.removeprefix('table_growth_').replace('mm', ' mm')} [µm]"
+        return f"nut at {name.removeprefix('table_growth_').replace('mm', ' mm')} [µm]"
     return f"{name.removesuffix('_temperature').replace('_', ' ')} [°C]"
 
 

@@ -61,7 +61,11 @@ def _temperatures(axes: Axes, found: ThermalStudy, time: FloatArray) -> None:
     for name in _drawn(found):
         values = np.concatenate([[first], found.series[channel_of(name)]])
         axes.plot(
-            time, values, color=_COLOURS.get(name), label=_NAMES.get(name, name), ls="--" if name == REAR else "-"
+            time,
+            values,
+            color=_COLOURS.get(name),
+            label=_NAMES.get(name, name.replace("_", " ")),
+            ls="--" if name == REAR else "-",
         )
     axes.plot(time, np.concatenate([[first], found.duty.ambient]), color=NOISE, ls=":", label="air")
     dress(axes, "", "temperature [°C]")

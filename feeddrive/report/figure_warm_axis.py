@@ -40,9 +40,9 @@ def _temperatures(axes: Axes, run: WarmUpRun, time: FloatArray) -> None:
         axes.plot(time, run.temperature(name), color=colour, label=words)
     shades = (NOISE, "#5c5c5c", "#b08d57", "#7f7f00")
     for body, shade in zip(run.thermal.bodies, shades * len(run.thermal.bodies), strict=False):
-        axes.plot(time, run.temperature(body.name), color=shade, ls="--", label=body.name)
+        axes.plot(time, run.temperature(body.name), color=shade, ls="--", label=body.name.replace("_", " "))
     dress(axes, "", "temperature [°C]")
-    legend_above(axes, 7)
+    legend_above(axes, 4)
 
 
 def _errors(axes: Axes, run: WarmUpRun, time: FloatArray) -> None:
