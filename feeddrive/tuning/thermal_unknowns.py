@@ -37,7 +37,7 @@ class Unknowns:
         heat: of the factor on the declared heats [1].
         screw_film: of the factor on the films of screw and seats [1].
         nut_film: of the factor on the film of the nut [1].
-        ambient: of the surroundings beside what is recorded, or beside the start where nothing is [K].
+        ambient: of the surroundings beside what is recorded (0.1 K, say), or beside the start where nothing is [K].
         factor_time: T of the factors and of `heats` [s].
         ambient_time: T of the surroundings [s].
         heats: names of inputs that may give heat beside the declared one, and their standard deviations [W].
@@ -75,10 +75,6 @@ class Unknowns:
     def names(self) -> tuple[str, ...]:
         """Their names, u of them."""
         return ("heat", "screw_film", "nut_film", "ambient", *(name for name, _ in self.heats))
-
-
-RECORDED_AMBIENT = Unknowns(ambient=0.1)
-"""The surroundings are recorded, by a sensor good to 0.1 K."""
 
 
 def stationary_step(unknowns: Unknowns, step: float) -> FloatArray:
