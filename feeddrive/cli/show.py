@@ -1,20 +1,24 @@
-"""`feeddrive show PLANT`: values with their sources, stiffness budget, inertias, friction, modes."""
+"""`feeddrive show PLANT`: values with their sources, stiffness budget, inertias, friction, modes, life."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
 from dataclasses import asdict
+from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 from rich.table import Table
 
-from feeddrive.cli.output import JsonOption, OutOption, deliver, table, warnings_as_lines
+from feeddrive.cli.output import JsonOption, deliver, table, warnings_as_lines
+from feeddrive.cli.show_folder import is_folder, write_folder
+from feeddrive.cli.show_life import life_content, life_table
 from feeddrive.files import find_plant
 from feeddrive.plant.files import read_plant
 from feeddrive.plant.modes import Modes
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.rated_life import LifeRow, rated_life
 from feeddrive.plant.summary import Summary, summarise
 from feeddrive.quantity import format_quantity, parse
 
@@ -28,16 +32,22 @@ def command(
     plant: Annotated[str, typer.Argument(help="Plant file, or the name of a shipped machine.")],
     at: Annotated[str, typer.Option(help="Table position for stiffness and modes, such as 250mm.")] = "",
     as_json: JsonOption = False,
-    out: OutOption = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for show.json and figures, or a file such as axis.json or axis.txt.")
+    ] = None,
 ) -> None:
-    """Show a machine: values with their sources, stiffness budget, inertias, friction, modes."""
+    """Show a machine: values with their sources, stiffness budget, inertias, friction, modes, rated life."""
     with warnings_as_lines():
         machine = read_plant(find_plant(plant))
         summary = summarise(machine, parse(at, "m", "--at") if at else None)
-    deliver(_content(machine, summary), _tables(machine, summary), as_json, out)
+        life = rated_life(machine)
+        content = _content(machine, summary, life)
+        if out is not None and is_folder(out):
+            write_folder(machine, summary.position, content, out)
+    deliver(content, _tables(machine, summary, life), as_json, None if is_folder(out) else out)
 
 
-def _content(plant: Plant, summary: Summary) -> dict[str, Any]:
+def _content(plant: Plant, summary: Summary, life: Sequence[LifeRow]) -> dict[str, Any]:
     """Everything as plain values, SI."""
     return {
         "format": "feeddrive-show/1",
@@ -56,6 +66,7 @@ def _content(plant: Plant, summary: Summary) -> dict[str, Any]:
         "inertias": [asdict(row) for row in summary.inertias],
         "stiffness": asdict(summary.stiffness) if summary.stiffness else None,
         "friction": [asdict(row) for row in summary.friction],
+        "life": life_content(life),
         "modes": {"braked": _modes_content(summary.braked), "free": _modes_content(summary.free)},
     }
 
@@ -83,7 +94,7 @@ def _values(plant: Plant) -> list[tuple[str, Any, str, str]]:
     return rows
 
 
-def _tables(plant: Plant, summary: Summary) -> list[Table]:
+def _tables(plant: Plant, summary: Summary, life: Sequence[LifeRow]) -> list[Table]:
     values = [[key, _shown(value, unit), source] for key, value, unit, source in _values(plant)]
     at = f", table at {format_quantity(summary.position, 'm')}" if plant.chain.varies else ""
     tables = [
@@ -95,6 +106,7 @@ def _tables(plant: Plant, summary: Summary) -> list[Table]:
         table("Constant motion, + along + motion", ("speed", "force +", "force −", "torque +", "torque −"),
               _friction_rows(summary)),
         _mode_table(plant, summary, at),
+        life_table(life),
     ]  # fmt: skip
     for shown in tables:
         shown.columns[0].no_wrap = True  # names are searched for, so they stay in one piece

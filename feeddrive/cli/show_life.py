@@ -30,6 +30,11 @@ def life_table(rows: Sequence[LifeRow]) -> Table:
 
 def _cells(row: LifeRow) -> list[str]:
     loads = " and ".join(format_quantity(load, "N") for load in row.nut_loads)
-    time = f"{row.time / _HOUR:.3g} h" if row.time is not None else ""
+    time = f"{_digits(row.time / _HOUR)} h" if row.time is not None else ""
     force = format_quantity(row.force, "N") if row.force else "none, preload alone"
-    return [force, loads, f"{row.revolutions / MILLION:.4g}", f"{row.travel / _KILOMETRE:.4g} km", time]
+    return [force, loads, _digits(row.revolutions / MILLION), f"{_digits(row.travel / _KILOMETRE)} km", time]
+
+
+def _digits(value: float) -> str:
+    """Three digits and no power of ten, which nobody reads in hours and kilometres."""
+    return f"{float(f'{value:.3g}'):.15g}"

@@ -25,8 +25,11 @@ _SHADES = {
 _DARK_SHADES = 2
 """How many shades of each chain are dark enough for white text."""
 
-_NARROW = 0.065
-"""A part with less than this share has its label below the bar."""
+_ROW = 0.3
+"""Height of a row of labels below the bar, which is 0.72 high."""
+
+_LETTER, _LEAST_LETTERS = 0.0085, 7
+"""Share that one letter of a label takes, and letters that any label has; a narrower part has its label below."""
 
 _LINES = (("#0072b2", "-"), ("#d55e00", "--"), ("#009e73", "-."), ("#cc79a7", ":"))
 
@@ -35,15 +38,16 @@ def participation_figure(found: CombinedStiffness) -> ReportFigure:
     """One bar of all compliances at the table, axial parts at the left, torsional at the right, each part by share."""
     figure = new_figure(1.75)
     axes = figure.subplots()
-    left = 0.0
+    left, below = 0.0, list[tuple[float, str]]()
     for chain in Deformation:
         share = found.share(chain)
         if share <= 0.0:
             continue
         _brace(axes, left, share, f"{chain.value} {100.0 * share:.0f} %")
-        left = _chain_bar(axes, found, chain, left)
+        left = _chain_bar(axes, found, chain, left, below)
+    rows = _labels_below(axes, below)
     axes.set_xlim(0.0, 100.0)
-    axes.set_ylim(-1.05, 1.0)
+    axes.set_ylim(-0.45 - _ROW * max(rows, 2), 1.0)
     axes.set_yticks([])
     dress(axes, "share in the compliance at the table [%]", "")
     axes.spines["left"].set_visible(False)
@@ -51,24 +55,35 @@ def participation_figure(found: CombinedStiffness) -> ReportFigure:
     return ReportFigure("stiffness_shares", "Which part gives way", _participation_caption(found), figure)
 
 
-def _chain_bar(axes: Axes, found: CombinedStiffness, chain: Deformation, left: float) -> float:
-    """The parts of one chain, the softest first; returns where the next chain begins."""
+def _chain_bar(
+    axes: Axes, found: CombinedStiffness, chain: Deformation, left: float, below: list[tuple[float, str]]
+) -> float:
+    """The parts of one chain, the softest first; adds the labels that find no room to those below the bar, and returns
+    where the next chain begins."""
     parts = sorted(found.shares_within(chain).items(), key=lambda one: -one[1])
-    step = 0
     for number, (part, within) in enumerate(parts):
         share = within * found.share(chain)
         shade = _SHADES[chain][min(number, len(_SHADES[chain]) - 1)]
         axes.barh(0.0, 100.0 * share, left=100.0 * left, color=shade, height=0.72, edgecolor="white", linewidth=0.8)
         middle, text = 100.0 * (left + share / 2.0), f"{part}\n{100.0 * share:.0f} %"
-        if share >= _NARROW:
+        if share >= _LETTER * max(len(part), _LEAST_LETTERS):
             colour = "white" if number < _DARK_SHADES else "#222222"
             axes.text(middle, 0.0, text, ha="center", va="center", fontsize=8.5, color=colour)
         else:
-            # Beside each other they would collide: every second one stands lower.
-            axes.text(middle, -0.42 - 0.3 * (step % 2), text.replace("\n", " "), ha="center", va="top", fontsize=8)
-            step += 1
+            below.append((middle, text.replace("\n", " ")))
         left += share
     return left
+
+
+def _labels_below(axes: Axes, labels: list[tuple[float, str]]) -> int:
+    """Labels under their parts, each in the first row where it meets no other; returns how many rows there are."""
+    ends: list[float] = []
+    for middle, text in labels:
+        half = 50.0 * _LETTER * (len(text) + 1)
+        row = next((i for i, end in enumerate(ends) if middle - half > end), len(ends))
+        ends[row:] = [middle + half, *ends[row + 1 :]]
+        axes.text(middle, -0.42 - _ROW * row, text, ha="center", va="top", fontsize=8)
+    return len(ends)
 
 
 def _brace(axes: Axes, left: float, share: float, text: str) -> None:
@@ -108,14 +123,16 @@ def stiffness_position_figure(drives: Mapping[str, BallScrewDrive], positions: F
         stiffness.plot(places, stiffness_along(drive, positions) / 1e6, label=name, **look)
         frequencies = [held_frequency(drive, float(position)) for position in positions]
         alone = [combined_stiffness(drive, float(p)).natural_frequency(drive.table_mass) for p in positions]
-        frequency.plot(places, frequencies, **look)
-        frequency.plot(places, alone, color=colour, ls=style, lw=0.8, alpha=0.5)
+        frequency.plot(places, frequencies, label="with the screw's mass and inertia", **look)
+        frequency.plot(places, alone, color=colour, ls=style, lw=0.8, alpha=0.5, label="table's mass alone")
     dress(stiffness, "nut from the bearing at the motor [mm]", "stiffness at the table [N/µm]")
     dress(frequency, "nut from the bearing at the motor [mm]", "first natural frequency [Hz]")
     stiffness.set_ylim(bottom=0.0)
     frequency.set_ylim(bottom=0.0)
     if len(drives) > 1:
         legend_above(stiffness, columns=2)
+    else:  # with several, the line's style tells the drive, and the caption the rest
+        legend_above(frequency, columns=2)
     return ReportFigure(
         "stiffness_position", "Stiffness along the stroke", _position_caption(drives, positions), figure
     )

@@ -10,7 +10,9 @@ import pytest
 from feeddrive.diagnose.stiffness_candidates import DriveAt
 from feeddrive.diagnose.stiffness_gap import explain_stiffness
 from feeddrive.errors import InputError
+from feeddrive.files import plants_folder
 from feeddrive.parts.combined_stiffness import combined_stiffness, stiffness_along
+from feeddrive.plant.files import read_plant
 from feeddrive.report.drawing import ReportFigure, render
 from feeddrive.report.figure_stiffness import participation_figure, stiffness_position_figure
 from feeddrive.report.figure_stiffness_gap import stiffness_gap_figure
@@ -69,3 +71,13 @@ def test_figures_render(housing: float | None) -> None:
     drive = replace(paper_drive(both_ends=True), housing_stiffness=housing)
     png = render(participation_figure(combined_stiffness(drive, AT_NUT))).png
     assert png.startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize("name", ["vertical_axis", "hsr_axis", "kimm_testbed"])
+def test_labels_of_shipped_machines_do_not_meet(name: str) -> None:
+    plant = read_plant(plants_folder() / f"{name}.toml")
+    assert plant.drive is not None
+    entry = participation_figure(combined_stiffness(plant.drive, 0.4 * plant.drive.screw.length))
+    render(entry)
+    boxes = [text.get_window_extent() for axes in entry.figure.axes for text in axes.texts]
+    assert not [(a, b) for i, a in enumerate(boxes) for b in boxes[:i] if a.overlaps(b)]

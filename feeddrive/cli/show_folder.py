@@ -1,0 +1,58 @@
+"""`feeddrive show PLANT --out FOLDER`: everything as JSON, and what stiffness is made of and does, as figures."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from feeddrive.errors import InputError
+from feeddrive.files import write_bytes_atomically, write_text_atomically
+from feeddrive.plant.plant import Plant
+
+PLACES = 61
+"""Nut positions of the figure along the stroke."""
+
+
+def is_folder(out: Path | None) -> bool:
+    """Whether an --out means a folder: one that is there, or a name without an ending such as .json or .txt."""
+    return out is not None and (out.is_dir() or not out.suffix)
+
+
+def write_folder(plant: Plant, position: float, content: dict[str, Any], folder: Path) -> None:
+    """Write show.json, and stiffness_shares.png and stiffness_position.png of a machine that is described by parts.
+
+    Args:
+        plant: the machine.
+        position: of the table, for the shares [m].
+        content: of show.json.
+        folder: made where it is not there.
+
+    Raises:
+        InputError: the folder cannot be written, or a position off the screw.
+    """
+    if folder.exists() and not folder.is_dir():
+        raise InputError("is a file", str(folder), "name a folder, or a file with an ending such as .json or .txt")
+    write_text_atomically(folder / "show.json", json.dumps(content, indent=2, ensure_ascii=False) + "\n")
+    if plant.drive is None or not plant.chain.varies:
+        return
+    # Matplotlib takes time to import.
+    from feeddrive.parts.combined_stiffness import combined_stiffness
+    from feeddrive.report.drawing import render
+    from feeddrive.report.figure_stiffness import participation_figure, stiffness_position_figure
+
+    first = float(plant.chain.values["first_nut_position"])
+    low, high = plant.stroke or (-first, plant.drive.screw.length - first)
+    places = np.clip(first + np.linspace(low, high, PLACES), *_inside(plant.drive.screw.length))
+    for figure in (
+        participation_figure(combined_stiffness(plant.drive, first + position)),
+        stiffness_position_figure({plant.name: plant.drive}, places),
+    ):
+        write_bytes_atomically(folder / f"{figure.stem}.png", render(figure).png)
+
+
+def _inside(length: float) -> tuple[float, float]:
+    """Ends between which the nut has screw on both sides [m]."""
+    return 1e-3 * length, 0.999 * length
