@@ -27,8 +27,8 @@ from feeddrive.thermal.system import HeatSystem
 from feeddrive.thermal.warm_up import simulate
 
 ROOT = Path(__file__).resolve().parents[1]
-SHIPPED, TESTED = ROOT / "plants" / "thermal_bench.toml", ROOT / "tests" / "data" / "thermal_bench.toml"
-BENCH = read_thermal_plant(SHIPPED if SHIPPED.is_file() else TESTED)
+SHIPPED = ROOT / "plants" / "thermal_bench.toml"
+BENCH = read_thermal_plant(SHIPPED)
 RPM = math.pi / 30
 WORKING = Sizes(heats=(("nut", 1.3), ("front", 1.0), ("rear", 0.17)))
 HOURS = 3 * 3600.0

@@ -7,11 +7,13 @@ from typing import Annotated, Any
 
 import typer
 
+from feeddrive.cli.machine import read_machine
 from feeddrive.cli.output import JsonOption, OutOption, deliver, table, warnings_as_lines
 from feeddrive.files import find_plant
-from feeddrive.plant.files import read_plant
 from feeddrive.plant.plausibility import Finding, Verdict, check_plant
 from feeddrive.quantity import format_quantity, parse
+from feeddrive.thermal.plant import ThermalPlant
+from feeddrive.thermal.plausibility import check_thermal_plant
 
 
 def command(
@@ -24,9 +26,9 @@ def command(
 ) -> None:
     """Check a machine against rules of plausibility; warnings do not change the exit status."""
     with warnings_as_lines():
-        machine = read_plant(find_plant(plant))
+        machine = read_machine(find_plant(plant))
         gain = parse(position_gain, "1/s", "--position-gain") if position_gain else None
-        findings = check_plant(machine, gain)
+        findings = check_thermal_plant(machine) if isinstance(machine, ThermalPlant) else check_plant(machine, gain)
     broken = sum(finding.verdict is Verdict.BROKEN for finding in findings)
     content = {
         "format": "feeddrive-check/1",

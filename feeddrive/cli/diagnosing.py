@@ -8,11 +8,11 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
+from feeddrive.cli.machine import read_machine
 from feeddrive.diagnose.diagnosis import diagnose
 from feeddrive.diagnose.outputs import diagnosis_json, write_outputs
 from feeddrive.diagnose.result import Diagnosis
 from feeddrive.errors import InputError
-from feeddrive.plant.files import read_plant
 from feeddrive.recording import Recording, read_recording
 from feeddrive.report.figures import render_figures, save_figures
 from feeddrive.report.html import write_report
@@ -46,8 +46,10 @@ def run_job(job: Job, as_json: bool = False) -> Diagnosis:
         raise InputError(f"--decimal is {job.decimal!r}", "", "use '.' or ','")
     if job.out.exists() and not job.out.is_dir():
         raise InputError("--out is a file", str(job.out), "give a folder")
-    plant = read_plant(job.plant)
+    plant = read_machine(job.plant)
     fitted, judged = ([_read(path, job) for path in paths] for paths in (job.recordings, job.validation))
+    if any("screw_speed" in recording for recording in fitted):
+        plant = read_machine(job.plant, fitted)  # a file may declare motion and heat
     with Console(stderr=True).status("reading") as status:
         said = status.update
         result, effects = diagnose(plant, fitted, judged, job.split, job.simulate, said)

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
+from feeddrive.cli.machine import read_machine
 from feeddrive.cli.output import JsonOption, OutOption, deliver, table
-from feeddrive.effects.catalogue import EFFECTS
+from feeddrive.effects.catalogue import EFFECTS, THERMAL_EFFECTS
 from feeddrive.files import shipped_plants, shipped_scenarios
-from feeddrive.plant.files import read_plant
+from feeddrive.plant.plant import Plant
 
 
 def command(as_json: JsonOption = False, out: OutOption = None) -> None:
@@ -23,8 +24,15 @@ def command(as_json: JsonOption = False, out: OutOption = None) -> None:
 
 
 def _plants() -> list[dict[str, str]]:
-    plants = [(path.stem, read_plant(path)) for path in shipped_plants()]
-    return [{"name": name, "machine": plant.name, "structure": plant.chain.structure} for name, plant in plants]
+    plants = [(path.stem, read_machine(path)) for path in shipped_plants()]
+    return [
+        {
+            "name": name,
+            "machine": plant.name,
+            "structure": plant.chain.structure if isinstance(plant, Plant) else "heat alone",
+        }
+        for name, plant in plants
+    ]
 
 
 def _effects() -> list[dict[str, Any]]:
@@ -33,12 +41,13 @@ def _effects() -> list[dict[str, Any]]:
             "name": effect.name,
             "kind": str(effect.kind),
             "ports": [str(port) for port in effect.ports],
+            "place": effect.place_key,
             "keys": {parameter.key: parameter.unit for parameter in effect.parameters},
         }
-        for effect in EFFECTS.values()
+        for effect in (*EFFECTS.values(), *THERMAL_EFFECTS.values())
     ]
 
 
 def _effect_row(effect: dict[str, Any]) -> list[str]:
-    keys = ", ".join(f"{key} [{unit}]" for key, unit in effect["keys"].items())
+    keys = ", ".join([*filter(None, [effect["place"]]), *(f"{key} [{unit}]" for key, unit in effect["keys"].items())])
     return [effect["name"], effect["kind"], ", ".join(effect["ports"]), keys]

@@ -11,16 +11,18 @@ from typing import Annotated, Any
 import typer
 from rich.table import Table
 
+from feeddrive.cli.machine import read_machine
 from feeddrive.cli.output import JsonOption, deliver, table, warnings_as_lines
 from feeddrive.cli.show_folder import is_folder, write_folder
+from feeddrive.cli.show_heat import heat_content, heat_tables
 from feeddrive.cli.show_life import life_content, life_table
 from feeddrive.files import find_plant
-from feeddrive.plant.files import read_plant
 from feeddrive.plant.modes import Modes
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.rated_life import LifeRow, rated_life
 from feeddrive.plant.summary import Summary, summarise
 from feeddrive.quantity import format_quantity, parse
+from feeddrive.thermal.plant import ThermalPlant
 
 MODES = 4
 """Modes in the table, of each kind."""
@@ -38,7 +40,10 @@ def command(
 ) -> None:
     """Show a machine: values with their sources, stiffness budget, inertias, friction, modes, rated life."""
     with warnings_as_lines():
-        machine = read_plant(find_plant(plant))
+        machine = read_machine(find_plant(plant))
+        if isinstance(machine, ThermalPlant):
+            deliver(heat_content(machine), heat_tables(machine), as_json, out)
+            return
         summary = summarise(machine, parse(at, "m", "--at") if at else None)
         life = rated_life(machine)
         content = _content(machine, summary, life)

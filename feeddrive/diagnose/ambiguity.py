@@ -10,7 +10,6 @@ from feeddrive.diagnose.fit import Fit, Problem, fit
 from feeddrive.diagnose.judge import Judged, squared_blocks
 from feeddrive.diagnose.search import Search
 from feeddrive.effects.base import Effect
-from feeddrive.effects.catalogue import EFFECTS
 
 SAME_ERROR = 1.05
 """Ratio of validation errors (rms) within which two effects count as the same."""
@@ -49,7 +48,7 @@ def _rivals(search: Search, effect: Effect) -> list[Attempt]:
         others = [a for a in attempts if a.name != effect.name and a.comparison.pays]
         near = [a for a in others if a.comparison.gain > 0.5 * taken.gain or a.name in effect.signature.confused_with]
         found = {e.name for e in search.fit.effects}
-        return [a for a in near if a.name not in found or EFFECTS[a.name].repeatable]
+        return [a for a in near if a.name not in found or a.fit.effects[-1].repeatable]
     return []
 
 

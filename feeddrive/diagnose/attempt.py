@@ -16,7 +16,6 @@ from feeddrive.diagnose.cross_validation import (
     left_out_residual,
 )
 from feeddrive.diagnose.fit import Fit, Problem, fit
-from feeddrive.diagnose.predictability import predictable_samples
 from feeddrive.diagnose.scene import Candidate, Scene
 from feeddrive.effects.base import Effect, TransmissionEffect
 from feeddrive.errors import InputError
@@ -115,7 +114,8 @@ def compared(problem: Problem, name: str, result: Fit, before: Sequence[Effect])
     reference = _reference(problem, before, result)
     without = left_out_residual(reference.residual, reference.jacobian, blocks)
     errors = left_out_residual(result.residual, result.jacobian, blocks)
-    return Attempt(name, result, compare_left_out(without, errors, blocks, least_gain(problem)), problem, errors)
+    comparison = compare_left_out(without, errors, blocks, least_gain(problem, without))
+    return Attempt(name, result, comparison, problem, errors)
 
 
 def _free(result: Fit, before: Sequence[Effect]) -> list[bool]:
@@ -132,7 +132,7 @@ def _reference(problem: Problem, before: Sequence[Effect], result: Fit) -> Fit:
 def with_predictable(problem: Problem, effects: Sequence[Effect]) -> Problem:
     """The problem without the samples that a plant with these effects cannot predict."""
     plant = problem.plant.with_effects(*effects)
-    kept = tuple(e.where_predictable(predictable_samples(plant, e)) for e in problem.evidence)
+    kept = tuple(e.where_predictable(problem.predictor.predictable(plant, e)) for e in problem.evidence)
     if any(not e.fit_rows.any() for e in kept):
         return problem
     return replace(problem, evidence=kept)

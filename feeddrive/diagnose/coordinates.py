@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from feeddrive.diagnose.declared_friction import declared_level, declared_viscous
+from feeddrive.diagnose.predictor import Machine
 from feeddrive.effects.base import Effect, Value
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray
@@ -38,6 +39,8 @@ class Linear:
         numbers = [min(max(c * self.size, parameter.minimum), parameter.maximum) for c in coordinates]
         if not isinstance(effect.values[self.key], tuple):
             return {self.key: numbers[0]}
+        if self.key != "delta_force":
+            return {self.key: tuple(numbers)}
         # a curve over the stroke is about its mean: a level of its own would be that of the declared friction
         mean = sum(numbers) / len(numbers)
         return {self.key: tuple(number - mean for number in numbers)}
@@ -85,21 +88,33 @@ LOGARITHMIC = {
     ("friction_vs_position", "half_width"),
     ("thermal_growth", "time_constant"),
     ("viscous_warmup", "time_constant"),
+    ("ambient_drift", "period"),
+    ("convection_deviation", "factor"),
+    ("contact_conductance_deviation", "factor"),
+    ("heat_sink", "conductance"),
+    ("heat_sink", "capacity"),
+    ("structure_growth", "time_constant"),
+    ("sensor_lag", "time_constant"),
 }
 """Parameters known to a factor before they are known at all."""
 
-FIXED = {("presliding", "break_away"), ("friction_vs_position", "position")}
+FIXED = {
+    ("presliding", "break_away"),
+    ("friction_vs_position", "position"),
+    ("motor_heat", "at_speed"),
+    ("ambient_drift", "time"),
+}
 """Parameters that choose the form of a law; they are tried, not fitted."""
 
 
-def coordinates_of(effect: Effect, plant: Plant) -> list[Coordinate]:
+def coordinates_of(effect: Effect, plant: Machine) -> list[Coordinate]:
     """The coordinates in which the effect is fitted, for the form that its values choose."""
     if {"amplitude", "phase"} <= set(effect.values):
         return [Sine(effect.parameter("amplitude").size), Linear("order", ORDER_SIZE)]
     result: list[Coordinate] = []
     for parameter in effect.parameters:
         pair = (effect.name, parameter.key)
-        if pair in FIXED or parameter.key in _unused(effect, plant):
+        if parameter.key not in effect.values or pair in FIXED or parameter.key in _unused(effect, plant):
             continue
         if pair in LOGARITHMIC:
             result.append(Logarithmic(parameter.key))
@@ -108,24 +123,26 @@ def coordinates_of(effect: Effect, plant: Plant) -> list[Coordinate]:
     return result
 
 
-def _unused(effect: Effect, plant: Plant) -> set[str]:
+def _unused(effect: Effect, plant: Machine) -> set[str]:
     """Parameters without effect in the form that the values choose."""
     if effect.name == "friction_vs_position":
         as_table = isinstance(effect.values["position"], tuple)
         return {"peak", "centre", "half_width"} if as_table else {"delta_force"}
-    if effect.name == "friction_deviation":
+    if effect.name == "ambient_drift":
+        return {"period", "amplitude"} if isinstance(effect.values["time"], tuple) else {"shape"}
+    if effect.name == "friction_deviation" and isinstance(plant, Plant):
         unused = {"coulomb_factor"} if declared_level(plant, effect.port) == 0 else set()
         return unused | ({"viscous_factor"} if declared_viscous(plant, effect.port) == 0 else set())
     return set()
 
 
-def read_coordinates(effects: Sequence[Effect], plant: Plant) -> FloatArray:
+def read_coordinates(effects: Sequence[Effect], plant: Machine) -> FloatArray:
     """All coordinates of the effects in one vector."""
     values = [c for effect in effects for coordinate in coordinates_of(effect, plant) for c in coordinate.read(effect)]
     return np.array(values, dtype=float)
 
 
-def write_coordinates(effects: Sequence[Effect], plant: Plant, vector: FloatArray) -> list[Effect]:
+def write_coordinates(effects: Sequence[Effect], plant: Machine, vector: FloatArray) -> list[Effect]:
     """The effects with the values of the vector."""
     result, at = [], 0
     for effect in effects:
@@ -139,7 +156,7 @@ def write_coordinates(effects: Sequence[Effect], plant: Plant, vector: FloatArra
 
 
 def spread_to_values(
-    effects: Sequence[Effect], plant: Plant, vector: FloatArray, covariance: FloatArray
+    effects: Sequence[Effect], plant: Machine, vector: FloatArray, covariance: FloatArray
 ) -> list[dict[str, FloatArray]]:
     """Standard deviation of every fitted value, by the exact slope of the coordinates; a list entry per effect."""
     step = 1e-6

@@ -15,9 +15,6 @@ import numpy as np
 from feeddrive.diagnose.fit import Problem
 from feeddrive.typing import FloatArray, IntegerArray
 
-BLOCK = 0.5
-"""Length of a block [s]: many correlation times of the band, and short against a stroke."""
-
 FOLDS = 6
 """Folds to which the blocks are dealt."""
 
@@ -59,7 +56,7 @@ def block_numbers(problem: Problem) -> IntegerArray:
     numbers, first = [], 0
     for evidence in problem.evidence:
         rows = np.flatnonzero(evidence.thinned(evidence.fit_rows))
-        blocks = (rows * evidence.recording.sample_time / BLOCK).astype(int)
+        blocks = (rows * evidence.recording.sample_time / evidence.block).astype(int)
         numbers += [first + blocks] * len(evidence.channels)
         first += int(blocks.max(initial=0)) + 1
     return np.concatenate(numbers).astype(np.int64)
@@ -104,16 +101,30 @@ def compare_left_out(before: FloatArray, after: FloatArray, blocks: IntegerArray
     return Comparison((total - float(after @ after)) / total, error / total, least)
 
 
-def least_gain(problem: Problem) -> float:
-    """Gain that is asked for: half a percent, or more where the recordings are so short that chance does as much.
+def least_gain(problem: Problem, before: FloatArray) -> float:
+    """Gain that is asked for: half a percent, or more where chance or the model's own error does as much.
 
     A band of width B over T seconds holds 2 B T independent values a channel, whatever the sample rate.
+
+    Args:
+        problem: recordings, with what the model itself may miss.
+        before: weighted residual without the new effect, (m,).
     """
     values = 0.0
     for evidence in problem.evidence:
         seconds = float(np.sum(evidence.fit_rows)) * evidence.recording.sample_time
-        values += 2 * evidence.band.edge * seconds * len(evidence.channels)
-    return max(LEAST_GAIN, CHANCE / values)
+        values += 2 * evidence.edge * seconds * len(evidence.channels)
+    total = float(before @ before)
+    return max(LEAST_GAIN, CHANCE / values, model_share(problem) / total if total > 0 else 0.0)
+
+
+def model_share(problem: Problem) -> float:
+    """Weighted squared error that the model itself may make on the fitted samples [1]; 0 where it is exact."""
+    missed = 0.0
+    for evidence in problem.evidence:
+        rows = float(np.sum(evidence.thinned(evidence.fit_rows)))
+        missed += rows * sum((error / evidence.noise[name]) ** 2 for name, error in evidence.model_error.items())
+    return missed
 
 
 def compare(before: FloatArray, after: FloatArray, least: float = LEAST_GAIN) -> Comparison:

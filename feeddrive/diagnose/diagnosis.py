@@ -7,13 +7,13 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from feeddrive.diagnose.ambiguity import ambiguous_sets
-from feeddrive.diagnose.candidates import CANDIDATES
 from feeddrive.diagnose.cross_validation import LEAST_GAIN
-from feeddrive.diagnose.evidence import Evidence, prepare
-from feeddrive.diagnose.fit import Fit, Problem
+from feeddrive.diagnose.drift_table import normalised
+from feeddrive.diagnose.evidence import Evidence
+from feeddrive.diagnose.fit import Fit
 from feeddrive.diagnose.judge import Judged, Share, channel_results, judged_recordings, prepared_for_judging, share_of
 from feeddrive.diagnose.physical_reading import physical_reading
-from feeddrive.diagnose.prediction import Predictor
+from feeddrive.diagnose.preparation import prepared
 from feeddrive.diagnose.rehoming import rehomed_plant
 from feeddrive.diagnose.result import (
     ChannelResult,
@@ -31,14 +31,15 @@ from feeddrive.diagnose.unexplained import unexplained
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
-from feeddrive.recording import Recording, check_against_lead
+from feeddrive.recording import Recording
+from feeddrive.thermal.plant import ThermalPlant
 from feeddrive.typing import FloatArray
 
 Said = Callable[[str], None]
 
 
 def diagnose(
-    plant: Plant,
+    plant: Plant | ThermalPlant,
     recordings: Sequence[Recording],
     validation: Sequence[Recording] = (),
     split: float = 0.75,
@@ -61,21 +62,19 @@ def diagnose(
     Raises:
         InputError: recordings that cannot be used with this plant.
     """
-    for recording in (*recordings, *validation):
-        check_against_lead(recording, 2 * np.pi * plant.chain.motor_radius, recording.name)
     if not 0.2 <= split <= 0.95:
         raise InputError(f"--split is {split:g}", "", "use a share between 0.2 and 0.95, such as 0.75")
-    fitted = tuple(prepare(recording, plant, 1.0 if validation else split) for recording in recordings)
-    kept_for_judging = [prepare(recording, plant, 0.0) for recording in validation] or list(fitted)
-    problem = Problem(plant, fitted, Predictor())
-    found = search(problem, said)
+    problem, kept_for_judging, told = prepared(plant, recordings, validation, split)
+    found = normalised(search(problem, said))
     said("judging on data not fitted")
     judged, rehomed = _judged(found, kept_for_judging)
     channels = channel_results(found.problem, judged)
     series = judged_recordings(found.problem, judged)
     effects = found.fit.effects
     shares = [share_of(found.problem, judged, effects, i) for i in range(len(effects))]
-    simulation = simulation_error(plant, plant.with_effects(*effects), judged) if simulate else None
+    simulation = None
+    if simulate and isinstance(plant, Plant):
+        simulation = simulation_error(plant, plant.with_effects(*effects), judged)
     result = Diagnosis(
         plant=plant.name,
         fit=_stamps(recordings),
@@ -89,7 +88,7 @@ def diagnose(
         trials=found.trials,
         recordings=series,
         simulation=simulation,
-        notes=_notes(recordings, validation, found, fitted, simulate, simulation),
+        notes=(*told, *_notes(recordings, validation, found, problem.evidence, simulate, simulation)),
     )
     return result, effects
 
@@ -102,9 +101,9 @@ def _judged(found: Search, evidence: Sequence[Evidence]) -> tuple[list[Judged], 
     for one in evidence:
         homed = rehomed_plant(found.problem, found.fit.effects, one)
         if homed is None:
-            judged.append(prepared_for_judging(one, declared, after))
+            judged.append(prepared_for_judging(found.problem, one, declared, after))
         else:
-            judged.append(prepared_for_judging(homed.evidence, declared, homed.plant))
+            judged.append(prepared_for_judging(found.problem, homed.evidence, declared, homed.plant))
             rehomed.append(f"{one.recording.name}: {homed.statement}")
     return judged, tuple(rehomed)
 
@@ -133,6 +132,8 @@ def _parameters(effect: Effect, width: dict[str, FloatArray]) -> dict[str, Param
     result: dict[str, ParameterResult] = {}
     if effect.name == "friction_deviation":
         result["port"] = ParameterResult(str(effect.port), "")
+    if effect.place_key:
+        result[effect.place_key] = ParameterResult(effect.place, "")
     for key, value in effect.values.items():
         unit = effect.parameter(key).unit
         if isinstance(value, tuple):
@@ -175,7 +176,7 @@ def _refused(found: Search) -> tuple[RefusedEffect, ...]:
     taken = {effect.name for effect in found.fit.effects}
     best = {trial.name: trial for trial in found.trials}  # the last round counts: everything else was in by then
     refused = []
-    for candidate in CANDIDATES:
+    for candidate in found.problem.predictor.candidates:
         if candidate.name in taken:
             continue
         if candidate.name in found.impossible:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 
@@ -20,27 +21,37 @@ SHORTEST = 3.0
 """Shortest recording [s] that leaves something between the cut ends."""
 
 
+BLOCK = 0.5
+"""Length of a block of cross-validation [s]: many correlation times of the band, and short against a stroke."""
+
+
 @dataclass(frozen=True)
 class Evidence:
     """One recording, ready for comparison.
 
     Attributes:
         recording: as read.
-        motion: of the motor.
-        band: of the comparison.
         measured: channel to its series in the band, shape (n,), SI.
         noise: channel to the rms of its sensor noise in the band.
         counted: samples that count: not at the ends, and predictable; shape (n,).
         fitted: samples that parameters are fitted on; the other counted ones are judged; shape (n,).
+        edge: upper edge of the band [Hz].
+        block: length of a block of cross-validation [s].
+        thinning: every how many samples carry all that is in the band.
+        floating: channels whose zero is not known, and taken out of every error.
+        model_error: channel to the rms of what the model itself may miss; channels left out are predicted exactly.
     """
 
     recording: Recording
-    motion: MotorMotion
-    band: Band
     measured: dict[str, FloatArray]
     noise: dict[str, float]
     counted: BoolArray
     fitted: BoolArray
+    edge: float
+    block: float
+    thinning: int
+    floating: tuple[str, ...]
+    model_error: dict[str, float]
 
     @property
     def channels(self) -> tuple[str, ...]:
@@ -60,15 +71,28 @@ class Evidence:
     def thinned(self, rows: BoolArray) -> BoolArray:
         """Of these samples, those that carry all that is in the band."""
         comb = np.zeros(len(rows), dtype=bool)
-        comb[:: self.band.thinning] = True
+        comb[:: self.thinning] = True
         return rows & comb
 
-    def where_predictable(self, predictable: BoolArray) -> Evidence:
+    def where_predictable(self, predictable: BoolArray) -> Self:
         """The evidence without the samples that cannot be predicted."""
         return replace(self, counted=self.counted & predictable)
 
 
-def prepare(recording: Recording, plant: Plant, share: float) -> Evidence:
+@dataclass(frozen=True)
+class AxisEvidence(Evidence):
+    """A recording of motion and torque.
+
+    Attributes:
+        motion: of the motor.
+        band: of the comparison.
+    """
+
+    motion: MotorMotion
+    band: Band
+
+
+def prepare(recording: Recording, plant: Plant, share: float) -> AxisEvidence:
     """Evidence of a recording, its first `share` fitted and the rest judged.
 
     Args:
@@ -93,14 +117,19 @@ def prepare(recording: Recording, plant: Plant, share: float) -> Evidence:
     raw = {name: recording[name] for name in measured_names}
     acting = {**raw, "motor_torque": held(raw["motor_torque"])}
     counted = (time >= END_CUT) & (time <= time[-1] - END_CUT)
-    return Evidence(
+    return AxisEvidence(
         recording,
-        motor_motion(time, recording["motor_angle"]),
-        band,
         {name: band.filter(series) for name, series in acting.items()},
         {name: white_noise(series, rate) * band.noise_gain for name, series in raw.items()},
         counted,
         time < share * time[-1] if share < 1 else np.ones(len(time), dtype=bool),
+        band.edge,
+        BLOCK,
+        band.thinning,
+        tuple(name for name in measured_names if name == "table_position"),
+        {},
+        motor_motion(time, recording["motor_angle"]),
+        band,
     )
 
 

@@ -10,14 +10,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from feeddrive.diagnose.coordinates import read_coordinates, write_coordinates
 from feeddrive.diagnose.evidence import Evidence
-from feeddrive.diagnose.prediction import Predictor
+from feeddrive.diagnose.predictor import Machine, Predictor
 from feeddrive.effects.base import Effect
-from feeddrive.plant.plant import Plant
 from feeddrive.typing import BoolArray, FloatArray
 
 DIFFERENCE = 1e-4
@@ -54,16 +54,16 @@ class Fit:
 class Problem:
     """Declared plant, recordings, and what predicts them."""
 
-    plant: Plant
+    plant: Machine
     evidence: tuple[Evidence, ...]
-    predictor: Predictor
+    predictor: Predictor[Any, Any]
 
     def weighted(self, series: dict[str, FloatArray], evidence: Evidence, rows: BoolArray) -> FloatArray:
         """Channels of one recording at some samples, over their noise, one after the other."""
         parts = []
         for name in evidence.channels:
             part = series[name][rows] / evidence.noise[name]
-            parts.append(part - np.mean(part) if name == "table_position" else part)
+            parts.append(part - np.mean(part) if name in evidence.floating else part)
         return np.concatenate(parts)
 
     def predicted(self, effects: Sequence[Effect]) -> FloatArray:

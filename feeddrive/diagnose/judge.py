@@ -7,15 +7,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from feeddrive.diagnose.cross_validation import BLOCK, LEAST_GAIN, Comparison, compare
+from feeddrive.diagnose.cross_validation import LEAST_GAIN, Comparison, compare
 from feeddrive.diagnose.evidence import Evidence
 from feeddrive.diagnose.fit import Problem, fit
-from feeddrive.diagnose.predictability import predictable_samples
+from feeddrive.diagnose.predictor import Machine
 from feeddrive.diagnose.result import ChannelResult, ChannelSeries, JudgedRecording, error_figures
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
-from feeddrive.plant.plant import Plant
-from feeddrive.recording import CHANNEL_UNITS
+from feeddrive.recording.channels import channel_unit
 from feeddrive.typing import FloatArray
 
 
@@ -24,17 +23,17 @@ class Judged:
     """One recording, judged: the evidence, and the plants before and after for it."""
 
     evidence: Evidence
-    before: Plant
-    after: Plant
+    before: Machine
+    after: Machine
 
 
-def prepared_for_judging(evidence: Evidence, before: Plant, after: Plant) -> Judged:
+def prepared_for_judging(problem: Problem, evidence: Evidence, before: Machine, after: Machine) -> Judged:
     """The recording without the samples that the plant cannot predict, both plants on the same samples."""
-    kept = evidence.where_predictable(predictable_samples(after, evidence))
+    kept = evidence.where_predictable(problem.predictor.predictable(after, evidence))
     return Judged(kept if kept.judged_rows.any() else evidence, before, after)
 
 
-def error_series(problem: Problem, plant: Plant, evidence: Evidence) -> dict[str, FloatArray]:
+def error_series(problem: Problem, plant: Machine, evidence: Evidence) -> dict[str, FloatArray]:
     """Channel to measured less predicted over the judged samples, the zero of the scale taken out; NaN elsewhere."""
     predicted = problem.predictor.predict(plant, evidence)
     rows = evidence.judged_rows
@@ -44,46 +43,38 @@ def error_series(problem: Problem, plant: Plant, evidence: Evidence) -> dict[str
             mend = "a bristle or a damper is too stiff for the sample time; check its value and unit"
             raise InputError("the plant cannot be simulated with this motion", plant.name, mend)
         error = np.where(rows, evidence.measured[name] - predicted[name], np.nan)
-        result[name] = error - np.nanmean(error) if name == "table_position" else error
+        result[name] = error - np.nanmean(error) if name in evidence.floating else error
     return result
 
 
 def channel_results(problem: Problem, judged: Sequence[Judged]) -> tuple[ChannelResult, ...]:
     """Error of every channel before and after, all judged recordings together."""
     results = []
-    for name in judged[0].evidence.channels:
+    for name in judged_channels(judged):
         parts = [j for j in judged if name in j.evidence.channels]
         before = np.concatenate([error_series(problem, j.before, j.evidence)[name] for j in parts])
         after = np.concatenate([error_series(problem, j.after, j.evidence)[name] for j in parts])
-        reference = np.concatenate([_reference(name, j) for j in parts])
+        reference = np.concatenate([problem.predictor.reference(name, j.before, j.evidence) for j in parts])
         scale = float(np.sqrt(np.mean(reference**2)))
         noise = float(np.sqrt(np.mean([j.evidence.noise[name] ** 2 for j in parts])))
-        band = (0.0, parts[0].evidence.band.edge)
+        band = (0.0, parts[0].evidence.edge)
         figures = error_figures(before, scale), error_figures(after, scale)
-        results.append(ChannelResult(name, CHANNEL_UNITS[name], band, noise, *figures))
+        results.append(ChannelResult(name, channel_unit(name, ""), band, noise, *figures))
     return tuple(results)
 
 
-def _reference(name: str, judged: Judged) -> FloatArray:
-    """What a relative error refers to: the torque; for the table its motion beyond lead / 2 pi times the motor's."""
-    evidence = judged.evidence
-    rows = evidence.judged_rows
-    if name != "table_position":
-        torque: FloatArray = evidence.measured[name][rows]
-        return torque
-    geared = judged.before.chain.motor_radius * evidence.band.filter(evidence.recording["motor_angle"])
-    beyond = (evidence.measured[name] - geared)[rows]
-    about_mean: FloatArray = beyond - beyond.mean()
-    return about_mean
+def judged_channels(judged: Sequence[Judged]) -> tuple[str, ...]:
+    """Channels of all judged recordings, each once."""
+    return tuple(dict.fromkeys(name for j in judged for name in j.evidence.channels))
 
 
-def squared_blocks(problem: Problem, plant_of: Sequence[tuple[Plant, Evidence]]) -> FloatArray:
+def squared_blocks(problem: Problem, plant_of: Sequence[tuple[Machine, Evidence]]) -> FloatArray:
     """Noise-weighted squared error per block of the judged samples, all recordings one after the other."""
     sums = []
     for plant, evidence in plant_of:
         errors = error_series(problem, plant, evidence)
         rows = np.flatnonzero(evidence.judged_rows)
-        blocks = (rows * evidence.recording.sample_time / BLOCK).astype(int)
+        blocks = (rows * evidence.recording.sample_time / evidence.block).astype(int)
         total = np.zeros(int(blocks.max()) + 1)
         for name, error in errors.items():
             total += np.bincount(blocks, weights=(error[rows] / evidence.noise[name]) ** 2, minlength=len(total))
@@ -110,7 +101,7 @@ def share_of(problem: Problem, judged: Sequence[Judged], effects: Sequence[Effec
     refitted = fit(problem, rest, iterations=2).effects if rest else ()
     without = problem.plant.with_effects(*refitted)
     explains = {}
-    for name in judged[0].evidence.channels:
+    for name in judged_channels(judged):
         lacking = _pooled(problem, [(without, j.evidence) for j in judged], name)
         having = _pooled(problem, [(j.after, j.evidence) for j in judged], name)
         explains[name] = 1 - having / lacking
@@ -119,8 +110,9 @@ def share_of(problem: Problem, judged: Sequence[Judged], effects: Sequence[Effec
     return Share(explains, compare(before, after))
 
 
-def _pooled(problem: Problem, pairs: Sequence[tuple[Plant, Evidence]], name: str) -> float:
-    errors = np.concatenate([error_series(problem, plant, evidence)[name] for plant, evidence in pairs])
+def _pooled(problem: Problem, pairs: Sequence[tuple[Machine, Evidence]], name: str) -> float:
+    parts = [pair for pair in pairs if name in pair[1].channels]
+    errors = np.concatenate([error_series(problem, plant, evidence)[name] for plant, evidence in parts])
     return float(np.nansum(errors**2))
 
 
@@ -128,7 +120,7 @@ def judged_recordings(problem: Problem, judged: Sequence[Judged]) -> tuple[Judge
     """The series behind `prediction.csv` and the figures; left-out samples are NaN."""
     result = []
     for j in judged:
-        evidence, run = j.evidence, problem.predictor.load_motion(j.after, j.evidence)
+        evidence = j.evidence
         rows = evidence.judged_rows
         before, after = (error_series(problem, plant, evidence) for plant in (j.before, j.after))
         first, last = np.flatnonzero(rows)[[0, -1]]
@@ -136,18 +128,15 @@ def judged_recordings(problem: Problem, judged: Sequence[Judged]) -> tuple[Judge
         series = tuple(
             ChannelSeries(
                 name,
-                CHANNEL_UNITS[name],
+                channel_unit(name, ""),
                 np.where(rows, evidence.measured[name], np.nan)[part],
                 (evidence.measured[name] - before[name])[part],
                 (evidence.measured[name] - after[name])[part],
             )
             for name in evidence.channels
         )
-        variables = {
-            "table_velocity": run.table_velocity[part],
-            "table_position": run.table_position[part],
-            "motor_angle": run.motor_angle[part],
-        }
+        seen = problem.predictor.variables(j.after, evidence)
+        variables = {name: values[part] for name, values in seen.items()}
         result.append(JudgedRecording(evidence.recording.name, evidence.recording.time[part], series, variables))
     return tuple(result)
 

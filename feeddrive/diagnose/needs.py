@@ -6,7 +6,7 @@ import numpy as np
 
 from feeddrive.diagnose.declared_friction import declared_level
 from feeddrive.diagnose.evidence import Evidence
-from feeddrive.diagnose.scene import Scene
+from feeddrive.diagnose.scene import AxisScene
 from feeddrive.effects.base import Port
 from feeddrive.simulate.driven import LoadMotion
 
@@ -20,11 +20,11 @@ LEAST_STROKE_TURNS = 1.0
 """Stroke in revolutions of the screw from which position and angle are different things."""
 
 
-def both_directions(scene: Scene) -> str:
+def both_directions(scene: AxisScene) -> str:
     """The table must move both ways."""
     moved = [_moved(run, evidence) for run, evidence in zip(scene.runs, scene.problem.evidence, strict=True)]
     forward, backward = sum(m[0] for m in moved), sum(m[1] for m in moved)
-    least = 5 * scene.problem.plant.chain.motor_radius
+    least = 5 * scene.plant.chain.motor_radius
     if min(forward, backward) < least:
         return f"the recording moves {forward * 1e3:.2g} mm forward and {backward * 1e3:.2g} mm back; it needs both"
     return ""
@@ -35,7 +35,7 @@ def _moved(run: LoadMotion, evidence: Evidence) -> tuple[float, float]:
     return float(steps[steps > 0].sum()), float(-steps[steps < 0].sum())
 
 
-def reversals(scene: Scene) -> str:
+def reversals(scene: AxisScene) -> str:
     """The motor must turn round twice or more."""
     count = 0
     for run, evidence in zip(scene.runs, scene.problem.evidence, strict=True):
@@ -45,7 +45,7 @@ def reversals(scene: Scene) -> str:
     return "" if count >= 2 else f"the recording has {count} reversals; it needs two or more"
 
 
-def turns(scene: Scene) -> str:
+def turns(scene: AxisScene) -> str:
     """The motor must turn often enough for a period to be told from a trend."""
     travelled = max(
         float(np.ptp(run.motor_angle[e.fit_rows])) for run, e in zip(scene.runs, scene.problem.evidence, strict=True)
@@ -54,75 +54,75 @@ def turns(scene: Scene) -> str:
     return "" if count >= LEAST_TURNS else f"the recording covers {count:.2g} revolutions; it needs {LEAST_TURNS:g}"
 
 
-def lead(scene: Scene) -> str:
+def lead(scene: AxisScene) -> str:
     """Travel errors need a table position and some revolutions."""
     if not any("table_position" in evidence.channels for evidence in scene.problem.evidence):
         return "it needs a table position beside the motor angle"
     return turns(scene)
 
 
-def gap(scene: Scene) -> str:
+def gap(scene: AxisScene) -> str:
     """Free play needs an elastic chain and reversals."""
-    if not scene.problem.plant.chain.elastic:
+    if not scene.plant.chain.elastic:
         return "the structure is rigid: free play needs a screw that moves against the table"
     return reversals(scene)
 
 
-def friction(scene: Scene) -> str:
+def friction(scene: AxisScene) -> str:
     """Friction at the table needs a declared level and both directions."""
-    declared = any(effect.name == "guide_friction" for effect in scene.problem.plant.effects)
+    declared = any(effect.name == "guide_friction" for effect in scene.plant.effects)
     return both_directions(scene) if declared else "the plant declares no guide_friction to act on"
 
 
-def nothing(scene: Scene) -> str:
+def nothing(scene: AxisScene) -> str:
     """Every recording can show it."""
     return ""
 
 
-def elastic(scene: Scene) -> str:
+def elastic(scene: AxisScene) -> str:
     """Stiffness shows only where the chain is elastic."""
-    return "" if scene.problem.plant.chain.elastic else "the structure is rigid"
+    return "" if scene.plant.chain.elastic else "the structure is rigid"
 
 
-def scale(scene: Scene) -> str:
+def scale(scene: AxisScene) -> str:
     """Travel along the stroke needs a table position and a stroke."""
     if not any("table_position" in evidence.channels for evidence in scene.problem.evidence):
         return "it needs a table position beside the motor angle"
     return stroke(scene)
 
 
-def stroke(scene: Scene) -> str:
+def stroke(scene: AxisScene) -> str:
     """What depends on the position needs a stroke."""
     runs = zip(scene.runs, scene.problem.evidence, strict=True)
     longest = max(float(np.ptp(run.table_position[e.fit_rows])) for run, e in runs)
-    least = LEAST_STROKE_TURNS * scene.problem.plant.chain.values["lead"]
+    least = LEAST_STROKE_TURNS * scene.plant.chain.values["lead"]
     return "" if longest >= least else f"the stroke is {longest * 1e3:.2g} mm; it needs {least * 1e3:.3g} mm"
 
 
-def duration(scene: Scene) -> str:
+def duration(scene: AxisScene) -> str:
     """What changes slowly needs time."""
     evidence = scene.problem.evidence[scene.longest]
     seconds = float(evidence.fit_rows.sum()) * evidence.recording.sample_time
     return "" if seconds >= LEAST_SECONDS else f"the recording lasts {seconds:.2g} s; it needs {LEAST_SECONDS:g} s"
 
 
-def scale_duration(scene: Scene) -> str:
+def scale_duration(scene: AxisScene) -> str:
     """Growth needs a table position and time."""
     return scale(scene) or duration(scene)
 
 
-def screw_drag(scene: Scene) -> str:
+def screw_drag(scene: AxisScene) -> str:
     """What changes the drag of the screw needs a declared one, and a force that the chain knows."""
-    if not declared_level(scene.problem.plant, Port.SCREW):
+    if not declared_level(scene.plant, Port.SCREW):
         return "the plant declares no nut_drag or bearing_drag to act on"
     return elastic(scene) or both_directions(scene)
 
 
-def screw_drag_turns(scene: Scene) -> str:
+def screw_drag_turns(scene: AxisScene) -> str:
     """A ripple of the drag needs a declared one and some revolutions."""
     return screw_drag(scene) or turns(scene)
 
 
-def friction_reversals(scene: Scene) -> str:
+def friction_reversals(scene: AxisScene) -> str:
     """Presliding needs declared friction and reversals."""
     return friction(scene) or reversals(scene)

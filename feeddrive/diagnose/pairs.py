@@ -16,7 +16,6 @@ from feeddrive.diagnose.cross_validation import (
     left_out_residual,
 )
 from feeddrive.diagnose.fit import Fit, fit
-from feeddrive.diagnose.materiality import is_material
 from feeddrive.errors import InputError
 from feeddrive.typing import FloatArray
 
@@ -51,7 +50,7 @@ def masked_pair(attempts: Sequence[Attempt], found: Fit, winner: Attempt | None)
         except InputError:
             continue
         pair = compared(problem, f"{first.name} with {second.name}", result, found.effects)
-        material = all(is_material(effect, problem.plant) for effect in result.effects[-2:])
+        material = all(problem.predictor.is_material(effect, problem.plant) for effect in result.effects[-2:])
         if material and pair.comparison.pays and pair.comparison.gain > least:
             return pair
     return None
@@ -68,7 +67,7 @@ def _linear_pair(first: Attempt, second: Attempt, found: Fit) -> Comparison | No
     step = np.linalg.lstsq(jacobian, first.fit.residual, rcond=1e-10)[0]
     together = left_out_residual(first.fit.residual - jacobian @ step, jacobian, blocks)
     before = left_out_residual(found.residual, found.jacobian, blocks)
-    return compare_left_out(before, together, blocks, least_gain(first.problem))
+    return compare_left_out(before, together, blocks, least_gain(first.problem, before))
 
 
 def _own_columns(attempt: Attempt) -> FloatArray:

@@ -5,7 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 
+import numpy as np
+
 from feeddrive.effects.base import Effect, Value
+from feeddrive.effects.thermal.bearing_heat import reference_heat
 
 
 def physical_reading(effect: Effect) -> str:
@@ -138,6 +141,68 @@ def _one(value: Value) -> float:
     return value[0] if isinstance(value, tuple) else value
 
 
+def _convection(v: Mapping[str, Value]) -> str:
+    return _signed(
+        _one(v["factor"]) - 1,
+        "More heat goes to the air than declared: draught, a fan, a cover taken off.",
+        "Less heat goes to the air than declared: covers, still air, dirt.",
+    )
+
+
+def _contact(v: Mapping[str, Value]) -> str:
+    return _signed(
+        _one(v["factor"]) - 1,
+        "Nut and screw are tied more closely than declared: more preload, more grease.",
+        "Nut and screw are tied more loosely than declared: less preload, fewer balls under load.",
+    )
+
+
+def _preload_growth(v: Mapping[str, Value]) -> str:
+    return _signed(
+        v["coefficient"],
+        "The nut grows against the screw as it warms, and its load torque with it: watch the preload when hot.",
+        "The load torque falls as the nut warms: the screw grows less than the nut and the preload is lost.",
+    )
+
+
+def _ambient_drift(v: Mapping[str, Value]) -> str:
+    seen = "The air at the machine is not what was recorded: move the sensor, or look for sun, doors, a warm cabinet."
+    return _signed(v["amplitude"], seen, seen)
+
+
+def _motor_heat(v: Mapping[str, Value]) -> str:
+    return f"The motor heats the end of the screw, {_one(v['share_at_rest']):.0%} of it whatever the speed."
+
+
+def _bearing_heat(v: Mapping[str, Value]) -> str:
+    fast = np.array([750 * math.pi / 30])
+    heat = _one(v["factor"]) * float(reference_heat(fast)[0])
+    rear = heat * _one(v["rear_share"])
+    return f"The bearings rub: {heat:.2g} W at the front and {rear:.2g} W at the rear at 750 rev/min."
+
+
+def _structure_growth(v: Mapping[str, Value]) -> str:
+    return (
+        "The frame or the scale's carrier grows: the table is read elsewhere, beyond what the screw's warmth explains."
+    )
+
+
+def _sensor_lag(v: Mapping[str, Value]) -> str:
+    return "The sensor follows late: a thick pocket, little paste, a filter."
+
+
+def _cooling(v: Mapping[str, Value]) -> str:
+    return f"From {_one(v['start']) / 60:.0f} min on something cools the nut."
+
+
+def _heat_sink(v: Mapping[str, Value]) -> str:
+    return "A mass on the nut takes up heat and gives it back: housing, bracket or table, which the plant leaves out."
+
+
+def _viscosity_temperature(v: Mapping[str, Value]) -> str:
+    return "The viscous torque of the nut falls as its grease warms."
+
+
 def _payload(v: Mapping[str, Value]) -> str:
     return _signed(
         v["mass"], "The table is heavier than declared.", "The table is lighter than declared, or an inertia is."
@@ -171,5 +236,16 @@ READINGS: dict[str, Callable[[Mapping[str, Value]], str]] = {
     "thermal_growth": _thermal_growth,
     "viscous_warmup": _viscous_warmup,
     "stiffness_deviation": _stiffness_deviation,
+    "motor_heat": _motor_heat,
+    "bearing_heat": _bearing_heat,
+    "ambient_drift": _ambient_drift,
+    "preload_growth": _preload_growth,
+    "viscosity_temperature": _viscosity_temperature,
+    "cooling": _cooling,
+    "convection_deviation": _convection,
+    "contact_conductance_deviation": _contact,
+    "heat_sink": _heat_sink,
+    "structure_growth": _structure_growth,
+    "sensor_lag": _sensor_lag,
 }
 """Effect name to the reading of its values."""

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from feeddrive.diagnose.evidence import Evidence
+from feeddrive.diagnose.evidence import AxisEvidence
 from feeddrive.effects.base import TransmissionEffect
 from feeddrive.plant.plant import Plant
 from feeddrive.simulate.driven import simulate_driven
@@ -27,7 +27,7 @@ WINDOW = 0.5
 """Length of the stretches that are judged [s]."""
 
 
-def predictable_samples(plant: Plant, evidence: Evidence) -> BoolArray:
+def predictable_samples(plant: Plant, evidence: AxisEvidence) -> BoolArray:
     """Samples that the plant can predict, shape (n,); all of them where nothing jumps."""
     n = len(evidence.recording)
     if not plant.effects_of(TransmissionEffect):

@@ -3,25 +3,32 @@
 from __future__ import annotations
 
 from collections import OrderedDict
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from threading import Lock
 
 import numpy as np
 from scipy.ndimage import shift
 
-from feeddrive.diagnose.evidence import Evidence
+from feeddrive.diagnose.candidates import CANDIDATES
+from feeddrive.diagnose.evidence import AxisEvidence
+from feeddrive.diagnose.fit import Problem
+from feeddrive.diagnose.materiality import is_material
+from feeddrive.diagnose.predictability import predictable_samples
+from feeddrive.diagnose.predictor import Predictor
+from feeddrive.diagnose.scene import AxisScene, Candidate
 from feeddrive.effects.base import ChainEffect, Effect, Motion, Port, SourceEffect, TimingEffect
 from feeddrive.plant.plant import Plant
 from feeddrive.simulate.driven import LoadMotion, simulate_driven, unfollowed
 from feeddrive.simulate.step_constants import SimulationError
-from feeddrive.typing import FloatArray
+from feeddrive.typing import BoolArray, FloatArray
 
 REMEMBERED = 48
 """Load-side simulations kept; effects at the motor alone need none of their own."""
 
 
 @dataclass
-class Predictor:
+class AxisPredictor(Predictor[Plant, AxisEvidence]):
     """Predicts recordings, and remembers what the load side did.
 
     Not a frozen record: it is a cache.
@@ -30,7 +37,7 @@ class Predictor:
     _runs: OrderedDict[object, LoadMotion] = field(default_factory=OrderedDict)
     _lock: Lock = field(default_factory=Lock)
 
-    def load_motion(self, plant: Plant, evidence: Evidence) -> LoadMotion:
+    def load_motion(self, plant: Plant, evidence: AxisEvidence) -> LoadMotion:
         """Motion of the load side, without what acts at the motor alone."""
         bare = _load_side(plant)
         key = (id(evidence.motion), _values_key(bare))
@@ -45,7 +52,7 @@ class Predictor:
                 self._runs.popitem(last=False)
         return run
 
-    def predict(self, plant: Plant, evidence: Evidence) -> dict[str, FloatArray]:
+    def predict(self, plant: Plant, evidence: AxisEvidence) -> dict[str, FloatArray]:
         """Channel to predicted series in the band, shape (n,), SI."""
         run = self.load_motion(plant, evidence)
         raw = {"motor_torque": run.torque + motor_sources(plant, run), "table_position": run.table_position}
@@ -56,6 +63,51 @@ class Predictor:
             samples = delay / evidence.recording.sample_time
             result["motor_torque"] = shift(result["motor_torque"], -samples, order=5, mode="nearest")
         return result
+
+    @property
+    def candidates(self) -> tuple[Candidate, ...]:
+        """Effects on motion and torque."""
+        return CANDIDATES
+
+    def scene(self, problem: Problem, found: Sequence[Effect]) -> AxisScene:
+        """Residuals and motion of the load side with the effects found so far."""
+        plant = problem.plant.with_effects(*found)
+        assert isinstance(plant, Plant)
+        residuals, runs = [], []
+        for evidence in problem.evidence:
+            assert isinstance(evidence, AxisEvidence)
+            predicted = self.predict(plant, evidence)
+            residuals.append({name: evidence.measured[name] - predicted[name] for name in evidence.channels})
+            runs.append(self.load_motion(plant, evidence))
+        return AxisScene(problem, tuple(found), tuple(residuals), tuple(runs))
+
+    def predictable(self, plant: Plant, evidence: AxisEvidence) -> BoolArray:
+        """Samples without chaos."""
+        return predictable_samples(plant, evidence)
+
+    def variables(self, plant: Plant, evidence: AxisEvidence) -> dict[str, FloatArray]:
+        """Motion that a residual may depend on."""
+        run = self.load_motion(plant, evidence)
+        return {
+            "table_velocity": run.table_velocity,
+            "table_position": run.table_position,
+            "motor_angle": run.motor_angle,
+        }
+
+    def reference(self, name: str, plant: Plant, evidence: AxisEvidence) -> FloatArray:
+        """The torque; of the table its motion beyond lead / 2 pi times the motor's."""
+        rows = evidence.judged_rows
+        if name != "table_position":
+            torque: FloatArray = evidence.measured[name][rows]
+            return torque
+        geared = plant.chain.motor_radius * evidence.band.filter(evidence.recording["motor_angle"])
+        beyond = (evidence.measured[name] - geared)[rows]
+        about_mean: FloatArray = beyond - beyond.mean()
+        return about_mean
+
+    def is_material(self, effect: Effect, plant: Plant) -> bool:
+        """The physical minimum of friction, forces and masses."""
+        return is_material(effect, plant)
 
 
 def motor_sources(plant: Plant, run: LoadMotion) -> FloatArray:
@@ -68,7 +120,7 @@ def motor_sources(plant: Plant, run: LoadMotion) -> FloatArray:
     return total
 
 
-def _simulated(plant: Plant, evidence: Evidence) -> LoadMotion:
+def _simulated(plant: Plant, evidence: AxisEvidence) -> LoadMotion:
     """The driven simulation; no numbers where the plant cannot be followed with these values."""
     try:
         return simulate_driven(plant, evidence.motion)

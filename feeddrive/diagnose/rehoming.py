@@ -16,8 +16,8 @@ from feeddrive.diagnose.cross_validation import compare
 from feeddrive.diagnose.evidence import Evidence
 from feeddrive.diagnose.fit import Problem
 from feeddrive.diagnose.judge import squared_blocks
+from feeddrive.diagnose.predictor import Machine
 from feeddrive.effects.base import Effect
-from feeddrive.plant.plant import Plant
 
 FIRST_SHARE = 0.15
 """Share of the recording on which the shift is found."""
@@ -33,7 +33,7 @@ SCAN = 48
 class Rehomed:
     """A recording with its effects shifted, the first part no longer judged."""
 
-    plant: Plant
+    plant: Machine
     evidence: Evidence
     statement: str
 

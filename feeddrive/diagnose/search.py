@@ -13,7 +13,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from feeddrive.diagnose.attempt import JOINT_ITERATIONS, PROMISE, Attempt, alone, together
-from feeddrive.diagnose.candidates import CANDIDATES
 from feeddrive.diagnose.coordinates import read_coordinates
 from feeddrive.diagnose.cross_validation import (
     LEAST_GAIN,
@@ -23,12 +22,10 @@ from feeddrive.diagnose.cross_validation import (
     left_out_residual,
 )
 from feeddrive.diagnose.fit import Fit, Problem, fit
-from feeddrive.diagnose.materiality import is_material
 from feeddrive.diagnose.pairs import masked_pair
 from feeddrive.diagnose.result import Trial
-from feeddrive.diagnose.scene import Scene, scene_of
+from feeddrive.diagnose.scene import Scene
 from feeddrive.effects.base import Effect
-from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.typing import FloatArray, IntegerArray
 
 MOST_EFFECTS = 8
@@ -74,7 +71,7 @@ def search(problem: Problem, said: Callable[[str], None] = lambda text: None) ->
     impossible: dict[str, str] = {}
     while len(rounds) < MOST_EFFECTS:
         said(f"round {len(rounds) + 1}: {len(found.effects)} effects so far")
-        scene = scene_of(problem, found.effects)
+        scene = problem.predictor.scene(problem, found.effects)
         attempts = _round(scene, found, impossible)
         rounds.append(tuple(attempts))
         winner = _simplest_of_the_best(attempts)
@@ -95,7 +92,7 @@ def search(problem: Problem, said: Callable[[str], None] = lambda text: None) ->
 
 def _simplest_of_the_best(attempts: Sequence[Attempt]) -> Attempt | None:
     """The best attempt, or one with fewer parameters that cannot be told from it; None if the best does not pay."""
-    attempts = [a for a in attempts if is_material(a.fit.effects[-1], a.problem.plant)]
+    attempts = [a for a in attempts if a.problem.predictor.is_material(a.fit.effects[-1], a.problem.plant)]
     if not attempts or not attempts[0].comparison.pays:
         return None
     best = attempts[0]
@@ -115,7 +112,7 @@ def _trial(number: int, attempt: Attempt, taken: bool) -> Trial:
 def _round(scene: Scene, found: Fit, impossible: dict[str, str]) -> list[Attempt]:
     """All candidates of one round, the best first."""
     ready = []
-    for candidate in CANDIDATES:
+    for candidate in scene.problem.predictor.candidates:
         if _already(candidate.name, found.effects):
             continue
         reason = candidate.needs(scene)
@@ -129,14 +126,24 @@ def _round(scene: Scene, found: Fit, impossible: dict[str, str]) -> list[Attempt
         attempts.sort(key=lambda attempt: attempt.comparison.gain, reverse=True)
         best = _best_per_name(attempts)
         if found.effects:
-            finalists = [attempt for attempt in best[:FINALISTS] if attempt.comparison.gain > PROMISE]
+            names = [attempt.name for attempt in best[:FINALISTS] if attempt.comparison.gain > PROMISE]
+            finalists = [attempt for attempt in _best_per_place(attempts) if attempt.name in names]
             joint = list(pool.map(lambda attempt: together(attempt, found), finalists))
-            best = _best_per_name(sorted([*joint, *best[len(finalists) :]], key=lambda a: -a.comparison.gain))
+            others = [attempt for attempt in best if attempt.name not in names]
+            best = _best_per_name(sorted([*joint, *others], key=lambda a: -a.comparison.gain))
     return best
 
 
+def _best_per_place(attempts: Sequence[Attempt]) -> list[Attempt]:
+    """The best of each name and place: which film, which sensor is settled only with the other effects free."""
+    best: dict[tuple[str, str], Attempt] = {}
+    for attempt in attempts:
+        best.setdefault((attempt.name, attempt.fit.effects[-1].place), attempt)
+    return list(best.values())
+
+
 def _already(name: str, effects: Sequence[Effect]) -> bool:
-    return any(effect.name == name for effect in effects) and not EFFECTS[name].repeatable
+    return any(effect.name == name and not effect.repeatable for effect in effects)
 
 
 def _best_per_name(attempts: Sequence[Attempt]) -> list[Attempt]:
@@ -157,7 +164,7 @@ def _without_idle(problem: Problem, found: Fit) -> Fit:
             continue
         rest = fit(problem, found.effects[:i] + found.effects[i + 1 :], iterations=JOINT_ITERATIONS)
         without = left_out_residual(rest.residual, rest.jacobian, blocks)
-        gain = compare_left_out(without, errors, blocks, least_gain(problem))
+        gain = compare_left_out(without, errors, blocks, least_gain(problem, without))
         if not gain.pays:
             return _without_idle(problem, fit(problem, rest.effects, iterations=JOINT_ITERATIONS))
     return found

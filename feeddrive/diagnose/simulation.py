@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from feeddrive.diagnose.evidence import AxisEvidence
 from feeddrive.diagnose.judge import Judged
 from feeddrive.diagnose.result import SimulationResult
 from feeddrive.plant.plant import Plant
@@ -37,5 +38,6 @@ def _relative(plant: Plant, judged: Sequence[Judged]) -> float:
 
 def _start(j: Judged) -> tuple[float, float]:
     """Table position [m] and velocity [m/s] that the recording starts from."""
+    assert isinstance(j.before, Plant) and isinstance(j.evidence, AxisEvidence)
     r = j.before.chain.motor_radius
     return r * float(j.evidence.motion.angle[0]), r * float(j.evidence.motion.speed[0])

@@ -9,7 +9,7 @@ import numpy as np
 from feeddrive.diagnose.declared_friction import declared_level, declared_viscous
 from feeddrive.diagnose.periodogram import sine_at, strongest_orders
 from feeddrive.diagnose.position_curve import bump_of, friction_over_position
-from feeddrive.diagnose.scene import Scene
+from feeddrive.diagnose.scene import AxisScene
 from feeddrive.effects.backlash import Backlash
 from feeddrive.effects.base import Effect, Port
 from feeddrive.effects.friction_deviation import FrictionDeviation
@@ -27,36 +27,36 @@ LEAST_CURVE = 0.01
 """Share of the torque residual's square that must follow the position before a table is tried."""
 
 
-def plain(effect: Effect) -> Callable[[Scene], list[list[Effect]]]:
+def plain(effect: Effect) -> Callable[[AxisScene], list[list[Effect]]]:
     """One start, whatever the residual."""
     return lambda scene: [[effect]]
 
 
-def deviation(scene: Scene) -> list[list[Effect]]:
+def deviation(scene: AxisScene) -> list[list[Effect]]:
     """A factor of one at every port that declares friction and has none yet."""
-    plant = scene.problem.plant
+    plant = scene.plant
     ports = [p for p in FrictionDeviation.ports if declared_level(plant, p) or declared_viscous(plant, p)]
     taken = [effect.port for effect in scene.found if effect.name == FrictionDeviation.name]
     return [[FrictionDeviation.of(port)] for port in ports if port not in taken]
 
 
-def stribeck(scene: Scene) -> list[list[Effect]]:
+def stribeck(scene: AxisScene) -> list[list[Effect]]:
     """A typical size at a few velocities of the recording."""
     fastest = max(float(np.abs(run.table_velocity).max()) for run in scene.runs)
     size = Stribeck.parameter("delta_force").size
     return [[Stribeck.of(delta_force=size, velocity=fastest * share) for share in (0.005, 0.015, 0.05, 0.15, 0.4)]]
 
 
-def presliding(scene: Scene) -> list[list[Effect]]:
+def presliding(scene: AxisScene) -> list[list[Effect]]:
     """Bristles of a few deflections, slipping from the start or after break-away."""
-    level = max(declared_level(scene.problem.plant, Port.TABLE), 1.0)
+    level = max(declared_level(scene.plant, Port.TABLE), 1.0)
     deflections = (1e-7, 3e-7, 1e-6, 3e-6, 1e-5, 3e-5, 1e-4)
     return [
         [Presliding.of(stiffness=level / z, damping=0.0, break_away=share) for z in deflections] for share in (0.0, 0.7)
     ]
 
 
-def backlash(scene: Scene) -> list[list[Effect]]:
+def backlash(scene: AxisScene) -> list[list[Effect]]:
     """Widths about the lag of the table."""
     at = scene.longest
     residual, rows = scene.residuals[at], scene.problem.evidence[at].fit_rows
@@ -67,7 +67,7 @@ def backlash(scene: Scene) -> list[list[Effect]]:
     return [[Backlash.of(width=min(width, 5e-3)) for width in widths]]
 
 
-def ripple(scene: Scene) -> list[list[Effect]]:
+def ripple(scene: AxisScene) -> list[list[Effect]]:
     """The strongest orders of the residual torque."""
     at = scene.longest
     rows = scene.problem.evidence[at].fit_rows
@@ -76,7 +76,7 @@ def ripple(scene: Scene) -> list[list[Effect]]:
     return [[sine(TorqueRipple, angle, residual, order) for order in orders]] if orders else []
 
 
-def lead_error(scene: Scene) -> list[list[Effect]]:
+def lead_error(scene: AxisScene) -> list[list[Effect]]:
     """The strongest orders of the residual position."""
     at = scene.longest
     rows = scene.problem.evidence[at].fit_rows
@@ -87,7 +87,7 @@ def lead_error(scene: Scene) -> list[list[Effect]]:
     return [[sine(LeadErrorPeriodic, angle, residual, order) for order in orders]] if orders else []
 
 
-def highest_order(scene: Scene, at: int) -> float:
+def highest_order(scene: AxisScene, at: int) -> float:
     """Order whose frequency meets half the sample rate at the highest speed; above it a sampled sine is another one."""
     fastest = float(np.abs(scene.runs[at].motor_speed).max())
     return float(np.pi / scene.problem.evidence[at].recording.sample_time / fastest)
@@ -99,12 +99,12 @@ def sine(kind: type[Effect], angle: FloatArray, residual: FloatArray, order: flo
     return kind.of(amplitude=amplitude, order=order, phase=phase)
 
 
-def over_position(scene: Scene) -> list[list[Effect]]:
+def over_position(scene: AxisScene) -> list[list[Effect]]:
     """Bumps that fit the friction left over, and a table where it follows the position."""
     at = scene.longest
     evidence, run = scene.problem.evidence[at], scene.runs[at]
     rows = evidence.fit_rows
-    radius = scene.problem.plant.chain.motor_radius
+    radius = scene.plant.chain.motor_radius
     curve = friction_over_position(
         run.table_position[rows], run.table_velocity[rows], scene.residuals[at]["motor_torque"][rows] / radius
     )

@@ -6,7 +6,7 @@ import numpy as np
 
 from feeddrive.diagnose.declared_friction import declared_viscous
 from feeddrive.diagnose.periodogram import strongest_orders
-from feeddrive.diagnose.scene import Scene
+from feeddrive.diagnose.scene import AxisScene
 from feeddrive.diagnose.starts import highest_order, sine
 from feeddrive.effects.ball_pass_ripple import BallPassRipple
 from feeddrive.effects.base import Effect
@@ -18,11 +18,11 @@ SHARES_OF_DURATION = (0.1, 0.3, 1.0)
 """Time constants that are tried first, over the duration; a longer one looks like a straight line."""
 
 
-def position_spring(scene: Scene) -> list[list[Effect]]:
+def position_spring(scene: AxisScene) -> list[list[Effect]]:
     """The straight line of the residual force over the position."""
     at = scene.longest
     rows, run = scene.problem.evidence[at].fit_rows, scene.runs[at]
-    force = scene.residuals[at]["motor_torque"][rows] / scene.problem.plant.chain.motor_radius
+    force = scene.residuals[at]["motor_torque"][rows] / scene.plant.chain.motor_radius
     position = run.table_position[rows]
     slope, offset = np.polyfit(position, force, 1)
     zero = -offset / slope if slope else float(np.mean(position))
@@ -32,19 +32,19 @@ def position_spring(scene: Scene) -> list[list[Effect]]:
     return [[PositionSpring.of(stiffness=float(slope), zero=float(np.clip(zero, middle - reach, middle + reach)))]]
 
 
-def thermal_growth(scene: Scene) -> list[list[Effect]]:
+def thermal_growth(scene: AxisScene) -> list[list[Effect]]:
     """A strain of its usual size, settling within the recording."""
     size = ThermalGrowth.parameter("strain").size
     return [[ThermalGrowth.of(strain=size, time_constant=seconds) for seconds in _time_constants(scene)]]
 
 
-def viscous_warmup(scene: Scene) -> list[list[Effect]]:
+def viscous_warmup(scene: AxisScene) -> list[list[Effect]]:
     """A tenth of the viscous drag lost within the recording, at every port that declares one."""
-    ports = [port for port in ViscousWarmup.ports if declared_viscous(scene.problem.plant, port)]
+    ports = [port for port in ViscousWarmup.ports if declared_viscous(scene.plant, port)]
     return [[ViscousWarmup.of(port, share=0.1, time_constant=t) for t in _time_constants(scene)] for port in ports]
 
 
-def ball_pass_ripple(scene: Scene) -> list[list[Effect]]:
+def ball_pass_ripple(scene: AxisScene) -> list[list[Effect]]:
     """Orders of the residual torque that changes sign with the direction."""
     at = scene.longest
     rows, run = scene.problem.evidence[at].fit_rows, scene.runs[at]
@@ -56,7 +56,7 @@ def ball_pass_ripple(scene: Scene) -> list[list[Effect]]:
     return [[sine(BallPassRipple, angle, resisting, order) for order in orders]] if orders else []
 
 
-def _time_constants(scene: Scene) -> list[float]:
+def _time_constants(scene: AxisScene) -> list[float]:
     evidence = scene.problem.evidence[scene.longest]
     duration = float(evidence.fit_rows.sum()) * evidence.recording.sample_time
     return [share * duration for share in SHARES_OF_DURATION]

@@ -4,6 +4,8 @@
 
 Sums over blocks count correlation of any form inside a block. Intervals use Student's t with the number of blocks that
 carry information about the coordinate, so that a parameter seen in a few blocks gets the wide interval it deserves.
+What the model itself may miss (thermal plants) is added as the worst it can do to a coordinate: an error of that rms
+along the one direction of the residual that moves it, taken as a bound of 95 %.
 Source: Liang and Zeger, Biometrika 73 (1986) 13; Newey and West, Econometrica 55 (1987) 703.
 """
 
@@ -13,7 +15,7 @@ import numpy as np
 from scipy.stats import t as student
 
 from feeddrive.diagnose.coordinates import spread_to_values
-from feeddrive.diagnose.cross_validation import block_numbers
+from feeddrive.diagnose.cross_validation import block_numbers, model_share
 from feeddrive.diagnose.fit import Fit, Problem
 from feeddrive.typing import FloatArray, IntegerArray
 
@@ -51,6 +53,8 @@ def half_widths(problem: Problem, fitted: Fit) -> list[dict[str, FloatArray]]:
         return []
     blocks = block_numbers(problem)
     covariance = coordinate_covariance(fitted, blocks)
+    inverse = np.linalg.pinv(fitted.jacobian.T @ fitted.jacobian, rcond=1e-14, hermitian=True)
+    covariance = covariance + model_share(problem) / 1.96**2 * inverse
     quantile = float(student.ppf(0.975, max(informed_blocks(fitted, blocks) - 1, 2)))
     deviations = spread_to_values(fitted.effects, problem.plant, fitted.coordinates, covariance)
     return [{key: quantile * value for key, value in effect.items()} for effect in deviations]

@@ -31,6 +31,8 @@ def unexplained(channel: ChannelResult, recordings: Sequence[JudgedRecording]) -
         share = _explained(values[kept], residual[kept])
         if share > LEAST_SHARE:
             found.append(Dependence(variable, share))
+    if "motor_angle" not in longest.variables:
+        return Unexplained(above / measured**2, tuple(sorted(found, key=lambda d: -d.share)))
     angle = longest.variables["motor_angle"][kept]
     for order in strongest_orders(angle, residual[kept], count=1):
         amplitude, _ = sine_at(angle, residual[kept], order)

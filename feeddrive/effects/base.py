@@ -6,12 +6,14 @@ Effects of a kind meet in one law per port (see `feeddrive.plant.equations`), be
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from typing import ClassVar, Self
 
 from feeddrive.errors import InputError
+from feeddrive.quantity import format_quantity
 from feeddrive.typing import Expression
 
 
@@ -25,6 +27,7 @@ class Kind(StrEnum):
     SOURCE = "source"
     TIMING = "timing"
     SENSOR = "sensor"
+    HEAT = "heat"
 
 
 class Port(StrEnum):
@@ -34,6 +37,7 @@ class Port(StrEnum):
     SCREW = "screw"
     TRANSMISSION = "transmission"
     TABLE = "table"
+    THERMAL = "thermal"
 
 
 @dataclass(frozen=True)
@@ -57,6 +61,14 @@ class Parameter:
     size: float = 1.0
     default: float | None = None
     table: bool = False
+
+
+def _span(parameter: Parameter) -> str:
+    """The physical range of a parameter in words."""
+    low, high = (format_quantity(end, parameter.unit) for end in (parameter.minimum, parameter.maximum))
+    if math.isinf(parameter.maximum):
+        return f"{low} or more"
+    return f"{low} to {high}" if math.isfinite(parameter.minimum) else f"{high} or less"
 
 
 Value = float | tuple[float, ...]
@@ -105,6 +117,9 @@ class Effect:
         repeatable: whether one search may find it more than once.
         additive: whether a plant may hold more than one at a port, their sum or product having a meaning.
         reads_force: whether it reads `Motion.force`, so that a rigid structure cannot hold it.
+        place: the word under `place_key` that says where it acts, as "nut"; empty where the port says all.
+        place_key: key of that word in plant files and reports; empty where there is none.
+        places: words that it may be; any word that the machine knows where there are none.
     """
 
     name: ClassVar[str] = ""
@@ -115,26 +130,33 @@ class Effect:
     repeatable: ClassVar[bool] = False
     additive: ClassVar[bool] = False
     reads_force: ClassVar[bool] = False
+    place_key: ClassVar[str] = ""
+    places: ClassVar[tuple[str, ...]] = ()
 
     values: Mapping[str, Value] = field(default_factory=dict)
     port: Port = Port.TABLE
     label: str = ""
+    place: str = ""
 
     @classmethod
-    def of(cls, port: Port | None = None, **values: Value) -> Self:
+    def of(cls, port: Port | None = None, place: str = "", **values: Value) -> Self:
         """The effect with its values in SI units, checked against the physical range.
 
         Args:
             port: where it acts; the first possible port if not given.
+            place: the word under `place_key`; may be left out where there is none.
             values: parameter key to SI value.
 
         Raises:
-            InputError: unknown or missing key, a value outside its physical range, or a port it cannot act at.
+            InputError: unknown or missing key, a value outside its range, or a port or place it cannot act at.
         """
         chosen = cls.ports[0] if port is None else port
         if chosen not in cls.ports:
             raise InputError(f"{cls.name} cannot act at port {chosen}", cls.name, f"use one of {', '.join(cls.ports)}")
-        return cls(values=cls.complete(values), port=chosen, label=cls.name)
+        if bool(place) != bool(cls.place_key) or (cls.places and place not in cls.places):
+            mend = f"use one of {', '.join(cls.places)}" if cls.places else f"give {cls.place_key or 'no place'}"
+            raise InputError(f"{cls.place_key or 'place'} {place!r} is not possible", cls.name, mend)
+        return cls(values=cls.complete(values), port=chosen, label=cls.name, place=place)
 
     @classmethod
     def complete(cls, values: Mapping[str, Value]) -> dict[str, Value]:
@@ -154,10 +176,10 @@ class Effect:
                 raise InputError(f"{key} is missing", cls.name, f"give it in {parameter.unit}")
             for number in value if isinstance(value, tuple) else (value,):
                 if not parameter.minimum <= number <= parameter.maximum:
-                    span = f"{parameter.minimum:g} to {parameter.maximum:g} {parameter.unit}"
                     raise InputError(
-                        f"{key} = {number:g} {parameter.unit} is outside its range", cls.name, f"use {span}"
-                    )
+                        f"{key} = {format_quantity(number, parameter.unit)} is outside its range", cls.name,
+                        f"use {_span(parameter)}",
+                    )  # fmt: skip
             result[key] = value
         return result
 

@@ -23,6 +23,18 @@ from feeddrive.effects.presliding import Presliding
 from feeddrive.effects.shaft_drag import BearingDrag, NutDrag
 from feeddrive.effects.stiffness_deviation import StiffnessDeviation
 from feeddrive.effects.stribeck import Stribeck
+from feeddrive.effects.thermal.ambient_drift import AmbientDrift
+from feeddrive.effects.thermal.base import ThermalEffect
+from feeddrive.effects.thermal.bearing_heat import BearingHeat
+from feeddrive.effects.thermal.contact_conductance_deviation import ContactConductanceDeviation
+from feeddrive.effects.thermal.convection_deviation import ConvectionDeviation
+from feeddrive.effects.thermal.cooling import Cooling
+from feeddrive.effects.thermal.heat_sink import HeatSink
+from feeddrive.effects.thermal.motor_heat import MotorHeat
+from feeddrive.effects.thermal.preload_growth import PreloadGrowth
+from feeddrive.effects.thermal.sensor_lag import SensorLag
+from feeddrive.effects.thermal.structure_growth import StructureGrowth
+from feeddrive.effects.thermal.viscosity_temperature import ViscosityTemperature
 from feeddrive.effects.thermal_growth import ThermalGrowth
 from feeddrive.effects.torque_ripple import TorqueRipple
 from feeddrive.effects.viscous_asymmetry import ViscousAsymmetry
@@ -57,7 +69,25 @@ EFFECTS: dict[str, type[Effect]] = {
         DriveDelay,
     )
 }
-"""Effect name to class."""
+"""Effect name to class: effects on motion and force."""
+
+THERMAL_EFFECTS: dict[str, type[ThermalEffect]] = {
+    effect.name: effect
+    for effect in (
+        MotorHeat,
+        BearingHeat,
+        AmbientDrift,
+        PreloadGrowth,
+        ViscosityTemperature,
+        Cooling,
+        ConvectionDeviation,
+        ContactConductanceDeviation,
+        HeatSink,
+        StructureGrowth,
+        SensorLag,
+    )
+}
+"""Effect name to class: effects on temperatures and growth."""
 
 
 def find_effect(name: str, where: str = "") -> type[Effect]:

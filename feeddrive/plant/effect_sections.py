@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
 from feeddrive.effects.base import Effect
-from feeddrive.effects.catalogue import EFFECTS, find_effect
+from feeddrive.effects.catalogue import EFFECTS, THERMAL_EFFECTS
 from feeddrive.errors import InputError
 from feeddrive.plant.entries import Table, nearest
 
 
-def read_effects(top: Table) -> tuple[Effect, ...]:
-    """The effects, in the order of the file.
+def read_effects(top: Table, known: Mapping[str, type[Effect]] = EFFECTS) -> tuple[Effect, ...]:
+    """The effects of one catalogue, in the order of the file.
+
+    Args:
+        top: the file; where it declares motion and heat, effects of the other catalogue are passed over.
+        known: catalogue, name to class.
 
     Raises:
         InputError: unknown name, key or port, a value that is missing or out of its range, tables that do not fit.
@@ -20,9 +24,19 @@ def read_effects(top: Table) -> tuple[Effect, ...]:
     effects: list[Effect] = []
     for table in top.tables("effect"):
         name = table.text("name")
+        if _belongs_elsewhere(name, known, top):
+            continue
         label = next_label(name, effects)
-        effects.append(_effect(Table(table.entries, f"{table.where} ({name})", table.origins, table.source), label))
+        effects.append(
+            _effect(Table(table.entries, f"{table.where} ({name})", table.origins, table.source), label, known)
+        )
     return tuple(effects)
+
+
+def _belongs_elsewhere(name: str, known: Mapping[str, type[Effect]], top: Table) -> bool:
+    """Whether an effect is one of the other catalogue in a file that declares motion and heat."""
+    both = "structure" in top.entries and "thermal" in top.entries
+    return both and name not in known and name in {**EFFECTS, **THERMAL_EFFECTS}
 
 
 def next_label(name: str, before: Sequence[Effect]) -> str:
@@ -31,13 +45,13 @@ def next_label(name: str, before: Sequence[Effect]) -> str:
     return name if count == 0 else f"{name}_{count + 1}"
 
 
-def _effect(table: Table, label: str) -> Effect:
+def _effect(table: Table, label: str, catalogue: Mapping[str, type[Effect]]) -> Effect:
     name = table.entries["name"]
-    if name not in EFFECTS:
-        raise InputError(f"unknown effect {name!r}", table.where, nearest(name, EFFECTS))
-    effect = find_effect(name)
+    if name not in catalogue:
+        raise InputError(_unknown(name), table.where, nearest(name, catalogue))
+    effect = catalogue[name]
     keys = [parameter.key for parameter in effect.parameters]
-    table.refuse_unknown(("name", "port", "source", *keys))
+    table.refuse_unknown(("name", "port", "source", *([effect.place_key] if effect.place_key else []), *keys))
     values = {
         parameter.key: (table.quantities if parameter.table else table.quantity)(
             parameter.key, parameter.unit, f"{label}.{parameter.key}"
@@ -46,12 +60,21 @@ def _effect(table: Table, label: str) -> Effect:
         if parameter.key in table.entries or parameter.default is None
     }
     port = table.choice("port", effect.ports, effect.ports[0])
+    place = table.text(effect.place_key) if effect.place_key else ""
     try:
-        made = effect.of(next(known for known in effect.ports if known == port), **values)
+        made = effect.of(next(known for known in effect.ports if known == port), place, **values)
     except InputError as error:
         raise InputError(error.what, table.where, error.mend) from None
     _refuse_bad_curve(made, table.where)
     return made
+
+
+def _unknown(name: str) -> str:
+    if name in THERMAL_EFFECTS:
+        return f"{name} acts on heat, which this plant does not declare"
+    return (
+        f"{name} acts on motion, which this plant does not declare" if name in EFFECTS else f"unknown effect {name!r}"
+    )
 
 
 def _refuse_bad_curve(effect: Effect, where: str) -> None:
@@ -61,6 +84,7 @@ def _refuse_bad_curve(effect: Effect, where: str) -> None:
     if len(set(lengths.values())) > 1:
         told = " and ".join(f"{key} has {length}" for key, length in lengths.items())
         raise InputError(f"{told} values", where, "write lists of equal length")
-    position = tables.get("position")
-    if isinstance(position, tuple) and any(b <= a for a, b in pairwise(position)):
-        raise InputError("position does not ascend", where, "write the positions in ascending order, none twice")
+    for key in ("position", "time"):
+        nodes = tables.get(key)
+        if isinstance(nodes, tuple) and any(b <= a for a, b in pairwise(nodes)):
+            raise InputError(f"{key} does not ascend", where, f"write each {key} in ascending order, none twice")

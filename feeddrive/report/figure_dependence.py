@@ -18,7 +18,8 @@ from feeddrive.typing import BoolArray, FloatArray
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_VARIABLES = ("table_velocity", "table_position", "motor_angle")
+_VARIABLES = ("table_velocity", "table_position", "motor_angle", "screw_speed", "nut_rise")
+_UNITS = {"table_velocity": "m/s", "table_position": "m", "screw_speed": "rad/s", "nut_rise": "K"}
 _MOST_POINTS = 1200
 _TURN = 2.0 * np.pi
 
@@ -104,8 +105,7 @@ def _axis(variable: str, values: FloatArray) -> tuple[str, str, FloatArray, Floa
         return "motor angle", "motor angle in one revolution [°]", shown, np.linspace(0.0, 360.0, 73)
     words = variable_words(variable)
     largest = float(np.max(np.abs(finite)))
-    unit = "m/s" if variable == "table_velocity" else "m"
-    scale = scale_for_signal(variable, largest, unit)
+    scale = scale_for_signal(variable, largest, _UNITS[variable])
     label = axis_label(words, scale.unit)
     if variable == "table_velocity":
         # An even number of bins from -max to max: none straddles standstill, where friction changes sign.

@@ -16,7 +16,7 @@ from feeddrive.report.drawing import (
     legend_above,
     new_figure,
 )
-from feeddrive.report.people import Scale, axis_label, scale_for_error, scale_for_signal
+from feeddrive.report.people import Scale, axis_label, scale_for_error, scale_for_signal, scale_for_time
 from feeddrive.report.reduction import envelope, left_out_stretches
 from feeddrive.report.selection import residuals, stem_of
 from feeddrive.report.words import plain
@@ -36,6 +36,7 @@ class _Picture:
     """What one figure draws: the series, its residuals, and the units they are shown in."""
 
     time: FloatArray
+    time_unit: str
     channel: ChannelResult
     series: ChannelSeries
     residuals: list[tuple[str, str, FloatArray]]
@@ -73,8 +74,10 @@ def _picture(
 ) -> _Picture:
     """Residuals and units of one figure."""
     largest = float(np.nanmax(np.abs(series.measured)))
+    time = scale_for_time(float(recording.time[-1] - recording.time[0]))
     return _Picture(
-        time=recording.time,
+        time=recording.time * time.factor,
+        time_unit=time.unit,
         channel=channel,
         series=series,
         residuals=residuals(diagnosis, series),
@@ -89,9 +92,14 @@ def _draw(picture: _Picture) -> Figure:
     top, middle, bottom = figure.subplots(3, 1, height_ratios=(2, 3, 3))
     name = plain(picture.channel.name)
     _signal_lines(top, picture, slice(None), with_predictions=False)
-    dress(top, "time [s]", axis_label(name, picture.signal.unit), "measured")
+    dress(top, axis_label("time", picture.time_unit), axis_label(name, picture.signal.unit), "measured")
     _residual_lines(middle, picture, slice(None))
-    dress(middle, "time [s]", axis_label("residual", picture.error.unit), "measured minus predicted")
+    dress(
+        middle,
+        axis_label("time", picture.time_unit),
+        axis_label("residual", picture.error.unit),
+        "measured minus predicted",
+    )
     middle.sharex(top)
     top.margins(x=0.01)
     _closer_look(bottom, picture)
@@ -134,14 +142,14 @@ def _closer_look(axes: Axes, picture: _Picture) -> None:
     else:
         _residual_lines(axes, picture, part)
         label = axis_label("residual", picture.error.unit)
-    dress(axes, "time [s]", label, "closer look, where the residual swings most")
+    dress(axes, axis_label("time", picture.time_unit), label, "closer look, where the residual swings most")
     axes.margins(x=0.01)
 
 
 def _closer_part(picture: _Picture) -> slice:
     """The stretch over which the residual before varies most: a reversal rather than a constant offset."""
     residual = picture.residuals[0][2]
-    length = max(_CLOSER_SAMPLES, int(_CLOSER_SHARE * residual.size))
+    length = max(min(_CLOSER_SAMPLES, residual.size // 4), int(_CLOSER_SHARE * residual.size))
     starts = range(0, max(1, residual.size - length + 1), max(1, length // 8))
     return max((slice(first, first + length) for first in starts), key=lambda part: _swing(residual[part]))
 

@@ -18,12 +18,17 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _ORDER_TICKS = (0.5, 1, 2, 5, 10, 20, 40)
+_SLOWEST_BAND = 0.1
+"""Upper edge [Hz] of a band below which no spectrum is drawn."""
+
 Curve = tuple[str, str, Spectrum]
 """Label, colour and spectrum in shown units."""
 
 
 def spectrum_figure(diagnosis: Diagnosis, channel: ChannelResult) -> ReportFigure | None:
     """Amplitude spectral density and, where the motor angle is known, amplitude per order; None without enough data."""
+    if channel.band_hz[1] < _SLOWEST_BAND:
+        return None  # minutes and hours: what is left shows over time, not over frequency
     density = _density_curves(diagnosis, channel)
     orders = _order_curves(diagnosis, channel)
     if not density:

@@ -67,6 +67,21 @@ def scale_for_signal(name: str, largest: float, unit: str) -> Scale:
     return scale_for_value(largest, unit)
 
 
+def scale_for_time(duration: float) -> Scale:
+    """Unit in which a time axis of this length [s] is shown: seconds, minutes or hours."""
+    if duration <= 600.0:
+        return Scale(1.0, "s")
+    return Scale(1.0 / 60.0, "min") if duration <= 7200.0 else Scale(1.0 / 3600.0, "h")
+
+
+def band_text(band: tuple[float, float]) -> str:
+    """A band in words; slow recordings are compared as they are, from zero to half their rate."""
+    low, high = band
+    if high < 0.1:
+        return f"all, rows of {significant(0.5 / high, 2)} s" if high > 0.0 else "all"
+    return f"{significant(low)} to {significant(high)} Hz"
+
+
 def axis_label(words: str, unit: str) -> str:
     """Label of an axis: what it is, and its unit in brackets ([1] for a pure number)."""
     return f"{words} [{unit or '1'}]"

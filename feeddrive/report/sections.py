@@ -17,7 +17,7 @@ from feeddrive.report.markup import (
     words,
 )
 from feeddrive.report.parameters import parameter_text
-from feeddrive.report.people import DASH, Scale, scale_for_error, share_text, significant, with_unit
+from feeddrive.report.people import DASH, Scale, band_text, scale_for_error, share_text, significant, with_unit
 from feeddrive.report.verdict import is_noise, verdict_sentences
 from feeddrive.report.words import effect_words, joined, plain, variable_words
 
@@ -39,7 +39,8 @@ def error_section(diagnosis: Diagnosis) -> str:
     rows = [row for channel in diagnosis.channels for row in _error_rows(channel, diagnosis.nothing_missing)]
     note = (
         "Taken on data that were not fitted, inside the band. Relative: rms error over rms of the measured signal; for "
-        "the table position, over the rms of its difference from lead × motor angle."
+        "the table position, over the rms of its difference from lead × motor angle; of a "
+        "temperature in °C, so that its size depends on the zero of that scale."
     )
     return section("Error before and after", table(heads, rows, "pairs"), paragraph(note, "note"))
 
@@ -47,8 +48,7 @@ def error_section(diagnosis: Diagnosis) -> str:
 def _error_rows(channel: ChannelResult, nothing_missing: bool) -> list[list[Cell]]:
     """One row before and one after, only one where both are the same plant."""
     scale = scale_for_error(channel.unit)
-    low, high = channel.band_hz
-    band = f"{significant(low)} to {significant(high)} Hz"
+    band = band_text(channel.band_hz)
     name = Cell(f"<b>{text(plain(channel.name))}</b>")
     if nothing_missing:
         return [[name, words(band), words("declared plant"), *_errors(channel, channel.before, scale)]]

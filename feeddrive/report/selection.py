@@ -11,7 +11,7 @@ from feeddrive.report.drawing import AFTER, BEFORE
 from feeddrive.typing import FloatArray
 
 MOST_SERIES_FIGURES = 6
-MOST_CHANNELS_IN_DETAIL = 4
+MOST_CHANNELS_IN_DETAIL = 5
 
 
 def stem_of(name: str) -> str:

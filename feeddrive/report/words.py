@@ -53,6 +53,11 @@ _HEADLINE = {
     "thermal_growth": ("strain", "time_constant"),
     "structural_mode": ("mass", "frequency"),
     "preload_loss": ("ratio", "force"),
+    "motor_heat": ("power", "share_at_rest"),
+    "bearing_heat": ("factor", "rear_share"),
+    "ambient_drift": ("amplitude",),
+    "cooling": ("conductance", "start"),
+    "heat_sink": ("conductance", "capacity"),
 }
 
 _VARIABLES = {
@@ -60,6 +65,9 @@ _VARIABLES = {
     "table_position": "table position",
     "motor_angle": "motor angle",
     "screw_angle": "screw angle",
+    "screw_speed": "speed of the screw",
+    "nut_rise": "rise of the nut",
+    "ambient_temperature": "surroundings",
 }
 _GLYPHS = "\u00a0√−→αβγδΔηθλµμνπρσΣτφϕψωΩ°"
 

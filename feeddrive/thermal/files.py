@@ -34,6 +34,15 @@
     capacity = "900 J/K"
     conductance = "0.5 W/K"                    # to the surface at the port
     to_air = "0.2 W/K"                         # may be left out
+    [[sensor]]                                 # may be left out: all outputs under their default names
+    channel = "nut_temperature"
+    kind = "thermometer"                       # or "scale": growth of the table's position
+    at = "nut"                                 # "front", "rear", "shaft"; of a scale the position of the nut, "200 mm"
+    noise = "0.03 K"                           # may be left out: rms, else read off the recording
+    [[effect]]                                 # any number, of the thermal effects that `feeddrive list` shows
+    name = "motor_heat"
+    power = "1.8 W"
+    at_speed = "750 rev/min"
 
 A file with `[thermal]` and no `structure` declares heat alone, no chain. Nothing in it is evaluated.
 """
@@ -41,26 +50,28 @@ A file with `[thermal]` and no `structure` declares heat alone, no chain. Nothin
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import fields
 from pathlib import Path
-from typing import Any
 
+from feeddrive.effects.catalogue import THERMAL_EFFECTS
+from feeddrive.effects.thermal.base import ThermalEffect
 from feeddrive.errors import InputError
+from feeddrive.plant.effect_sections import read_effects
 from feeddrive.plant.entries import Origins, Table, read_toml
-from feeddrive.plant.files import FORMAT
+from feeddrive.plant.files import FORMAT, declares_heat_alone
 from feeddrive.thermal.films import Films
 from feeddrive.thermal.friction import Friction
 from feeddrive.thermal.plant import ThermalPlant
 from feeddrive.thermal.rig import Body, Nut, Rig, Seat, Steel, Travel, refuse_unless
+from feeddrive.thermal.sensor_sections import read_heat_sensors
 
 SECTION = "thermal"
-_TOP_OF_HEAT_ALONE = ("format", "name", "source", "description", "ball_screw", SECTION)
+_TOP_OF_HEAT_ALONE = ("format", "name", "source", "description", "ball_screw", "effect", "sensor", SECTION)
 _LENGTHS = ("shaft_radius", "shaft_length", "nut_outer_radius", "nut_length")
 _STEEL = {"conductivity": "W/(m K)", "heat_capacity": "J/(m^3 K)", "expansion": "1/K", "elasticity": "Pa"}
 _OTHER = (
     "travel", "growth_positions", "contact_conductance", "preload", "lead", "ambient", "highest_speed",
-    "nut_heat_share", "nut_end_share", "film", "nut", "front_bearing", "rear_bearing", "body", "source",
+    "nut_heat_share", "nut_end_share", "film", "nut", "front_bearing", "rear_bearing", "body", "coupling", "source",
 )  # fmt: skip
 _FRICTION = {"load_torque": "N m", "viscous_factor": "1", "viscosity": "m^2/s", "mean_diameter": "m", "heat_share": "1"}
 _BODY = {"capacity": "J/K", "conductance": "W/K", "to_air": "W/K"}
@@ -87,11 +98,6 @@ def read_thermal_plant(path: Path) -> ThermalPlant:
     return thermal_plant(Table(entries, str(path), Origins(), str(entries.get("source", ""))), path.stem)
 
 
-def declares_heat_alone(entries: Mapping[str, Any]) -> bool:
-    """Whether a plant file has a thermal section and no structure: no chain can be made of it, only a thermal plant."""
-    return SECTION in entries and "structure" not in entries
-
-
 def thermal_plant(top: Table, name: str) -> ThermalPlant:
     """The thermal plant that a whole plant file declares; see `read_thermal_plant`.
 
@@ -103,10 +109,11 @@ def thermal_plant(top: Table, name: str) -> ThermalPlant:
         raise InputError("has no [thermal] section", top.where, "declare the machine's heat in one")
     table = top.table(SECTION)
     table.refuse_unknown((*_LENGTHS, *_STEEL, *_OTHER))
+    sensors = read_heat_sensors(top)
     try:
-        return ThermalPlant(
+        plant = ThermalPlant(
             name=top.text("name", name),
-            rig=_rig(table),
+            rig=_rig(table, tuple(sensor.at for sensor in sensors if isinstance(sensor.at, float))),
             films=Films(*(_value(table.table("film"), f.name, "W/(m^2 K)") for f in fields(Films))),
             contact=_value(table, "contact_conductance", "W/(m^2 K)"),
             preload=_value(table, "preload", "N"),
@@ -117,18 +124,23 @@ def thermal_plant(top: Table, name: str) -> ThermalPlant:
             ambient=_value(table, "ambient", "degC"),
             highest_speed=_optional(table, "highest_speed", "rad/s", 1500 * math.pi / 30),
             bodies=tuple(_body(inner) for inner in table.tables("body")),
+            sensors=sensors,
+            origins=top.origins.found,
         )
+        found = read_effects(top, THERMAL_EFFECTS)
+        return plant.with_effects(*(effect for effect in found if isinstance(effect, ThermalEffect)))
     except InputError as error:
         # What the rig refuses is told with the file and the section in front.
         inside = error.where.startswith(table.where)
         raise error if inside else InputError(error.what, f"{table.where}, {error.where}", error.mend) from None
 
 
-def _rig(table: Table) -> Rig:
+def _rig(table: Table, scales: tuple[float, ...]) -> Rig:
     lengths = {key: _value(table, key, "m") for key in _LENGTHS}
     steel = Steel(**{key: _optional(table, key, unit, getattr(Steel(), key)) for key, unit in _STEEL.items()})
     travel = _pair(table, "travel")
     positions = table.quantities("growth_positions", "m", "thermal.growth_positions")
+    listed = positions if isinstance(positions, tuple) else (positions,)
     return Rig(
         radius=lengths["shaft_radius"],
         length=lengths["shaft_length"],
@@ -138,7 +150,7 @@ def _rig(table: Table) -> Rig:
         rear=_seat(table, "rear_bearing"),
         steel=steel,
         nut_heat_share=_optional(table, "nut_heat_share", "1", 1.0),
-        growth_positions=positions if isinstance(positions, tuple) else (positions,),
+        growth_positions=(*listed, *(x for x in scales if not any(math.isclose(x, other) for other in listed))),
     )
 
 

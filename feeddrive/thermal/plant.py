@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from feeddrive.effects.base import Effect
+from feeddrive.effects.thermal.base import ThermalEffect
+from feeddrive.errors import InputError
 from feeddrive.thermal.contact_conductance import conductance_at_preload
 from feeddrive.thermal.films import Films
 from feeddrive.thermal.friction import LOAD_EXPONENT, Friction
@@ -15,6 +18,7 @@ from feeddrive.thermal.full_model import FRONT, NUT, REAR, full_model
 from feeddrive.thermal.grid import Cells
 from feeddrive.thermal.model import HeatModel, Path
 from feeddrive.thermal.rig import Body, Rig, Travel, refuse_negative, refuse_unless_positive
+from feeddrive.thermal.sensors import HeatSensor
 from feeddrive.typing import FloatArray
 
 
@@ -35,6 +39,9 @@ class ThermalPlant:
         highest_speed: up to which the reduced model is made [rad/s].
         cells: grid of the full model.
         bodies: attached to nut and seats.
+        effects: beyond the declared films, contact and friction.
+        sensors: channels and where they are read; those of the default names where none is declared.
+        origins: source of a value, by `thermal.key` or `label.key`.
     """
 
     name: str
@@ -50,6 +57,9 @@ class ThermalPlant:
     highest_speed: float = 1500 * math.pi / 30
     cells: Cells = field(default_factory=Cells)
     bodies: tuple[Body, ...] = ()
+    effects: tuple[ThermalEffect, ...] = ()
+    sensors: tuple[HeatSensor, ...] = ()
+    origins: Mapping[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         refuse_negative(self.contact, "W/(m^2 K)", "contact_conductance")
@@ -57,10 +67,30 @@ class ThermalPlant:
         refuse_unless_positive(self.lead, "m/rad", "lead")
         refuse_unless_positive(self.highest_speed, "rad/s", "highest_speed")
 
+    def with_effects(self, *effects: Effect) -> ThermalPlant:
+        """The plant with further effects, labelled name, name_2, name_3.
+
+        Raises:
+            InputError: an effect that does not act on temperatures or growth.
+        """
+        labelled = list(self.effects)
+        for effect in effects:
+            if not isinstance(effect, ThermalEffect):
+                raise InputError(f"{effect.name} does not act on heat", self.name, "leave it out")
+            count = 1 + sum(other.name == effect.name for other in labelled)
+            labelled.append(replace(effect, label=effect.name if count == 1 else f"{effect.name}_{count}"))
+        return replace(self, effects=tuple(labelled))
+
+    @property
+    def attached(self) -> tuple[Body, ...]:
+        """Bodies that effects attach to the nut."""
+        held = [(effect.label, effect.attached()) for effect in self.effects]
+        return tuple(Body(label, NUT, body[1], body[0]) for label, body in held if body is not None)
+
     def full_model(self, travel: Travel | None = None) -> HeatModel:
-        """The full model with the bodies, the nut averaged over a travel, None for the rig's."""
+        """The full model with the bodies, those of effects too, the nut averaged over a travel, None for the rig's."""
         model = full_model(self.rig, self.cells, travel)
-        for body in self.bodies:
+        for body in (*self.bodies, *self.attached):
             model = model.with_body(body)
         return model
 

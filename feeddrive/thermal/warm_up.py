@@ -14,20 +14,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from feeddrive.effects.thermal.base import Operation
 from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.quantity import format_quantity
-from feeddrive.thermal.full_model import FRONT, NUT, REAR
+from feeddrive.thermal.acting import acting_conductances, acting_inputs, acting_nut_heat, sensed
+from feeddrive.thermal.full_model import END, NUT, growth_name
 from feeddrive.thermal.model import AMBIENT, HeatModel, Path
 from feeddrive.thermal.plant import ThermalPlant
+from feeddrive.thermal.sensors import CHANNELS
 from feeddrive.thermal.stepping import Stepper
 from feeddrive.typing import FloatArray, IntegerArray
 
 NutHeat = Callable[[int, float], float]
 """(row, rise of the nut [K]) -> heat of the nut over that row [W]."""
-
-CHANNELS = {NUT: "nut_temperature", FRONT: "front_bearing_temperature", REAR: "rear_bearing_temperature"}
-"""Outputs and their names in recordings; a growth "growth_200mm" is "table_growth_200mm"."""
-
 
 _AGREEMENT = 2e-3
 
@@ -125,11 +124,20 @@ def simulate(
         Channel to its values at the end of each row, (k,): temperatures [degC], growths [m].
     """
     states = run(model, rows or declared_rows(plant, step, speeds, ambient), substeps=4)
-    return readings(model, states, float(ambient[0]))
+    first, operation = float(ambient[0]), _operation(step, speeds)
+    places = {growth_name(x): x for x in plant.rig.growth_positions} | {END: plant.rig.length}
+    named = {sensor.output: sensor.channel for sensor in plant.sensors}
+    found = {}
+    for name, row in model.readings.items():
+        x = places.get(name)
+        channel = named.get(name, channel_of(name))
+        start = 0.0 if name.startswith("growth") else first
+        found[channel] = sensed(plant.effects, channel, start + states @ row, start, operation, x)
+    return found
 
 
 def declared_rows(plant: ThermalPlant, step: float, speeds: FloatArray, ambient: FloatArray) -> Rows:
-    """What acts on the declared plant; arguments as `simulate`.
+    """What acts on the plant as its file says, effects among it; arguments as `simulate`.
 
     Raises:
         InputError: no rows, or series of unequal length.
@@ -145,7 +153,22 @@ def declared_rows(plant: ThermalPlant, step: float, speeds: FloatArray, ambient:
         shown = format_quantity(plant.highest_speed, "rad/s")
         warnings.warn(f"{told}, {shown}: films and friction are extrapolated", ValidityWarning, stacklevel=2)
     inputs = {**plant.heats(speeds), AMBIENT: ambient - ambient[0]}
-    return Rows(step, plant.conductances(speeds), inputs)
+    operation = _operation(step, speeds)
+    return Rows(
+        step,
+        acting_conductances(plant.effects, plant.conductances(speeds), operation),
+        acting_inputs(plant.effects, inputs, operation),
+        acting_nut_heat(plant.effects, plant.nut, 1.0, operation.speed),
+    )
+
+
+def _operation(step: float, speeds: FloatArray) -> Operation:
+    return Operation(np.abs(speeds), step * np.arange(len(speeds), dtype=np.float64), step)
+
+
+def channel_of(output: str) -> str:
+    """Name in recordings of an output of a model, where no sensor gives it another."""
+    return f"table_{output}" if output.startswith("growth") else CHANNELS.get(output, f"{output}_temperature")
 
 
 def readings(model: HeatModel, states: FloatArray, start: float) -> dict[str, FloatArray]:
@@ -153,10 +176,7 @@ def readings(model: HeatModel, states: FloatArray, start: float) -> dict[str, Fl
     found = {}
     for name, row in model.readings.items():
         values = states @ row
-        if name.startswith("growth"):
-            found[f"table_{name}"] = values
-        else:
-            found[CHANNELS.get(name, f"{name}_temperature")] = start + values
+        found[channel_of(name)] = values if name.startswith("growth") else start + values
     return found
 
 

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path as FilePath
 
 import numpy as np
 
+from feeddrive.files import plants_folder
 from feeddrive.thermal.files import read_thermal_plant
 from feeddrive.thermal.full_model import Discretisation, discretise
 from feeddrive.thermal.grid import Cells
 from feeddrive.thermal.model import Path
 
-BENCH_FILE = FilePath(__file__).resolve().parents[1] / "data" / "thermal_bench.toml"
+BENCH_FILE = plants_folder() / "thermal_bench.toml"
 BENCH = read_thermal_plant(BENCH_FILE)
 RPM = math.pi / 30
 QUICK = Cells(100, 4, 20, 6)

@@ -8,14 +8,14 @@ from pathlib import Path
 import pytest
 
 from feeddrive.cli.main import main
-from feeddrive.effects.catalogue import EFFECTS
+from feeddrive.effects.catalogue import EFFECTS, THERMAL_EFFECTS
 from feeddrive.files import plants_folder, shipped_plants
 
 
 def test_list_names_plants_and_effects(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["list"]) == 0
     shown = capsys.readouterr().out
-    for name in [*(path.stem for path in shipped_plants()), *EFFECTS]:
+    for name in [*(path.stem for path in shipped_plants()), *EFFECTS, *THERMAL_EFFECTS]:
         assert name in shown
     assert "width [m]" in shown  # the unit is not taken for a style
 
@@ -23,7 +23,7 @@ def test_list_names_plants_and_effects(capsys: pytest.CaptureFixture[str]) -> No
 def test_list_as_json(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["list", "--json"]) == 0
     content = json.loads(capsys.readouterr().out)
-    assert [effect["name"] for effect in content["effects"]] == list(EFFECTS)
+    assert [effect["name"] for effect in content["effects"]] == [*EFFECTS, *THERMAL_EFFECTS]
     assert {plant["name"] for plant in content["plants"]} == {path.stem for path in shipped_plants()}
 
 
@@ -31,7 +31,7 @@ def test_list_as_json(capsys: pytest.CaptureFixture[str]) -> None:
 def test_show_every_shipped_plant(path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["show", path.stem]) == 0
     shown = capsys.readouterr()
-    assert "ball_screw.lead" in shown.out
+    assert ("thermal.lead" if path.stem == "thermal_bench" else "ball_screw.lead") in shown.out
     assert shown.err == ""
 
 

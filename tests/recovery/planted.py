@@ -13,7 +13,7 @@ from feeddrive.diagnose.diagnosis import diagnose
 from feeddrive.diagnose.evidence import prepare
 from feeddrive.diagnose.fit import Problem
 from feeddrive.diagnose.judge import channel_results, prepared_for_judging
-from feeddrive.diagnose.prediction import Predictor
+from feeddrive.diagnose.prediction import AxisPredictor
 from feeddrive.diagnose.result import ChannelResult, Diagnosis, EffectResult
 from feeddrive.files import plants_folder
 from feeddrive.plant.files import read_plant
@@ -149,8 +149,8 @@ def null_errors(axis: str) -> dict[str, ChannelResult]:
 def declared_errors(plant: Plant, recording: Recording) -> dict[str, ChannelResult]:
     """Error per channel of a plant as declared on all of a recording."""
     evidence = prepare(recording, plant, 0.0)
-    problem = Problem(plant, (evidence,), Predictor())
-    results = channel_results(problem, [prepared_for_judging(evidence, plant, plant)])
+    problem = Problem(plant, (evidence,), AxisPredictor())
+    results = channel_results(problem, [prepared_for_judging(problem, evidence, plant, plant)])
     return {result.name: result for result in results}
 
 

@@ -1,0 +1,94 @@
+"""`feeddrive show` of a plant that declares heat alone: geometry, films, contact, heats, time constants, sensors."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict
+from typing import Any
+
+from rich.table import Table
+
+from feeddrive.cli.output import table
+from feeddrive.quantity import format_quantity
+from feeddrive.thermal.plant import ThermalPlant
+from feeddrive.thermal.sensors import HeatSensor
+from feeddrive.thermal.summary import HeatRow, heat_rows
+
+
+def heat_content(plant: ThermalPlant) -> dict[str, Any]:
+    """Everything as plain values, SI."""
+    return {
+        "format": "feeddrive-show/1",
+        "name": plant.name,
+        "structure": "heat alone",
+        "values": {key: {"value": v, "unit": unit, "source": source} for key, v, unit, source in _values(plant)},
+        "speeds": [asdict(row) for row in heat_rows(plant)],
+        "bodies": [asdict(body) for body in plant.bodies],
+        "sensors": [asdict(sensor) for sensor in plant.sensors],
+    }
+
+
+def heat_tables(plant: ThermalPlant) -> list[Table]:
+    """The same for people."""
+    rows = heat_rows(plant)
+    values = [[key, format_quantity(value, unit), source] for key, value, unit, source in _values(plant)]
+    tables = [
+        table(f"{plant.name}, heat alone", ("value", "quantity", "source"), values),
+        table("Films, contact and heats, effects not counted",
+              ("speed", "film of screw", "of nut", "contact", "heat of nut", "front bearing", "rear"),
+              [_heats(row) for row in rows]),
+        table("Settled, and slowest time constants",
+              ("speed", "rise of nut", "of front end", "growth", *(f"τ{i}" for i in (1, 2, 3))),
+              [_settled(row) for row in rows]),
+        table("Sensors", ("channel", "kind", "at", "noise"), [_sensor(sensor) for sensor in plant.sensors]),
+    ]  # fmt: skip
+    for shown in tables:
+        shown.columns[0].no_wrap = True
+    return [shown for shown in tables if shown.row_count]
+
+
+def _values(plant: ThermalPlant) -> list[tuple[str, float, str, str]]:
+    """Key, SI value, unit and source."""
+    rig, steel = plant.rig, plant.rig.steel
+    found = [
+        ("shaft_radius", rig.radius, "m"), ("shaft_length", rig.length, "m"),
+        ("nut_outer_radius", rig.nut.outer_radius, "m"), ("nut_length", rig.nut.length, "m"),
+        ("travel.low", rig.travel.low, "m"), ("travel.high", rig.travel.high, "m"),
+        ("conductivity", steel.conductivity, "W/(m K)"), ("heat_capacity", steel.heat_capacity, "J/(m^3 K)"),
+        ("expansion", steel.expansion, "1/K"), ("contact_conductance", plant.contact, "W/(m^2 K)"),
+        ("preload", plant.preload, "N"), ("lead", 2 * math.pi * plant.lead, "m"),
+        ("highest_speed", plant.highest_speed, "rad/s"), ("nut.load_torque", plant.nut.load_torque, "N m"),
+        ("nut.heat_share", plant.nut.heat_share, "1"),
+    ]  # fmt: skip
+    rows = [(f"thermal.{key}", v, unit, plant.origins.get(_origin(key), "")) for key, v, unit in found]
+    for effect in plant.effects:
+        for parameter in effect.parameters:
+            value = effect.values.get(parameter.key)
+            if isinstance(value, float):
+                key = f"{effect.label}.{parameter.key}"
+                rows.append((key, value, parameter.unit, plant.origins.get(key, effect.place)))
+    return rows
+
+
+def _origin(key: str) -> str:
+    """Key under which the reading of the file notes the source."""
+    first, _, second = key.partition(".")
+    return f"thermal.{second if first == 'nut' else first}"
+
+
+def _heats(row: HeatRow) -> list[str]:
+    films = [format_quantity(value, "W/(m^2 K)") for value in (row.screw_film, row.nut_film, row.contact)]
+    heats = [format_quantity(value, "W") for value in (row.nut_heat, row.front_heat, row.rear_heat)]
+    return [format_quantity(row.speed, "rad/s"), *films, *heats]
+
+
+def _settled(row: HeatRow) -> list[str]:
+    rises = [f"{value:.2f} K" for value in (row.nut_rise, row.end_rise)]
+    times = [f"{value / 60:.1f} min" for value in row.time_constants]
+    return [format_quantity(row.speed, "rad/s"), *rises, f"{row.growth * 1e6:.1f} µm", *times]
+
+
+def _sensor(sensor: HeatSensor) -> list[str]:
+    at = format_quantity(sensor.at, "m") if isinstance(sensor.at, float) else sensor.at
+    unit = "m" if isinstance(sensor.at, float) else "K"
+    return [sensor.channel, sensor.kind, at, format_quantity(sensor.noise, unit) if sensor.noise else "read off"]

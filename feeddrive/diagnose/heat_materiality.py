@@ -1,0 +1,81 @@
+"""The physical minimum of thermal effects: what is too small for anyone to act on is no finding."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from feeddrive.effects.base import Effect
+from feeddrive.effects.thermal.base import curve
+from feeddrive.effects.thermal.bearing_heat import reference_heat
+from feeddrive.thermal.plant import ThermalPlant
+
+LEAST_HEAT_SHARE = 0.01
+"""A heat over that of the nut at the highest declared speed."""
+
+LEAST_FACTOR, LEAST_CONTACT_FACTOR = 0.03, 0.05
+"""Deviation of a film coefficient and of the contact conductance from 1; neither is ever known better."""
+
+LEAST_DRIFT = 0.05
+"""Of the surroundings [K]."""
+
+LEAST_COEFFICIENT = 1e-3
+"""Of load or viscous torque [1/K]."""
+
+LEAST_CAPACITY_SHARE = 0.01
+"""A mass over the nut's capacity, a conductance over the film's of the nut."""
+
+LEAST_GROWTH = 0.1e-6
+"""Of the frame [m]."""
+
+LONGEST_SINK = 3e5
+"""Capacity over conductance [s]: a mass that stays cold for days is a coolant."""
+
+LEAST_LAG = 3.0
+"""Of a sensor [s]."""
+
+
+def is_material_heat(effect: Effect, plant: ThermalPlant) -> bool:
+    """Whether a thermal effect is of a size that matters on this plant."""
+    v = {key: value for key, value in effect.values.items() if isinstance(value, float)}
+    fastest = np.array([plant.highest_speed])
+    nut_heat = float(plant.nut.heats(fastest)[0])
+    match effect.name:
+        case "motor_heat":
+            return v["power"] >= LEAST_HEAT_SHARE * nut_heat
+        case "bearing_heat":
+            return v["factor"] * float(reference_heat(fastest)[0]) >= LEAST_HEAT_SHARE * nut_heat
+        case "ambient_drift":
+            return abs(v["amplitude"]) * _largest_shape(effect) >= LEAST_DRIFT
+        case "preload_growth" | "viscosity_temperature":
+            return abs(v["coefficient"]) >= LEAST_COEFFICIENT
+        case "convection_deviation":
+            return abs(v["factor"] - 1) >= LEAST_FACTOR
+        case "contact_conductance_deviation":
+            return abs(v["factor"] - 1) >= LEAST_CONTACT_FACTOR
+        case "cooling":
+            return v["conductance"] >= LEAST_CAPACITY_SHARE * _film_of_nut(plant)
+        case "heat_sink":
+            return v["conductance"] >= LEAST_CAPACITY_SHARE * _film_of_nut(plant) and (
+                LEAST_CAPACITY_SHARE * _capacity_of_nut(plant) <= v["capacity"] <= LONGEST_SINK * v["conductance"]
+            )
+        case "structure_growth":
+            return abs(v["growth"]) + abs(v.get("slope", 0.0)) * plant.rig.length >= LEAST_GROWTH
+        case _:
+            return v.get("time_constant", LEAST_LAG) >= LEAST_LAG
+
+
+def _largest_shape(effect: Effect) -> float:
+    nodes = curve(effect.values["shape"])
+    return max(abs(s) for s in nodes) if len(curve(effect.values["time"])) > 1 else 1.0
+
+
+def _film_of_nut(plant: ThermalPlant) -> float:
+    """Conductance to the air at rest [W/K]."""
+    outside = 2 * np.pi * plant.rig.nut.outer_radius * plant.rig.nut.length
+    return float(plant.films.on_nut(np.zeros(1))[0] * outside)
+
+
+def _capacity_of_nut(plant: ThermalPlant) -> float:
+    """[J/K]."""
+    section = np.pi * (plant.rig.nut.outer_radius**2 - plant.rig.radius**2)
+    return float(plant.rig.steel.heat_capacity * section * plant.rig.nut.length)

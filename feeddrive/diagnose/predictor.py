@@ -1,0 +1,67 @@
+"""What the search needs to know of a kind of machine: how recordings are predicted, and which effects are tried.
+
+Two kinds are known: motion and torque (`prediction`) and temperatures and growth (`heat_prediction`). Search, fit,
+cross-validation and judging are the same for both.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
+
+from feeddrive.diagnose.evidence import Evidence
+from feeddrive.effects.base import Effect
+from feeddrive.typing import BoolArray, FloatArray
+
+if TYPE_CHECKING:
+    from feeddrive.diagnose.fit import Problem
+    from feeddrive.diagnose.scene import Candidate, Scene
+
+
+class Machine(Protocol):
+    """A declared plant, of motion or of heat."""
+
+    @property
+    def name(self) -> str:
+        """What it is called."""
+
+    def with_effects(self, *effects: Effect) -> Machine:
+        """The machine with further effects."""
+
+
+M = TypeVar("M", bound=Machine)
+E = TypeVar("E", bound=Evidence)
+
+
+class Predictor(ABC, Generic[M, E]):
+    """Predicts recordings of one kind of machine."""
+
+    @property
+    @abstractmethod
+    def candidates(self) -> tuple[Candidate, ...]:
+        """Effects that are tried."""
+
+    @abstractmethod
+    def predict(self, plant: M, evidence: E) -> dict[str, FloatArray]:
+        """Channel to its prediction, as it is compared, (n,), SI; not finite where it cannot be simulated."""
+
+    @abstractmethod
+    def scene(self, problem: Problem, found: Sequence[Effect]) -> Scene:
+        """What starts of candidates are read from, after the effects found so far."""
+
+    @abstractmethod
+    def variables(self, plant: M, evidence: E) -> dict[str, FloatArray]:
+        """Variables that a residual may depend on, (n,) each, SI."""
+
+    @abstractmethod
+    def reference(self, name: str, plant: M, evidence: E) -> FloatArray:
+        """Series of a channel whose rms a relative error refers to, over the judged samples."""
+
+    @abstractmethod
+    def is_material(self, effect: Effect, plant: M) -> bool:
+        """Whether an effect is of a size that matters on this machine."""
+
+    def predictable(self, plant: M, evidence: E) -> BoolArray:
+        """Samples that can be predicted at all, (n,)."""
+        return evidence.counted | True
