@@ -128,7 +128,7 @@ def _orders() -> None:
         error = table_error(PLANT, model)
         began = time.perf_counter()
         found = left_over(machine.error, _observed(model, error, machine, "nut", "front"))
-        print(f"{order:3d}: {order + 6:3d} | {_shown(found)} | {(time.perf_counter() - began) * 1e3:.0f} ms")
+        print(f"{order:3d}: {order + 7:3d} | {_shown(found)} | {(time.perf_counter() - began) * 1e3:.0f} ms")
 
 
 def _beyond(model: HeatModel, error: TableError) -> None:

@@ -10,8 +10,8 @@
 
 The unknown factors multiply what is known (heats, film conductances), so the filter learns them while the axis moves
 and keeps them while it rests: a gain fixed for one speed cannot. Linearised about the estimate (extended filter); the
-errors of 10 % make its second-order terms 1 %. With 16 states and two sensors there are 22, some 25 000 multiplications
-a row; with 10 there are 16, and 10 000. Valid from a cold start, or from the state that a run before it left.
+errors of 10 % make its second-order terms 1 %. With 16 states and two sensors there are 23, some 25 000 multiplications
+a row; with 10 there are 17, and 10 000. Valid from a cold start, or from the state that a run before it left.
 """
 
 from __future__ import annotations
