@@ -158,7 +158,7 @@ def films(rpm: float) -> tuple[float, float]:
 def simulate(
     schedule: tuple[tuple[float, int], ...], truth: ThermalTruth, rig: Rig | None = None
 ) -> dict[str, np.ndarray]:
-    """Noiseless channels of a run that starts cold: time [s], screw_speed [rev/min], temperatures [degC], growth [m]."""
+    """Noiseless channels of a run that starts cold: time [s], screw_speed [rev/min], [degC] and [m]."""
     rig = rig or Rig()
     speeds = np.repeat([float(rpm) for rpm, _ in schedule], [count for _, count in schedule])
     shaft, nut, sink = np.zeros((SHAFT_RINGS, SHAFT_CELLS)), np.zeros((NUT_RINGS, NUT_CELLS)), 0.0
@@ -198,8 +198,8 @@ def _march(
         heat = 0.609 * ω * (load * (1 + truth.preload_growth * rise) + oil * math.exp(-truth.viscosity * rise))
         sink = _advance(
             shaft, nut, sink, INNER // parts, STEP / INNER, HEAT_CAPACITY, rig.shaft.along, rig.shaft.across,
-            rig.shaft.volume, rig.nut.along, rig.nut.across, rig.nut.volume, link, link.sum(axis=1), to_bore, first, last, bare_film, nut_film, heat,
-            front, rear, seats, truth.drift(middle), truth.coolant(middle), truth.sink[0], truth.sink[1],
+            rig.shaft.volume, rig.nut.along, rig.nut.across, rig.nut.volume, link, link.sum(axis=1), to_bore,
+            first, last, bare_film, nut_film, heat, front, rear, seats, truth.drift(middle), truth.coolant(middle), truth.sink[0], truth.sink[1],
         )  # fmt: skip
     return sink, front
 
