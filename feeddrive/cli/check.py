@@ -15,6 +15,9 @@ from feeddrive.quantity import format_quantity, parse
 from feeddrive.thermal.plant import ThermalPlant
 from feeddrive.thermal.plausibility import check_thermal_plant
 
+_DN, _DN_SHOWN = "m rad/s", "mm rev/min"
+"""Unit of the DN value, inside and as catalogues count it."""
+
 
 def command(
     plant: Annotated[str, typer.Argument(help="Plant file, or the name of a shipped machine.")],
@@ -38,7 +41,7 @@ def command(
     }
     shown = table(f"{machine.name}: {broken or 'no'} warning{'s' * (broken != 1)}",
                   ("rule", "value", "limit", "verdict", "source"), [_row(finding) for finding in findings])  # fmt: skip
-    shown.columns[0].min_width = 18  # no word of a rule is longer
+    shown.columns[0].min_width = 14  # no word of a rule is longer; more would not leave 80 letters enough for the rest
     deliver(content, [shown], as_json, out)
 
 
@@ -57,11 +60,12 @@ def _content(finding: Finding) -> dict[str, Any]:
 def _row(finding: Finding) -> list[str]:
     value = "" if finding.value is None else _shown(finding.value, finding.unit)
     limit = "" if finding.limit is None else f"{finding.sense.value} {_shown(finding.limit, finding.unit)}"
-    return [finding.rule, value, limit, finding.verdict.value, finding.source]
+    rule = f"{finding.rule} [{_DN_SHOWN}]" if finding.unit == _DN else finding.rule
+    return [rule, value, limit, finding.verdict.value, finding.source]
 
 
 def _shown(number: float, unit: str) -> str:
-    """As it is written in catalogues: the DN value counts millimetres and revolutions per minute."""
-    if unit == "m rad/s":
-        return f"{number * 1e3 * 30 / math.pi:.0f} mm rev/min"
+    """As it is written in catalogues: the DN value as a number alone, its unit stands beside the rule."""
+    if unit == _DN:
+        return f"{number * 1e3 * 30 / math.pi:.0f}"
     return format_quantity(number, unit)

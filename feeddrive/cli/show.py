@@ -106,9 +106,9 @@ def _tables(plant: Plant, summary: Summary, life: Sequence[LifeRow]) -> list[Tab
         table(f"{plant.name}, {plant.chain.structure}", ("value", "quantity", "source"), values),
         table("Parts as declared", ("part", "quantity", "source"), _part_rows(plant)),
         table(f"Inertia{at}", ("moves with", "at the motor", "at the table", "share"), _inertia_rows(summary)),
-        table(f"Stiffness at the table, motor held{at}", ("part", "stiffness", "share of compliance"),
+        table(f"Stiffness, motor held{at}", ("part", "felt at the table", "share of compliance"),
               _stiffness_rows(summary)),
-        table("Constant motion, + along + motion", ("speed", "force +", "force −", "torque +", "torque −"),
+        table("What constant motion takes in + and in − direction; signs are those of the axis", ("speed", "force +", "force −", "torque +", "torque −"),
               _friction_rows(summary)),
         _mode_table(plant, summary, at),
         life_table(life),
@@ -123,7 +123,7 @@ def _mode_table(plant: Plant, summary: Summary, at: str) -> Table:
     names = plant.chain.coordinates
     kept = [i for i, name in enumerate(names) if name in _KNOWN]
     rows = [*_mode_rows("held", summary.braked, kept), *_mode_rows("free", summary.free, kept)]
-    headings = ("motor", "frequency", "damping", *(names[i] for i in kept))
+    headings = ("motor is", "frequency", "damping", *(names[i] for i in kept))
     return table(f"Modes of the chain, in table travel{at}", headings, rows)
 
 

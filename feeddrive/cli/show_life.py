@@ -24,15 +24,15 @@ def life_content(rows: Sequence[LifeRow]) -> list[dict[str, Any]]:
 
 def life_table(rows: Sequence[LifeRow]) -> Table:
     """The same for people; without rows where no dynamic rating is declared."""
-    headings = ("axial force", "loads of the nuts", "10⁶ rev", "travel", "at greatest velocity")
+    headings = ("axial force", "load of nut +", "of nut −", "10⁶ rev", "travel", "at greatest velocity")
     return table("Rated life of the ball screw, survived by 90 %", headings, [_cells(row) for row in rows])
 
 
 def _cells(row: LifeRow) -> list[str]:
-    loads = " and ".join(format_quantity(load, "N") for load in row.nut_loads)
+    loads = [format_quantity(load, "N") for load in row.nut_loads]
     time = f"{_digits(row.time / _HOUR)} h" if row.time is not None else ""
-    force = format_quantity(row.force, "N") if row.force else "none, preload alone"
-    return [force, loads, _digits(row.revolutions / MILLION), f"{_digits(row.travel / _KILOMETRE)} km", time]
+    force = format_quantity(row.force, "N") if row.force else "preload alone"
+    return [force, *loads, _digits(row.revolutions / MILLION), f"{_digits(row.travel / _KILOMETRE)} km", time]
 
 
 def _digits(value: float) -> str:
