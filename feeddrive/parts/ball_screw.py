@@ -8,6 +8,7 @@
 | l | length under load | m |
 | A, I_p | section, second polar moment of area | m^2, m^4 |
 
+Valid for a straight round bar: the grooves are in d_s alone.
 Source: paper 004, section 3 (formulas behind its k_BS and k_BS,T).
 """
 

@@ -1,4 +1,9 @@
-"""The bearing (set) that holds the screw axially: its stiffness."""
+"""The bearing (set) that holds the screw axially: its stiffness, F = k_BG x with F in N, x in m.
+
+Valid while the preload keeps all rows loaded, up to about 2.8 times it: a catalogue gives the stiffness at the preload.
+Housing and clamping nut yield too and belong into `housing_stiffness` of the drive.
+Source: catalogues; k_BG of paper 004, eq. (6).
+"""
 
 from __future__ import annotations
 

@@ -13,6 +13,7 @@
 
 Two equally loaded nuts reach S = 0.9 at D_j = 2^(-1/e). Every wiggle of the angle counts as rolling, so an angle whose
 noise is larger than its motion overstates the life used.
+Valid as `feeddrive.parts.life`.
 Source: paper 001, eqs. (9), (23), (24), carried on to a varying load; Miner for the sum.
 """
 

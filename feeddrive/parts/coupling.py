@@ -1,4 +1,8 @@
-"""The coupling between motor (or gear) and screw: torsional stiffness, inertia of its two hubs."""
+"""The coupling between motor (or gear) and screw: T = k_COUP,T phi, with T in N m, phi in rad, and two hubs.
+
+Valid below the rated torque and without play (bellows, disc); an elastomer is stiffer in fast motion than at rest, and
+softer when warm. Source: catalogues; k_COUP,T of paper 004, eq. (7).
+"""
 
 from __future__ import annotations
 

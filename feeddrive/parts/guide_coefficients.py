@@ -3,6 +3,7 @@
 The paper publishes none of them, only shares of the parts. Shares fix two ratios, of viscous to rolling and of slip to
 rolling; the size of the force itself stays open, and follows here from an oil like ISO VG 150. So the sets tell how
 friction divides and how it changes with load and speed; for its size in newtons, measure or take a catalogue.
+Source: fitted to paper 003, sections 5.1 and 5.2.
 No set meets every printed share; why, stands in the comparison with the papers (`feeddrive.reproduce.paper_003`).
 """
 

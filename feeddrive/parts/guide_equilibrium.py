@@ -12,7 +12,7 @@
 | delta_j, Q_j, a_j | approach, load of one ball, contact angle | m, N, rad |
 
 The equations are the gradient of z sum (2/5) Q_j delta_j - F_x dx - F_y dy, which is convex: there is one equilibrium,
-whichever rows have lost contact.
+whichever rows have lost contact. Valid without moments, for rigid rail and carriage and elastic balls.
 Source: paper 003, (1) to (5), table 1. Two corrections: (7) of the paper pairs the lateral line by part instead of by
 side and counts two of the four rows; V_y of table 1 is A0 cos a0 (equal at 45 degrees only).
 """

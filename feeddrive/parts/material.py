@@ -1,4 +1,8 @@
-"""The screw's material: elastic moduli, density, thermal expansion."""
+"""The screw's material: elastic moduli E, G = E / 2 (1 + nu) [Pa], density [kg/m^3], thermal expansion [1/K].
+
+Valid linearly elastic, near room temperature: E of steel falls by about 0.03 per cent per kelvin.
+Source: textbook values of bearing steel; paper 004 needs 210 and 83 GPa for its printed stiffness.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""The motor: rotor inertia, torque limit, shaft stiffness and holding brake."""
+"""The motor: rotor inertia [kg m^2], torque limit [N m], shaft and brake stiffness T = k phi [N m/rad].
+
+Valid for a motor as a rigid rotor on an elastic shaft; a brake holds without play, a held rotor without one is fixed.
+Source: catalogues; k_M,T of paper 004, eq. (7), whose motor is held by its brake.
+"""
 
 from __future__ import annotations
 

@@ -1,6 +1,15 @@
 """A belt or gear between motor and screw: ratio, stiffness, inertias.
 
-i = omega_motor / omega_screw,   T_screw = i T_motor,   J at screw = i^2 J at motor,   k at screw = i^2 k at motor
+    i = omega_motor / omega_screw,   T_screw = i T_motor,   J at screw = i^2 J at motor,   k at screw = i^2 k at motor
+
+| symbol | meaning | unit |
+|---|---|---|
+| i | ratio | 1 |
+| omega, T | speed, torque | rad/s, N m |
+| J, k | inertia, torsional stiffness | kg m^2, N m/rad |
+
+Valid without losses, slip and play; a belt's stiffness holds while its slack side stays taut. Source: kinematics, equal
+power on both sides.
 """
 
 from __future__ import annotations

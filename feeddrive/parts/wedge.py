@@ -9,6 +9,7 @@
 | mu | coefficient of friction at the thread; for a ball screw the equivalent of all rolling losses | 1 |
 | beta | lead angle at the diameter d | rad |
 
+Valid for full sliding at one mu.
 A square thread is taken; the contact angle of balls is inside their equivalent mu. Source: textbook statics; paper 004,
 section 2, draws on it for "95 to 98 %".
 """
