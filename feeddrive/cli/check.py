@@ -9,6 +9,7 @@ import typer
 
 from feeddrive.cli.machine import read_machine
 from feeddrive.cli.output import JsonOption, OutOption, deliver, table, warnings_as_lines
+from feeddrive.errors import InputError
 from feeddrive.files import find_plant
 from feeddrive.plant.plausibility import Finding, Verdict, check_plant
 from feeddrive.quantity import format_quantity, parse
@@ -30,7 +31,7 @@ def command(
     """Check a machine against rules of plausibility; warnings do not change the exit status."""
     with warnings_as_lines():
         machine = read_machine(find_plant(plant))
-        gain = parse(position_gain, "1/s", "--position-gain") if position_gain else None
+        gain = _gain(position_gain) if position_gain else None
         findings = check_thermal_plant(machine) if isinstance(machine, ThermalPlant) else check_plant(machine, gain)
     broken = sum(finding.verdict is Verdict.BROKEN for finding in findings)
     content = {
@@ -43,6 +44,18 @@ def command(
                   ("rule", "value", "limit", "verdict", "source"), [_row(finding) for finding in findings])  # fmt: skip
     shown.columns[0].min_width = 14  # no word of a rule is longer; more would not leave 80 letters enough for the rest
     deliver(content, [shown], as_json, out)
+
+
+def _gain(text: str) -> float:
+    """A position gain [1/s].
+
+    Raises:
+        InputError: no gain, or one that is not above zero.
+    """
+    gain = parse(text, "1/s", "--position-gain")
+    if gain <= 0.0:
+        raise InputError(f"{text} is no gain", "--position-gain", "write one above zero, such as '50 1/s'")
+    return gain
 
 
 def _content(finding: Finding) -> dict[str, Any]:

@@ -35,9 +35,11 @@ from feeddrive.parts.guide_coefficients import GuideCoefficients
 from feeddrive.parts.guide_equilibrium import guide_equilibrium
 from feeddrive.parts.guide_film import film_thickness
 from feeddrive.parts.guide_geometry import BallGuide
+from feeddrive.parts.values import PartValue, check_values
 from feeddrive.typing import FloatArray
 
 _MOST_CARRIAGES = 1000
+_SEAL = (PartValue("seal_drag", "N", 0.0, 1e5, usual=(0.0, 100.0), open_ends=False),)
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
 _S, _S_WEIGHTS = 0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS
@@ -93,13 +95,12 @@ def carriage_friction(
         InputError: a speed or load that is not finite, seal drag below 0, or a load beyond the grooves.
 
     Warns:
-        ValidityWarning: contact pressure that dents the races.
+        ValidityWarning: contact pressure that dents the races, or an unusual drag of the seals.
     """
     pace = np.abs(np.asarray(speed, dtype=float))
     if not np.all(np.isfinite(pace)):
         raise InputError("a speed is not finite", "guide speed", "write it as a number")
-    if not seal_drag >= 0.0 or math.isinf(seal_drag):
-        raise InputError(f"a seal drag of {seal_drag:g} N", "guide seal_drag", "write 0 or more")
+    check_values("guide", _SEAL, {"seal_drag": seal_drag})
     balls = guide_equilibrium(guide, vertical, lateral).ball_load
     loaded = balls[balls > 0.0]
     level = np.ones_like(pace)

@@ -254,7 +254,7 @@ def test_loads_beyond_the_guide_are_told() -> None:
 def test_bad_running_conditions_are_refused() -> None:
     with pytest.raises(InputError, match="speed is not finite"):
         carriage_friction(HSR_20R, SET_A, math.nan)
-    with pytest.raises(InputError, match="seal drag"):
+    with pytest.raises(InputError, match="seal_drag"):
         carriage_friction(HSR_20R, SET_A, 1.0, seal_drag=-1.0)
     with pytest.raises(InputError, match="carriages"):
         table_friction(HSR_20R, SET_A, 0, 1.0)

@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from feeddrive.errors import InputError
+from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.parts.bearing_friction import ANGULAR_CONTACT, BallBearing, load_torque, viscous_torque
 from feeddrive.parts.combined_stiffness import natural_frequency
 from feeddrive.parts.contact import ball_in_groove
@@ -136,3 +136,8 @@ def test_huge_and_tiny_values_end_in_the_limit() -> None:
     assert survival(1.0, math.inf) == 1.0
     assert survival(1e-300, 1e6) == 1.0
     assert rated_revolutions(1e4, 0.0) == math.inf
+
+
+def test_unusual_drag_of_seals_is_told() -> None:
+    with pytest.warns(ValidityWarning, match="seal_drag"):
+        carriage_friction(HSR_20R, SET_A, 0.1, seal_drag=500.0)

@@ -20,3 +20,8 @@ def test_tables_fit(
     assert max(map(len, lines)) <= width
     framed = [line for line in lines if line[:1] in "┏┃┡│└" and line]
     assert framed and all(line[-1] in "┓┃┩│┘" for line in framed)
+
+
+def test_gain_that_is_none_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", "hsr_axis", "--position-gain", "-3 1/s"]) == 2
+    assert "--position-gain: -3 1/s is no gain" in capsys.readouterr().err
