@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from feeddrive.errors import InputError
 from feeddrive.plant.entries import Table
 from feeddrive.plant.plant import PositionVelocityController, Sensor
@@ -10,6 +12,7 @@ from feeddrive.recording.channels import channel_unit
 SENSOR_KINDS = ("encoder", "scale", "tachometer", "current")
 SENSOR_PLACES = ("motor", "screw", "table")
 _SENSOR_KEYS = ("channel", "kind", "at", "resolution", "source")
+_OF_HEAT = re.compile(r".*_temperature|table_growth_.*")
 _CONTROLLER_UNITS = {
     "position_gain": "1/s",
     "velocity_gain": "V s/m",
@@ -26,6 +29,8 @@ def read_sensors(top: Table) -> tuple[Sensor, ...]:
     """
     sensors: list[Sensor] = []
     for table in top.tables("sensor"):
+        if "thermal" in top.entries and _OF_HEAT.fullmatch(str(table.entries.get("channel"))):
+            continue  # `feeddrive.thermal.sensor_sections` reads it
         sensor = _sensor(table)
         if any(sensor.channel == other.channel for other in sensors):
             raise InputError(f"{sensor.channel} is declared twice", table.where, "keep one of them")

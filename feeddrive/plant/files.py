@@ -76,7 +76,14 @@ from feeddrive.plant.ratings import RATINGS, read_data
 from feeddrive.plant.stroke import read_stroke
 from feeddrive.quantity import format_quantity
 
-__all__ = ["FORMAT", "declares_heat_alone", "plant_from_entries", "plant_text_with_effects", "read_plant", "section_key"]
+__all__ = [
+    "FORMAT",
+    "declares_heat_alone",
+    "plant_from_entries",
+    "plant_text_with_effects",
+    "read_plant",
+    "section_key",
+]
 
 FORMAT = "feeddrive-plant/1"
 _SECTIONS = (

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 _VARIABLES = ("table_velocity", "table_position", "motor_angle", "screw_speed", "nut_rise")
 _UNITS = {"table_velocity": "m/s", "table_position": "m", "screw_speed": "rad/s", "nut_rise": "K"}
 _MOST_POINTS = 1200
+_FEW = 3000
 _TURN = 2.0 * np.pi
 
 
@@ -111,7 +112,8 @@ def _axis(variable: str, values: FloatArray) -> tuple[str, str, FloatArray, Floa
         # An even number of bins from -max to max: none straddles standstill, where friction changes sign.
         edges = np.linspace(-largest, largest, 41)
     else:
-        edges = np.linspace(finite.min(), finite.max(), 61)
+        # slow recordings have hundreds of samples, not tens of thousands
+        edges = np.linspace(finite.min(), finite.max(), 61 if finite.size > _FEW else 13)
     return words, label, values * scale.factor, edges * scale.factor
 
 
@@ -119,7 +121,9 @@ def _panel(axes: Axes, row: _Row, clouds: list[_Cloud]) -> None:
     """Points, band and median of the given clouds."""
     for cloud in clouds:
         part = thin(cloud.variable.size, _MOST_POINTS)
-        axes.plot(cloud.variable[part], cloud.residual[part], ".", color=cloud.colour, ms=1.6, alpha=0.2, mew=0.0)
+        few = cloud.variable.size <= _FEW
+        size, depth = (3.0, 0.5) if few else (1.6, 0.2)
+        axes.plot(cloud.variable[part], cloud.residual[part], ".", color=cloud.colour, ms=size, alpha=depth, mew=0.0)
         bins = cloud.bins
         axes.fill_between(bins.centre, bins.low, bins.high, color=cloud.colour, alpha=0.25, lw=0.0)
         axes.plot(bins.centre, bins.median, color=cloud.colour, lw=1.8, label=f"{cloud.label} {_share(bins.share)}")

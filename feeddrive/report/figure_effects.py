@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _MOST_ROUNDS = 6
+_MOST_COLUMNS = 3
 _MOST_TRIALS = 6
 _MOST_CURVES = 2
 _LONGEST_NAME = 46
@@ -25,10 +26,14 @@ def explains_figure(diagnosis: Diagnosis) -> ReportFigure | None:
     channels = [one.name for one in diagnosis.channels if any(one.name in e.explains for e in diagnosis.effects)]
     if not diagnosis.effects or not channels:
         return None
-    figure = new_figure(0.8 + 0.34 * len(diagnosis.effects))
-    row = figure.subplots(1, len(channels), sharey=True, squeeze=False)[0]
-    for axes, channel in zip(row, channels, strict=True):
-        _explains_panel(axes, channel, diagnosis.effects, first=axes is row[0])
+    columns = min(_MOST_COLUMNS, len(channels))
+    lines = -(-len(channels) // columns)
+    figure = new_figure(lines * (0.8 + 0.34 * len(diagnosis.effects)))
+    panels = figure.subplots(lines, columns, sharey=True, squeeze=False).ravel()
+    for axes in panels[len(channels) :]:
+        axes.remove()
+    for i, (axes, channel) in enumerate(zip(panels, channels, strict=False)):
+        _explains_panel(axes, channel, diagnosis.effects, first=i % columns == 0)
     caption = (
         "How much of the squared error each effect takes away on data not fitted, all other effects refitted without "
         "it. Shares need not add up to 100 %. A long bar is an effect that nothing else can replace."
@@ -43,7 +48,7 @@ def _explains_panel(axes: Axes, channel: str, effects: tuple[EffectResult, ...],
     _bars(axes, places, shares, [AFTER] * len(shares), [0.0] * len(shares))
     axes.set_xlim(min(0.0, axes.get_xlim()[0]), 125.0)
     axes.set_xticks(range(0, 101, 20))
-    dress(axes, "explained share of squared error [%]", "", plain(channel))
+    dress(axes, "share of squared error [%]", "", plain(channel))
     _names_at_left(axes, places, [effect.name for effect in effects], shown=first)
 
 

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 _CLOSER_SHARE = 0.02
 _CLOSER_SAMPLES = 400
 _VISIBLE_SHARE = 0.01
+_LONGEST_LABEL = 16
 
 
 @dataclass(frozen=True)
@@ -92,7 +93,7 @@ def _draw(picture: _Picture) -> Figure:
     top, middle, bottom = figure.subplots(3, 1, height_ratios=(2, 3, 3))
     name = plain(picture.channel.name)
     _signal_lines(top, picture, slice(None), with_predictions=False)
-    dress(top, axis_label("time", picture.time_unit), axis_label(name, picture.signal.unit), "measured")
+    dress(top, axis_label("time", picture.time_unit), axis_label(_short(name), picture.signal.unit), "measured")
     _residual_lines(middle, picture, slice(None))
     dress(
         middle,
@@ -106,6 +107,13 @@ def _draw(picture: _Picture) -> Figure:
     for axes in (top, middle):
         _shade_left_out(axes, picture)
     return figure
+
+
+def _short(name: str) -> str:
+    """A channel's name for the axis of a low panel: what is measured, where the whole would not fit."""
+    if len(name) <= _LONGEST_LABEL:
+        return name
+    return next((word for word in ("temperature", "growth") if word in name), name)
 
 
 def _signal_lines(axes: Axes, picture: _Picture, part: slice, with_predictions: bool) -> None:
@@ -138,7 +146,7 @@ def _closer_look(axes: Axes, picture: _Picture) -> None:
     part = _closer_part(picture)
     if picture.overlay:
         _signal_lines(axes, picture, part, with_predictions=True)
-        label = axis_label(plain(picture.channel.name), picture.signal.unit)
+        label = axis_label(_short(plain(picture.channel.name)), picture.signal.unit)
     else:
         _residual_lines(axes, picture, part)
         label = axis_label("residual", picture.error.unit)

@@ -17,12 +17,8 @@ def read_heat_sensors(top: Table) -> tuple[HeatSensor, ...]:
     Raises:
         InputError: unknown key, channel, kind or place, a channel declared twice, two sensors of one place.
     """
-    both = "structure" in top.entries
     tables = top.tables("sensor")
-    if both:
-        tables = [
-            table for table in tables if table.entries.get("kind") in (THERMOMETER, SCALE) and "at" in table.entries
-        ]
+    if "structure" in top.entries:
         tables = [table for table in tables if _of_heat(str(table.entries.get("channel")))]
     sensors: list[HeatSensor] = []
     for table in tables:

@@ -197,9 +197,10 @@ def _march(
         rise = float(nut[-1].mean())
         heat = 0.609 * ω * (load * (1 + truth.preload_growth * rise) + oil * math.exp(-truth.viscosity * rise))
         sink = _advance(
-            shaft, nut, sink, INNER // parts, STEP / INNER, HEAT_CAPACITY, rig.shaft.along, rig.shaft.across,
-            rig.shaft.volume, rig.nut.along, rig.nut.across, rig.nut.volume, link, link.sum(axis=1), to_bore,
-            first, last, bare_film, nut_film, heat, front, rear, seats, truth.drift(middle), truth.coolant(middle), truth.sink[0], truth.sink[1],
+            shaft, nut, sink, INNER // parts, STEP / INNER, HEAT_CAPACITY,
+            rig.shaft.along, rig.shaft.across, rig.shaft.volume, rig.nut.along, rig.nut.across, rig.nut.volume,
+            link, link.sum(axis=1), to_bore, first, last, bare_film, nut_film, heat, front, rear, seats,
+            truth.drift(middle), truth.coolant(middle), truth.sink[0], truth.sink[1],
         )  # fmt: skip
     return sink, front
 
