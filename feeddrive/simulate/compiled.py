@@ -22,10 +22,12 @@ import numpy as np
 from feeddrive.simulate.program import CELL, Position, Program, Run, Status, Stop, Task
 from feeddrive.typing import FloatArray
 
-FLAGS = ("-O2", "-ftree-vectorize", "-ffp-contract=off", "-fPIC", "-shared")
+FLAGS = ("-O2", "-ftree-vectorize", "-ffp-contract=off", "-fno-math-errno", "-fno-trapping-math", "-fPIC", "-shared")
 """No fused or reordered arithmetic: the compiled numbers are those of the virtual machine."""
 
 _NULL_CHECK = re.compile(r"arg\[(\d+)\]\? (arg\[\1\]\[\d+\]) : 0")
+_FUNCTION = re.compile(r"^casadi_real casadi_", re.MULTILINE)
+_LIBRARY_CALL = re.compile(r"return fm(ax|in)\(x, y\);")
 _RESULT_CHECK = re.compile(r"if \(res\[\d+\]!=0\) ")
 
 
@@ -63,10 +65,19 @@ def source_of(program: Program) -> str:
         generator.add(function)
     # the driver passes every argument and result, so that what may be absent need not be asked for
     functions = _RESULT_CHECK.sub("", _NULL_CHECK.sub(r"\2", generator.dump()))
+    # what is called for every number is put in its place; a number that is none passes on, and the step is refused
+    functions = _FUNCTION.sub("static inline casadi_real casadi_", functions)
+    functions = _LIBRARY_CALL.sub(_in_place, functions)
     sizes = "".join(f"#define {name} {size}\n" for name, size in program.sizes.items())
     for name, rows in zip(("NEEDED_FIRST", "NEEDED_SECOND"), program.step.needed, strict=True):
         sizes += f"#define {name} {{{', '.join(str(row) for row in (*rows, 0))}}}\n"
     return functions + sizes + (Path(__file__).parent / "driver.c").read_text(encoding="utf-8")
+
+
+def _in_place(call: re.Match[str]) -> str:
+    """The larger or smaller of x and y without a call of the library."""
+    sign = ">" if call[1] == "ax" else "<"
+    return f"return (x {sign} y || x != x) ? x : y;"
 
 
 def _library(source: str, compiler: str) -> ctypes.CDLL | None:

@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import lru_cache
 
 import casadi as ca
 import numpy as np
@@ -176,12 +177,18 @@ def machine_for(
     return controlled_machine(plant, key, loop.lag > 0, timing.late, len(timing.parts), tangents), timing
 
 
+@lru_cache(maxsize=64)
+def _written(function: ca.Function) -> str:
+    """The function as text, once per function: runs of one controller follow one another."""
+    return function.serialize()
+
+
 class ControllerKey:
     """A controller's equations; two functions with the same content are one."""
 
     def __init__(self, function: ca.Function, measurements: tuple[str, ...], quantised: tuple[str, ...]) -> None:
         self.function, self.measurements, self.quantised = function, measurements, quantised
-        self._content = (function.serialize(), measurements, quantised)
+        self._content = (_written(function), measurements, quantised)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, ControllerKey) and self._content == other._content

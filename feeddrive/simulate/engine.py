@@ -154,7 +154,10 @@ def _task(program: Program, plant: Plant, feed: Feed) -> Task:
     levels = DEEPEST + 1
     fixed = np.zeros((len(feed.spans), count, levels, program.sizes["N_FIXED"]))
     made = np.zeros((count, levels), dtype=np.uint8)
-    return Task(feed.fed, feed.spans, feed.settings, np.array(parameter_values(plant)), fixed, made, first)
+    fed, spans, settings, values = (
+        np.ascontiguousarray(given) for given in (feed.fed, feed.spans, feed.settings, parameter_values(plant))
+    )
+    return Task(fed, spans, settings, values, fixed, made, first)
 
 
 def _cells(plant: Plant) -> tuple[int, int]:

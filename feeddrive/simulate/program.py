@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import IntEnum
+from functools import cached_property
 
 import casadi as ca
 import numpy as np
@@ -72,7 +73,7 @@ class Program:
         changed = [ca.jtimes(output, ca.vertcat(*moving), ca.vertcat(*changes)) for output in outputs]
         return ca.Function("feeddrive_before_tangent", [*symbols, *changes], changed)
 
-    @property
+    @cached_property
     def sizes(self) -> dict[str, int]:
         """Sizes by the names that the C driver gives them."""
         layout, step = self.step.layout, self.step
