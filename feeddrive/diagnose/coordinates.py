@@ -80,7 +80,33 @@ class Sine:
         return {"amplitude": self.size * math.hypot(a, b), "phase": math.atan2(b, a)}
 
 
-Coordinate = Linear | Logarithmic | Sine
+@dataclass(frozen=True)
+class TwoHeats:
+    """Two heats that are linear in the prediction, in place of a heat and a share of it.
+
+    A motor's P a and P (1 - a): with `rest`. Two bearings' c and c s: without.
+    """
+
+    key: str
+    share: str
+    size: float
+    rest: bool
+
+    def read(self, effect: Effect) -> list[float]:
+        """Coordinates of the effect's values."""
+        whole, share = _number(effect, self.key) / self.size, _number(effect, self.share)
+        return [whole * share, whole * (1 - share)] if self.rest else [whole, whole * share]
+
+    def write(self, effect: Effect, coordinates: Sequence[float]) -> dict[str, Value]:
+        """Values of the coordinates, neither heat below zero."""
+        first, second = (max(c, 0.0) for c in coordinates)
+        whole = first + second if self.rest else first
+        over = whole if whole > 0 else 1.0
+        share = min((first if self.rest else second) / over, effect.parameter(self.share).maximum)
+        return {self.key: whole * self.size, self.share: share}
+
+
+Coordinate = Linear | Logarithmic | Sine | TwoHeats
 
 LOGARITHMIC = {
     ("stribeck", "velocity"),
@@ -98,10 +124,15 @@ LOGARITHMIC = {
 }
 """Parameters known to a factor before they are known at all."""
 
+TWO_HEATS = {
+    "motor_heat": TwoHeats("power", "share_at_rest", 1.0, rest=True),
+    "bearing_heat": TwoHeats("factor", "rear_share", 1.0, rest=False),
+}
+"""Heats that are linear, though their parameters are not."""
+
 FIXED = {
     ("presliding", "break_away"),
     ("friction_vs_position", "position"),
-    ("motor_heat", "at_speed"),
     ("ambient_drift", "time"),
 }
 """Parameters that choose the form of a law; they are tried, not fitted."""
@@ -111,6 +142,8 @@ def coordinates_of(effect: Effect, plant: Machine) -> list[Coordinate]:
     """The coordinates in which the effect is fitted, for the form that its values choose."""
     if {"amplitude", "phase"} <= set(effect.values):
         return [Sine(effect.parameter("amplitude").size), Linear("order", ORDER_SIZE)]
+    if effect.name in TWO_HEATS:
+        return [TWO_HEATS[effect.name]]
     result: list[Coordinate] = []
     for parameter in effect.parameters:
         pair = (effect.name, parameter.key)

@@ -6,6 +6,7 @@ from collections import OrderedDict
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from threading import Lock
+from typing import ClassVar
 
 import numpy as np
 
@@ -42,6 +43,8 @@ class HeatPredictor(Predictor[ThermalPlant, HeatEvidence]):
         declared: plant that the model was made for.
         model: its reduced model.
     """
+
+    retries: ClassVar[int] = 4
 
     declared: ThermalPlant
     model: HeatModel

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
+from typing import TYPE_CHECKING, ClassVar, Generic, Protocol, TypeVar
 
 from feeddrive.diagnose.evidence import Evidence
 from feeddrive.effects.base import Effect
@@ -36,6 +36,9 @@ E = TypeVar("E", bound=Evidence)
 
 class Predictor(ABC, Generic[M, E]):
     """Predicts recordings of one kind of machine."""
+
+    retries: ClassVar[int] = 0
+    """How many other first effects are tried where the search leaves much unexplained."""
 
     @property
     @abstractmethod

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -40,6 +40,9 @@ TIE = 0.05
 CLEARLY_NEEDED = 0.1
 """Share of the squared error that an effect must bring, by one linear step, not to be refitted without it."""
 
+UNEXPLAINED = 1.3
+"""Weighted squared error per sample beyond which much is left; noise alone gives one."""
+
 WORKERS = 2
 """Candidates tried at the same time; the loop over samples runs outside Python's lock."""
 
@@ -58,6 +61,9 @@ class Search:
 def search(problem: Problem, said: Callable[[str], None] = lambda text: None) -> Search:
     """Find the effects that the declared plant lacks.
 
+    Where much is left unexplained and the machine is cheap to simulate, the search is begun again with the next best
+    first effects: two effects at once can look most like a third.
+
     Args:
         problem: declared plant and recordings.
         said: told what is going on, for a progress display.
@@ -65,17 +71,42 @@ def search(problem: Problem, said: Callable[[str], None] = lambda text: None) ->
     Returns:
         The effects found, fitted together, and the ledger of the search.
     """
+    best = _greedy(problem, said)
+    openings = [] if not best.rounds else [a for a in best.rounds[0] if a.comparison.pays]
+    taken = best.fit.effects[0].name if best.fit.effects else ""
+    for first in [a for a in openings if a.name != taken][: problem.predictor.retries]:
+        if _explained(best):
+            break
+        said(f"much is left: again, {first.name} first")
+        other = _greedy(problem, said, (best.rounds[0], first))
+        if other.fit.squared_error < (1 - TIE) * best.fit.squared_error:
+            best = replace(other, impossible=best.impossible)
+    return best
+
+
+def _explained(found: Search) -> bool:
+    return found.fit.squared_error < UNEXPLAINED * len(found.fit.residual)
+
+
+def _greedy(
+    problem: Problem, said: Callable[[str], None], opening: tuple[tuple[Attempt, ...], Attempt] | None = None
+) -> Search:
+    """The search, its first round as given where there is an opening: the attempts, and the one to be taken."""
     found = fit(problem, ())
     trials: list[Trial] = []
     rounds: list[tuple[Attempt, ...]] = []
     impossible: dict[str, str] = {}
     while len(rounds) < MOST_EFFECTS:
         said(f"round {len(rounds) + 1}: {len(found.effects)} effects so far")
-        scene = problem.predictor.scene(problem, found.effects)
-        attempts = _round(scene, found, impossible)
-        rounds.append(tuple(attempts))
-        winner = _simplest_of_the_best(attempts)
-        pair = masked_pair(attempts, found, winner)
+        winner: Attempt | None
+        if opening is not None and not rounds:
+            attempts, winner, pair = [*opening[0]], opening[1], None
+            rounds.append(opening[0])
+        else:
+            attempts = _round(problem.predictor.scene(problem, found.effects), found, impossible)
+            rounds.append(tuple(attempts))
+            winner = _simplest_of_the_best(attempts)
+            pair = masked_pair(attempts, found, winner)
         if pair is not None:
             winner, attempts = pair, [pair, *attempts]
         trials += [_trial(len(rounds), attempt, attempt is winner) for attempt in attempts]

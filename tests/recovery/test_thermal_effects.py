@@ -64,6 +64,10 @@ PAIRS: dict[str, Planted] = {
     },
     "frame_motor": {"structure_growth": SINGLE["frame"]["structure_growth"], "motor_heat": MOTOR},
     "film_motor": {"convection_deviation": {"where": "screw", "factor": 1.25}, "motor_heat": MOTOR},
+    "sink_cooling": {
+        "heat_sink": {"conductance": 0.1025, "capacity": 233.0},
+        "cooling": {"conductance": 0.0308, "start": 13330.0},
+    },
     "sink_bearing": {
         "heat_sink": {"conductance": 0.15, "capacity": 400.0},
         "bearing_heat": {"factor": 2.0, "rear_share": 1.0},
