@@ -9,6 +9,8 @@ from __future__ import annotations
 import os
 import platform
 import sys
+import tempfile
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,6 +24,7 @@ from _timing import interleaved, once
 
 from feeddrive.simulate.compiled import find_compiler
 from feeddrive.simulate.controlled import ControlledRun, TorqueLoop, simulate_controlled
+from feeddrive.simulate.sensitivity import Sensitivity, simulate_sensitivity
 from feeddrive.simulate.structure import forget_machines
 from feeddrive.typing import FloatArray
 
@@ -44,6 +47,34 @@ class Figure:
 def simulated(bump: bool = False) -> ControlledRun:
     """The whole call that a user makes: two seconds at 8 kHz."""
     return simulate_controlled(drive(bump), controller(), wanted_position()[:, None], None, LOOP)
+
+
+NAMES = (
+    "table_mass", "motor_inertia", "nut_stiffness", "damping_time", "guide_friction.coulomb", "guide_friction.viscous",
+    "presliding.stiffness", "stribeck.velocity",
+)  # fmt: skip
+
+
+def gradient() -> Sensitivity:
+    """The same run with its derivatives in eight directions."""
+    return simulate_sensitivity(drive(), controller(), wanted_position()[:, None], NAMES, torque_loop=LOOP)
+
+
+def building() -> float:
+    """Time to make the machine of the gradient from nothing: equations, derivatives, C, compiler [s of the clock]."""
+    with tempfile.TemporaryDirectory() as folder:
+        kept = os.environ.get("XDG_CACHE_HOME")
+        os.environ["XDG_CACHE_HOME"] = folder
+        forget_machines()
+        begin = time.perf_counter()
+        simulate_sensitivity(drive(), controller(), wanted_position(2)[:, None], NAMES, torque_loop=LOOP)
+        taken = time.perf_counter() - begin
+        forget_machines()
+        if kept is None:
+            del os.environ["XDG_CACHE_HOME"]
+        else:
+            os.environ["XDG_CACHE_HOME"] = kept
+    return taken
 
 
 def correct_substeps(rk: RungeKutta, oracle: FloatArray) -> int:
@@ -75,6 +106,7 @@ def figures() -> list[Figure]:
         {
             "engine": simulated, "hand": lambda: hand.run(wanted), "rk4": lambda: rk.run(wanted, fewest),
             "engine bump": lambda: simulated(True), "hand bump": lambda: bumpy.run(wanted),
+            "gradient": gradient,
         }
     )  # fmt: skip
     engine, mine = simulated(), hand.run(wanted)
@@ -97,6 +129,8 @@ def figures() -> list[Figure]:
         _at_least("virtual machine, times real time", DURATION / virtual, 50),
         _at_most("compiled and virtual machine apart, of full scale", apart, 1e-12),
         _at_most("cost of a friction bump over the same in hand-written C", by_effect, 1.3),
+        _at_most("gradient in 8 directions, over the engine's run", seconds["gradient"] / e, 20),
+        _at_most("gradient, built from nothing [s]", building(), 3.0),
         *[_at_most(f"light axis at {rate:g} kHz, error [nm]", 1e9 * worst, 5.0) for rate, worst in light_errors()],
     ]
 
