@@ -81,8 +81,8 @@ class _Interpreter:
         padded = part if len(part) == count else np.vstack([part, np.repeat(part[-1:], count - len(part), axis=0)])
         fixed = task.fixed[0, place.cell - task.first_cell, 0]
         still = np.concatenate([fixed, task.settings, task.values])
-        out = self.stretches[size](np.concatenate([place.memory, place.own]), padded.T, still)
-        states, judged = (np.array(block).T[: len(part)] for block in out)
+        begin = np.concatenate([place.memory, place.own])
+        states, judged = (rows[: len(part)] for rows in _rows(self.stretches[size], begin, padded, still))
         memories, owns = np.split(states, [len(place.memory)], axis=1)
         shown, (change, error) = judged[:, :-2], judged[:, -2:].T
         held = (change < 1.0) & (error <= 1.0)
@@ -171,6 +171,19 @@ class _Interpreter:
 
 def _called(function: ca.Function, *arguments: Expression) -> list[FloatArray]:
     return [np.array(value).ravel() for value in function.call(list(arguments))]
+
+
+def _rows(function: ca.Function, *arguments: FloatArray) -> list[FloatArray]:
+    """Results of a function as one row per column, from arguments given likewise; without CasADi's own conversions."""
+    buffer, evaluate = function.buffer()
+    given = [np.ascontiguousarray(argument, dtype=float).ravel() for argument in arguments]
+    results = [np.zeros(function.numel_out(i)) for i in range(function.n_out())]
+    for i, argument in enumerate(given):
+        buffer.set_arg(i, argument.data)  # type: ignore[call-arg]  # the stub is that of the C++ method
+    for i, result in enumerate(results):
+        buffer.set_res(i, result.data)  # type: ignore[call-arg]
+    evaluate()
+    return [result.reshape(function.size2_out(i), function.size1_out(i)) for i, result in enumerate(results)]
 
 
 def _stretch(program: Program, count: int) -> ca.Function:
