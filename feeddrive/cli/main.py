@@ -46,7 +46,7 @@ COMMANDS: dict[str, Entry] = {
     "modes": Entry("modes", "Natural frequencies of a machine along its stroke."),
     "bode": Entry("bode", "Frequency response of machine or loop; resonances, margins."),
     "tune": Entry("tune", "Recommend gains and filters of a cascade, and say why."),
-    "thermal": Entry("thermal", "Warm a machine up: temperatures, error at the table, warm-up time."),
+    "thermal": Entry("thermal", "Warm a machine up: temperatures, error, time constants."),
     "check": Entry("check", "Check a machine against rules of plausibility."),
     "run": Entry("run", "Run a scenario: a machine under control; figures, metrics."),
     "sweep": Entry("sweep", "Run a scenario over varied values: one table, one figure."),
