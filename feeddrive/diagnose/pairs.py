@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -35,13 +35,15 @@ def masked_pair(attempts: Sequence[Attempt], found: Fit, winner: Attempt | None)
     """
     least = winner.comparison.gain if winner is not None else 0.0
     usable = [a for a in attempts if a.comparison.gain > -0.1 and len(a.fit.effects) == len(found.effects) + 1]
+    usable = [a for a in usable if len(a.fit.residual) == len(found.residual)]
     ranked = []
-    for i, first in enumerate(usable):
-        for second in usable[i + 1 :]:
-            linear = _linear_pair(first, second, found)
-            alone = max(first.comparison.gain, 0.0) + max(second.comparison.gain, 0.0)
-            if linear is not None and linear.pays and linear.gain > max(SUPERADDITIVE * alone, least):
-                ranked.append((linear.gain, first, second))
+    for first, second, most in _most_together(usable, found):
+        alone = max(first.comparison.gain, 0.0) + max(second.comparison.gain, 0.0)
+        if most <= max(SUPERADDITIVE * alone, least):
+            continue
+        linear = _linear_pair(first, second, found)
+        if linear.pays and linear.gain > max(SUPERADDITIVE * alone, least):
+            ranked.append((linear.gain, first, second))
     ranked.sort(key=lambda entry: -entry[0])
     for _, first, second in ranked[:PAIRS_FITTED]:
         problem = first.problem
@@ -56,11 +58,36 @@ def masked_pair(attempts: Sequence[Attempt], found: Fit, winner: Attempt | None)
     return None
 
 
-def _linear_pair(first: Attempt, second: Attempt, found: Fit) -> Comparison | None:
-    """Gain of both candidates together by one linear step; None where they count other samples."""
-    rows = {len(part.residual) for part in (first.fit, second.fit, found)}
-    if len(rows) != 1:
-        return None
+def _most_together(usable: Sequence[Attempt], found: Fit) -> Iterator[tuple[Attempt, Attempt, float]]:
+    """Every pair and a bound of its gain: what one linear step takes away of the samples that it is fitted to."""
+    if len(usable) < 2:
+        return
+    own = [_scaled(_own_columns(attempt)) for attempt in usable]
+    ends = np.cumsum([found.jacobian.shape[1], *(part.shape[1] for part in own)])
+    columns = np.hstack([_scaled(found.jacobian), *own])
+    normal = columns.T @ columns
+    shared = np.arange(ends[0])
+    left_out = left_out_residual(found.residual, found.jacobian, block_numbers(usable[0].problem))
+    before = float(left_out @ left_out)
+    for i, first in enumerate(usable):
+        residual = first.fit.residual
+        projected, energy = columns.T @ residual, float(residual @ residual)
+        for j in range(i + 1, len(usable)):
+            chosen = np.concatenate([shared, np.arange(ends[i], ends[i + 1]), np.arange(ends[j], ends[j + 1])])
+            part = projected[chosen]
+            taken = float(part @ np.linalg.lstsq(normal[np.ix_(chosen, chosen)], part, rcond=1e-12)[0])
+            yield first, usable[j], 1 - (energy - taken) / before
+
+
+def _scaled(columns: FloatArray) -> FloatArray:
+    """Columns of length one."""
+    length = np.linalg.norm(columns, axis=0)
+    scaled: FloatArray = columns / np.where(length > 0, length, 1.0)
+    return scaled
+
+
+def _linear_pair(first: Attempt, second: Attempt, found: Fit) -> Comparison:
+    """Gain of both candidates together by one linear step."""
     columns = _own_columns(first), _own_columns(second)
     jacobian = np.hstack([found.jacobian, *columns])
     blocks = block_numbers(first.problem)

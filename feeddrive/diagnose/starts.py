@@ -23,6 +23,10 @@ from feeddrive.typing import FloatArray
 TABLE_NODES = 12
 """Nodes of a tabulated friction curve over the stroke."""
 
+LEAST_SINE = 0.001
+"""Share of its channel's square that a sine must take away: a fifth of the gain that is asked of all channels together,
+since a sine of the whole recording misses what the band takes off it in fast strokes."""
+
 LEAST_CURVE = 0.01
 """Share of the torque residual's square that must follow the position before a table is tried."""
 
@@ -84,7 +88,9 @@ def lead_error(scene: AxisScene) -> list[list[Effect]]:
         return []
     angle, residual = scene.runs[at].screw_angle[rows], scene.residuals[at]["table_position"][rows]
     orders = strongest_orders(angle, residual, highest_order(scene, at))
-    return [[sine(LeadErrorPeriodic, angle, residual, order) for order in orders]] if orders else []
+    starts = [sine(LeadErrorPeriodic, angle, residual, order) for order in orders]
+    kept = [start for start in starts if explains(start, residual)]
+    return [kept] if kept else []
 
 
 def highest_order(scene: AxisScene, at: int) -> float:
@@ -97,6 +103,12 @@ def sine(kind: type[Effect], angle: FloatArray, residual: FloatArray, order: flo
     """A sine of this order as it fits the residual best."""
     amplitude, phase = sine_at(angle, residual, order)
     return kind.of(amplitude=amplitude, order=order, phase=phase)
+
+
+def explains(start: Effect, residual: FloatArray) -> bool:
+    """Whether a sine takes enough of its own channel away to be worth the simulations of a fit."""
+    amplitude = float(start.values["amplitude"])  # type: ignore[arg-type]
+    return 0.5 * amplitude**2 >= LEAST_SINE * float(np.mean(residual**2))
 
 
 def over_position(scene: AxisScene) -> list[list[Effect]]:

@@ -7,14 +7,14 @@ import numpy as np
 from feeddrive.diagnose.declared_friction import declared_viscous
 from feeddrive.diagnose.periodogram import strongest_orders
 from feeddrive.diagnose.scene import AxisScene
-from feeddrive.diagnose.starts import highest_order, sine
+from feeddrive.diagnose.starts import explains, highest_order, sine
 from feeddrive.effects.ball_pass_ripple import BallPassRipple
 from feeddrive.effects.base import Effect
 from feeddrive.effects.position_spring import PositionSpring
 from feeddrive.effects.thermal_growth import ThermalGrowth
 from feeddrive.effects.viscous_warmup import ViscousWarmup
 
-SHARES_OF_DURATION = (0.1, 0.3, 1.0)
+SHARES_OF_DURATION = (0.15, 0.6)
 """Time constants that are tried first, over the duration; a longer one looks like a straight line."""
 
 
@@ -52,8 +52,9 @@ def ball_pass_ripple(scene: AxisScene) -> list[list[Effect]]:
     moving = np.abs(speed) > 0.01 * np.abs(speed).max()
     angle = run.screw_angle[rows][moving]
     resisting = (scene.residuals[at]["motor_torque"][rows] * np.sign(speed))[moving]
-    orders = strongest_orders(angle, resisting, highest_order(scene, at))
-    return [[sine(BallPassRipple, angle, resisting, order) for order in orders]] if orders else []
+    orders = strongest_orders(angle, resisting, highest_order(scene, at), count=1)
+    starts = (sine(BallPassRipple, angle, resisting, order) for order in orders)
+    return [[start] for start in starts if explains(start, resisting)]
 
 
 def _time_constants(scene: AxisScene) -> list[float]:
