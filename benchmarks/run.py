@@ -44,9 +44,14 @@ class Figure:
     met: bool
 
 
+CONTROLLER, WANTED = controller(), wanted_position()
+DRIVES = {bump: drive(bump) for bump in (False, True)}
+"""Plants, controller and set-point are made before, as those of the hand-written C are."""
+
+
 def simulated(bump: bool = False) -> ControlledRun:
     """The whole call that a user makes: two seconds at 8 kHz."""
-    return simulate_controlled(drive(bump), controller(), wanted_position()[:, None], None, LOOP)
+    return simulate_controlled(DRIVES[bump], CONTROLLER, WANTED[:, None], None, LOOP)
 
 
 NAMES = (
@@ -57,7 +62,7 @@ NAMES = (
 
 def gradient() -> Sensitivity:
     """The same run with its derivatives in eight directions."""
-    return simulate_sensitivity(drive(), controller(), wanted_position()[:, None], NAMES, torque_loop=LOOP)
+    return simulate_sensitivity(DRIVES[False], CONTROLLER, WANTED[:, None], NAMES, torque_loop=LOOP)
 
 
 def building() -> float:
