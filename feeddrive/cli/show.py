@@ -108,8 +108,8 @@ def _tables(plant: Plant, summary: Summary, life: Sequence[LifeRow]) -> list[Tab
         table(f"Inertia{at}", ("moves with", "at the motor", "at the table", "share"), _inertia_rows(summary)),
         table(f"Stiffness, motor held{at}", ("part", "felt at the table", "share of compliance"),
               _stiffness_rows(summary)),
-        table("What constant motion takes in + and in − direction; signs are those of the axis", ("speed", "force +", "force −", "torque +", "torque −"),
-              _friction_rows(summary)),
+        table("What constant motion takes in + and in − direction; signs are those of the axis",
+              ("speed", "force +", "force −", "torque +", "torque −"), _friction_rows(summary)),
         _mode_table(plant, summary, at),
         life_table(life),
     ]  # fmt: skip

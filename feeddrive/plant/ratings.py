@@ -21,7 +21,7 @@ RATINGS: dict[str, tuple[PartValue, ...]] = {
         PartValue("axial_load", "N", 0.0, 1e7, usual=(1.0, 1e6)),
     ),
 }
-"""Limits and ratings by section: greatest speeds and acceleration, C0 and C of the ball screw, largest process force."""
+"""Limits and ratings by section: greatest speeds and acceleration, C0 and C of the ball screw, process force."""
 
 
 def read_data(top: Table) -> dict[str, Datum]:
