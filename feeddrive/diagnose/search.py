@@ -96,6 +96,7 @@ def _greedy(
     trials: list[Trial] = []
     rounds: list[tuple[Attempt, ...]] = []
     impossible: dict[str, str] = {}
+    met: set[tuple[str, ...]] = set()
     while len(rounds) < MOST_EFFECTS:
         said(f"round {len(rounds) + 1}: {len(found.effects)} effects so far")
         winner: Attempt | None
@@ -112,11 +113,12 @@ def _greedy(
         trials += [_trial(len(rounds), attempt, attempt is winner) for attempt in attempts]
         if winner is None:
             break
-        count = len(found.effects)
         problem, found = winner.problem, _without_idle(winner.problem, winner.fit)
         said(f"found so far: {', '.join(effect.name for effect in found.effects)}")
-        if len(found.effects) <= count:  # the new one only took the place of an old one
+        names = tuple(sorted(effect.name for effect in found.effects))
+        if names in met:  # the new ones only take each other's place
             break
+        met.add(names)
     found = fit(problem, found.effects)
     return Search(problem, found, tuple(trials), tuple(rounds), impossible)
 
