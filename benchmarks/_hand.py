@@ -43,7 +43,7 @@ def gains() -> bytes:
 class Exact:
     """`drive_exact.c` with its constants, made here from matrix exponentials."""
 
-    library: ctypes.CDLL
+    binary: ctypes.CDLL
     machine: bytes
 
     @staticmethod
@@ -69,7 +69,7 @@ class Exact:
     def run(self, wanted: FloatArray) -> FloatArray:
         """Command, coordinates, rates and torque at the samples, shape (n, 12)."""
         table = np.empty((len(wanted), 12))
-        self.library.exact_run(
+        self.binary.exact_run(
             ctypes.c_longlong(len(wanted)), self.machine, gains(), ctypes.c_void_p(wanted.ctypes.data),
             ctypes.c_void_p(table.ctypes.data),
         )  # fmt: skip
@@ -80,7 +80,7 @@ class Exact:
 class RungeKutta:
     """`drive_runge_kutta.c` with its constants."""
 
-    library: ctypes.CDLL
+    binary: ctypes.CDLL
     machine: bytes
 
     @staticmethod
@@ -93,7 +93,7 @@ class RungeKutta:
 
     def run(self, wanted: FloatArray, substeps: int) -> FloatArray:
         table = np.empty(len(wanted))
-        self.library.runge_kutta_run(
+        self.binary.runge_kutta_run(
             ctypes.c_longlong(len(wanted)), ctypes.c_longlong(substeps), ctypes.c_double(SAMPLE), self.machine, gains(),
             ctypes.c_void_p(wanted.ctypes.data), ctypes.c_void_p(table.ctypes.data),
         )  # fmt: skip
@@ -102,7 +102,7 @@ class RungeKutta:
     def slopes(self, state: FloatArray, command: float) -> FloatArray:
         out = np.empty(12)
         state = np.ascontiguousarray(state)
-        self.library.drive_slopes(
+        self.binary.drive_slopes(
             self.machine, ctypes.c_void_p(state.ctypes.data), ctypes.c_double(command), ctypes.c_void_p(out.ctypes.data)
         )
         return out

@@ -22,7 +22,7 @@ from _light import light_errors
 from _peers import cvodes, radau
 from _timing import interleaved, once
 
-from feeddrive.simulate.compiled import find_compiler
+from feeddrive.compiler import find_compiler
 from feeddrive.simulate.controlled import ControlledRun, TorqueLoop, simulate_controlled
 from feeddrive.simulate.sensitivity import Sensitivity, simulate_sensitivity
 from feeddrive.simulate.structure import forget_machines

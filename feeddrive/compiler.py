@@ -31,12 +31,13 @@ def find_compiler() -> str | None:
     return None
 
 
-def compiled_library(source: str, flags: tuple[str, ...] = FLAGS) -> ctypes.CDLL | None:
+def compiled_library(source: str, flags: tuple[str, ...] = FLAGS, made_for: str = "") -> ctypes.CDLL | None:
     """The shared library of a C source, from the cache or made now.
 
     Args:
         source: whole text of the C file.
         flags: of the compiler; `-lm` is added.
+        made_for: what the library serves alone, such as a processor; another one gets a library of its own.
 
     Returns:
         None where there is no compiler, it fails, or no folder can hold what it makes; the caller then has its own way.
@@ -44,7 +45,7 @@ def compiled_library(source: str, flags: tuple[str, ...] = FLAGS) -> ctypes.CDLL
     compiler = find_compiler()
     if compiler is None:
         return None
-    key = hashlib.sha256("\0".join((source, compiler, *flags)).encode()).hexdigest()[:24]
+    key = hashlib.sha256("\0".join((source, compiler, *flags, made_for)).encode()).hexdigest()[:24]
     for folder in cache_folders():
         library = folder / f"{key}.so"
         try:

@@ -9,6 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from feeddrive.cli.output import warnings_as_lines
+from feeddrive.compiler import find_compiler
 from feeddrive.export.notes import included, left_out, linear_notes
 from feeddrive.export.point import Point, export_point
 from feeddrive.export.writing import Form, write_export
@@ -16,7 +17,6 @@ from feeddrive.files import find_plant
 from feeddrive.plant.files import read_plant
 from feeddrive.plant.plant import Plant
 from feeddrive.quantity import format_quantity
-from feeddrive.simulate.compiled import find_compiler
 
 
 def command(

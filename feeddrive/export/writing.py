@@ -6,6 +6,7 @@ from collections.abc import Callable
 from enum import StrEnum
 from pathlib import Path
 
+from feeddrive.compiler import find_compiler
 from feeddrive.export.c_selftest import selftest_text
 from feeddrive.export.c_source import header_text, source_text
 from feeddrive.export.casadi_file import casadi_bytes, casadi_notes
@@ -18,7 +19,6 @@ from feeddrive.export.point import Point
 from feeddrive.export.python_file import python_text
 from feeddrive.files import write_bytes_atomically
 from feeddrive.plant.plant import Plant
-from feeddrive.simulate.compiled import find_compiler
 
 
 class Form(StrEnum):

@@ -1,24 +1,19 @@
 """Generated C of a program with its driver, compiled and kept.
 
-One binary per structure: lengths, values and inputs are arguments. The cache is written atomically, so that processes
-that start together do not meet half a file; where the home is read-only a temporary folder serves.
+One binary per structure: lengths, values and inputs are arguments.
 """
 
 from __future__ import annotations
 
 import ctypes
-import hashlib
-import os
 import re
-import shutil
-import subprocess
-import tempfile
 from functools import lru_cache
 from pathlib import Path
 
 import casadi as ca
 import numpy as np
 
+from feeddrive.compiler import compiled_library
 from feeddrive.simulate.program import CELL, Position, Program, Run, Status, Stop, Task
 from feeddrive.typing import FloatArray
 
@@ -32,17 +27,6 @@ _RESULT_CHECK = re.compile(r"if \(res\[\d+\]!=0\) ")
 
 
 @lru_cache(maxsize=1)
-def find_compiler() -> str | None:
-    """The C compiler: $CC, cc, gcc or clang; None if there is none or FEEDDRIVE_COMPILER is "none"."""
-    if os.environ.get("FEEDDRIVE_COMPILER") == "none":
-        return None
-    for name in (os.environ.get("CC"), "cc", "gcc", "clang"):
-        if name and (found := shutil.which(name)):
-            return found
-    return None
-
-
-@lru_cache(maxsize=1)
 def processor() -> str:
     """What this processor can do, where Linux tells it for an x86; a binary made for it serves it alone."""
     try:
@@ -52,9 +36,10 @@ def processor() -> str:
     return next((line for line in lines if line.startswith("flags")), "")
 
 
-def compiled_run(program: Program, compiler: str) -> Run | None:
-    """The driver of a program in C; None if the compiler fails or no folder can hold what it makes."""
-    library = _library(source_of(program), compiler)
+def compiled_run(program: Program) -> Run | None:
+    """The driver of a program in C; None without a compiler, or where it fails or no folder can hold what it makes."""
+    flags = (*FLAGS, "-march=native") if processor() else FLAGS
+    library = compiled_library(source_of(program), flags, processor())
     return None if library is None else _bound(program, library)
 
 
@@ -78,35 +63,6 @@ def _in_place(call: re.Match[str]) -> str:
     """The larger or smaller of x and y without a call of the library."""
     sign = ">" if call[1] == "ax" else "<"
     return f"return (x {sign} y || x != x) ? x : y;"
-
-
-def _library(source: str, compiler: str) -> ctypes.CDLL | None:
-    """The shared library, from the cache or made now."""
-    flags = (*FLAGS, "-march=native") if processor() else FLAGS
-    key = hashlib.sha256("\n".join([source, compiler, *flags, processor()]).encode()).hexdigest()[:24]
-    for folder in _cache_folders():
-        library = folder / f"{key}.so"
-        try:
-            if not library.exists():
-                _compile(source, (compiler, *flags), library)
-            return ctypes.CDLL(str(library))
-        except (OSError, subprocess.CalledProcessError):
-            continue
-    return None
-
-
-def _cache_folders() -> list[Path]:
-    base = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
-    return [Path(base) / "feeddrive", Path(tempfile.gettempdir()) / f"feeddrive-{os.getuid()}"]
-
-
-def _compile(source: str, command: tuple[str, ...], library: Path) -> None:
-    library.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
-    with tempfile.TemporaryDirectory(dir=library.parent) as folder:
-        text, made = Path(folder) / "step.c", Path(folder) / "step.so"
-        text.write_text(source)
-        subprocess.run([*command, "-o", str(made), str(text), "-lm"], check=True, capture_output=True)
-        made.replace(library)
 
 
 class _Place(ctypes.Structure):

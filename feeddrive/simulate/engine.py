@@ -16,7 +16,7 @@ from feeddrive.errors import InputError
 from feeddrive.plant.chain import DistributedScrew
 from feeddrive.plant.equations import parameter_values
 from feeddrive.plant.plant import Plant
-from feeddrive.simulate.compiled import compiled_run, find_compiler
+from feeddrive.simulate.compiled import compiled_run
 from feeddrive.simulate.interpreted import interpreted_run
 from feeddrive.simulate.program import (
     CELL,
@@ -92,8 +92,7 @@ def machine_of(program: Program) -> Machine:
     Raises:
         InputError: tangents without a compiler.
     """
-    compiler = find_compiler()
-    made = compiled_run(program, compiler) if compiler is not None else None
+    made = compiled_run(program)
     if made is None and program.tangents:
         raise InputError("sensitivities need a C compiler", "", "install cc, gcc or clang, or name one in CC")
     return Machine(program, made if made is not None else interpreted_run(program))

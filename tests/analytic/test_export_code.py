@@ -13,6 +13,7 @@ import casadi as ca
 import numpy as np
 import pytest
 
+from feeddrive.compiler import find_compiler
 from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.export.c_source import source_text
 from feeddrive.export.casadi_file import casadi_function
@@ -22,7 +23,6 @@ from feeddrive.export.point import Point
 from feeddrive.export.writing import Form, write_export
 from feeddrive.plant.linear import ode_parameters, state_space, timed_ode
 from feeddrive.plant.plant import Plant
-from feeddrive.simulate.compiled import find_compiler
 from tests.analytic.export_cases import BENCH, EMPS, LEAD_ERROR, MANY, PLANTS, TESTBED
 from tests.analytic.test_effects import NEUTRAL
 

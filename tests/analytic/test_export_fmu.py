@@ -11,13 +11,13 @@ from xml.etree import ElementTree as Tree
 import numpy as np
 import pytest
 
+from feeddrive.compiler import find_compiler
 from feeddrive.export.fmu import binary_platform, fmu_bytes
 from feeddrive.export.fmu_units import exponents
 from feeddrive.export.model import model_of
 from feeddrive.export.point import Point
 from feeddrive.plant.linear import ode_parameters, state_names, state_space
 from feeddrive.plant.plant import Plant
-from feeddrive.simulate.compiled import find_compiler
 from feeddrive.simulate.held_torque import initial_state, simulate_torque
 from tests.analytic.export_cases import BENCH, PLANTS, TESTBED
 

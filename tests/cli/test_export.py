@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from feeddrive import compiler
 from feeddrive.cli.main import main
 from feeddrive.files import plants_folder
-from feeddrive.simulate import compiled
 
 
 def test_every_form_in_one_call(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -79,11 +79,11 @@ def test_without_a_compiler_the_fmu_says_so(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("FEEDDRIVE_COMPILER", "none")
-    compiled.find_compiler.cache_clear()
+    compiler.find_compiler.cache_clear()
     try:
         assert main(["export", "bench_axis", "--to", "fmu", "--out", str(tmp_path)]) == 0
     finally:
-        compiled.find_compiler.cache_clear()
+        compiler.find_compiler.cache_clear()
     assert "no C compiler was found, it holds sources alone" in capsys.readouterr().out
 
 

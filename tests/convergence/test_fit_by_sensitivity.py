@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from scipy.optimize import least_squares
 
+from feeddrive.compiler import find_compiler
 from feeddrive.effects.guide_friction import GuideFriction
 from feeddrive.effects.presliding import Presliding
 from feeddrive.effects.shaft_drag import NutDrag
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.sampled import SampledController
-from feeddrive.simulate.compiled import find_compiler
 from feeddrive.simulate.controlled import TorqueLoop, simulate_controlled
 from feeddrive.simulate.sensitivity import simulate_sensitivity
 from feeddrive.simulate.step_constants import SimulationError

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
+from feeddrive.compiler import find_compiler
 from feeddrive.effects.guide_friction import GuideFriction
 from feeddrive.effects.payload import Payload
 from feeddrive.effects.presliding import Presliding
@@ -16,7 +17,6 @@ from feeddrive.effects.shaft_drag import NutDrag
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.sampled import SampledController
-from feeddrive.simulate.compiled import find_compiler
 from feeddrive.simulate.controlled import TorqueLoop, simulate_controlled
 from feeddrive.simulate.sensitivity import simulate_sensitivity
 from tests.convergence.test_simulate import BENCH

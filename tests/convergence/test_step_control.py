@@ -8,6 +8,7 @@ import math
 import numpy as np
 import pytest
 
+from feeddrive.compiler import find_compiler
 from feeddrive.effects.backlash import Backlash
 from feeddrive.effects.base import Effect
 from feeddrive.effects.drive_delay import DriveDelay
@@ -15,7 +16,6 @@ from feeddrive.effects.friction_vs_position import FrictionVsPosition
 from feeddrive.effects.presliding import Presliding
 from feeddrive.effects.stribeck import Stribeck
 from feeddrive.plant.plant import Plant
-from feeddrive.simulate.compiled import find_compiler
 from feeddrive.simulate.driven import motor_motion, simulate_driven
 from feeddrive.simulate.held_torque import simulate_torque
 from feeddrive.simulate.step_constants import SimulationError
