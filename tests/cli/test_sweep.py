@@ -90,7 +90,8 @@ def test_killed_sweep_resumes_without_loss(tmp_path: Path) -> None:
     cut = json.loads((out / "sweep.json").read_text(encoding="utf-8"))
     units = sorted(int(path.stem) for path in out.glob("units/*.json"))
     everything = 1 + -(-40 // cut["unit_size"])
-    assert units == [*range(len(units))] and 2 < len(units) < everything
+    lost = sorted({*range(units[-1])} - {*units})  # handed to the other worker, but not begun when the end came
+    assert len(lost) <= 1 and 2 < len(units) < everything
     written = {path: path.stat().st_mtime_ns for path in out.glob("units/*.json")}
     done = subprocess.run([sys.executable, "-m", "feeddrive", *sweep, str(out)], capture_output=True, text=True)
     assert done.returncode == 0 and done.stderr == ""
