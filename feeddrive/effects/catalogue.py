@@ -23,6 +23,10 @@ from feeddrive.effects.presliding import Presliding
 from feeddrive.effects.shaft_drag import BearingDrag, NutDrag
 from feeddrive.effects.stiffness_deviation import StiffnessDeviation
 from feeddrive.effects.stribeck import Stribeck
+from feeddrive.effects.tabulated_force import TabulatedForce
+from feeddrive.effects.tabulated_friction import TabulatedFriction
+from feeddrive.effects.tabulated_torque import TabulatedTorque
+from feeddrive.effects.tabulated_travel import TabulatedTravel
 from feeddrive.effects.thermal.ambient_drift import AmbientDrift
 from feeddrive.effects.thermal.base import ThermalEffect
 from feeddrive.effects.thermal.bearing_heat import BearingHeat
@@ -67,6 +71,10 @@ EFFECTS: dict[str, type[Effect]] = {
         StiffnessDeviation,
         Payload,
         DriveDelay,
+        TabulatedForce,
+        TabulatedTorque,
+        TabulatedFriction,
+        TabulatedTravel,
     )
 }
 """Effect name to class: effects on motion and force."""

@@ -62,13 +62,14 @@ def forget_machines() -> None:
 
 
 def structure_key(plant: Plant) -> tuple[object, ...]:
-    """What makes two plants the same equations: chain; per effect its name, port, table lengths and parts left out."""
+    """What makes two plants the same equations: chain; per effect name, port, place, table lengths, parts left out."""
     return (plant.chain.key, *(_effect_key(effect) for effect in plant.effects))
 
 
 def _effect_key(effect: Effect) -> tuple[object, ...]:
     lengths = tuple(len(value) if isinstance(value, tuple) else 1 for value in effect.values.values())
-    return (effect.name, str(effect.port), effect.label, lengths, left_out(effect))
+    place = (str(effect.port), effect.place)
+    return (effect.name, place, effect.label, tuple(effect.values), lengths, left_out(effect))
 
 
 def left_out(effect: Effect) -> tuple[str, ...]:

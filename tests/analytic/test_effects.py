@@ -48,6 +48,10 @@ NEUTRAL: dict[str, dict[str, Value]] = {
     "viscous_warmup": {"share": 0.0, "time_constant": 100.0},
     "stiffness_deviation": {"factor": 1.0},
     "drive_delay": {"delay": 0.0},
+    "tabulated_force": {},
+    "tabulated_torque": {},
+    "tabulated_friction": {},
+    "tabulated_travel": {},
 }
 """Values at which an effect is not there. `presliding` has none: it is another shape, stiffer or softer."""
 
