@@ -28,9 +28,9 @@ WINDOW = 0.5
 
 
 def predictable_samples(plant: Plant, evidence: AxisEvidence) -> BoolArray:
-    """Samples that the plant can predict, shape (n,); all of them where nothing jumps."""
+    """Samples that the plant can predict, shape (n,); all of them where there is no free play."""
     n = len(evidence.recording)
-    if not plant.effects_of(TransmissionEffect):
+    if not any(isinstance(effect, TransmissionEffect) and effect.has_play for effect in plant.effects):
         return np.ones(n, dtype=bool)
     generator = np.random.default_rng(20240501)
     moved = evidence.motion.angle + TINY_ANGLE * generator.standard_normal(len(evidence.motion.angle))

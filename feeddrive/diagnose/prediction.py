@@ -130,8 +130,15 @@ def _simulated(plant: Plant, evidence: AxisEvidence) -> LoadMotion:
 
 def _load_side(plant: Plant) -> Plant:
     """The plant as the load side sees it: chain effects in the chain's values, nothing that acts at the motor alone."""
-    kept = tuple(e for e in plant.effects if not (_at_motor_alone(e) or isinstance(e, ChainEffect)))
-    return replace(plant, chain=replace(plant.chain, values=plant.chain_values()), effects=kept)
+    kept = tuple(e for e in plant.effects if not (_at_motor_alone(e) or _in_values(e)))
+    values = plant.chain_values()
+    chain = replace(plant.chain, values={key: values[key] for key in plant.chain.values})
+    return replace(plant, chain=chain, effects=kept)
+
+
+def _in_values(effect: Effect) -> bool:
+    """Whether the chain's values hold all that the effect does."""
+    return isinstance(effect, ChainEffect) and not effect.adds_coordinate
 
 
 def _at_motor_alone(effect: Effect) -> bool:

@@ -24,7 +24,10 @@ class Backlash(TransmissionEffect):
 
     name = "backlash"
     parameters = (Parameter("width", "m", 0.0, 5e-3, size=5e-6),)
-    signature = Signature(("table_position", "motor_torque"), "sign of the transmitted force", ("presliding",))
+    signature = Signature(
+        ("table_position", "motor_torque"), "sign of the transmitted force", ("presliding", "preload_loss")
+    )
+    has_play = True
 
     def free_play(self, p: Mapping[str, Expression]) -> Expression:
         """Free play [m]."""

@@ -25,6 +25,7 @@ class Kind(StrEnum):
     TRANSMISSION = "transmission"
     FRICTION = "friction"
     SOURCE = "source"
+    DRIVE = "drive"
     TIMING = "timing"
     SENSOR = "sensor"
     HEAT = "heat"
@@ -37,6 +38,7 @@ class Port(StrEnum):
     SCREW = "screw"
     TRANSMISSION = "transmission"
     TABLE = "table"
+    SENSOR = "sensor"
     THERMAL = "thermal"
 
 
@@ -194,9 +196,15 @@ class Effect:
 
 
 class ChainEffect(Effect):
-    """An effect that changes a value of the linear chain."""
+    """An effect that changes a value of the linear chain, or adds a coordinate to it.
+
+    Attributes:
+        adds_coordinate: whether the chain takes a further mass on the table from its values (see
+            `feeddrive.plant.table_mode`).
+    """
 
     kind = Kind.CHAIN
+    adds_coordinate: ClassVar[bool] = False
 
     def chain(self, chain: dict[str, Expression], p: Mapping[str, Expression]) -> dict[str, Expression]:
         """The chain's parameters [SI] with this effect in."""
@@ -217,13 +225,32 @@ class TravelEffect(Effect):
 
 
 class TransmissionEffect(Effect):
-    """An effect that fills a slot of the one spring law of the transmission."""
+    """An effect that fills a slot of the one spring law of the transmission.
+
+    Attributes:
+        has_play: whether it opens a gap, in which the motion can be chaotic.
+        stroke_keys: parameters that are the ends of the declared stroke where a plant file leaves them out.
+    """
 
     kind = Kind.TRANSMISSION
     ports = (Port.TRANSMISSION,)
+    has_play: ClassVar[bool] = False
+    stroke_keys: ClassVar[tuple[str, ...]] = ()
 
     def free_play(self, p: Mapping[str, Expression]) -> Expression:
         """Total free play [m] that it adds; gaps add."""
+        return 0.0
+
+    def stiffness_factor(self, position: Expression, p: Mapping[str, Expression]) -> Expression:
+        """Factor on the stiffness with the table at `position` [m]; factors multiply."""
+        return 1.0
+
+    def lost_force(self, force: Expression, p: Mapping[str, Expression]) -> Expression:
+        """What the spring's force [N] loses [N]; losses add."""
+        return 0.0
+
+    def lost_energy(self, force: Expression, p: Mapping[str, Expression]) -> Expression:
+        """Integral of the lost force over the force, from 0 [N^2]."""
         return 0.0
 
 
@@ -281,6 +308,20 @@ class SourceEffect(Effect):
 
     def force(self, motion: Motion, p: Mapping[str, Expression]) -> Expression:
         """Force [N] at the table or torque [N m] at a shaft; positive resists + motion."""
+        raise NotImplementedError
+
+
+class DriveEffect(Effect):
+    """An effect on what the motor makes of the torque that it is asked for.
+
+    It is neither a source, as it depends on the torque, nor timing: see `feeddrive.plant.motor_torque`.
+    """
+
+    kind = Kind.DRIVE
+    ports = (Port.MOTOR,)
+
+    def droop(self, p: Mapping[str, Expression]) -> Expression:
+        """Share of the torque that is lost, per square of the torque [1/(N m)^2]; those of several effects add."""
         raise NotImplementedError
 
 

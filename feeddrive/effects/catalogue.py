@@ -7,22 +7,27 @@ import difflib
 from feeddrive.effects.backlash import Backlash
 from feeddrive.effects.ball_pass_ripple import BallPassRipple
 from feeddrive.effects.base import Effect
+from feeddrive.effects.channel_delay import ChannelDelay
 from feeddrive.effects.constant_force import ConstantForce
 from feeddrive.effects.coulomb_asymmetry import CoulombAsymmetry
 from feeddrive.effects.drive_delay import DriveDelay
 from feeddrive.effects.friction_deviation import FrictionDeviation
 from feeddrive.effects.friction_vs_position import FrictionVsPosition
 from feeddrive.effects.guide_friction import GuideFriction
+from feeddrive.effects.inertia_deviation import InertiaDeviation
 from feeddrive.effects.lead_error_cumulative import LeadErrorCumulative
 from feeddrive.effects.lead_error_periodic import LeadErrorPeriodic
 from feeddrive.effects.load_dependent_friction import LoadDependentFriction
 from feeddrive.effects.nut_friction import NutFriction
 from feeddrive.effects.payload import Payload
 from feeddrive.effects.position_spring import PositionSpring
+from feeddrive.effects.preload_loss import PreloadLoss
 from feeddrive.effects.presliding import Presliding
 from feeddrive.effects.shaft_drag import BearingDrag, NutDrag
 from feeddrive.effects.stiffness_deviation import StiffnessDeviation
+from feeddrive.effects.stiffness_vs_position import StiffnessVsPosition
 from feeddrive.effects.stribeck import Stribeck
+from feeddrive.effects.structural_mode import StructuralMode
 from feeddrive.effects.tabulated_force import TabulatedForce
 from feeddrive.effects.tabulated_friction import TabulatedFriction
 from feeddrive.effects.tabulated_torque import TabulatedTorque
@@ -40,6 +45,7 @@ from feeddrive.effects.thermal.sensor_lag import SensorLag
 from feeddrive.effects.thermal.structure_growth import StructureGrowth
 from feeddrive.effects.thermal.viscosity_temperature import ViscosityTemperature
 from feeddrive.effects.thermal_growth import ThermalGrowth
+from feeddrive.effects.torque_constant_droop import TorqueConstantDroop
 from feeddrive.effects.torque_ripple import TorqueRipple
 from feeddrive.effects.viscous_asymmetry import ViscousAsymmetry
 from feeddrive.effects.viscous_warmup import ViscousWarmup
@@ -62,6 +68,7 @@ EFFECTS: dict[str, type[Effect]] = {
         ViscousWarmup,
         TorqueRipple,
         BallPassRipple,
+        TorqueConstantDroop,
         ConstantForce,
         PositionSpring,
         Backlash,
@@ -69,8 +76,13 @@ EFFECTS: dict[str, type[Effect]] = {
         LeadErrorCumulative,
         ThermalGrowth,
         StiffnessDeviation,
+        StiffnessVsPosition,
+        PreloadLoss,
         Payload,
+        InertiaDeviation,
+        StructuralMode,
         DriveDelay,
+        ChannelDelay,
         TabulatedForce,
         TabulatedTorque,
         TabulatedFriction,

@@ -6,7 +6,8 @@ import math
 
 import casadi as ca
 
-from feeddrive.effects.base import BristleEffect, TimingEffect, TransmissionEffect
+from feeddrive.effects.base import BristleEffect, Kind, TimingEffect, TransmissionEffect
+from feeddrive.effects.channel_delay import ChannelDelay
 from feeddrive.plant.linear import timed_ode
 from feeddrive.plant.plant import Plant
 from feeddrive.quantity import format_quantity
@@ -16,7 +17,7 @@ def included(plant: Plant) -> tuple[str, ...]:
     """What the equations of motion hold."""
     follows = ", following the table position" if plant.chain.varies else ""
     lines = [f"inertias, springs and dampers of the structure {plant.chain.structure}{follows}"]
-    lines += [f"effect {e.label} at port {e.port}" for e in plant.effects if not isinstance(e, TimingEffect)]
+    lines += [f"effect {e.label} at port {e.port}" for e in plant.effects if e.kind != Kind.TIMING]
     return tuple(lines)
 
 
@@ -29,6 +30,9 @@ def left_out(plant: Plant) -> tuple[str, ...]:
             lines.append(
                 f"{effect.label}: the motor torque acts {format_quantity(delay, 's')} late; shift the input so"
             )
+        if isinstance(effect, ChannelDelay):
+            late = format_quantity(_number(effect.values["delay"]), "s")
+            lines.append(f"{effect.label}: {effect.place} is recorded {late} late; shift what is recorded so")
     if math.isfinite(plant.torque_limit):
         limit = format_quantity(plant.torque_limit, "N m")
         lines.append(f"the motor's torque limit of {limit}; limit the input")
@@ -43,8 +47,11 @@ def left_out(plant: Plant) -> tuple[str, ...]:
 def linear_notes(plant: Plant) -> tuple[str, ...]:
     """What linearising leaves out besides."""
     lines = ["every effect acts by its slope at the point: friction by the slope of sliding, not of sticking"]
-    if plant.effects_of(TransmissionEffect):
+    slots = [effect for effect in plant.effects if isinstance(effect, TransmissionEffect)]
+    if any(effect.has_play for effect in slots):
         lines.append("free play: linear on the flank that bears the load, without the gap")
+    if any(not effect.has_play for effect in slots):
+        lines.append("the spring of the transmission acts by its stiffness at the transmitted force and the position")
     if plant.effects_of(BristleEffect):
         lines.append("bristle: sliding, about its steady deflection; v=0 is the sticking one")
     if changes_with_time(plant):

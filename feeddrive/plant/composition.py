@@ -46,7 +46,8 @@ def refuse_what_misses_values(effects: Sequence[Effect], values: Mapping[str, fl
 def _refuse_what_needs_springs(effects: Sequence[Effect], where: str) -> None:
     mend = 'use structure = "three_inertias" with the stiffness of the transmission'
     for effect in effects:
-        if isinstance(effect, TransmissionEffect):
+        adds = isinstance(effect, ChainEffect) and effect.adds_coordinate
+        if isinstance(effect, TransmissionEffect) or adds:
             raise InputError(f"{effect.name} needs an elastic transmission, the structure is rigid", where, mend)
         if effect.reads_force:
             what = f"{effect.name} reads the force that the nut transmits, which a rigid structure does not tell"

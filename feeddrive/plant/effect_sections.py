@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
-from feeddrive.effects.base import Effect
+from feeddrive.effects.base import Effect, Port, TransmissionEffect
 from feeddrive.effects.catalogue import EFFECTS, THERMAL_EFFECTS
 from feeddrive.errors import InputError
 from feeddrive.plant.entries import Table, nearest
+from feeddrive.plant.stroke import read_stroke
 
 
 def read_effects(top: Table, known: Mapping[str, type[Effect]] = EFFECTS) -> tuple[Effect, ...]:
@@ -28,7 +29,7 @@ def read_effects(top: Table, known: Mapping[str, type[Effect]] = EFFECTS) -> tup
             continue
         label = next_label(name, effects)
         effects.append(
-            _effect(Table(table.entries, f"{table.where} ({name})", table.origins, table.source), label, known)
+            _effect(Table(table.entries, f"{table.where} ({name})", table.origins, table.source), label, known, top)
         )
     return tuple(effects)
 
@@ -45,28 +46,46 @@ def next_label(name: str, before: Sequence[Effect]) -> str:
     return name if count == 0 else f"{name}_{count + 1}"
 
 
-def _effect(table: Table, label: str, catalogue: Mapping[str, type[Effect]]) -> Effect:
+def _effect(table: Table, label: str, catalogue: Mapping[str, type[Effect]], top: Table) -> Effect:
     name = table.entries["name"]
     if name not in catalogue:
         raise InputError(_unknown(name), table.where, nearest(name, catalogue))
     effect = catalogue[name]
     keys = [parameter.key for parameter in effect.parameters]
+    along = _along_stroke(effect, table, top)
     table.refuse_unknown(("name", "port", "source", *([effect.place_key] if effect.place_key else []), *keys))
     values = {
         parameter.key: (table.quantities if parameter.table else table.quantity)(
             parameter.key, parameter.unit, f"{label}.{parameter.key}"
         )
         for parameter in effect.parameters
-        if parameter.key in table.entries or parameter.default is None
+        if parameter.key in table.entries or (parameter.default is None and parameter.key not in along)
     }
-    port = table.choice("port", effect.ports, effect.ports[0])
+    values |= {key: end for key, end in along.items() if key not in table.entries}
+    port = Port(table.choice("port", effect.ports)) if "port" in table.entries else None
     place = table.text(effect.place_key) if effect.place_key else ""
     try:
-        made = effect.of(next(known for known in effect.ports if known == port), place, **values)
+        made = effect.of(port, place, **values)
     except InputError as error:
         raise InputError(error.what, table.where, error.mend) from None
     _refuse_bad_curve(made, table.where)
     return made
+
+
+def _along_stroke(effect: type[Effect], table: Table, top: Table) -> dict[str, float]:
+    """Ends of the declared stroke [m] for an effect that counts along it; none for others.
+
+    Raises:
+        InputError: the effect leaves them out, and no stroke is declared.
+    """
+    keys = effect.stroke_keys if issubclass(effect, TransmissionEffect) else ()
+    if not keys or all(key in table.entries for key in keys):
+        return {}
+    stroke = read_stroke(top)
+    if stroke is None:
+        mend = f'write {keys[0]} and {keys[1]} here, or stroke = ["0 mm", "500 mm"] in [table]'
+        raise InputError("acts along the stroke, which is not declared", table.where, mend)
+    return dict(zip(keys, stroke, strict=True))
 
 
 def _unknown(name: str) -> str:

@@ -125,6 +125,11 @@ class Chain:
         """Whether the screw can move against the motor and the table against the screw."""
         return len(self.coordinates) > 1
 
+    @property
+    def without_modes(self) -> Chain:
+        """The chain without further masses on its table."""
+        return self
+
     def refuse_off_screw(self, position: float, where: str) -> None:
         """Refuse a table position [m] at which the nut would not be on the screw; any other chain takes all.
 

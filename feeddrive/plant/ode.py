@@ -2,7 +2,7 @@
 
     x' = f(t, x, u, p),  y = g(t, x, p)
 
-x: coordinates, their rates, bristle deflections. u: motor torque [N m], cutting force on the table, along + motion [N].
+x: coordinates, their rates, bristle deflections. u: motor torque as asked for [N m], cutting force on the table, along + motion [N].
 y: motor angle [rad], motor speed [rad/s], table position [m], table velocity [m/s].
 """
 
@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import casadi as ca
 
+from feeddrive.effects.structural_mode import StructuralMode
 from feeddrive.plant.chain import symbolic
 from feeddrive.plant.equations import (
     bristle_count,
@@ -19,6 +20,7 @@ from feeddrive.plant.equations import (
     parameter_values,
     travel_deviation,
 )
+from feeddrive.plant.motor_torque import acting_torque
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.symbols import Symbols
 from feeddrive.typing import Expression
@@ -38,7 +40,7 @@ def state_names(plant: Plant) -> tuple[str, ...]:
 
 
 def _state_pair(coordinate: str) -> tuple[str, str]:
-    if coordinate in _ALONG:
+    if coordinate in _ALONG or coordinate.startswith(StructuralMode.name):
         return f"{coordinate}_position", f"{coordinate}_velocity"
     return f"{coordinate}_angle", f"{coordinate}_speed"
 
@@ -78,7 +80,8 @@ def timed_ode(plant: Plant) -> ca.Function:
     mass, damping, stiffness = (
         symbolic(m(p, at)) for m in (plant.chain.mass, plant.chain.damping, plant.chain.stiffness)
     )
-    pushed = motor.T * u[0] + table.T * u[1] + forces.on_coordinates - (damping @ rate + stiffness @ q)
+    acting = acting_torque(plant, symbols, u[0])
+    pushed = motor.T * acting + table.T * u[1] + forces.on_coordinates - (damping @ rate + stiffness @ q)
     acceleration = ca.inv_minor(ca.sparsify(mass)) @ pushed
     xdot = ca.vertcat(rate, acceleration, forces.bristle_rates)
     shown = at if plant.chain.elastic else at + _rigid_deviation(plant, symbols, at, time)

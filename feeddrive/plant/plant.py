@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 from feeddrive.effects.base import ChainEffect, Effect, TravelEffect, Value
 from feeddrive.parts.screw_drive import BallScrewDrive
 from feeddrive.plant.chain import Chain
 from feeddrive.plant.composition import refuse_what_cannot_compose, refuse_what_misses_values
+from feeddrive.plant.table_mode import with_modes
 
 
 @dataclass(frozen=True)
@@ -41,12 +43,28 @@ class PositionVelocityController:
         velocity_gain: K_vel [V s/m], or in whatever unit the output has.
         output_limit: limit of u [V].
         torque_per_output: motor torque per output [N m/V].
+        velocity_samples: v is the difference of the position over so many samples, which reads it half of them late;
+            0 for the velocity itself.
     """
 
     position_gain: float
     velocity_gain: float
     output_limit: float
     torque_per_output: float
+    velocity_samples: int = 0
+
+
+@dataclass(frozen=True)
+class DeclaredCascade:
+    """The table of a drive's cascade, with the keys of a controller file; what runs it reads it.
+
+    Attributes:
+        entries: keys to what is written.
+        where: file and table, for messages.
+    """
+
+    entries: Mapping[str, Any]
+    where: str
 
 
 @dataclass(frozen=True)
@@ -55,7 +73,7 @@ class Plant:
 
     Attributes:
         name: of the machine.
-        chain: linear chain with its values, SI.
+        chain: linear chain with its values, SI; further masses on the table are taken from the effects.
         effects: declared friction and whatever was found, each with its values.
         torque_limit: of the motor [N m]; infinite if not declared.
         sensors: declared sensors.
@@ -71,7 +89,7 @@ class Plant:
     effects: tuple[Effect, ...] = ()
     torque_limit: float = float("inf")
     sensors: tuple[Sensor, ...] = ()
-    controller: PositionVelocityController | None = None
+    controller: PositionVelocityController | DeclaredCascade | None = None
     stroke: tuple[float, float] | None = None
     drive: BallScrewDrive | None = None
     data: Mapping[str, Datum] = field(default_factory=dict)
@@ -80,7 +98,10 @@ class Plant:
     def __post_init__(self) -> None:
         refuse_what_cannot_compose(self.effects, self.chain.elastic, self.name)
         refuse_what_misses_values(self.effects, self.chain.values, self.chain.structure)
-        object.__setattr__(self, "effects", _labelled(self.effects))
+        effects = _labelled(self.effects)
+        modes = [effect.label for effect in effects if isinstance(effect, ChainEffect) and effect.adds_coordinate]
+        object.__setattr__(self, "effects", effects)
+        object.__setattr__(self, "chain", with_modes(self.chain, modes))
 
     def with_effects(self, *effects: Effect) -> Plant:
         """The plant with further effects.

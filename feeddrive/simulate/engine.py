@@ -161,9 +161,10 @@ def _task(program: Program, plant: Plant, feed: Feed) -> Task:
 
 def _cells(plant: Plant) -> tuple[int, int]:
     """First cell and number of cells of the positions that the chain allows; one where it does not vary."""
-    if not isinstance(plant.chain, DistributedScrew):
+    chain = plant.chain.without_modes
+    if not isinstance(chain, DistributedScrew):
         return 0, 1
-    least, greatest = plant.chain.positions_on_screw()
+    least, greatest = chain.positions_on_screw()
     first, last = math.floor(least / CELL) + 1, math.ceil(greatest / CELL) - 1  # references inside, where masses are
     return first, last - first + 1
 
@@ -230,7 +231,7 @@ def _refuse_failure(plant: Plant, feed: Feed, stop: Stop, seen: FloatArray) -> N
 
 def _steepest(plant: Plant) -> str:
     """The effect that is most likely the cause: a bristle, a free play, else the friction."""
-    for name in ("presliding", "backlash", "stribeck"):
+    for name in ("presliding", "backlash", "preload_loss", "stribeck"):
         if any(effect.name == name for effect in plant.effects):
             return name
     return plant.effects[0].name if plant.effects else "the chain"

@@ -47,6 +47,8 @@ NEUTRAL: dict[str, dict[str, Value]] = {
     "thermal_growth": {"strain": 0.0, "time_constant": 100.0},
     "viscous_warmup": {"share": 0.0, "time_constant": 100.0},
     "stiffness_deviation": {"factor": 1.0},
+    "stiffness_vs_position": {"share_over_stroke": 0.0, "low": 0.0, "high": 0.4},
+    "preload_loss": {"ratio": 1.0, "force": 100.0},
     "drive_delay": {"delay": 0.0},
     "tabulated_force": {},
     "tabulated_torque": {},
