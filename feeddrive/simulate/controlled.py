@@ -25,6 +25,7 @@ import numpy as np
 from feeddrive.errors import InputError
 from feeddrive.plant.equations import bristle_count, parameter_symbols
 from feeddrive.plant.linear import state_names
+from feeddrive.plant.motor_torque import acting_torque, warn_beyond_top
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.sampled import MEASUREMENTS, SampledController
 from feeddrive.simulate.engine import Feed, Machine, machine_of, rested, run_machine
@@ -89,7 +90,7 @@ class ControlledRun:
     Attributes:
         time: of the ticks [s].
         command: torque asked for by the controller, within the limit [N m].
-        torque: of the motor at the tick [N m].
+        torque: of the motor at the tick, constant times current [N m].
         motor_angle, motor_speed: [rad, rad/s].
         table_position, table_velocity: [m, m/s].
         signals: of the controller, by its names.
@@ -208,7 +209,8 @@ def controlled_machine(
     memory, own = ca.SX.sym("memory", layout.memory), ca.SX.sym("own", kept + past)
     fed = ca.SX.sym("fed", references + 3)
     settings = ca.SX.sym("settings", function.size1_in(4) + len(key.quantised) + 1)
-    values = parameter_symbols(plant).vector
+    symbols = parameter_symbols(plant)
+    values = symbols.vector
     readings = readings_of(plant, layout)(memory, fed[references + 2], values)
     measured = _measured(key, readings, settings[function.size1_in(4) :])
     after, asked, signals = function(
@@ -217,7 +219,9 @@ def controlled_machine(
     limit = settings[settings.numel() - 1]
     command = ca.fmin(ca.fmax(asked, -limit), limit)
     torques = ca.vertcat(own[kept:], command)  # oldest first
-    held = ca.vertcat(*[ca.vertcat(torques[i], fed[references]) for i in range(parts)])
+    asked_for = [torques[i] for i in range(parts)]
+    given = asked_for if lagging else [acting_torque(plant, symbols, torque) for torque in asked_for]
+    held = ca.vertcat(*[ca.vertcat(torque, fed[references]) for torque in given])
     acting = memory[layout.states - 1] if lagging else torques[0]
     states = ca.vertcat(memory[: 2 * layout.coordinates], memory[layout.states : layout.states + layout.bristles])
     seen = ca.vertcat(command, acting, readings, states, signals)
@@ -281,6 +285,7 @@ def told_run(
     count = 2 * len(plant.chain.coordinates) + bristle_count(plant)
     signals = dict(zip(controller.signals, np.ascontiguousarray(seen[:, 6 + count :].T), strict=True))
     command, torque, angle, speed, position, velocity = np.ascontiguousarray(seen[:, :6].T)
+    warn_beyond_top(plant, torque)
     states = seen[:, 6 : 6 + count]
     return ControlledRun(
         time, command, torque, angle, speed, position, velocity, signals, states, names, end, report

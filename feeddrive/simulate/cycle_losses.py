@@ -24,6 +24,7 @@ from feeddrive.effects.base import FrictionEffect, Motion, Port, SourceEffect
 from feeddrive.effects.shaft_drag import BearingDrag
 from feeddrive.plant.equations import bristle_count, chain_symbols, parameter_symbols, parameter_values
 from feeddrive.plant.friction_law import resisting_force
+from feeddrive.plant.motor_torque import acting_torques
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.symbols import Symbols
 from feeddrive.plant.transmission_law import nut_force
@@ -85,7 +86,7 @@ def cycle_losses(plant: Plant, run: ControlledRun, loop: TorqueLoop, load: Float
     works = {name: _integral(row, step) for name, row in zip(_NAMES, table, strict=False)}
     pushed = 0.0 if load is None else -_integral(load * run.table_velocity, step)
     torque = mean_torque(plant, run, loop)
-    work, squared = float(torque @ np.diff(run.motor_angle)), float(torque**2 @ step)
+    work, squared = float(acting_torques(plant, torque) @ np.diff(run.motor_angle)), float(torque**2 @ step)
     return CycleLosses(
         float(np.sum(step)), work, works["nut"], works["bearings"], works["guide"], works["motor"], works["damping"],
         works["sources"], pushed, float(table[-1, -1] - table[-1, 0]), squared,
@@ -93,7 +94,7 @@ def cycle_losses(plant: Plant, run: ControlledRun, loop: TorqueLoop, load: Float
 
 
 def mean_torque(plant: Plant, run: ControlledRun, loop: TorqueLoop) -> FloatArray:
-    """Motor torque averaged from tick to tick, (n - 1,) [N m].
+    """Motor torque, constant times current, averaged from tick to tick, (n - 1,) [N m].
 
     The command acts late, in parts of a tick, and the lag takes its share of every change: lag ΔT = ∫ (u - T) dt.
     Before the first tick the first command is taken to have acted, as it has at rest.

@@ -10,6 +10,7 @@ import numpy as np
 
 from feeddrive.errors import InputError
 from feeddrive.plant.equations import chain_symbols, parameter_symbols, parameter_values, travel_deviation
+from feeddrive.plant.motor_torque import acting_torque, warn_beyond_top
 from feeddrive.plant.plant import Plant
 from feeddrive.simulate.engine import Feed, Machine, machine_of, rested, run_machine
 from feeddrive.simulate.program import TOLERANCE, Program, StepReport
@@ -120,6 +121,7 @@ def run_samples(
     feed = Feed(np.column_stack([fed, time - time[0]]), sample * np.array(timing.parts), settings)
     outcome = run_machine(machine, plant, feed, rested(machine, start, own), tolerance)
     output, torque, angle, _, position, velocity = np.ascontiguousarray(outcome.seen.T)
+    warn_beyond_top(plant, torque)
     return SampledRun(time, output, torque, angle, position, velocity, outcome.report)
 
 
@@ -160,11 +162,12 @@ def torque_program(plant: Plant, command: Command, settings: int, late: int, par
     step = torque_step(plant)
     past = late + parts - 1
     memory, own, fed = ca.SX.sym("memory", step.layout.memory), ca.SX.sym("own", past), ca.SX.sym("fed", 2)
-    chosen, values = ca.SX.sym("settings", settings), parameter_symbols(plant).vector
+    chosen, symbols = ca.SX.sym("settings", settings), parameter_symbols(plant)
+    values = symbols.vector
     readings = readings_of(plant, step.layout)(memory, fed[1], values)
     output, torque = command(fed[0], readings, chosen)
     torques = ca.vertcat(own, torque)  # oldest first
-    held_inputs = ca.vertcat(*[ca.vertcat(torques[i], 0) for i in range(parts)])
+    held_inputs = ca.vertcat(*[ca.vertcat(acting_torque(plant, symbols, torques[i]), 0) for i in range(parts)])
     arguments = [memory, own, fed, chosen, values]
     seen = ca.vertcat(output, torque, readings)
     after_own = torques[1:] if past else own

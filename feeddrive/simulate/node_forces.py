@@ -31,11 +31,13 @@ class Pull:
         torque: of the motor [N m]; where the motor is driven, its acceleration [rad/s^2].
         force: on the table [N].
         driven: which of the two.
+        beyond: torque that acts less `torque`, which the linear part passes on [N m]; None where they are the same.
     """
 
     torque: Expression
     force: Expression
     driven: bool
+    beyond: Expression | None = None
 
 
 def node_forces(
@@ -54,9 +56,11 @@ def node_forces(
         pull: what moves the chain.
     """
     found = effect_forces(plant, symbols, q, rate, z, time, reference)
+    chain, p = plant.chain, chain_symbols(plant, symbols)
+    if pull.beyond is not None:
+        found = replace(found, on_coordinates=found.on_coordinates + ca.vertcat(*chain.motor(p)) * pull.beyond)
     if not plant.chain.varies:
         return found
-    chain, p = plant.chain, chain_symbols(plant, symbols)
     x = ca.mtimes(ca.horzcat(*chain.table(p)), q)
     here, there = (ca.sparsify(symbolic(chain.mass(p, at))) for at in (x, reference))
     damping, stiffness = (ca.sparsify(symbolic(matrix(p, reference))) for matrix in (chain.damping, chain.stiffness))

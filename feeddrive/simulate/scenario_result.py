@@ -17,7 +17,10 @@ SERIES: dict[str, str] = {
     **{name: unit for name, unit in CHANNEL_UNITS.items() if name not in ("time", "motor_current", "screw_speed")},
     "speed_command": "rad/s",
 }
-"""Series of a run and their SI units. Torque and force are means over the sample that follows, others readings."""
+"""Series of a run and their SI units."""
+
+MEANS = ("motor_torque", "cutting_force")
+"""Series that are means over the sample that follows; the others are readings."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +46,7 @@ def recorded(scenario: Scenario, time: FloatArray, series: Mapping[str, FloatArr
     Args:
         scenario: says which channels, noise and seed; each channel has a random sequence of its own.
         time: [s], shape (n,).
-        series: exact, shape (n,).
+        series: exact, shape (n,); late channels as they are recorded.
 
     Raises:
         InputError: a noise so large that numbers overflow.

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import io
 import time as clock
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -19,7 +19,6 @@ from feeddrive.files import write_bytes_atomically
 from feeddrive.servo.cascade_function import cascade_controller
 from feeddrive.simulate.acting_torque import ActingTorque
 from feeddrive.simulate.controlled import (
-    ControlledRun,
     ControlledState,
     TorqueLoop,
     resting_state,
@@ -27,8 +26,9 @@ from feeddrive.simulate.controlled import (
     state_from,
 )
 from feeddrive.simulate.cutting_force import held
+from feeddrive.simulate.lateness import LateChannels
 from feeddrive.simulate.scenario import Place, Scenario
-from feeddrive.simulate.scenario_result import SERIES, ScenarioResult, recorded
+from feeddrive.simulate.scenario_result import MEANS, SERIES, ScenarioResult, recorded
 from feeddrive.typing import FloatArray
 
 STRETCH = 40_000
@@ -46,11 +46,15 @@ Progress = Callable[[float], None]
 
 @dataclass(frozen=True)
 class _Done:
-    """A run so far: state of the engine, torque under way, rows of `SERIES`, one per sample."""
+    """A run so far: state of the engine, torque under way, rows of `_columns`, one per sample, what late channels hold.
+
+    late: None at the start.
+    """
 
     state: ControlledState
     torque: ActingTorque
     rows: tuple[FloatArray, ...]
+    late: LateChannels | None = None
 
 
 def run_scenario(
@@ -117,8 +121,16 @@ def _further(scenario: Scenario, done: _Done, count: int) -> _Done:
     controller = cascade_controller(scenario.cascade)
     run = simulate_controlled(scenario.plant, controller, reference, load, _torque_loop(scenario), done.state)
     means, under_way = done.torque.means(scenario.cascade, run.command)
-    rows = _rows(scenario, run, motion.position, means, load)
-    return _Done(run.end, under_way, (*done.rows, rows))
+    readings = {
+        "motor_torque": means, "motor_angle": run.motor_angle, "motor_speed": run.motor_speed,
+        "table_position": run.table_position, "table_velocity": run.table_velocity,
+    }  # fmt: skip
+    at_start = {name: float(values[0]) for name, values in readings.items()}
+    late, held_on = (done.late or LateChannels.at_rest(scenario.plant, tick, at_start)).read(readings)
+    series = {**readings, "setpoint": motion.position, "cutting_force": load}
+    series["speed_command"] = run.signals["speed_command"]
+    rows = _rows(scenario, series, late)
+    return _Done(run.end, under_way, (*done.rows, rows), held_on)
 
 
 def _excitations(scenario: Scenario, time: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -132,29 +144,26 @@ def _excitations(scenario: Scenario, time: FloatArray) -> tuple[FloatArray, Floa
     return (values, nothing) if given.place is Place.SPEED else (nothing, values)
 
 
-def _rows(
-    scenario: Scenario, run: ControlledRun, setpoint: FloatArray, torque: FloatArray, load: FloatArray
-) -> FloatArray:
-    """Samples of `SERIES` of a stretch, shape (samples, series)."""
+def _columns(scenario: Scenario) -> tuple[str, ...]:
+    """Names of what is kept per sample: `SERIES`, then the channels as they are recorded late."""
+    return (*SERIES, *LateChannels.at_rest(scenario.plant, scenario.cascade.sample_time, {}).delays)
+
+
+def _rows(scenario: Scenario, series: Mapping[str, FloatArray], late: Mapping[str, FloatArray]) -> FloatArray:
+    """Samples of `_columns` of a stretch, shape (samples, columns); `series` and `late` per tick."""
     divider = scenario.recorder.divider
-    series = {
-        "setpoint": setpoint[::divider],
-        "motor_torque": torque.reshape(-1, divider).mean(axis=1),
-        "motor_angle": run.motor_angle[::divider],
-        "motor_speed": run.motor_speed[::divider],
-        "table_position": run.table_position[::divider],
-        "table_velocity": run.table_velocity[::divider],
-        "cutting_force": load.reshape(-1, divider).mean(axis=1),
-        "speed_command": run.signals["speed_command"][::divider],
-    }
-    return np.column_stack([series[name] for name in SERIES])
+    pairs = [*((name, series[name]) for name in SERIES), *late.items()]
+    return np.column_stack(
+        [values.reshape(-1, divider).mean(axis=1) if name in MEANS else values[::divider] for name, values in pairs]
+    )
 
 
 def _finished(scenario: Scenario, done: _Done) -> ScenarioResult:
     table = np.ascontiguousarray(np.vstack(done.rows).T)
     time = np.arange(table.shape[1], dtype=np.float64) * scenario.sample_time
-    series = dict(zip(SERIES, table, strict=True))
-    return ScenarioResult(scenario, recorded(scenario, time, series), time, series)
+    series = dict(zip(SERIES, table, strict=False))
+    late = dict(zip(_columns(scenario)[len(SERIES) :], table[len(SERIES) :], strict=True))
+    return ScenarioResult(scenario, recorded(scenario, time, {**series, **late}), time, series)
 
 
 def write_checkpoint(scenario: Scenario, done: _Done, path: Path) -> None:
@@ -164,9 +173,10 @@ def write_checkpoint(scenario: Scenario, done: _Done, path: Path) -> None:
         InputError: the file cannot be written.
     """
     buffer = io.BytesIO()
-    rows = np.vstack(done.rows) if done.rows else np.zeros((0, len(SERIES)))
+    rows = np.vstack(done.rows) if done.rows else np.zeros((0, len(_columns(scenario))))
     digest = np.frombuffer(scenario.digest.encode(), dtype=np.uint8)
-    np.savez(buffer, digest=digest, state=done.state.vector, torque=done.torque.state, rows=rows)
+    late = done.late.vector if done.late is not None else np.zeros(0)
+    np.savez(buffer, digest=digest, state=done.state.vector, torque=done.torque.state, rows=rows, late=late)
     write_bytes_atomically(path, buffer.getvalue())
 
 
@@ -176,9 +186,12 @@ def _resumed(scenario: Scenario, path: Path | None) -> _Done | None:
         return None
     try:
         with np.load(path, allow_pickle=False) as file:
-            digest, state, torque, rows = (file[name] for name in ("digest", "state", "torque", "rows"))
+            digest, state, torque, rows, late = (file[name] for name in ("digest", "state", "torque", "rows", "late"))
     except (ValueError, KeyError, OSError, EOFError):
         raise InputError("is not a checkpoint", str(path), "remove it to start anew") from None
     if bytes(digest).decode(errors="replace") != scenario.digest:
         return None
-    return _Done(state_from(state), ActingTorque(torque), (rows,))
+    if not len(rows):
+        return None  # stopped before anything was done
+    held_on = LateChannels.at_rest(scenario.plant, scenario.cascade.sample_time, {}).resumed(late)
+    return _Done(state_from(state), ActingTorque(torque), (rows,), held_on)

@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feeddrive.effects.base import ChainEffect, TimingEffect
+from feeddrive.effects.channel_delay import ChannelDelay
 from feeddrive.errors import InputError
 from feeddrive.plant.equations import parameter_symbols
 from feeddrive.plant.plant import Plant
@@ -61,8 +62,9 @@ SERIES = ("command", "torque", "motor_angle", "motor_speed", "table_position", "
 def simulate_sensitivity(
     plant: Plant, controller: SampledController, reference: FloatArray, parameters: Sequence[str],
     load: FloatArray | None = None, torque_loop: TorqueLoop | None = None, tolerance: float = TOLERANCE,
+    start: ControlledState | None = None,
 ) -> Sensitivity:  # fmt: skip
-    """A controlled run from rest at 0 and its derivatives.
+    """A controlled run and its derivatives.
 
     Args:
         plant: with its values; a value of 0 that may be left out is left out, and has no derivative.
@@ -73,6 +75,7 @@ def simulate_sensitivity(
         load: cutting force on the table [N], shape (n,).
         torque_loop: lag and dead time of the motor torque.
         tolerance: error of the table position that a step may make [m].
+        start: as for `simulate_controlled`; it is taken not to depend on the parameters. At rest at 0 if None.
 
     Returns:
         The run and its derivatives.
@@ -84,12 +87,12 @@ def simulate_sensitivity(
     loop = torque_loop or TorqueLoop()
     machine, timing = machine_for(plant, controller, loop, {}, tangents=True)
     directions = _Directions(plant, controller, loop, tuple(parameters), machine.program)
-    begin = resting_state(plant, controller, loop)
-    fed = fed_of(plant, controller, reference, load, 0)
+    begin = start or resting_state(plant, controller, loop)
+    fed = fed_of(plant, controller, reference, load, begin.tick)
     settings = np.concatenate([controller.parameters, [plant.torque_limit]])
     feed = Feed(fed, controller.sample_time * np.array(timing.parts), settings, loop.lag)
     outcome = run_machine(machine, plant, feed, begin.position, tolerance, directions)
-    end = ControlledState(len(fed), outcome.position)
+    end = ControlledState(begin.tick + len(fed), outcome.position)
     run = told_run(plant, controller, fed[:, -1], outcome.seen, end, outcome.report)
     seen = directions.tangents.seen
     changes = {
@@ -113,7 +116,7 @@ class _Directions:
             self._refuse_unknown(name)
 
     def begun(self, task: Task) -> Tangents:
-        """No change at the start: the axis rests at 0 whatever the values are."""
+        """No change at the start: it is what it is whatever the values are."""
         sizes, d = self.program.sizes, len(self.names)
         carried = sizes["N_STATES"] + sizes["N_BRISTLES"]
         settings, values = np.zeros((d, sizes["N_SETTINGS"])), np.zeros((d, sizes["N_VALUES"]))
@@ -177,6 +180,9 @@ class _Directions:
         delays = tuple(f"{e.label}." for e in self.plant.effects if isinstance(e, TimingEffect))
         if delays and name.startswith(delays):
             raise InputError(f"no derivative with {name}", self.plant.name, "a delay moves switches; vary it by hand")
+        if name.startswith(tuple(f"{e.label}." for e in self.plant.effects_of(ChannelDelay))):
+            mend = "shift the recording; what moves is the same"
+            raise InputError(f"no derivative with {name}, which acts on the recording alone", self.plant.name, mend)
         if name.startswith(CONTROLLER):
             if not 0 <= self._index(name) < self.count:
                 raise InputError(f"unknown parameter {name!r}", self.plant.name, f"count from 0 to {self.count - 1}")

@@ -20,6 +20,7 @@ from dataclasses import dataclass
 
 import casadi as ca
 
+from feeddrive.effects.base import DriveEffect
 from feeddrive.plant.equations import (
     Forces,
     Symbols,
@@ -27,6 +28,7 @@ from feeddrive.plant.equations import (
     chain_symbols,
     parameter_symbols,
 )
+from feeddrive.plant.motor_torque import acting_torque
 from feeddrive.plant.plant import Plant
 from feeddrive.simulate.algebra import cubic, newton_correction, part
 from feeddrive.simulate.node_forces import Pull, node_forces
@@ -74,6 +76,9 @@ def driven_step(plant: Plant) -> StepModel:
 def torque_step(plant: Plant, lagging: bool = False) -> StepModel:
     """The step of the whole plant with motor torque [N m] and cutting force [N] held over the step.
 
+    A torque that lags is the one asked for, and what it makes the motor do is worked out here; one that does not lag is
+    held as it acts (see `feeddrive.plant.motor_torque`).
+
     Args:
         plant: whose structure counts.
         lagging: whether the motor torque follows the held one with a time constant.
@@ -90,12 +95,18 @@ def _build(plant: Plant, driven: bool, lagging: bool) -> StepModel:
 def _layout(plant: Plant, symbols: Symbols, driven: bool, lagging: bool) -> Layout:
     n = len(plant.chain.coordinates)
     q, rate, z = ca.SX.sym("q", n), ca.SX.sym("rate", n), ca.SX.sym("z", bristle_count(plant))
-    pull = Pull(ca.SX.sym("torque"), ca.SX.sym("force"), driven)
+    torque = ca.SX.sym("torque")
+    pull = Pull(torque, ca.SX.sym("force"), driven, _beyond(plant, symbols, torque) if lagging else None)
     forces = node_forces(plant, symbols, q, rate, z, ca.SX.sym("t"), ca.SX.sym("x"), pull).on_coordinates
     first = 1 if driven else 0
     forced = tuple(i for i in range(first, n) if not forces[i].is_zero())
     free = n - first
     return Layout(driven, lagging, free, 2 * free + lagging, forced, bristle_count(plant), 4 if driven else 2)
+
+
+def _beyond(plant: Plant, symbols: Symbols, torque: Expression) -> Expression | None:
+    """Acting less lagging motor torque [N m]; a torque that does not lag is held as it acts, and needs none."""
+    return acting_torque(plant, symbols, torque) - torque if plant.effects_of(DriveEffect) else None
 
 
 class _Maker:
@@ -167,8 +178,10 @@ class _Maker:
         """From the state and the held inputs, or the motion of a driven motor."""
         if self.layout.driven:
             return Pull(held[2], ca.SX(0), True)
-        torque = state[self.layout.states - 1] if self.layout.lagging else held[0]
-        return Pull(torque, held[1], False)
+        if not self.layout.lagging:
+            return Pull(held[0], held[1], False)
+        torque = state[self.layout.states - 1]
+        return Pull(torque, held[1], False, _beyond(self.plant, self.symbols, torque))
 
     def _motor_at(self, place: Expression) -> Expression:
         """Angle, speed and acceleration of a driven motor at a place of its cubic; zeros where it is not driven."""
