@@ -6,7 +6,7 @@ import re
 
 from feeddrive.errors import InputError
 from feeddrive.plant.entries import Table
-from feeddrive.plant.plant import PositionVelocityController, Sensor
+from feeddrive.plant.plant import DeclaredCascade, PositionVelocityController, Sensor
 from feeddrive.recording.channels import channel_unit
 
 SENSOR_KINDS = ("encoder", "scale", "tachometer", "current")
@@ -19,6 +19,8 @@ _CONTROLLER_UNITS = {
     "output_limit": "V",
     "torque_per_output": "N m/V",
 }
+MOST_SAMPLES = 64
+"""Over which a controller may take the difference of positions for its velocity."""
 
 
 def read_sensors(top: Table) -> tuple[Sensor, ...]:
@@ -50,7 +52,7 @@ def _sensor(table: Table) -> Sensor:
     return Sensor(channel, table.choice("kind", SENSOR_KINDS), table.choice("at", SENSOR_PLACES), resolution)
 
 
-def read_controller(top: Table) -> PositionVelocityController | None:
+def read_controller(top: Table) -> PositionVelocityController | DeclaredCascade | None:
     """The declared controller of a plant file, SI; None where there is none.
 
     Raises:
@@ -59,10 +61,20 @@ def read_controller(top: Table) -> PositionVelocityController | None:
     if "controller" not in top.entries:
         return None
     table = top.table("controller")
-    table.choice("kind", ("position_velocity",))
-    table.refuse_unknown(("kind", "source", *_CONTROLLER_UNITS))
+    if table.choice("kind", ("position_velocity", "cascade")) == "cascade":
+        return DeclaredCascade({key: value for key, value in table.entries.items() if key != "kind"}, table.where)
+    table.refuse_unknown(("kind", "source", "velocity_samples", *_CONTROLLER_UNITS))
     values = {key: table.quantity(key, unit, f"controller.{key}") for key, unit in _CONTROLLER_UNITS.items()}
     for key, value in values.items():
         if value <= 0:
             raise InputError(f"{value:g} is not above zero", table.place(key), "write a positive value")
-    return PositionVelocityController(**values)
+    return PositionVelocityController(**values, velocity_samples=_velocity_samples(table))
+
+
+def _velocity_samples(table: Table) -> int:
+    samples = table.entries.get("velocity_samples", 0)
+    if isinstance(samples, bool) or not isinstance(samples, int) or not 0 <= samples <= MOST_SAMPLES:
+        raise InputError(
+            f"{samples!r} is not a number of samples", table.place("velocity_samples"), f"write 0 to {MOST_SAMPLES}"
+        )
+    return samples

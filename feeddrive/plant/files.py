@@ -34,6 +34,8 @@
     velocity_gain = "240 V s/m"
     output_limit = "10 V"
     torque_per_output = "0.014 N m/V"
+    velocity_samples = 2             # velocity from the position over so many samples; left out: velocity itself
+    # or kind = "cascade", with the keys of a controller file (`feeddrive.simulate.scenario_controller`)
 
 A machine may be described by its parts instead (`feeddrive.plant.drive_sections`): their stiffness and inertia are
 computed, and a value of the chain that is written takes the place of the computed one. Further, for every structure:

@@ -14,7 +14,7 @@ import numpy as np
 
 from feeddrive.effects.constant_force import ConstantForce
 from feeddrive.plant.mode_map import mode_map
-from feeddrive.plant.plant import Plant
+from feeddrive.plant.plant import Plant, PositionVelocityController
 from feeddrive.plant.screw_limits import buckling_force, critical_speed
 from feeddrive.plant.steady import steady_motions
 from feeddrive.plant.summary import Summary, summarise
@@ -72,7 +72,8 @@ def check_plant(plant: Plant, position_gain: float | None = None) -> tuple[Findi
         plant: the machine.
         position_gain: of its controller [1/s]; the declared one if not given.
     """
-    declared = plant.controller.position_gain if plant.controller is not None else None
+    controller = plant.controller
+    declared = controller.position_gain if isinstance(controller, PositionVelocityController) else None
     gain = declared if position_gain is None else position_gain
     summary = summarise(plant)
     force = largest_force(plant, summary)

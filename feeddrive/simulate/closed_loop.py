@@ -1,28 +1,16 @@
-"""The plant under its declared controller: a cascade of position and velocity gain, sampled, its output held.
-
-    u = K_vel (K_pos (x_set - x) - v),   |u| <= limit,   T = gain u
-
-| symbol | meaning | unit |
-|---|---|---|
-| x_set, x, v | set-point, position and velocity read at the sample | m, m, m/s |
-| u, T | controller output and motor torque, from the sample to the next | V, N m |
-
-The position is read at the table, or from the motor angle where the sensor of the channel `table_position` is declared
-to sit at the motor. The velocity is that of the model at the same place, not a difference quotient of positions.
-"""
+"""The plant under the controller that it declares: sampled, its output held until the next tick."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-import casadi as ca
-import numpy as np
-
 from feeddrive.errors import InputError
-from feeddrive.plant.plant import Plant, PositionVelocityController
-from feeddrive.simulate.held_torque import initial_state, run_samples
+from feeddrive.plant.plant import Plant
+from feeddrive.simulate.controlled import simulate_controlled
+from feeddrive.simulate.declared_loop import declared_loop
+from feeddrive.simulate.held_torque import even_sample_time
 from feeddrive.simulate.program import TOLERANCE, StepReport
-from feeddrive.typing import Expression, FloatArray
+from feeddrive.typing import FloatArray
 
 
 @dataclass(frozen=True)
@@ -32,7 +20,7 @@ class ClosedLoopRun:
     Attributes:
         time: [s] as given.
         torque: motor torque commanded at the sample, before any delay [N m].
-        output: of the controller, in its unit.
+        output: of the controller, in its unit; of a cascade the torque.
         position, velocity: of the table [m, m/s].
         motor_angle: [rad].
         report: how the steps went.
@@ -51,7 +39,7 @@ def simulate_closed_loop(
     plant: Plant, time: FloatArray, setpoint: FloatArray, initial_position: float, initial_velocity: float = 0.0,
     tolerance: float = TOLERANCE,
 ) -> ClosedLoopRun:  # fmt: skip
-    """The plant under its declared controller; no torque before the start.
+    """The plant under its declared controller; no torque before the start; sensors are read without their steps.
 
     Args:
         plant: with its values and a controller.
@@ -65,50 +53,20 @@ def simulate_closed_loop(
         The motion and what the controller did.
 
     Raises:
-        InputError: no controller declared, times that are not evenly spaced, lengths that differ, or a motion that
-            cannot be followed.
+        InputError: no controller declared, one that does not fit the sample time, times that are not evenly spaced,
+            lengths that differ, or a motion that cannot be followed.
     """
-    if plant.controller is None:
+    sample = even_sample_time(plant.name, time, len(setpoint), setpoint)
+    loop = declared_loop(plant, sample)
+    if loop is None:
         raise InputError("no controller is declared", plant.name, "add a [controller] table to the plant")
-    settings = _settings(plant.controller, plant)
-    command = _from_motor if _reads_motor(plant) else _from_table
-    start = initial_state(plant, initial_position, initial_velocity)
-    run = run_samples(plant, command, settings, time, setpoint, start, 0.0, tolerance)
-    return ClosedLoopRun(run.time, run.torque, run.output, run.position, run.velocity, run.motor_angle, run.report)
-
-
-def _reads_motor(plant: Plant) -> bool:
-    return any(sensor.channel == "table_position" and sensor.at == "motor" for sensor in plant.sensors)
-
-
-def _settings(controller: PositionVelocityController, plant: Plant) -> FloatArray:
-    return np.array(
-        [
-            controller.position_gain, controller.velocity_gain, controller.output_limit,
-            controller.torque_per_output, plant.torque_limit, plant.chain.radius,
-        ]
+    start = loop.begin(plant, initial_position, initial_velocity)
+    run = simulate_controlled(
+        plant, loop.controller, loop.reference(setpoint), None, loop.torque_loop, start, False, tolerance
+    )
+    every = slice(None, None, loop.ticks)
+    output = run.signals.get("output", run.command)
+    return ClosedLoopRun(
+        time, run.command[every], output[every], run.table_position[every], run.table_velocity[every],
+        run.motor_angle[every], run.report,
     )  # fmt: skip
-
-
-def _from_table(setpoint: Expression, readings: Expression, settings: Expression) -> tuple[Expression, Expression]:
-    """The controller with its encoder at the table."""
-    return _cascade(setpoint, readings[2], readings[3], settings)
-
-
-def _from_motor(setpoint: Expression, readings: Expression, settings: Expression) -> tuple[Expression, Expression]:
-    """The controller with its encoder at the motor."""
-    radius = settings[5]
-    return _cascade(setpoint, radius * readings[0], radius * readings[1], settings)
-
-
-def _cascade(
-    setpoint: Expression, position: Expression, velocity: Expression, settings: Expression
-) -> tuple[Expression, Expression]:
-    """Controller output and motor torque."""
-    position_gain, velocity_gain, limit, gain, torque_limit = (settings[i] for i in range(5))
-    output = _clipped(velocity_gain * (position_gain * (setpoint - position) - velocity), limit)
-    return output, _clipped(gain * output, torque_limit)
-
-
-def _clipped(value: Expression, limit: Expression) -> Expression:
-    return ca.fmin(ca.fmax(value, -limit), limit)
