@@ -8,7 +8,6 @@ from dataclasses import dataclass, field, replace
 from threading import Lock
 
 import numpy as np
-from scipy.ndimage import shift
 
 from feeddrive.diagnose.candidates import CANDIDATES
 from feeddrive.diagnose.evidence import AxisEvidence
@@ -17,7 +16,9 @@ from feeddrive.diagnose.materiality import is_material
 from feeddrive.diagnose.predictability import predictable_samples
 from feeddrive.diagnose.predictor import Predictor
 from feeddrive.diagnose.scene import AxisScene, Candidate
-from feeddrive.effects.base import ChainEffect, Effect, Motion, Port, SourceEffect, TimingEffect
+from feeddrive.diagnose.timing import lag_of, lagging
+from feeddrive.effects.base import ChainEffect, DriveEffect, Effect, Kind, Motion, Port, SourceEffect
+from feeddrive.plant.motor_torque import asked_torques
 from feeddrive.plant.plant import Plant
 from feeddrive.simulate.driven import LoadMotion, simulate_driven, unfollowed
 from feeddrive.simulate.step_constants import SimulationError
@@ -55,14 +56,10 @@ class AxisPredictor(Predictor[Plant, AxisEvidence]):
     def predict(self, plant: Plant, evidence: AxisEvidence) -> dict[str, FloatArray]:
         """Channel to predicted series in the band, shape (n,), SI."""
         run = self.load_motion(plant, evidence)
-        raw = {"motor_torque": run.torque + motor_sources(plant, run), "table_position": run.table_position}
-        delay = sum(effect.delay(effect.values) for effect in plant.effects if isinstance(effect, TimingEffect))
-        result = {name: evidence.band.filter(raw[name]) for name in evidence.channels}
-        if delay:
-            # what acts at t was recorded at t - delay, so the recorded torque is the acting one seen early
-            samples = delay / evidence.recording.sample_time
-            result["motor_torque"] = shift(result["motor_torque"], -samples, order=5, mode="nearest")
-        return result
+        torque = asked_torques(plant, run.torque + motor_sources(plant, run))
+        raw = {"motor_torque": torque, "table_position": run.table_position}
+        step = evidence.recording.sample_time
+        return {name: lagging(evidence.band.filter(raw[name]), lag_of(plant, name), step) for name in evidence.channels}
 
     @property
     def candidates(self) -> tuple[Candidate, ...]:
@@ -143,7 +140,9 @@ def _in_values(effect: Effect) -> bool:
 
 def _at_motor_alone(effect: Effect) -> bool:
     """Whether the load side does not notice the effect when the motor motion is given."""
-    return isinstance(effect, TimingEffect) or (isinstance(effect, SourceEffect) and effect.port == Port.MOTOR)
+    if effect.kind == Kind.TIMING or isinstance(effect, DriveEffect):
+        return True
+    return isinstance(effect, SourceEffect) and effect.port == Port.MOTOR
 
 
 def _values_key(plant: Plant) -> object:
