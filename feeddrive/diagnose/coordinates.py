@@ -36,7 +36,8 @@ class Linear:
     def write(self, effect: Effect, coordinates: Sequence[float]) -> dict[str, Value]:
         """Values of the coordinates."""
         parameter = effect.parameter(self.key)
-        numbers = [min(max(c * self.size, parameter.minimum), parameter.maximum) for c in coordinates]
+        least = LEAST.get((effect.name, self.key), parameter.minimum)
+        numbers = [min(max(c * self.size, least), parameter.maximum) for c in coordinates]
         if not isinstance(effect.values[self.key], tuple):
             return {self.key: numbers[0]}
         if self.key != "delta_force":
@@ -112,6 +113,9 @@ LOGARITHMIC = {
     ("stribeck", "velocity"),
     ("presliding", "stiffness"),
     ("friction_vs_position", "half_width"),
+    ("preload_loss", "ratio"),
+    ("preload_loss", "force"),
+    ("structural_mode", "frequency"),
     ("thermal_growth", "time_constant"),
     ("viscous_warmup", "time_constant"),
     ("ambient_drift", "period"),
@@ -133,9 +137,16 @@ TWO_HEATS = {
 FIXED = {
     ("presliding", "break_away"),
     ("friction_vs_position", "position"),
+    ("stiffness_vs_position", "low"),
+    ("stiffness_vs_position", "high"),
     ("ambient_drift", "time"),
+    ("torque_constant_droop", "at_torque"),
 }
 """Parameters that choose the form of a law; they are tried, not fitted."""
+
+LEAST = {("drive_delay", "delay"): 0.0}
+"""Ends of a search inside the physical range: a torque that acts before it is recorded is one recorded late, and that
+is `channel_delay`."""
 
 
 def coordinates_of(effect: Effect, plant: Machine) -> list[Coordinate]:
@@ -188,14 +199,23 @@ def write_coordinates(effects: Sequence[Effect], plant: Machine, vector: FloatAr
     return result
 
 
+def value_slopes(effects: Sequence[Effect], plant: Machine, vector: FloatArray) -> FloatArray:
+    """Exact slope of every number of the effects' values with the coordinates, shape (numbers, k)."""
+    step = 1e-6
+    base = _flat(write_coordinates(effects, plant, vector))
+    up, down = (
+        [(_flat(write_coordinates(effects, plant, vector + way * unit)) - base) / way for unit in np.eye(len(vector))]
+        for way in (step, -step)
+    )
+    # at an end of a parameter's range it moves one way only
+    return np.column_stack([np.where(np.abs(a) >= np.abs(b), a, b) for a, b in zip(up, down, strict=True)])
+
+
 def spread_to_values(
     effects: Sequence[Effect], plant: Machine, vector: FloatArray, covariance: FloatArray
 ) -> list[dict[str, FloatArray]]:
     """Standard deviation of every fitted value, by the exact slope of the coordinates; a list entry per effect."""
-    step = 1e-6
-    base = _flat(write_coordinates(effects, plant, vector))
-    moved = [_flat(write_coordinates(effects, plant, vector + step * unit)) for unit in np.eye(len(vector))]
-    jacobian = np.column_stack([(values - base) / step for values in moved])
+    jacobian = value_slopes(effects, plant, vector)
     deviation = np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", jacobian, covariance, jacobian), 0.0))
     result, at = [], 0
     for effect in effects:

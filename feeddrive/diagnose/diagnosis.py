@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from feeddrive.diagnose.ambiguity import ambiguous_sets
+from feeddrive.diagnose.correlation import correlation
 from feeddrive.diagnose.cross_validation import LEAST_GAIN
 from feeddrive.diagnose.drift_table import normalised
 from feeddrive.diagnose.evidence import Evidence
@@ -16,7 +17,6 @@ from feeddrive.diagnose.physical_reading import physical_reading
 from feeddrive.diagnose.preparation import prepared
 from feeddrive.diagnose.rehoming import rehomed_plant
 from feeddrive.diagnose.result import (
-    ChannelResult,
     Diagnosis,
     EffectResult,
     FileStamp,
@@ -26,14 +26,13 @@ from feeddrive.diagnose.result import (
 )
 from feeddrive.diagnose.search import Search, search
 from feeddrive.diagnose.simulation import simulation_error
-from feeddrive.diagnose.uncertainty import half_widths
+from feeddrive.diagnose.uncertainty import Certainty, Interval, certainty, intervals
 from feeddrive.diagnose.unexplained import unexplained
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 from feeddrive.thermal.plant import ThermalPlant
-from feeddrive.typing import FloatArray
 
 Said = Callable[[str], None]
 
@@ -70,7 +69,7 @@ def diagnose(
     judged, rehomed = _judged(found, kept_for_judging)
     channels = channel_results(found.problem, judged)
     series = judged_recordings(found.problem, judged)
-    effects = found.fit.effects
+    effects, known = found.fit.effects, certainty(found.problem, found.fit)
     shares = [share_of(found.problem, judged, effects, i) for i in range(len(effects))]
     simulation = None
     if simulate and isinstance(plant, Plant):
@@ -80,7 +79,7 @@ def diagnose(
         fit=_stamps(recordings),
         validate=_stamps(validation or recordings),
         channels=channels,
-        effects=_effect_results(found, shares, channels),
+        effects=_effect_results(found, shares, known),
         refused=_refused(found),
         ambiguous=ambiguous_sets(found, judged),
         rehomed=rehomed,
@@ -88,6 +87,7 @@ def diagnose(
         trials=found.trials,
         recordings=series,
         simulation=simulation,
+        correlation=correlation(found.problem, found.fit, known),
         notes=(*told, *_notes(recordings, validation, found, problem.evidence, simulate, simulation)),
     )
     return result, effects
@@ -108,16 +108,14 @@ def _judged(found: Search, evidence: Sequence[Evidence]) -> tuple[list[Judged], 
     return judged, tuple(rehomed)
 
 
-def _effect_results(
-    found: Search, shares: Sequence[Share], channels: Sequence[ChannelResult]
-) -> tuple[EffectResult, ...]:
-    widths = half_widths(found.problem, found.fit)
+def _effect_results(found: Search, shares: Sequence[Share], known: Certainty) -> tuple[EffectResult, ...]:
+    spans = intervals(found.problem, found.fit, known)
     results = []
-    for effect, share, width in zip(found.fit.effects, shares, widths, strict=True):
+    for effect, share, ends in zip(found.fit.effects, shares, spans, strict=True):
         results.append(
             EffectResult(
                 effect.name,
-                _parameters(effect, width),
+                _parameters(effect, ends),
                 share.explains,
                 share.carries,
                 _evidence(effect, share, found.fit),
@@ -127,7 +125,7 @@ def _effect_results(
     return tuple(results)
 
 
-def _parameters(effect: Effect, width: dict[str, FloatArray]) -> dict[str, ParameterResult]:
+def _parameters(effect: Effect, known: dict[str, list[Interval] | None]) -> dict[str, ParameterResult]:
     """Values and intervals in SI; the summary of a tabulated curve is read off the table."""
     result: dict[str, ParameterResult] = {}
     if effect.name == "friction_deviation":
@@ -135,13 +133,11 @@ def _parameters(effect: Effect, width: dict[str, FloatArray]) -> dict[str, Param
     if effect.place_key:
         result[effect.place_key] = ParameterResult(effect.place, "")
     for key, value in effect.values.items():
-        unit = effect.parameter(key).unit
+        unit, ends = effect.parameter(key).unit, known[key]
         if isinstance(value, tuple):
-            spans = [(v - w, v + w) for v, w in zip(value, width[key], strict=True)]
-            result[key] = ParameterResult(list(value), unit, None if not np.any(width[key]) else spans)
+            result[key] = ParameterResult(list(value), unit, ends)
         else:
-            half = float(width[key][0])
-            result[key] = ParameterResult(value, unit, (value - half, value + half) if half > 0 else None)
+            result[key] = ParameterResult(value, unit, ends[0] if ends else None)
     if effect.name == "friction_vs_position":
         result.update(_curve_and_bump(effect))
     return result

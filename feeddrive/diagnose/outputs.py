@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -69,6 +70,15 @@ def diagnosis_record(diagnosis: Diagnosis) -> dict[str, Any]:
     if diagnosis.simulation is not None:
         sim = diagnosis.simulation
         record["simulation"] = {"channel": sim.channel, "before": sim.before, "after": sim.after}
+    if diagnosis.correlation is not None:
+        known = diagnosis.correlation
+        condition = known.condition if math.isfinite(known.condition) else None
+        record["correlation"] = {
+            "parameters": list(known.names),
+            "matrix": [list(row) for row in known.matrix],
+            "condition": condition,
+            "known_only_together": list(known.told),
+        }
     return record
 
 

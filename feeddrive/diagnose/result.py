@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from feeddrive.diagnose.certainty_result import Ambiguity, Correlation, NextExperiment
 from feeddrive.typing import FloatArray
 
 
@@ -175,6 +176,9 @@ class Diagnosis:
     recordings: tuple[JudgedRecording, ...]
     simulation: SimulationResult | None = None
     notes: tuple[str, ...] = ()
+    correlation: Correlation | None = None
+    alike: tuple[Ambiguity, ...] = ()
+    next_experiments: tuple[NextExperiment, ...] = ()
 
     @property
     def nothing_missing(self) -> bool:
