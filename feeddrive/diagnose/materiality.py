@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from feeddrive.diagnose.declared_friction import declared_level
 from feeddrive.effects.base import Effect, Port
+from feeddrive.effects.inertia_deviation import InertiaDeviation, declared_inertia
 from feeddrive.plant.plant import Plant
 
 LEAST_FACTOR = 0.02
@@ -13,7 +14,7 @@ LEAST_FORCE_SHARE = 0.01
 """A force over the declared Coulomb level of the guide."""
 
 LEAST_MASS_SHARE = 0.005
-"""A mass over the declared table mass."""
+"""A mass over the declared table mass, an inertia over the declared one of its shaft."""
 
 FORCE_KEYS = ("delta_force", "force", "peak")
 """Parameters that are forces at the table."""
@@ -24,8 +25,14 @@ def is_material(effect: Effect, plant: Plant) -> bool:
     values = {key: value for key, value in effect.values.items() if isinstance(value, float)}
     if effect.name == "friction_deviation":
         return any(abs(values[key] - 1) >= LEAST_FACTOR for key in ("coulomb_factor", "viscous_factor"))
-    if effect.name == "payload":
+    if effect.name == "stiffness_vs_position":
+        return abs(values["share_over_stroke"]) >= LEAST_FACTOR
+    if effect.name == "preload_loss" and values["ratio"] > 1 - LEAST_FACTOR:
+        return False
+    if effect.name in ("payload", "structural_mode"):
         return abs(values["mass"]) >= LEAST_MASS_SHARE * plant.chain.values["table_mass"]
+    if isinstance(effect, InertiaDeviation):
+        return abs(values["inertia"]) >= LEAST_MASS_SHARE * declared_inertia(plant.chain.values, effect.place)
     if effect.name == "stiffness_deviation":
         return abs(values["factor"] - 1) >= LEAST_FACTOR
     forces = [abs(number) for key, value in effect.values.items() if key in FORCE_KEYS for number in _numbers(value)]

@@ -84,6 +84,11 @@ def elastic(scene: AxisScene) -> str:
     return "" if scene.plant.chain.elastic else "the structure is rigid"
 
 
+def inertia(scene: AxisScene) -> str:
+    """An inertia differs from a mass on the table only where something between them gives way."""
+    return "" if scene.plant.chain.elastic else "the structure is rigid: an inertia is a mass on the table (payload)"
+
+
 def scale(scene: AxisScene) -> str:
     """Travel along the stroke needs a table position and a stroke."""
     if not any("table_position" in evidence.channels for evidence in scene.problem.evidence):
@@ -97,6 +102,11 @@ def stroke(scene: AxisScene) -> str:
     longest = max(float(np.ptp(run.table_position[e.fit_rows])) for run, e in runs)
     least = LEAST_STROKE_TURNS * scene.plant.chain.values["lead"]
     return "" if longest >= least else f"the stroke is {longest * 1e3:.2g} mm; it needs {least * 1e3:.3g} mm"
+
+
+def elastic_stroke(scene: AxisScene) -> str:
+    """A stiffness along the stroke needs an elastic chain and a stroke."""
+    return elastic(scene) or stroke(scene)
 
 
 def duration(scene: AxisScene) -> str:

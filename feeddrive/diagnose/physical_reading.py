@@ -13,6 +13,8 @@ from feeddrive.effects.thermal.bearing_heat import reference_heat
 
 def physical_reading(effect: Effect) -> str:
     """The physical reading of an effect's sign and size."""
+    if effect.name in READINGS_AT:
+        return READINGS_AT[effect.name](effect.place, effect.values)
     return READINGS[effect.name](effect.values) if effect.name in READINGS else ""
 
 
@@ -137,6 +139,30 @@ def _stiffness_deviation(v: Mapping[str, Value]) -> str:
     )
 
 
+def _stiffness_vs_position(v: Mapping[str, Value]) -> str:
+    share = _one(v["share_over_stroke"])
+    where = "falls" if share > 0 else "rises"
+    return (
+        f"The axial stiffness {where} by {abs(share):.0%} from {1e3 * _one(v['low']):.0f} mm to "
+        f"{1e3 * _one(v['high']):.0f} mm: the free length of a screw held at one end, or a bearing that is not the one "
+        "declared."
+    )
+
+
+def _preload_loss(v: Mapping[str, Value]) -> str:
+    return (
+        f"Below {_one(v['force']):.3g} N the drive gives way {1 / _one(v['ratio']):.2g} times as much as declared: nut "
+        "or bearing have lost preload, without free play yet."
+    )
+
+
+def _structural_mode(v: Mapping[str, Value]) -> str:
+    return (
+        f"{_one(v['mass']):.3g} kg on the table swing at {_one(v['frequency']):.3g} Hz: fixture, spindle head, tank or "
+        "cover that is not fixed firmly."
+    )
+
+
 def _one(value: Value) -> float:
     return value[0] if isinstance(value, tuple) else value
 
@@ -212,10 +238,40 @@ def _payload(v: Mapping[str, Value]) -> str:
 def _drive_delay(v: Mapping[str, Value]) -> str:
     return _signed(
         v["delay"],
-        "The torque acts later than it is recorded: current loop and dead time.",
+        "The torque acts later than it is recorded: current loop and dead time. Motor angle and table position, both "
+        "read late by as much, would look the same.",
         "The torque is recorded later than it acts: the channel is filtered or sampled late.",
     )
 
+
+def _channel_delay(channel: str, v: Mapping[str, Value]) -> str:
+    late = f"{1e6 * _one(v['delay']):.3g} µs"
+    causes = {
+        "motor_torque": "filtered for display, or sent a bus cycle late",
+        "motor_angle": "interpolated or sent late by the drive; or what else is recorded comes from a faster input",
+        "table_position": "read by another card or clock, or filtered by the scale's interpolator",
+    }
+    return f"The channel {channel} is recorded {late} later than the others: {causes[channel]}."
+
+
+def _inertia_deviation(where: str, v: Mapping[str, Value]) -> str:
+    parts = {"motor": "rotor, brake, coupling half or pulley", "screw": "screw, its coupling half, or a rotating nut"}
+    more = _signed(v["inertia"], "more", "less")
+    return f"The {where} side turns with {more} inertia than declared: {parts[where]}."
+
+
+def _torque_constant_droop(v: Mapping[str, Value]) -> str:
+    return (
+        f"The motor gives {_one(v['share']):.2%} less than constant times current at {_one(v['at_torque']):.3g} N m: "
+        "its iron saturates."
+    )
+
+
+READINGS_AT: dict[str, Callable[[str, Mapping[str, Value]], str]] = {
+    "channel_delay": _channel_delay,
+    "inertia_deviation": _inertia_deviation,
+}
+"""Effect name to the reading of its place and values."""
 
 READINGS: dict[str, Callable[[Mapping[str, Value]], str]] = {
     "coulomb_asymmetry": _coulomb_asymmetry,
@@ -230,12 +286,16 @@ READINGS: dict[str, Callable[[Mapping[str, Value]], str]] = {
     "lead_error_periodic": _lead_error,
     "payload": _payload,
     "drive_delay": _drive_delay,
+    "torque_constant_droop": _torque_constant_droop,
     "ball_pass_ripple": _ball_pass_ripple,
     "position_spring": _position_spring,
     "lead_error_cumulative": _lead_error_cumulative,
     "thermal_growth": _thermal_growth,
     "viscous_warmup": _viscous_warmup,
     "stiffness_deviation": _stiffness_deviation,
+    "stiffness_vs_position": _stiffness_vs_position,
+    "preload_loss": _preload_loss,
+    "structural_mode": _structural_mode,
     "motor_heat": _motor_heat,
     "bearing_heat": _bearing_heat,
     "ambient_drift": _ambient_drift,

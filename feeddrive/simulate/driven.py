@@ -64,6 +64,7 @@ class LoadMotion:
         screw_angle, screw_speed: [rad, rad/s].
         table_position, table_velocity: [m, m/s].
         torque: motor torque needed, without timing effects [N m].
+        force: of the nut on the table [N]; 0 where the structure is rigid.
         report: how the steps went.
     """
 
@@ -75,6 +76,7 @@ class LoadMotion:
     table_position: FloatArray
     table_velocity: FloatArray
     torque: FloatArray
+    force: FloatArray
     report: StepReport
 
 
@@ -125,11 +127,12 @@ def simulate_driven(plant: Plant, motion: MotorMotion, tolerance: float = TOLERA
     outcome = run_machine(machine, plant, Feed(fed, np.array([step]), np.array([step])), start, tolerance)
     first = outputs(start.memory, motion.angle[0], motion.speed[0], acceleration[0], 0.0, values)
     read = np.vstack([np.array(first).ravel(), outcome.seen])[motion.samples]
-    phi, screw_speed, x, velocity, torque = np.ascontiguousarray(read.T)
+    phi, screw_speed, x, velocity, torque, force = np.ascontiguousarray(read.T)
     at = motion.samples
     return LoadMotion(
-        motion.time[at], motion.angle[at], motion.speed[at], phi, screw_speed, x, velocity, torque, outcome.report
-    )
+        motion.time[at], motion.angle[at], motion.speed[at], phi, screw_speed, x, velocity, torque, force,
+        outcome.report,
+    )  # fmt: skip
 
 
 def unfollowed(motion: MotorMotion) -> LoadMotion:
@@ -138,8 +141,9 @@ def unfollowed(motion: MotorMotion) -> LoadMotion:
     nothing = np.full(len(motion.time[at]), np.nan)
     report = StepReport(0, 0, 0, 0, 0, np.inf, 0, np.inf, np.inf)
     return LoadMotion(
-        motion.time[at], motion.angle[at], motion.speed[at], nothing, nothing, nothing, nothing, nothing, report
-    )
+        motion.time[at], motion.angle[at], motion.speed[at], nothing, nothing, nothing, nothing, nothing, nothing,
+        report,
+    )  # fmt: skip
 
 
 @per_structure
@@ -177,7 +181,7 @@ def _start(plant: Plant) -> ca.Function:
 
 
 def _outputs(plant: Plant, layout: Layout) -> ca.Function:
-    """(memory, theta, theta', theta'', t, parameters) -> [phi, phi', x, x', motor torque].
+    """(memory, theta, theta', theta'', t, parameters) -> [phi, phi', x, x', motor torque, F of the nut].
 
     The torque is the motor's row of M q'' + C q' + K q = T + f; what rides with the motor on a common hub moves with
     the acceleration that the other rows give it.
@@ -194,9 +198,9 @@ def _outputs(plant: Plant, layout: Layout) -> ca.Function:
     screw, table = ca.horzcat(*chain.screw(p)), ca.horzcat(*chain.table(p))
     phi, x = ca.mtimes(screw, q), ca.mtimes(table, q)
     z = memory[layout.states : layout.states + layout.bristles]
-    force = effect_forces(plant, symbols, q, rate, z, time, None).on_coordinates
+    found = effect_forces(plant, symbols, q, rate, z, time, None)
     mass, damping, stiffness = (symbolic(m(p, x)) for m in (chain.mass, chain.damping, chain.stiffness))
-    unmoved = ca.mtimes(damping, rate) + ca.mtimes(stiffness, q) - force  # M q'' = motor torque - this
+    unmoved = ca.mtimes(damping, rate) + ca.mtimes(stiffness, q) - found.on_coordinates  # M q'' = motor torque - this
     if chain.elastic:
         others = ca.solve(ca.sparsify(mass[1:, 1:]), -unmoved[1:] - mass[1:, 0] * acceleration)
         row = ca.vertcat(acceleration, others)
@@ -205,5 +209,5 @@ def _outputs(plant: Plant, layout: Layout) -> ca.Function:
     torque = (ca.mtimes(mass[0, :], row) + unmoved[0]) / chain.motor(p)[0]
     if not chain.elastic:
         x = x + travel_deviation(plant, symbols, phi, x, time)
-    result = ca.vertcat(phi, ca.mtimes(screw, rate), x, ca.mtimes(table, rate), torque)
+    result = ca.vertcat(phi, ca.mtimes(screw, rate), x, ca.mtimes(table, rate), torque, found.transmitted)
     return ca.Function("outputs", [memory, theta, speed, acceleration, time, symbols.vector], [result])
