@@ -25,16 +25,16 @@ JOINT_ITERATIONS = 4
 """Steps of a joint fit inside the search; what is left is polished at its end."""
 
 
-FIT_ITERATIONS = 12
-"""Steps of a candidate's fit at most."""
+FIT_ITERATIONS = 5
+"""Steps of a candidate's fit at most, before the best few are fitted together with what was found before."""
 
 
 PROMISE = 0.001
-"""Share of the squared error that the first step of a fit must take away for the fit to go on."""
+"""Share of the squared error that one linear step must take away for a fit to be worth its simulations."""
 
 
-HOPELESS_ITERATIONS = 3
-"""Steps for a candidate none of whose scanned starts is better than nothing."""
+SCANNED_ITERATIONS = 3
+"""Steps of the best start of a scanned candidate, before it is ranked."""
 
 
 @dataclass(frozen=True)
@@ -56,40 +56,56 @@ class Attempt:
     errors: FloatArray
 
 
-def alone(scene: Scene, candidate: Candidate) -> list[Attempt]:
-    """Each form of a candidate, refined while what was found before stays as it is."""
+def started(scene: Scene, candidate: Candidate) -> list[Attempt]:
+    """The best start of each form of a candidate, as one linear step leaves it; what was found before stays as it is.
+
+    Starts of scanned candidates are compared as they are, and the best takes a few steps: one linear step says nothing
+    of a law that jumps.
+    """
     attempts: list[Attempt] = []
     for starts in candidate.forms(scene):
         if candidate.scanned and attempts and attempts[0].comparison.gain < LEAST_GAIN:
             break  # another form of a law that does not pay at all is not worth its simulations
         try:
-            attempts.append(_refined(scene, candidate, starts))
+            attempts.append(_best_start(scene, candidate, starts))
         except InputError:  # cannot act together with what was found, or cannot be simulated
             continue
     return attempts
 
 
-def _refined(scene: Scene, candidate: Candidate, starts: Sequence[Effect]) -> Attempt:
-    """The best start of one form, refined unless not even its first step promises anything."""
-    name, before = candidate.name, scene.found
-    frozen = [False] * len(before)
-    jumps = isinstance(starts[0], TransmissionEffect)
-    problem = with_predictable(scene.problem, (*before, starts[0])) if jumps else scene.problem
-    base = fit(problem, before, frozen, iterations=0).squared_error
-    free = [*frozen, True]
+def _best_start(scene: Scene, candidate: Candidate, starts: Sequence[Effect]) -> Attempt:
+    before = scene.found
+    problem = with_predictable(scene.problem, (*before, starts[0])) if _jumps(starts[0]) else scene.problem
+    free = [False] * len(before) + [True]
     tried = [fit(problem, (*before, start), free, 0, error_only=candidate.scanned) for start in starts]
     if not candidate.scanned:
         tried = [_one_linear_step(attempt) for attempt in tried]
     result = min(tried, key=lambda attempt: attempt.squared_error)
-    promising = result.squared_error < (1 - PROMISE) * base
-    if promising or candidate.scanned:
-        steps = FIT_ITERATIONS if promising else HOPELESS_ITERATIONS
-        result = fit(problem, result.effects, free, steps)
+    if candidate.scanned:
+        result = fit(problem, result.effects, free, SCANNED_ITERATIONS)
+    return _usable(scene, problem, candidate.name, result)
+
+
+def refined(scene: Scene, attempt: Attempt) -> Attempt | None:
+    """The candidate fitted while what was found before stays as it is; None where it cannot be simulated."""
+    free = [False] * len(scene.found) + [True]
+    result = fit(attempt.problem, attempt.fit.effects, free, FIT_ITERATIONS)
+    try:
+        return _usable(scene, attempt.problem, attempt.name, result)
+    except InputError:
+        return None
+
+
+def _usable(scene: Scene, problem: Problem, name: str, result: Fit) -> Attempt:
     if not (np.isfinite(result.squared_error) and np.all(np.isfinite(result.jacobian))):
         raise InputError(f"{name} could not be simulated", name)
-    if jumps:
+    if _jumps(result.effects[-1]):
         problem = with_predictable(scene.problem, result.effects)
-    return compared(problem, name, result, before)
+    return compared(problem, name, result, scene.found)
+
+
+def _jumps(effect: Effect) -> bool:
+    return isinstance(effect, TransmissionEffect) and effect.has_play
 
 
 def _one_linear_step(fitted: Fit) -> Fit:

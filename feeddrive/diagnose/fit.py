@@ -3,7 +3,8 @@
     r_c = (measured_c - predicted_c) / noise_c      in the band, table position less its mean per recording
 
 The Jacobian comes from simulations at slightly changed coordinates; the loop over samples is compiled and exact, so the
-differences are smooth. Levenberg-Marquardt; the blocks that cross-validation and intervals need come with the result.
+differences are smooth. Levenberg-Marquardt; the Jacobian is kept where the prediction is straight, and corrected where
+it bends a little, as simulations are what costs time.
 """
 
 from __future__ import annotations
@@ -25,6 +26,15 @@ DIFFERENCE = 1e-4
 
 ENOUGH = 1e-4
 """A step that lowers the squared error by less than this share ends the fit."""
+
+STRAIGHT = 0.03
+"""Bend of the prediction over a step, as a share of the step, below which the slope before it still holds after it."""
+
+BENT = 0.5
+"""Bend above which the slope is computed anew; below, it is corrected along the step (Broyden, 1965)."""
+
+FREE = 1e-6
+"""Damping that does not hold a step back."""
 
 
 @dataclass(frozen=True)
@@ -111,49 +121,80 @@ def fit(
         The fit, its Jacobian taken at the end.
     """
     chosen = [True] * len(effects) if free is None else list(free)
-    measured = problem.measured()
-    current = list(effects)
-    predicted = problem.predicted(current)
-    residual = measured - predicted
-    damping = 1e-6
+    measured, predicted = problem.measured(), problem.predicted(effects)
+    at = _State(list(effects), predicted, measured - predicted)
     if error_only:
-        return Fit(tuple(current), residual, np.zeros((len(residual), 0)), np.zeros(0))
-    jacobian = problem.jacobian(current, chosen, predicted)
+        return Fit(tuple(effects), at.residual, np.zeros((len(predicted), 0)), np.zeros(0))
+    jacobian, exact = problem.jacobian(at.effects, chosen, at.predicted), True
+    damping = FREE
     for _ in range(iterations):
         if jacobian.shape[1] == 0 or not np.all(np.isfinite(jacobian)):
             break
-        step_found, gain = False, 0.0
-        for _ in range(5):
-            trial = _stepped(problem, current, chosen, jacobian, residual, damping)
-            trial_predicted = problem.predicted(trial)
-            trial_residual = measured - trial_predicted
-            before, after = float(residual @ residual), float(trial_residual @ trial_residual)
-            if np.isfinite(after) and after < before:
-                step_found, gain = True, (before - after) / before
+        lower = _lower(problem, at, chosen, jacobian, damping)
+        damping = lower.damping
+        if lower.state is None:
+            if exact:
                 break
-            damping = max(damping * 30, 1e-4)
-        if not step_found:
+            jacobian, exact = problem.jacobian(at.effects, chosen, at.predicted), True
+            continue
+        before, at, straight = at, lower.state, jacobian @ lower.step
+        bent = at.predicted - before.predicted - straight
+        bend = float(np.linalg.norm(bent) / np.linalg.norm(straight))
+        exact = exact and bend < STRAIGHT
+        if before.squared_error - at.squared_error < ENOUGH * before.squared_error:
             break
-        damping = max(damping * 0.1, 1e-9)
-        current, residual = trial, trial_residual
-        jacobian = problem.jacobian(current, chosen, trial_predicted)
-        if gain < ENOUGH:
-            break
-    moved = [effect for effect, is_free in zip(current, chosen, strict=True) if is_free]
-    return Fit(tuple(current), residual, jacobian, read_coordinates(moved, problem.plant))
+        if damping <= FREE and float(bent @ bent) < ENOUGH * at.squared_error:
+            break  # a further step could gain no more than what this one bent
+        if bend < BENT:
+            jacobian = jacobian + np.outer(bent, lower.step) / float(lower.step @ lower.step)
+        else:
+            jacobian, exact = problem.jacobian(at.effects, chosen, at.predicted), True
+    if not exact:
+        jacobian = problem.jacobian(at.effects, chosen, at.predicted)
+    moved = [effect for effect, is_free in zip(at.effects, chosen, strict=True) if is_free]
+    return Fit(tuple(at.effects), at.residual, jacobian, read_coordinates(moved, problem.plant))
 
 
-def _stepped(
-    problem: Problem, effects: Sequence[Effect], free: Sequence[bool], jacobian: FloatArray, residual: FloatArray,
-    damping: float,
-) -> list[Effect]:  # fmt: skip
+@dataclass(frozen=True)
+class _State:
+    """Effects with the prediction of the plant that has them, and what it misses."""
+
+    effects: list[Effect]
+    predicted: FloatArray
+    residual: FloatArray
+
+    @property
+    def squared_error(self) -> float:
+        return float(self.residual @ self.residual)
+
+
+@dataclass(frozen=True)
+class _Lower:
+    """A step that lowers the squared error; no state where none was found."""
+
+    state: _State | None
+    step: FloatArray
+    damping: float
+
+
+def _lower(problem: Problem, at: _State, free: Sequence[bool], jacobian: FloatArray, damping: float) -> _Lower:
+    """A damped Gauss-Newton step, damped more until it lowers the squared error."""
+    measured = at.predicted + at.residual
+    moved = [effect for effect, is_free in zip(at.effects, free, strict=True) if is_free]
     normal = jacobian.T @ jacobian
     scale = np.diag(normal).copy()
     scale[scale <= 0] = 1.0
-    step = np.linalg.lstsq(normal + damping * np.diag(scale), jacobian.T @ residual, rcond=1e-14)[0]
-    moved = [effect for effect, is_free in zip(effects, free, strict=True) if is_free]
-    vector = read_coordinates(moved, problem.plant) + step
-    return _placed(effects, free, write_coordinates(moved, problem.plant, vector))
+    for _ in range(5):
+        damped = normal + damping * np.diag(scale)
+        step = np.asarray(np.linalg.lstsq(damped, jacobian.T @ at.residual, rcond=1e-14)[0], dtype=np.float64)
+        vector = read_coordinates(moved, problem.plant) + step
+        effects = _placed(at.effects, free, write_coordinates(moved, problem.plant, vector))
+        predicted = problem.predicted(effects)
+        state = _State(effects, predicted, measured - predicted)
+        if state.squared_error < at.squared_error:  # false where it is not a number
+            return _Lower(state, step, max(damping * 0.1, 1e-9))
+        damping = max(damping * 30, 1e-4)
+    return _Lower(None, step, damping)
 
 
 def _placed(effects: Sequence[Effect], free: Sequence[bool], moved: Sequence[Effect]) -> list[Effect]:

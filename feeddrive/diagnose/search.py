@@ -1,7 +1,8 @@
 """The search: add the effect that lowers the error on data not fitted the most, until none pays; drop what does not.
 
-Every round starts each candidate from values read off the residual, refines it on all channels, and compares it by
-blocked cross-validation. The best few are refitted together with what was found before.
+Every round starts each candidate from values read off the residual, moves it one linear step, and compares it by
+blocked cross-validation. Those that promise a fair part of the best are fitted; the best few of these are fitted
+together with what was found before.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from feeddrive.diagnose.attempt import JOINT_ITERATIONS, PROMISE, Attempt, alone, together
+from feeddrive.diagnose.attempt import JOINT_ITERATIONS, PROMISE, Attempt, refined, started, together
 from feeddrive.diagnose.coordinates import read_coordinates
 from feeddrive.diagnose.cross_validation import (
     LEAST_GAIN,
@@ -33,6 +34,10 @@ MOST_EFFECTS = 8
 
 FINALISTS = 3
 """Candidates of a round that are refitted together with what was found before."""
+
+FAIR_PART = 0.3
+"""Gain over that of the best fitted candidate, from which a candidate is fitted too: starts are near by design (orders
+from a periodogram, velocities and stiffnesses scanned), so that one linear step shows most of an effect's worth."""
 
 TIE = 0.05
 """Share of the squared error by which a simpler candidate may be worse, if the difference is not significant."""
@@ -101,7 +106,7 @@ def _greedy(
         said(f"round {len(rounds) + 1}: {len(found.effects)} effects so far")
         winner: Attempt | None
         if opening is not None and not rounds:
-            attempts, winner, pair = [*opening[0]], opening[1], None
+            attempts, winner, pair = [*opening[0]], together(opening[1], found), None
             rounds.append(opening[0])
         else:
             attempts = _round(problem.predictor.scene(problem, found.effects), found, impossible)
@@ -110,7 +115,8 @@ def _greedy(
             pair = masked_pair(attempts, found, winner)
         if pair is not None:
             winner, attempts = pair, [pair, *attempts]
-        trials += [_trial(len(rounds), attempt, attempt is winner) for attempt in attempts]
+        taken = winner.name if winner is not None else ""
+        trials += [_trial(len(rounds), attempt, attempt.name == taken) for attempt in attempts]
         if winner is None:
             break
         problem, found = winner.problem, _without_idle(winner.problem, winner.fit)
@@ -154,17 +160,29 @@ def _round(scene: Scene, found: Fit, impossible: dict[str, str]) -> list[Attempt
         else:
             ready.append(candidate)
     with ThreadPoolExecutor(WORKERS) as pool:
-        groups = pool.map(lambda candidate: alone(scene, candidate), ready)
-        attempts = [attempt for group in groups for attempt in group]
-        attempts.sort(key=lambda attempt: attempt.comparison.gain, reverse=True)
+        groups = pool.map(lambda candidate: started(scene, candidate), ready)
+        attempts = _promising_refined(scene, [attempt for group in groups for attempt in group], pool)
         best = _best_per_name(attempts)
-        if found.effects:
-            names = [attempt.name for attempt in best[:FINALISTS] if attempt.comparison.gain > PROMISE]
-            finalists = [attempt for attempt in _best_per_place(attempts) if attempt.name in names]
-            joint = list(pool.map(lambda attempt: together(attempt, found), finalists))
-            others = [attempt for attempt in best if attempt.name not in names]
-            best = _best_per_name(sorted([*joint, *others], key=lambda a: -a.comparison.gain))
+        promising = max(PROMISE, FAIR_PART * best[0].comparison.gain) if best else PROMISE
+        names = [attempt.name for attempt in best[:FINALISTS] if attempt.comparison.gain > promising]
+        finalists = [attempt for attempt in _best_per_place(attempts) if attempt.name in names]
+        joint = list(pool.map(lambda attempt: together(attempt, found), finalists))
+        others = [attempt for attempt in best if attempt.name not in names]
+        best = _best_per_name(sorted([*joint, *others], key=lambda a: -a.comparison.gain))
     return best
+
+
+def _promising_refined(scene: Scene, attempts: list[Attempt], pool: ThreadPoolExecutor) -> list[Attempt]:
+    """The attempts, the best first, those fitted that promise a fair part of the best."""
+    waiting = sorted(attempts, key=lambda attempt: -attempt.comparison.gain)
+    done: list[Attempt] = []
+    while waiting:
+        best = max((attempt.comparison.gain for attempt in done), default=0.0)
+        if waiting[0].comparison.gain <= max(PROMISE, FAIR_PART * best):
+            break
+        now, waiting = waiting[:WORKERS], waiting[WORKERS:]
+        done += [attempt for attempt in pool.map(lambda one: refined(scene, one), now) if attempt is not None]
+    return sorted([*done, *waiting], key=lambda attempt: -attempt.comparison.gain)
 
 
 def _best_per_place(attempts: Sequence[Attempt]) -> list[Attempt]:
