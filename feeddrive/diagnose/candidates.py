@@ -6,11 +6,10 @@ position, velocities and stiffnesses from a short scan. Each candidate then is r
 
 from __future__ import annotations
 
-from feeddrive.diagnose import needs, starts, starts_drift
+from feeddrive.diagnose import needs, starts, starts_drift, starts_drive, starts_mode, starts_transmission
 from feeddrive.diagnose.scene import Candidate
 from feeddrive.effects.constant_force import ConstantForce
 from feeddrive.effects.coulomb_asymmetry import CoulombAsymmetry
-from feeddrive.effects.drive_delay import DriveDelay
 from feeddrive.effects.lead_error_cumulative import LeadErrorCumulative
 from feeddrive.effects.load_dependent_friction import LoadDependentFriction
 from feeddrive.effects.payload import Payload
@@ -34,8 +33,14 @@ CANDIDATES: tuple[Candidate, ...] = (
     Candidate("lead_error_cumulative", starts.plain(LeadErrorCumulative.of(slope=0.0)), needs.scale),
     Candidate("thermal_growth", starts_drift.thermal_growth, needs.scale_duration),
     Candidate("stiffness_deviation", starts.plain(StiffnessDeviation.of(factor=1.0)), needs.elastic),
+    Candidate("stiffness_vs_position", starts_transmission.stiffness_vs_position, needs.elastic_stroke),
+    Candidate("preload_loss", starts_transmission.preload_loss, needs.elastic),
     Candidate("backlash", starts.backlash, needs.gap, scanned=True),
     Candidate("payload", starts.plain(Payload.of(mass=0.0)), needs.nothing),
-    Candidate("drive_delay", starts.plain(DriveDelay.of(delay=0.0)), needs.nothing),
+    Candidate("structural_mode", starts_mode.structural_mode, needs.elastic),
+    Candidate("inertia_deviation", starts_drive.inertia, needs.inertia),
+    Candidate("torque_constant_droop", starts_drive.droop, needs.nothing),
+    Candidate("drive_delay", starts_drive.drive_delay, needs.nothing),
+    Candidate("channel_delay", starts_drive.channel_delay, needs.nothing),
 )
 """Effects that `diagnose` tries, and how."""

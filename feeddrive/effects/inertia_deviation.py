@@ -59,6 +59,15 @@ class InertiaDeviation(ChainEffect):
         if self.place == "motor":
             return {**chain, "motor_inertia": chain["motor_inertia"] + p["inertia"]}
         if "inertia_per_length" in chain:
-            length = chain["drive_length"] + chain["screw_length"]
-            return {**chain, "inertia_per_length": chain["inertia_per_length"] + p["inertia"] / length}
+            per_length = p["inertia"] / (chain["drive_length"] + chain["screw_length"])
+            return {**chain, "inertia_per_length": chain["inertia_per_length"] + per_length}
         return {**chain, "screw_inertia": chain["screw_inertia"] + p["inertia"]}
+
+
+def declared_inertia(chain: Mapping[str, float], where: str) -> float:
+    """Inertia of "motor" or "screw" in the values of a chain [kg m^2]."""
+    if where == "motor":
+        return chain["motor_inertia"]
+    if "inertia_per_length" in chain:
+        return chain["inertia_per_length"] * (chain["drive_length"] + chain["screw_length"])
+    return chain["screw_inertia"]
