@@ -1,0 +1,138 @@
+"""A change between recordings in words: what is other, by how much, and what it means on a machine."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from feeddrive.effects.base import Port
+from feeddrive.quantity import format_quantity
+
+EXPANSION = 11.7e-6
+"""Expansion of steel [1/K], by which a change of lead is read as a temperature."""
+
+WORDS = {
+    ("friction_deviation", Port.TABLE, "coulomb_factor"): "guide Coulomb level",
+    ("friction_deviation", Port.TABLE, "viscous_factor"): "guide viscous drag",
+    ("friction_deviation", Port.SCREW, "coulomb_factor"): "Coulomb level of nut and bearings",
+    ("friction_deviation", Port.SCREW, "viscous_factor"): "speed-dependent drag of nut and bearings",
+    ("constant_force", Port.TABLE, "force"): "constant force",
+    ("payload", Port.TABLE, "mass"): "moving mass",
+    ("lead_error_cumulative", Port.TRANSMISSION, "slope"): "travel per length of the screw",
+    ("stiffness_deviation", Port.TRANSMISSION, "factor"): "axial stiffness",
+}
+"""What a parameter is called in a sentence about a change; others by their own names."""
+
+FACTORS = ("coulomb_factor", "viscous_factor", "factor")
+"""Parameters whose change is said in per cent."""
+
+
+@dataclass(frozen=True)
+class Moved:
+    """A difference of one parameter with its interval, SI."""
+
+    effect: str
+    port: Port
+    key: str
+    unit: str
+    here: float
+    there: float
+    difference: float
+    half: float
+
+    @property
+    def clear(self) -> bool:
+        """Whether the interval of the difference leaves zero out."""
+        return abs(self.difference) > self.half
+
+
+def change_statement(moved: Moved, recording: str, against: str) -> str:
+    """The change in one sentence."""
+    name = WORDS.get((moved.effect, moved.port, moved.key))
+    subject = name or f"{moved.effect.replace('_', ' ')} {moved.key.replace('_', ' ')}"
+    way = "higher" if moved.difference > 0 else "lower"
+    places = f"in {recording} than in {against}"
+    if moved.key in FACTORS and moved.there > 0:
+        size, spread = abs(moved.difference) / moved.there, moved.half / moved.there
+        return f"{subject} {_percent(size, spread)} {way} {places}"
+    digits = format_quantity(abs(moved.difference), moved.unit)
+    spread_text = format_quantity(moved.half, moved.unit)
+    values = f"{format_quantity(moved.here, moved.unit)} after {format_quantity(moved.there, moved.unit)}"
+    return f"{subject} {digits} (± {spread_text}) {way} {places}: {values}"
+
+
+def _percent(size: float, spread: float) -> str:
+    decimals = 0 if spread > 0.005 else 1
+    return f"{100 * size:.{decimals}f} % (± {max(100 * spread, 0.1):.1f} %)"
+
+
+def change_reading(moved: Moved, together: Sequence[Moved]) -> str:
+    """What the change means on a machine; friction is read from its two parts together."""
+    if moved.effect == "friction_deviation":
+        return _friction(moved, together)
+    reading = READINGS.get((moved.effect, moved.key))
+    return reading(moved) if reading else ""
+
+
+def _friction(moved: Moved, together: Sequence[Moved]) -> str:
+    parts = {m.key: m.difference for m in together if (m.effect, m.port) == (moved.effect, moved.port) and m.clear}
+    level, viscous = parts.get("coulomb_factor", 0.0), parts.get("viscous_factor", 0.0)
+    if level and not viscous:
+        return (
+            "The level rose at the same viscous drag: more preload, wear, dirt or a lubricant that failed."
+            if level > 0
+            else "The level fell at the same viscous drag: run in, preload lost, or lubricated anew."
+        )
+    if viscous and not level:
+        return (
+            "The viscous drag fell at the same level: the lubricant is warmer or thinner."
+            if viscous < 0
+            else "The viscous drag rose at the same level: the lubricant is colder, fresh or of a thicker kind."
+        )
+    if level < 0 and viscous < 0:
+        return "Level and viscous drag fell together: warmed up, or lubricated with less or thinner grease."
+    if level > 0 and viscous > 0:
+        return "Level and viscous drag rose together: colder, or greased anew."
+    return (
+        "Level and viscous drag moved apart: the shape of the friction over speed changed, as with another lubricant."
+    )
+
+
+def _backlash(moved: Moved) -> str:
+    return "The play grew: wear of the nut, or a fixing that loosened." if moved.difference > 0 else "The play shrank."
+
+
+def _lead(moved: Moved) -> str:
+    kelvin = moved.difference / EXPANSION
+    return f"The screw is about {abs(kelvin):.2g} K {'warmer' if kelvin > 0 else 'colder'}, if it is of steel."
+
+
+def _mass(moved: Moved) -> str:
+    return "Another workpiece or fixture, or a mass that was added." if moved.difference else ""
+
+
+def _stiffness(moved: Moved) -> str:
+    lower = "The transmission became softer: preload lost, or a bearing or fixing that loosened."
+    return lower if moved.difference < 0 else "The transmission became stiffer: preload set anew."
+
+
+def _force(moved: Moved) -> str:
+    return "Another weight or counterbalance, a cable that pulls, or an offset of the drive."
+
+
+def _phase(moved: Moved) -> str:
+    return "At the same amplitude: the encoder counts from another zero."
+
+
+READINGS: dict[tuple[str, str], Callable[[Moved], str]] = {
+    ("backlash", "width"): _backlash,
+    ("lead_error_cumulative", "slope"): _lead,
+    ("thermal_growth", "strain"): _lead,
+    ("payload", "mass"): _mass,
+    ("stiffness_deviation", "factor"): _stiffness,
+    ("constant_force", "force"): _force,
+    ("torque_ripple", "phase"): _phase,
+    ("ball_pass_ripple", "phase"): _phase,
+    ("lead_error_periodic", "phase"): _phase,
+}
+"""Effect and parameter to the reading of a change."""
