@@ -22,34 +22,28 @@ def part(column: Expression, start: int, count: int) -> Expression:
     return ca.reshape(column[start : start + count], count, 1)
 
 
-def newton_correction(residual: Expression, unknown: Expression, right_side: Expression | None = None) -> Expression:
-    """J^-1 r by elimination in pairs without pivoting: the diagonal of J is 1 plus dissipation.
+def solved_in_pairs(matrix: Expression, right_side: Expression) -> Expression:
+    """The solution of a linear system by elimination in pairs without pivoting: the diagonal is 1 plus dissipation.
 
-    With a right side, J^-1 times that.
-
-    Unknowns 2k and 2k + 1 belong together (the same quantity at both nodes). A pair is inverted with one division,
-    since one division takes as long as ten products.
+    Unknowns 2k and 2k + 1 belong together (the same quantity at both nodes). Rows are multiplied with the determinant
+    of a pair and not divided by it, so that a division, which takes as long as ten products, is waited for only once.
     """
-    n = unknown.numel()
+    n = right_side.numel()
     if n == 0:
         return ca.SX.zeros(0, 1)
-    side = residual if right_side is None else right_side
-    rows = ca.SX(ca.horzcat(ca.jacobian(residual, unknown), side))
-    pairs, inverted = range(0, n, 2), []
+    rows: Expression = ca.horzcat(matrix, right_side)
+    pairs, adjugates, determinants = range(0, n, 2), [], []
     for k in pairs:
-        inverted.append(_inverse(rows[k : k + 2, k : k + 2]))
+        a, b, c, d = rows[k, k], rows[k, k + 1], rows[k + 1, k], rows[k + 1, k + 1]
+        adjugates.append(ca.vertcat(ca.horzcat(d, -b), ca.horzcat(-c, a)))
+        determinants.append(a * d - b * c)
         for below in range(k + 2, n):
             if not (rows[below, k].is_zero() and rows[below, k + 1].is_zero()):
-                factor = ca.mtimes(rows[below, k : k + 2], inverted[-1])
-                rows[below, k + 2 :] -= ca.mtimes(factor, rows[k : k + 2, k + 2 :])
-    solution = ca.SX.zeros(n, 1)
-    for k, inverse in zip(reversed(pairs), reversed(inverted), strict=True):
+                factor = ca.mtimes(rows[below, k : k + 2], adjugates[-1])
+                rest = determinants[-1] * rows[below, k + 2 :] - ca.mtimes(factor, rows[k : k + 2, k + 2 :])
+                rows[below, k + 2 :] = rest
+    solution: Expression = ca.SX.zeros(n, 1)
+    for k, adjugate, determinant in zip(reversed(pairs), reversed(adjugates), reversed(determinants), strict=True):
         known = ca.mtimes(rows[k : k + 2, k + 2 : n], solution[k + 2 :]) if k + 2 < n else ca.SX.zeros(2, 1)
-        solution[k : k + 2] = ca.mtimes(inverse, rows[k : k + 2, n] - known)
+        solution[k : k + 2] = ca.mtimes(adjugate, rows[k : k + 2, n] - known) / determinant
     return solution
-
-
-def _inverse(pair: Expression) -> Expression:
-    """Inverse of a matrix of two rows."""
-    a, b, c, d = pair[0, 0], pair[0, 1], pair[1, 0], pair[1, 1]
-    return ca.vertcat(ca.horzcat(d, -b), ca.horzcat(-c, a)) * (1 / (a * d - b * c))

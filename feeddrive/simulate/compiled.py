@@ -6,24 +6,26 @@ One binary per structure: lengths, values and inputs are arguments.
 from __future__ import annotations
 
 import ctypes
-import re
 from functools import lru_cache
 from pathlib import Path
 
-import casadi as ca
 import numpy as np
 
 from feeddrive.compiler import compiled_library
+from feeddrive.simulate.driver_source import source_of
 from feeddrive.simulate.program import CELL, Position, Program, Run, Status, Stop, Task
 from feeddrive.typing import FloatArray
 
-FLAGS = ("-O2", "-ftree-vectorize", "-ffp-contract=off", "-fno-math-errno", "-fno-trapping-math", "-fPIC", "-shared")
+FLAGS = (
+    "-O2",
+    "-ftree-loop-vectorize",
+    "-ffp-contract=off",
+    "-fno-math-errno",
+    "-fno-trapping-math",
+    "-fPIC",
+    "-shared",
+)
 """No fused or reordered arithmetic: the compiled numbers are those of the virtual machine."""
-
-_NULL_CHECK = re.compile(r"arg\[(\d+)\]\? (arg\[\1\]\[\d+\]) : 0")
-_FUNCTION = re.compile(r"^casadi_real casadi_", re.MULTILINE)
-_LIBRARY_CALL = re.compile(r"return fm(ax|in)\(x, y\);")
-_RESULT_CHECK = re.compile(r"if \(res\[\d+\]!=0\) ")
 
 
 @lru_cache(maxsize=1)
@@ -41,28 +43,6 @@ def compiled_run(program: Program) -> Run | None:
     flags = (*FLAGS, "-march=native") if processor() else FLAGS
     library = compiled_library(source_of(program), flags, processor())
     return None if library is None else _bound(program, library)
-
-
-def source_of(program: Program) -> str:
-    """C of a program: its functions, its sizes, the driver."""
-    generator = ca.CodeGenerator("step.c", {"with_header": False, "with_export": False})
-    for function in program.functions:
-        generator.add(function)
-    # the driver passes every argument and result, so that what may be absent need not be asked for
-    functions = _RESULT_CHECK.sub("", _NULL_CHECK.sub(r"\2", generator.dump()))
-    # what is called for every number is put in its place; a number that is none passes on, and the step is refused
-    functions = _FUNCTION.sub("static inline casadi_real casadi_", functions)
-    functions = _LIBRARY_CALL.sub(_in_place, functions)
-    sizes = "".join(f"#define {name} {size}\n" for name, size in program.sizes.items())
-    for name, rows in zip(("NEEDED_FIRST", "NEEDED_SECOND"), program.step.needed, strict=True):
-        sizes += f"#define {name} {{{', '.join(str(row) for row in (*rows, 0))}}}\n"
-    return functions + sizes + (Path(__file__).parent / "driver.c").read_text(encoding="utf-8")
-
-
-def _in_place(call: re.Match[str]) -> str:
-    """The larger or smaller of x and y without a call of the library."""
-    sign = ">" if call[1] == "ax" else "<"
-    return f"return (x {sign} y || x != x) ? x : y;"
 
 
 class _Place(ctypes.Structure):
