@@ -42,19 +42,19 @@ class LateChannels:
     before: Mapping[str, FloatArray]
 
     @classmethod
-    def at_rest(cls, plant: Plant, tick: float, position: Mapping[str, float]) -> LateChannels:
-        """Late channels of an axis that has been standing without torque.
+    def at_rest(cls, plant: Plant, tick: float, first: Mapping[str, float]) -> LateChannels:
+        """Late channels of an axis that has been standing, and holding what it now reads.
 
         Args:
             plant: whose effects count.
             tick: [s].
-            position: of `RATES` to what it reads there [rad, m].
+            first: channel to what it reads now, SI; 0 where it is not given.
         """
         names = dict.fromkeys(effect.place for effect in plant.effects_of(ChannelDelay))
         delays = {name: lateness(plant.effects, name) for name in names}
         before: dict[str, FloatArray] = {}
         for name, delay in delays.items():
-            held = np.full(_ticks(delay, tick)[0], position.get(name, 0.0))
+            held = np.full(_ticks(delay, tick)[0], first.get(name, 0.0))
             before[name] = held
             if name in RATES:
                 before[RATES[name]] = np.zeros_like(held)

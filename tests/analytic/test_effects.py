@@ -49,13 +49,19 @@ NEUTRAL: dict[str, dict[str, Value]] = {
     "stiffness_deviation": {"factor": 1.0},
     "stiffness_vs_position": {"share_over_stroke": 0.0, "low": 0.0, "high": 0.4},
     "preload_loss": {"ratio": 1.0, "force": 100.0},
+    "inertia_deviation": {"inertia": 0.0},
+    "torque_constant_droop": {"share": 0.0, "at_torque": 10.0},
     "drive_delay": {"delay": 0.0},
+    "channel_delay": {"delay": 0.0},
     "tabulated_force": {},
     "tabulated_torque": {},
     "tabulated_friction": {},
     "tabulated_travel": {},
 }
 """Values at which an effect is not there. `presliding` has none: it is another shape, stiffer or softer."""
+
+PLACES = {"inertia_deviation": "screw", "channel_delay": "motor_angle"}
+"""Where the effects that must say so are."""
 
 DISSIPATIVE: dict[str, st.SearchStrategy[dict[str, Value]]] = {
     "guide_friction": st.fixed_dictionaries(
@@ -129,7 +135,7 @@ def test_every_effect_has_a_neutral_value_or_is_a_bristle() -> None:
 
 @pytest.mark.parametrize("name", NEUTRAL)
 def test_vanishes_at_its_neutral_value(name: str, generator: np.random.Generator) -> None:
-    effect = EFFECTS[name].of(**NEUTRAL[name])
+    effect = EFFECTS[name].of(place=PLACES.get(name, ""), **NEUTRAL[name])
     if isinstance(effect, TimingEffect):
         assert effect.delay(effect.values) == 0.0
         return
@@ -187,7 +193,7 @@ def test_source_is_conservative(name: str) -> None:
 @pytest.mark.parametrize("name", EFFECTS)
 def test_unknown_key_is_refused(name: str) -> None:
     with pytest.raises(InputError, match="unknown key 'nonsense'"):
-        EFFECTS[name].of(nonsense=1.0)
+        EFFECTS[name].of(place=PLACES.get(name, ""), nonsense=1.0)
 
 
 @pytest.mark.parametrize(
@@ -196,13 +202,14 @@ def test_unknown_key_is_refused(name: str) -> None:
 )
 def test_value_outside_its_range_is_refused(name: str, parameter: Parameter) -> None:
     good = {p.key: p.default if p.default is not None else p.size for p in EFFECTS[name].parameters}
-    EFFECTS[name].of(**good)
+    place = PLACES.get(name, "")
+    EFFECTS[name].of(place=place, **good)
     for end, outward in ((parameter.minimum, -1.0), (parameter.maximum, 1.0)):
         if np.isfinite(end):
             with pytest.raises(InputError, match="outside its range"):
-                EFFECTS[name].of(**{**good, parameter.key: end + outward * max(1e-9, abs(end))})
+                EFFECTS[name].of(place=place, **{**good, parameter.key: end + outward * max(1e-9, abs(end))})
     with pytest.raises(InputError, match="outside its range"):
-        EFFECTS[name].of(**{**good, parameter.key: float("nan")})
+        EFFECTS[name].of(place=place, **{**good, parameter.key: float("nan")})
 
 
 @pytest.mark.parametrize("name", EFFECTS)
