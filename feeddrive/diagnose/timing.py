@@ -27,7 +27,7 @@ def lag_of(plant: Plant, channel: str) -> float:
     lag = lateness(plant.effects, channel) - lateness(plant.effects, "motor_angle")
     if channel != "motor_torque":
         return lag
-    return lag - float(sum(effect.delay(effect.values) for effect in plant.effects_of(TimingEffect)))
+    return lag - float(sum(e.delay(e.values) for e in plant.effects if isinstance(e, TimingEffect)))
 
 
 def lagging(series: FloatArray, lag: float, sample_time: float) -> FloatArray:

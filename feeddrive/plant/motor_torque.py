@@ -34,7 +34,7 @@ _NONE = 1e-30
 
 def acting_torque(plant: Plant, symbols: Symbols, asked: Expression) -> Expression:
     """Torque that acts [N m] where `asked` [N m] is asked for; the same expression where nothing droops."""
-    effects = plant.effects_of(DriveEffect)
+    effects = [effect for effect in plant.effects if isinstance(effect, DriveEffect)]
     if not effects:
         return asked
     return _acting(asked, sum(effect.droop(symbols.effects[effect.label]) for effect in effects))
@@ -73,4 +73,4 @@ def _acting(asked: Expression, droop: Expression) -> Expression:
 
 
 def _droop(plant: Plant) -> float:
-    return float(sum(effect.droop(effect.values) for effect in plant.effects_of(DriveEffect)))
+    return float(sum(e.droop(e.values) for e in plant.effects if isinstance(e, DriveEffect)))
