@@ -1,15 +1,42 @@
-"""Effects that cannot be told apart: a rival in an effect's place, with the same error on data not fitted."""
+"""Effects that cannot be told apart: a rival in an effect's place, with the same error on data not fitted.
+
+    Lambda = (|r_B|^2 - |r_A|^2) / c,     c = d' Gamma d / d'd,     distance = |d| / sqrt(c),     d = r_B - r_A
+
+| symbol | meaning | unit |
+|---|---|---|
+| r_A, r_B | weighted residuals with the effect taken and with its rival, all others refitted, on data not fitted | 1 |
+| Gamma | covariance of the residual, from its spectrum (`noise_colour`) | 1 |
+| c | variance of what the noise adds to a sum along d, over that of white noise of variance one | 1 |
+
+Lambda is twice the logarithm of the odds for the effect taken. A rival is in the set where the data give less than 20
+to 1 against it; the true effect is left out of a set in less than one of a hundred cases, however near the rival is,
+and a rival five standard deviations away comes into a set in one of thirty. The contract's bound holds beside it: the
+same validation error within 5 %. Without the odds that bound would fill the set of every small effect, since leaving
+it away altogether costs less than 5 %.
+Source: Royall, Statistical Evidence (1997), section 1.6 (odds that mislead); Vuong, Econometrica 57 (1989) 307.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from math import log
+
+import numpy as np
 
 from feeddrive.diagnose.attempt import Attempt
-from feeddrive.diagnose.cross_validation import LEAST_GAIN, block_numbers, compare_left_out, left_out_residual
+from feeddrive.diagnose.certainty_result import Ambiguity
+from feeddrive.diagnose.coordinates import read_coordinates
+from feeddrive.diagnose.cross_validation import block_numbers, left_out_residual
 from feeddrive.diagnose.fit import Fit, Problem, fit
-from feeddrive.diagnose.judge import Judged, squared_blocks
+from feeddrive.diagnose.judge import Judged, error_series
+from feeddrive.diagnose.noise_colour import score_covariance
+from feeddrive.diagnose.predictor import Machine
+from feeddrive.diagnose.recordings import is_shift
 from feeddrive.diagnose.search import Search
 from feeddrive.effects.base import Effect
+from feeddrive.errors import InputError
+from feeddrive.typing import FloatArray
 
 SAME_ERROR = 1.05
 """Ratio of validation errors (rms) within which two effects count as the same."""
@@ -17,57 +44,177 @@ SAME_ERROR = 1.05
 LARGEST_SET = 3
 """Names in an ambiguous set."""
 
+AGAINST = 2 * log(20.0)
+"""Twice the logarithm of the odds from which a rival is refused."""
 
-def ambiguous_sets(search: Search, judged: Sequence[Judged]) -> tuple[tuple[str, ...], ...]:
-    """Sets of names that explain the same.
+NEAR = 0.5
+"""Gain of a candidate over that of the one taken in the same round, from which it is tried in its place."""
+
+MOST_RIVALS = 4
+"""Rivals tried for one effect; each costs a joint fit."""
+
+ITERATIONS = 5
+"""Steps of that fit; it starts from values that were fitted in the round of the search."""
+
+
+@dataclass(frozen=True)
+class Rival:
+    """An effect in the place of one that was taken.
+
+    Attributes:
+        place: number of the effect taken.
+        fit: of all effects, the rival last but in its place.
+        odds: Lambda of the module's docstring.
+        distance: between the two predictions, in standard deviations of the noise.
+        error_ratio: of the validation errors (rms), the rival's over that of what was taken.
+    """
+
+    place: int
+    fit: Fit
+    odds: float
+    distance: float
+    error_ratio: float
+
+    @property
+    def effect(self) -> Effect:
+        """The rival."""
+        return self.fit.effects[self.place]
+
+    @property
+    def as_good(self) -> bool:
+        """Whether the data cannot tell it from what was taken."""
+        return self.odds < AGAINST and self.error_ratio <= SAME_ERROR
+
+
+def rivals_of(found: Search, judged: Sequence[Judged]) -> list[list[Rival]]:
+    """Per effect found, the rivals that do as well in its place, the best first; at most two each.
 
     Args:
-        search: with what was found and tried.
+        found: what the search took and tried.
         judged: recordings with the found effects in.
-
-    Returns:
-        Sets of at most three names, the found one first.
     """
+    mine = _Residuals.of(found.problem, found.fit, [(j.after, j) for j in judged])
+    result = []
+    for place in range(len(found.fit.effects)):
+        tried = [_in_place(found, judged, place, attempt, mine) for attempt in _near(found, place)]
+        alike = sorted((rival for rival in tried if rival is not None and rival.as_good), key=lambda rival: rival.odds)
+        result.append(alike[: LARGEST_SET - 1])
+    return result
+
+
+def ambiguous_sets(found: Search, rivals: Sequence[list[Rival]]) -> tuple[Ambiguity, ...]:
+    """The sets of names, the effect taken first, with the reason."""
     sets = []
-    for index, effect in enumerate(search.fit.effects):
-        names = [effect.name]
-        for rival in _rivals(search, effect):
-            if rival.name not in names and _explains_the_same(search, judged, index, rival):
-                names.append(rival.name)
-        if len(names) > 1:
-            sets.append(tuple(names[:LARGEST_SET]))
+    for effect, alike in zip(found.fit.effects, rivals, strict=True):
+        if alike:
+            names = (effect.name, *(rival.effect.name for rival in alike))
+            sets.append(Ambiguity(names, tuple(rival.distance for rival in alike), _reason(effect, alike)))
     return tuple(sets)
 
 
-def _rivals(search: Search, effect: Effect) -> list[Attempt]:
-    """Candidates that came near when the effect was taken, and those that its signature names."""
-    for number, attempts in enumerate(search.rounds):
-        taken = next((t for t in search.trials if t.round == number + 1 and t.taken), None)
+def with_the_simplest(found: Search, rivals: Sequence[list[Rival]]) -> tuple[Search, list[list[Rival]]]:
+    """The search and its rivals with the first effect replaced that has a rival of fewer parameters; else the same.
+
+    The search takes the simpler of two that tie when they are tried; later effects can make others tie.
+    """
+    plant = found.problem.plant
+    if any(is_shift(effect) for effect in found.fit.effects):
+        return found, list(rivals)  # what one recording has otherwise belongs to the effect taken
+    for place, alike in enumerate(rivals):
+        own = len(read_coordinates([found.fit.effects[place]], plant))
+        for simple in alike:
+            if len(read_coordinates([simple.effect], plant)) < own:
+                ousted = Rival(place, found.fit, -simple.odds, simple.distance, 1 / simple.error_ratio)
+                others = [replace(rival, odds=rival.odds - simple.odds) for rival in alike if rival is not simple]
+                rest = [rival for rival in (ousted, *others) if rival.as_good]
+                refitted = fit(found.problem, simple.fit.effects)
+                return replace(found, fit=refitted), [*rivals[:place], rest, *rivals[place + 1 :]]
+    return found, list(rivals)
+
+
+def _near(found: Search, place: int) -> list[Attempt]:
+    """Candidates that came near when the effect was taken, and those that its signature names, the best first."""
+    effect = found.fit.effects[place]
+    present = {e.name for e in found.fit.effects}
+    for number, attempts in enumerate(found.rounds):
+        taken = next((t for t in found.trials if t.round == number + 1 and t.taken), None)
         if taken is None or effect.name not in taken.name.split(" with "):
             continue
-        others = [a for a in attempts if a.name != effect.name and a.comparison.pays]
-        near = [a for a in others if a.comparison.gain > 0.5 * taken.gain or a.name in effect.signature.confused_with]
-        found = {e.name for e in search.fit.effects}
-        return [a for a in near if a.name not in found or a.fit.effects[-1].repeatable]
+        others = [a for a in attempts if a.name != effect.name and " with " not in a.name and a.comparison.pays]
+        near = [a for a in others if a.comparison.gain > NEAR * taken.gain or a.name in effect.signature.confused_with]
+        free = [a for a in near if a.name not in present or a.fit.effects[-1].repeatable]
+        return sorted(free, key=lambda a: -a.comparison.gain)[:MOST_RIVALS]
     return []
 
 
-def _explains_the_same(search: Search, judged: Sequence[Judged], index: int, rival: Attempt) -> bool:
-    """Whether the rival does as well: the same on blocks left out, and within 5 % on the judged data."""
-    problem, found = search.problem, search.fit
-    effects = [*found.effects[:index], rival.fit.effects[-1], *found.effects[index + 1 :]]
-    swapped = fit(problem, effects, iterations=4)
-    if not _as_good(problem, found, swapped):
-        return False
-    plant = problem.plant.with_effects(*swapped.effects)
-    mine = squared_blocks(problem, [(j.after, j.evidence) for j in judged]).sum()
-    its = squared_blocks(problem, [(plant, j.evidence) for j in judged]).sum()
-    return bool(its <= SAME_ERROR**2 * mine)
+def _in_place(found: Search, judged: Sequence[Judged], place: int, attempt: Attempt, mine: _Residuals) -> Rival | None:
+    """A candidate in the place of an effect, all refitted; None where the plant cannot hold or follow it."""
+    effects = [*found.fit.effects]
+    effects[place] = attempt.fit.effects[-1]
+    try:
+        swapped = fit(found.problem, effects, iterations=ITERATIONS)
+        its = _Residuals.of(
+            found.problem, swapped, [(j.with_effects(found.problem, swapped.effects), j) for j in judged]
+        )
+    except InputError:
+        return None
+    if not np.all(np.isfinite(its.fitted)):
+        return None
+    odds, distance = _odds(found.problem, judged, mine, its)
+    return Rival(place, swapped, odds, distance, float(np.linalg.norm(its.judged) / np.linalg.norm(mine.judged)))
 
 
-def _as_good(problem: Problem, found: Fit, swapped: Fit) -> bool:
-    blocks = block_numbers(problem)
-    its = left_out_residual(swapped.residual, swapped.jacobian, blocks)
-    mine = left_out_residual(found.residual, found.jacobian, blocks)
-    better = compare_left_out(its, mine, blocks, LEAST_GAIN)
-    return better.gain < max(LEAST_GAIN, 2 * better.standard_error)
+@dataclass(frozen=True)
+class _Residuals:
+    """Weighted residuals of one set of effects: on blocks left out of the fit, and thinned on the judged samples."""
+
+    fitted: FloatArray
+    judged: FloatArray
+
+    @classmethod
+    def of(cls, problem: Problem, fitted: Fit, plants: Sequence[tuple[Machine, Judged]]) -> _Residuals:
+        """Of a fit, with the plant that it gives for each judged recording."""
+        left_out = left_out_residual(fitted.residual, fitted.jacobian, block_numbers(problem))
+        return cls(left_out, np.concatenate([_thinned_error(problem, plant, j) for plant, j in plants]))
+
+
+def _thinned_error(problem: Problem, plant: Machine, judged: Judged) -> FloatArray:
+    evidence = judged.evidence
+    errors = error_series(problem, plant, evidence)
+    rows = evidence.thinned(evidence.judged_rows)
+    return np.concatenate([errors[name][rows] / evidence.noise[name] for name in evidence.channels])
+
+
+def _odds(problem: Problem, judged: Sequence[Judged], mine: _Residuals, its: _Residuals) -> tuple[float, float]:
+    """Lambda and distance, fitted and judged samples together."""
+    parts = (
+        (list(problem.evidence), [e.fit_rows for e in problem.evidence], mine.fitted, its.fitted),
+        ([j.evidence for j in judged], [j.evidence.judged_rows for j in judged], mine.judged, its.judged),
+    )
+    excess, square, scatter = 0.0, 0.0, 0.0
+    for evidence, rows, left, other in parts:
+        difference = other - left
+        excess += float(other @ other - left @ left)
+        square += float(difference @ difference)
+        scatter += float(score_covariance(evidence, rows, left, difference[:, None])[0, 0])
+    if not scatter > 0:
+        return (0.0, 0.0) if square == 0 else (excess, float("inf"))
+    colour = scatter / square
+    return excess / colour, float(np.sqrt(square / colour))
+
+
+def _reason(effect: Effect, alike: Sequence[Rival]) -> str:
+    """How alike the members are, and what each follows."""
+    apart = joined([f"{rival.effect.name} by {rival.distance:.1f}" for rival in alike])
+    members = (effect, *(rival.effect for rival in alike))
+    follows = "; ".join(f"{one.name} with {one.signature.variable}" for one in members)
+    return (
+        f"the same signature in these data: when all else is refitted, the prediction with {effect.name} differs from "
+        f"that with {apart} standard deviations of the noise, all samples together. "
+        f"They part where these vary differently: {follows}."
+    )
+
+
+def joined(words: Sequence[str]) -> str:
+    """Words as in a sentence."""
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"

@@ -12,8 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from feeddrive.diagnose.evidence import Evidence
 from feeddrive.diagnose.fit import Problem
-from feeddrive.typing import FloatArray, IntegerArray
+from feeddrive.typing import BoolArray, FloatArray, IntegerArray
 
 FOLDS = 6
 """Folds to which the blocks are dealt."""
@@ -88,12 +89,16 @@ def left_out_residual(residual: FloatArray, jacobian: FloatArray, blocks: Intege
     return left_out
 
 
-def compare_left_out(before: FloatArray, after: FloatArray, blocks: IntegerArray, least: float) -> Comparison:
-    """Gain of one model over another from their residuals on blocks not fitted, all of shape (m,).
+def compare_left_out(
+    before: FloatArray, after: FloatArray, blocks: IntegerArray, least: float = LEAST_GAIN
+) -> Comparison:
+    """Gain of one model over another from their residuals on data that neither was fitted to, all of shape (m,).
 
-    With d = before - after the gain is sum d^2 + 2 sum after d. Only the second part is chance: its block sums give the
-    standard error. A gain that comes from a few blocks, as that of a delay does from a chirp, is then not taken for
-    scatter.
+    With d = before - after the gain is sum d^2 + 2 sum after d. The first part is what the models differ by, known
+    without error; only the second is chance, and its sums over blocks give the standard error, whatever the colour of
+    the residual inside a block. The scatter of the blocks' gains would not do: it takes for chance that an effect shows
+    in some blocks and not in others, as a delay does in a chirp, and so overlooks just the effects that show rarely.
+    This one definition serves the search, the judging and the re-homing.
     """
     total = float(before @ before)
     chance = np.bincount(blocks, weights=2 * after * (before - after))
@@ -120,17 +125,9 @@ def least_gain(problem: Problem, before: FloatArray) -> float:
 
 def model_share(problem: Problem) -> float:
     """Weighted squared error that the model itself may make on the fitted samples [1]; 0 where it is exact."""
-    missed = 0.0
-    for evidence in problem.evidence:
-        rows = float(np.sum(evidence.thinned(evidence.fit_rows)))
-        missed += rows * sum((error / evidence.noise[name]) ** 2 for name, error in evidence.model_error.items())
-    return missed
+    return sum(model_error_square(evidence, evidence.thinned(evidence.fit_rows)) for evidence in problem.evidence)
 
 
-def compare(before: FloatArray, after: FloatArray, least: float = LEAST_GAIN) -> Comparison:
-    """Gain of one model over another from their block errors, both of shape (blocks,)."""
-    lower = before - after
-    total = float(before.sum())
-    filled = lower[(before > 0) | (after > 0)]
-    spread = float(np.std(filled, ddof=1)) * np.sqrt(len(filled)) if len(filled) > 1 else float("inf")
-    return Comparison(float(lower.sum()) / total, spread / total, least)
+def model_error_square(evidence: Evidence, rows: BoolArray) -> float:
+    """The same on some samples of one recording, shape (n,)."""
+    return float(np.sum(rows)) * sum((e / evidence.noise[name]) ** 2 for name, e in evidence.model_error.items())

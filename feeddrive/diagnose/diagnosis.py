@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from feeddrive.diagnose.ambiguity import ambiguous_sets
+from feeddrive.diagnose.ambiguity import ambiguous_sets, rivals_of, with_the_simplest
 from feeddrive.diagnose.correlation import correlation
 from feeddrive.diagnose.cross_validation import LEAST_GAIN
-from feeddrive.diagnose.drift_table import normalised
 from feeddrive.diagnose.evidence import Evidence
 from feeddrive.diagnose.fit import Fit
 from feeddrive.diagnose.judge import Judged, Share, channel_results, judged_recordings, prepared_for_judging, share_of
 from feeddrive.diagnose.physical_reading import physical_reading
 from feeddrive.diagnose.preparation import prepared
+from feeddrive.diagnose.recordings import without_shifts
+from feeddrive.diagnose.recordings_compared import compared_recordings, machine_as_last, with_carrying
+from feeddrive.diagnose.recordings_search import search_recordings
 from feeddrive.diagnose.rehoming import rehomed_plant
 from feeddrive.diagnose.result import (
     Diagnosis,
@@ -24,10 +27,10 @@ from feeddrive.diagnose.result import (
     RefusedEffect,
     SimulationResult,
 )
-from feeddrive.diagnose.search import Search, search
+from feeddrive.diagnose.search import Search
 from feeddrive.diagnose.simulation import simulation_error
 from feeddrive.diagnose.uncertainty import Certainty, Interval, certainty, intervals
-from feeddrive.diagnose.unexplained import unexplained
+from feeddrive.diagnose.unexplained import explain_rest
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
@@ -56,7 +59,7 @@ def diagnose(
         said: told what is going on.
 
     Returns:
-        The diagnosis, and the effects to add to the plant.
+        The diagnosis, and the effects to add to the plant: the named ones, then tables of what no name explains.
 
     Raises:
         InputError: recordings that cannot be used with this plant.
@@ -64,33 +67,45 @@ def diagnose(
     if not 0.2 <= split <= 0.95:
         raise InputError(f"--split is {split:g}", "", "use a share between 0.2 and 0.95, such as 0.75")
     problem, kept_for_judging, told = prepared(plant, recordings, validation, split)
-    found = normalised(search(problem, said))
+    searched = search_recordings(problem, said)
+    found = searched.search
     said("judging on data not fitted")
     judged, rehomed = _judged(found, kept_for_judging)
-    channels = channel_results(found.problem, judged)
-    series = judged_recordings(found.problem, judged)
-    effects, known = found.fit.effects, certainty(found.problem, found.fit)
-    shares = [share_of(found.problem, judged, effects, i) for i in range(len(effects))]
+    found, rivals = with_the_simplest(found, rivals_of(found, judged))
+    if found is not searched.search:
+        searched = replace(searched, search=found)
+        judged, rehomed = _judged(found, kept_for_judging)
+    alike = ambiguous_sets(found, rivals)
+    said("looking at what is left")
+    rest = explain_rest(found.problem, found.fit.effects, judged, channel_results(found.problem, judged))
+    channels = channel_results(found.problem, rest.judged)
+    series = judged_recordings(found.problem, rest.judged)
+    compared, known = compared_recordings(searched, judged), certainty(found.problem, found.fit)
+    effects = machine_as_last(searched, compared.listed)
+    count = len(without_shifts(found.fit.effects))
+    shares = [share_of(found.problem, judged, found.fit.effects, i) for i in range(count)]
     simulation = None
     if simulate and isinstance(plant, Plant):
-        simulation = simulation_error(plant, plant.with_effects(*effects), judged)
+        simulation = simulation_error(plant, plant.with_effects(*effects, *rest.effects), judged)
     result = Diagnosis(
         plant=plant.name,
         fit=_stamps(recordings),
         validate=_stamps(validation or recordings),
         channels=channels,
-        effects=_effect_results(found, shares, known),
+        effects=with_carrying(_effect_results(found, shares, known), compared),
         refused=_refused(found),
-        ambiguous=ambiguous_sets(found, judged),
+        ambiguous=tuple(one.names for one in alike),
         rehomed=rehomed,
-        unexplained={channel.name: unexplained(channel, series) for channel in channels},
+        unexplained=rest.unexplained,
         trials=found.trials,
         recordings=series,
         simulation=simulation,
+        changes=compared.changes,
+        alike=alike,
         correlation=correlation(found.problem, found.fit, known),
         notes=(*told, *_notes(recordings, validation, found, problem.evidence, simulate, simulation)),
     )
-    return result, effects
+    return result, (*effects, *rest.effects)
 
 
 def _judged(found: Search, evidence: Sequence[Evidence]) -> tuple[list[Judged], tuple[str, ...]]:
@@ -103,7 +118,7 @@ def _judged(found: Search, evidence: Sequence[Evidence]) -> tuple[list[Judged], 
         if homed is None:
             judged.append(prepared_for_judging(found.problem, one, declared, after))
         else:
-            judged.append(prepared_for_judging(found.problem, homed.evidence, declared, homed.plant))
+            judged.append(prepared_for_judging(found.problem, homed.evidence, declared, homed.plant, homed.shift))
             rehomed.append(f"{one.recording.name}: {homed.statement}")
     return judged, tuple(rehomed)
 
@@ -111,7 +126,7 @@ def _judged(found: Search, evidence: Sequence[Evidence]) -> tuple[list[Judged], 
 def _effect_results(found: Search, shares: Sequence[Share], known: Certainty) -> tuple[EffectResult, ...]:
     spans = intervals(found.problem, found.fit, known)
     results = []
-    for effect, share, ends in zip(found.fit.effects, shares, spans, strict=True):
+    for effect, share, ends in zip(found.fit.effects, shares, spans, strict=False):  # shifts come last
         results.append(
             EffectResult(
                 effect.name,
@@ -163,7 +178,8 @@ def _curve_and_bump(effect: Effect) -> dict[str, ParameterResult]:
 def _evidence(effect: Effect, share: Share, fitted: Fit) -> str:
     channels = ", ".join(f"{value:.1%} of {name}" for name, value in share.explains.items() if value > 0.001)
     seen = f"Explains {channels} on data not fitted" if channels else "Explains nothing on the judged data"
-    more = "" if share.carries else "; it does not carry to them"
+    idle = "; it does not carry to them" if share.shows else "; they could hardly show it"
+    more = "" if share.carries else idle
     return f"{seen}{more}. It shows as a function of {effect.signature.variable}."
 
 

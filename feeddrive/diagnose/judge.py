@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from feeddrive.diagnose.cross_validation import LEAST_GAIN, Comparison, compare
+from feeddrive.diagnose.cross_validation import Comparison, compare_left_out, model_error_square
 from feeddrive.diagnose.evidence import Evidence
 from feeddrive.diagnose.fit import Problem, fit
 from feeddrive.diagnose.predictor import Machine
@@ -15,22 +15,39 @@ from feeddrive.diagnose.result import ChannelResult, ChannelSeries, JudgedRecord
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 from feeddrive.recording.channels import channel_unit
-from feeddrive.typing import FloatArray
+from feeddrive.typing import FloatArray, IntegerArray
 
 
 @dataclass(frozen=True)
 class Judged:
-    """One recording, judged: the evidence, and the plants before and after for it."""
+    """One recording, judged: the evidence, the plants before and after for it, and by what its zero was shifted."""
 
     evidence: Evidence
     before: Machine
     after: Machine
+    shift: float = 0.0
+
+    def with_effects(self, problem: Problem, effects: Sequence[Effect]) -> Machine:
+        """The declared plant with other effects than those found, counted from this recording's zero."""
+        return problem.plant.with_effects(*shifted(effects, self.shift))
 
 
-def prepared_for_judging(problem: Problem, evidence: Evidence, before: Machine, after: Machine) -> Judged:
+def shifted(effects: Sequence[Effect], shift: float) -> list[Effect]:
+    """The effects with every phase moved by order times `shift` [rad of the motor]."""
+    return [
+        effect.with_values(phase=float(effect.values["phase"]) + float(effect.values["order"]) * shift)  # type: ignore[arg-type]
+        if "phase" in effect.values
+        else effect
+        for effect in effects
+    ]
+
+
+def prepared_for_judging(
+    problem: Problem, evidence: Evidence, before: Machine, after: Machine, shift: float = 0.0
+) -> Judged:
     """The recording without the samples that the plant cannot predict, both plants on the same samples."""
     kept = evidence.where_predictable(problem.predictor.predictable(after, evidence))
-    return Judged(kept if kept.judged_rows.any() else evidence, before, after)
+    return Judged(kept if kept.judged_rows.any() else evidence, before, after, shift)
 
 
 def error_series(problem: Problem, plant: Machine, evidence: Evidence) -> dict[str, FloatArray]:
@@ -68,46 +85,72 @@ def judged_channels(judged: Sequence[Judged]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(name for j in judged for name in j.evidence.channels))
 
 
-def squared_blocks(problem: Problem, plant_of: Sequence[tuple[Machine, Evidence]]) -> FloatArray:
-    """Noise-weighted squared error per block of the judged samples, all recordings one after the other."""
-    sums = []
+def judged_residual(problem: Problem, plant_of: Sequence[tuple[Machine, Evidence]]) -> tuple[FloatArray, IntegerArray]:
+    """Noise-weighted error at the judged samples, all channels and recordings one after the other, and their blocks.
+
+    Returns:
+        Residual and number of the block of every row, shape (m,) each; channels share their blocks.
+    """
+    residuals, numbers, first = [], [], 0
     for plant, evidence in plant_of:
         errors = error_series(problem, plant, evidence)
         rows = np.flatnonzero(evidence.judged_rows)
-        blocks = (rows * evidence.recording.sample_time / evidence.block).astype(int)
-        total = np.zeros(int(blocks.max()) + 1)
-        for name, error in errors.items():
-            total += np.bincount(blocks, weights=(error[rows] / evidence.noise[name]) ** 2, minlength=len(total))
-        sums.append(total[total > 0])
-    return np.concatenate(sums)
+        blocks = (rows * evidence.recording.sample_time / evidence.block).astype(np.int64)
+        residuals += [error[rows] / evidence.noise[name] for name, error in errors.items()]
+        numbers += [first + blocks] * len(errors)
+        first += int(blocks.max(initial=-1)) + 1
+    return np.concatenate(residuals), np.concatenate(numbers)
 
 
 @dataclass(frozen=True)
 class Share:
-    """What one effect does on data not fitted: 1 - (rms with / rms without)^2 per channel, and the comparison."""
+    """What one effect does on data not fitted.
+
+    Attributes:
+        explains: channel to 1 - (rms with / rms without)^2.
+        comparison: of the plants without and with it.
+        size: what it predicts there, in standard deviations of the noise; infinite where nothing is left to chance.
+    """
 
     explains: dict[str, float]
     comparison: Comparison
+    size: float
+
+    @property
+    def shows(self) -> bool:
+        """Whether the judged data could tell the effect from none: three standard deviations of the noise."""
+        return self.size > 3.0
 
     @property
     def carries(self) -> bool:
-        """Whether the effect lowers the squared error there by as much as is asked of a new effect."""
-        return self.comparison.gain > LEAST_GAIN
+        """Whether the effect lowers the squared error there, by more than its standard error and the model's own error.
+
+        An effect that is not there makes the error larger there by what it predicts, d standard deviations of the
+        noise; its gain over its standard error scatters by one about -d / 2, that of a real one about +d / 2. With
+        the d of 3 that the search asks for, a false one passes in less than one of a hundred cases. The share of the
+        error that the search asks for is not asked for again: a long or noisy recording would refuse by it what it
+        shows beyond doubt, and a real effect that just met it would fail every second time.
+        """
+        return self.comparison.gain > max(self.comparison.least, self.comparison.standard_error)
 
 
 def share_of(problem: Problem, judged: Sequence[Judged], effects: Sequence[Effect], index: int) -> Share:
     """What the effect at `index` explains, all other effects refitted without it."""
     rest = [*effects[:index], *effects[index + 1 :]]
     refitted = fit(problem, rest, iterations=2).effects if rest else ()
-    without = problem.plant.with_effects(*refitted)
-    explains = {}
-    for name in judged_channels(judged):
-        lacking = _pooled(problem, [(without, j.evidence) for j in judged], name)
-        having = _pooled(problem, [(j.after, j.evidence) for j in judged], name)
-        explains[name] = 1 - having / lacking
-    before = squared_blocks(problem, [(without, j.evidence) for j in judged])
-    after = squared_blocks(problem, [(j.after, j.evidence) for j in judged])
-    return Share(explains, compare(before, after))
+    lacking = [(j.with_effects(problem, refitted), j.evidence) for j in judged]
+    having = [(j.after, j.evidence) for j in judged]
+    explains = {
+        name: 1 - _pooled(problem, having, name) / _pooled(problem, lacking, name) for name in judged_channels(judged)
+    }
+    before, blocks = judged_residual(problem, lacking)
+    after, _ = judged_residual(problem, having)
+    total = float(before @ before)
+    model = sum(model_error_square(j.evidence, j.evidence.judged_rows) for j in judged)
+    comparison = compare_left_out(before, after, blocks, model / total)
+    # of a difference d the chance part of the gain scatters by 2 |d|, so this is |d|
+    predicted, chance = float(np.sum((before - after) ** 2)), comparison.standard_error * total
+    return Share(explains, comparison, 2 * predicted / chance if chance > 0 else float("inf"))
 
 
 def _pooled(problem: Problem, pairs: Sequence[tuple[Machine, Evidence]], name: str) -> float:

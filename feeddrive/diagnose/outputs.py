@@ -12,7 +12,9 @@ from typing import Any
 import numpy as np
 
 from feeddrive import __version__
+from feeddrive.diagnose.change_outputs import changes_record
 from feeddrive.diagnose.result import ChannelResult, Diagnosis, EffectResult, ErrorFigures, ParameterResult
+from feeddrive.diagnose.unexplained_outputs import carried_remarks, unexplained_record
 from feeddrive.effects.base import Effect
 from feeddrive.files import write_text_atomically
 from feeddrive.plant.effect_text import plant_text_with_effects
@@ -30,7 +32,10 @@ def write_outputs(diagnosis: Diagnosis, effects: Sequence[Effect], plant_text: s
         folder: made if missing.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    remarks = [result.evidence for result in diagnosis.effects]
+    tables = carried_remarks(diagnosis)
+    # what only changed between recordings comes last, and is no finding of its own
+    changed = ["as in the last recording; see changes in diagnosis.json"] * (len(effects) - len(diagnosis.effects) - len(tables))
+    remarks = [*(result.evidence for result in diagnosis.effects), *changed, *tables]
     write_text_atomically(folder / "plant_after.toml", plant_text_with_effects(plant_text, effects, remarks))
     write_text_atomically(folder / "prediction.csv", prediction_table(diagnosis))
     write_text_atomically(folder / "diagnosis.json", diagnosis_json(diagnosis))
@@ -53,17 +58,13 @@ def diagnosis_record(diagnosis: Diagnosis) -> dict[str, Any]:
         "effects": [_effect(effect) for effect in diagnosis.effects],
         "refused": [{"name": refused.name, "reason": refused.reason} for refused in diagnosis.refused],
         "ambiguous": [list(names) for names in diagnosis.ambiguous],
+        "ambiguous_reasons": [
+            {"names": list(one.names), "distance_sigma": list(one.distances), "reason": one.reason}
+            for one in diagnosis.alike
+        ],
         "rehomed": list(diagnosis.rehomed),
-        "unexplained": {
-            name: {
-                "share": left.share,
-                "depends_on": [
-                    {"variable": d.variable, "share": d.share} | ({"period": d.period} if d.period else {})
-                    for d in left.depends_on
-                ],
-            }
-            for name, left in diagnosis.unexplained.items()
-        },
+        **changes_record(diagnosis.changes),
+        "unexplained": unexplained_record(diagnosis),
         "notes": list(diagnosis.notes),
         "plant_after": "plant_after.toml",
     }

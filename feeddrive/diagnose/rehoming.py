@@ -12,10 +12,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from feeddrive.diagnose.cross_validation import compare
+from feeddrive.diagnose.cross_validation import compare_left_out
 from feeddrive.diagnose.evidence import Evidence
 from feeddrive.diagnose.fit import Problem
-from feeddrive.diagnose.judge import squared_blocks
+from feeddrive.diagnose.judge import judged_residual, shifted
 from feeddrive.diagnose.predictor import Machine
 from feeddrive.effects.base import Effect
 
@@ -31,9 +31,10 @@ SCAN = 48
 
 @dataclass(frozen=True)
 class Rehomed:
-    """A recording with its effects shifted, the first part no longer judged."""
+    """A recording with its effects shifted [rad of the motor], the first part no longer judged."""
 
     plant: Machine
+    shift: float
     evidence: Evidence
     statement: str
 
@@ -49,36 +50,27 @@ def rehomed_plant(problem: Problem, effects: Sequence[Effect], evidence: Evidenc
     first = replace(evidence, counted=evidence.counted & _first_part(evidence))
     if first.judged_rows.sum() < 2 / evidence.recording.sample_time:
         return None
-    base = squared_blocks(problem, [(problem.plant.with_effects(*effects), first)])
+    base, blocks = judged_residual(problem, [(problem.plant.with_effects(*effects), first)])
 
     def error(shift: float) -> float:
         plant = problem.plant.with_effects(*shifted(effects, shift))
-        return float(squared_blocks(problem, [(plant, first)]).sum())
+        residual, _ = judged_residual(problem, [(plant, first)])
+        return float(residual @ residual)
 
     grid = np.linspace(-np.pi, np.pi, SCAN, endpoint=False)
     best = float(min(grid, key=error))
     width = 2 * np.pi / SCAN
     found = minimize_scalar(error, bounds=(best - width, best + width), method="bounded", options={"maxiter": 12})
     plant = problem.plant.with_effects(*shifted(effects, float(found.x)))
-    gain = compare(base, squared_blocks(problem, [(plant, first)]))
-    if gain.gain < WORTH or gain.gain < 2 * gain.standard_error:
+    gain = compare_left_out(base, judged_residual(problem, [(plant, first)])[0], blocks, WORTH)
+    if not gain.pays:
         return None
     rest = replace(evidence, counted=evidence.counted & ~_first_part(evidence))
     names = ", ".join(sorted({effect.name for effect in locked}))
     statement = (
         f"{names} shifted by {np.degrees(found.x):.1f} degrees of the motor on the first 15 %; judged on the rest"
     )
-    return Rehomed(plant, rest, statement)
-
-
-def shifted(effects: Sequence[Effect], shift: float) -> list[Effect]:
-    """The effects with every phase moved by order times `shift` [rad of the motor]."""
-    return [
-        effect.with_values(phase=float(effect.values["phase"]) + float(effect.values["order"]) * shift)  # type: ignore[arg-type]
-        if "phase" in effect.values
-        else effect
-        for effect in effects
-    ]
+    return Rehomed(plant, float(found.x), rest, statement)
 
 
 def _first_part(evidence: Evidence) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:

@@ -7,6 +7,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from feeddrive.diagnose.certainty_result import Ambiguity, Correlation, NextExperiment
+from feeddrive.diagnose.change_result import RecordingChanges
+from feeddrive.diagnose.unexplained_result import Dependence as Dependence
+from feeddrive.diagnose.unexplained_result import Unexplained as Unexplained
 from feeddrive.typing import FloatArray
 
 
@@ -76,23 +79,6 @@ class RefusedEffect:
 
     name: str
     reason: str
-
-
-@dataclass(frozen=True)
-class Dependence:
-    """A measured variable on which the unexplained part depends; period in the variable's unit, if periodic."""
-
-    variable: str
-    share: float
-    period: str | None = None
-
-
-@dataclass(frozen=True)
-class Unexplained:
-    """What is left of a channel above its noise: its share of the measured signal's square, what it depends on."""
-
-    share: float
-    depends_on: tuple[Dependence, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -179,6 +165,7 @@ class Diagnosis:
     correlation: Correlation | None = None
     alike: tuple[Ambiguity, ...] = ()
     next_experiments: tuple[NextExperiment, ...] = ()
+    changes: RecordingChanges = RecordingChanges()
 
     @property
     def nothing_missing(self) -> bool:
