@@ -1,0 +1,76 @@
+"""Command line: python -m tests.recovery.suite [run | table | sizes | list]; see --help."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from feeddrive.files import write_text_atomically
+from tests.recovery.suite import sizes
+from tests.recovery.suite.cases import all_cases, smoke_cases
+from tests.recovery.suite.planting import MACHINES
+from tests.recovery.suite.store import code_state, kept, run_missing
+from tests.recovery.suite.table import document
+from tests.recovery.suite.verdict import Verdict
+
+ROOT = Path(__file__).resolve().parents[3]
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run what is asked for; 0 when done."""
+    options = _parser().parse_args(arguments)
+    if options.what == "sizes":
+        sizes.write(tuple(options.machine or MACHINES), options.effect)
+        return 0
+    cases = [case for case in all_cases() if all(word in case.label for word in options.only)]
+    if options.smoke:
+        cases = [case for case in smoke_cases() if all(word in case.label for word in options.only)]
+    if options.what == "list":
+        for case in cases:
+            _say(f"{case.digest}  {case.label}")
+        return 0
+    if options.what == "run":
+        run_missing(
+            [c for c in cases if c.in_half or not options.half],
+            options.records,
+            options.workers,
+            options.any_code,
+            _say,
+        )
+    _write_table(options.records, options.any_code, options.table)
+    return 0
+
+
+def _write_table(records: Path, any_code: bool, path: Path) -> None:
+    cases = all_cases()
+    code = "" if any_code else code_state()
+    found = [Verdict(record) for case in cases if (record := kept(records, case, code)) is not None]
+    write_text_atomically(path, document(cases, found))
+    _say(f"{path}: {len(found)} of {len(cases)} cases")
+
+
+def _say(text: str) -> None:
+    print(text, flush=True)
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="python -m tests.recovery.suite", description="the recovery suite")
+    parser.add_argument("what", nargs="?", default="run", choices=("run", "table", "sizes", "list"))
+    parser.add_argument("--workers", type=int, default=2, help="processes")
+    parser.add_argument("--records", type=Path, default=ROOT / "build" / "recovery", help="folder of one file a case")
+    parser.add_argument("--table", type=Path, default=ROOT / "docs" / "recovery.md", help="where the table goes")
+    parser.add_argument("--only", action="append", default=[], help="cases whose label holds this word, repeatable")
+    parser.add_argument("--smoke", action="store_true", help="one case an effect")
+    parser.add_argument(
+        "--half", action="store_true", help="every other single: each size once an axis and once a noise"
+    )
+    parser.add_argument("--any-code", action="store_true", help="take records made by other code as well")
+    parser.add_argument("--machine", action="append", help="sizes: of this machine only, repeatable")
+    parser.add_argument("--effect", default="", help="sizes: of this effect only")
+    return parser
+
+
+if __name__ == "__main__":
+    sys.exit(main())
