@@ -10,11 +10,18 @@ from feeddrive.plant.plant import Plant
 LEAST_FACTOR = 0.02
 """Deviation of a friction factor from 1; declared friction is never known better."""
 
+LEAST_STIFFNESS_SHARE = 0.003
+"""Deviation of a stiffness from the declared one. No catalogue knows it to that, but a scale shows it; left without its
+name it would be taken for a free play of some nanometres."""
+
 LEAST_FORCE_SHARE = 0.01
 """A force over the declared Coulomb level of the guide."""
 
 LEAST_MASS_SHARE = 0.005
 """A mass over the declared table mass, an inertia over the declared one of its shaft."""
+
+LEAST_MODE_SHARE = 0.001
+"""What swings on the table, over the table's mass: at its frequency it is felt as many times its mass."""
 
 FORCE_KEYS = ("delta_force", "force", "peak")
 """Parameters that are forces at the table."""
@@ -26,15 +33,17 @@ def is_material(effect: Effect, plant: Plant) -> bool:
     if effect.name == "friction_deviation":
         return any(abs(values[key] - 1) >= LEAST_FACTOR for key in ("coulomb_factor", "viscous_factor"))
     if effect.name == "stiffness_vs_position":
-        return abs(values["share_over_stroke"]) >= LEAST_FACTOR
+        return abs(values["share_over_stroke"]) >= LEAST_STIFFNESS_SHARE
     if effect.name == "preload_loss" and values["ratio"] > 1 - LEAST_FACTOR:
         return False
-    if effect.name in ("payload", "structural_mode"):
+    if effect.name == "structural_mode":
+        return abs(values["mass"]) >= LEAST_MODE_SHARE * plant.chain.values["table_mass"]
+    if effect.name == "payload":
         return abs(values["mass"]) >= LEAST_MASS_SHARE * plant.chain.values["table_mass"]
     if isinstance(effect, InertiaDeviation):
         return abs(values["inertia"]) >= LEAST_MASS_SHARE * declared_inertia(plant.chain.values, effect.place)
     if effect.name == "stiffness_deviation":
-        return abs(values["factor"] - 1) >= LEAST_FACTOR
+        return abs(values["factor"] - 1) >= LEAST_STIFFNESS_SHARE
     forces = [abs(number) for key, value in effect.values.items() if key in FORCE_KEYS for number in _numbers(value)]
     return not forces or max(forces) >= LEAST_FORCE_SHARE * declared_level(plant, Port.TABLE)
 

@@ -36,8 +36,8 @@ FADE = 0.3
 """Time over which samples are faded in and out [s]."""
 
 LEAST_SHARE = 0.005
-"""Share that a mode must take, by this reading, of the weighted square that a payload leaves, to be simulated: what is
-no better than a payload is one. The best of the grid takes 0.0015 of noise."""
+"""Share of the weighted square that a mode must take, by this reading, to be simulated; beyond the band of what a
+payload leaves: what is no better there is one. The best of the grid takes 0.0015 of noise."""
 
 
 def structural_mode(scene: AxisScene) -> list[list[Effect]]:
@@ -52,7 +52,8 @@ def structural_mode(scene: AxisScene) -> list[list[Effect]]:
     (share, mass), f, zeta = max(grid, key=lambda entry: entry[0][0] if entry[0][1] > 0 else 0.0)
     start = StructuralMode.of(mass=max(mass, 1e-6), frequency=float(f), damping=zeta)
     better = share - payload > LEAST_SHARE * (1 - payload)
-    return [[start]] if better and is_material(start, scene.plant) else []
+    shows = better or (share > LEAST_SHARE and f < seen.edge)
+    return [[start]] if shows and is_material(start, scene.plant) else []
 
 
 def _transmissibility(frequency: FloatArray, own: float, zeta: float) -> FloatArray:

@@ -13,8 +13,11 @@ from feeddrive.effects.backlash import Backlash
 from feeddrive.effects.base import Effect
 from feeddrive.effects.drive_delay import DriveDelay
 from feeddrive.effects.friction_vs_position import FrictionVsPosition
+from feeddrive.effects.preload_loss import PreloadLoss
 from feeddrive.effects.presliding import Presliding
+from feeddrive.effects.stiffness_vs_position import StiffnessVsPosition
 from feeddrive.effects.stribeck import Stribeck
+from feeddrive.effects.structural_mode import StructuralMode
 from feeddrive.plant.plant import Plant
 from feeddrive.simulate.driven import motor_motion, simulate_driven
 from feeddrive.simulate.held_torque import simulate_torque
@@ -32,6 +35,11 @@ CASES: dict[str, tuple[Effect, ...]] = {
     "free_play": (PLAY,),
     "free_play_and_bristle": (PLAY, STIFF),
     "stribeck": (Stribeck.of(delta_force=-30.0, velocity=2e-3),),
+    "soft_along": (
+        PreloadLoss.of(ratio=0.3, force=150.0),
+        StiffnessVsPosition.of(share_over_stroke=0.4, low=-0.1, high=0.1),
+    ),
+    "table_mode": (StructuralMode.of(mass=16.0, frequency=70.0, damping=0.03),),
     "delay_and_bump": (DriveDelay.of(delay=1.3e-3), FrictionVsPosition.of(peak=40.0, centre=0.0, half_width=0.01)),
 }
 
