@@ -33,6 +33,7 @@ from feeddrive.diagnose.judge import Judged, error_series
 from feeddrive.diagnose.noise_colour import score_covariance
 from feeddrive.diagnose.predictor import Machine
 from feeddrive.diagnose.recordings import is_shift
+from feeddrive.diagnose.same_by_law import twins_of
 from feeddrive.diagnose.search import Search
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
@@ -52,6 +53,9 @@ NEAR = 0.5
 
 MOST_RIVALS = 4
 """Rivals tried for one effect; each costs a joint fit."""
+
+PLACED = ("inertia_deviation", "channel_delay")
+"""Effects whose place is put to the question."""
 
 ITERATIONS = 5
 """Steps of that fit; it starts from values that were fitted in the round of the search."""
@@ -96,7 +100,7 @@ def rivals_of(found: Search, judged: Sequence[Judged]) -> list[list[Rival]]:
     mine = _Residuals.of(found.problem, found.fit, [(j.after, j) for j in judged])
     result = []
     for place in range(len(found.fit.effects)):
-        tried = [_in_place(found, judged, place, attempt, mine) for attempt in _near(found, place)]
+        tried = [_in_place(found, judged, place, attempt.fit.effects[-1], mine) for attempt in _near(found, place)]
         alike = sorted((rival for rival in tried if rival is not None and rival.as_good), key=lambda rival: rival.odds)
         result.append(alike[: LARGEST_SET - 1])
     return result
@@ -106,10 +110,39 @@ def ambiguous_sets(found: Search, rivals: Sequence[list[Rival]]) -> tuple[Ambigu
     """The sets of names, the effect taken first, with the reason."""
     sets = []
     for effect, alike in zip(found.fit.effects, rivals, strict=True):
-        if alike:
-            names = (effect.name, *(rival.effect.name for rival in alike))
-            sets.append(Ambiguity(names, tuple(rival.distance for rival in alike), _reason(effect, alike)))
+        twins = twins_of(effect, found.problem.plant, found.problem.evidence)
+        others = [*((twin.name, 0.0) for twin in twins), *((rival.effect.name, rival.distance) for rival in alike)]
+        if others:
+            names, distances = zip(*others[: LARGEST_SET - 1], strict=True)
+            told = [*(twin.reason for twin in twins), *([_reason(effect, alike)] if alike else [])]
+            sets.append(Ambiguity((effect.name, *names), distances, "; ".join(told)))
     return tuple(sets)
+
+
+def other_places(found: Search, judged: Sequence[Judged]) -> tuple[str, ...]:
+    """Sentences about effects whose place the data cannot tell: at motor or screw, which channel.
+
+    Args:
+        found: what the search took.
+        judged: recordings with the found effects in.
+    """
+    placed = [(i, effect) for i, effect in enumerate(found.fit.effects) if effect.name in PLACED]
+    if not placed:
+        return ()
+    mine = _Residuals.of(found.problem, found.fit, [(j.after, j) for j in judged])
+    told = []
+    for index, effect in placed:
+        taken = {e.place for e in found.fit.effects if e.name == effect.name}
+        tried = [
+            _in_place(found, judged, index, type(effect).of(place=place, **effect.values), mine)
+            for place in effect.places
+            if place not in taken
+        ]
+        alike = [rival.effect.place for rival in tried if rival is not None and rival.as_good]
+        if alike:
+            where = f"{effect.place_key} = {joined(alike)} does as well as {effect.place}"
+            told.append(f"{effect.name}: {where}; these recordings cannot tell")
+    return tuple(told)
 
 
 def with_the_simplest(found: Search, rivals: Sequence[list[Rival]]) -> tuple[Search, list[list[Rival]]]:
@@ -147,10 +180,10 @@ def _near(found: Search, place: int) -> list[Attempt]:
     return []
 
 
-def _in_place(found: Search, judged: Sequence[Judged], place: int, attempt: Attempt, mine: _Residuals) -> Rival | None:
-    """A candidate in the place of an effect, all refitted; None where the plant cannot hold or follow it."""
+def _in_place(found: Search, judged: Sequence[Judged], place: int, rival: Effect, mine: _Residuals) -> Rival | None:
+    """A rival in the place of an effect, all refitted; None where the plant cannot hold or follow it."""
     effects = [*found.fit.effects]
-    effects[place] = attempt.fit.effects[-1]
+    effects[place] = rival
     try:
         swapped = fit(found.problem, effects, iterations=ITERATIONS)
         its = _Residuals.of(

@@ -7,12 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from feeddrive.diagnose.ambiguity import ambiguous_sets, rivals_of, with_the_simplest
+from feeddrive.diagnose.ambiguity import ambiguous_sets, other_places, rivals_of, with_the_simplest
 from feeddrive.diagnose.correlation import correlation
 from feeddrive.diagnose.cross_validation import LEAST_GAIN
 from feeddrive.diagnose.evidence import Evidence
 from feeddrive.diagnose.fit import Fit
 from feeddrive.diagnose.judge import Judged, Share, channel_results, judged_recordings, prepared_for_judging, share_of
+from feeddrive.diagnose.next_experiment import next_experiments
 from feeddrive.diagnose.physical_reading import physical_reading
 from feeddrive.diagnose.preparation import prepared
 from feeddrive.diagnose.recordings import without_shifts
@@ -29,7 +30,7 @@ from feeddrive.diagnose.result import (
 )
 from feeddrive.diagnose.search import Search
 from feeddrive.diagnose.simulation import simulation_error
-from feeddrive.diagnose.uncertainty import Certainty, Interval, certainty, intervals
+from feeddrive.diagnose.uncertainty import Interval, certainty, intervals
 from feeddrive.diagnose.unexplained import explain_rest
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
@@ -81,9 +82,12 @@ def diagnose(
     channels = channel_results(found.problem, rest.judged)
     series = judged_recordings(found.problem, rest.judged)
     compared, known = compared_recordings(searched, judged), certainty(found.problem, found.fit)
+    spans = intervals(found.problem, found.fit, known)
     effects = machine_as_last(searched, compared.listed)
     count = len(without_shifts(found.fit.effects))
     shares = [share_of(found.problem, judged, found.fit.effects, i) for i in range(count)]
+    said("looking for what would settle doubts")
+    further = next_experiments(found, rivals, spans)
     simulation = None
     if simulate and isinstance(plant, Plant):
         simulation = simulation_error(plant, plant.with_effects(*effects, *rest.effects), judged)
@@ -92,7 +96,7 @@ def diagnose(
         fit=_stamps(recordings),
         validate=_stamps(validation or recordings),
         channels=channels,
-        effects=with_carrying(_effect_results(found, shares, known), compared),
+        effects=with_carrying(_effect_results(found, shares, spans), compared),
         refused=_refused(found),
         ambiguous=tuple(one.names for one in alike),
         rehomed=rehomed,
@@ -102,8 +106,13 @@ def diagnose(
         simulation=simulation,
         changes=compared.changes,
         alike=alike,
+        next_experiments=further,
         correlation=correlation(found.problem, found.fit, known),
-        notes=(*told, *_notes(recordings, validation, found, problem.evidence, simulate, simulation)),
+        notes=(
+            *told,
+            *other_places(found, judged),
+            *_notes(recordings, validation, found, problem.evidence, simulate, simulation),
+        ),
     )
     return result, (*effects, *rest.effects)
 
@@ -123,8 +132,9 @@ def _judged(found: Search, evidence: Sequence[Evidence]) -> tuple[list[Judged], 
     return judged, tuple(rehomed)
 
 
-def _effect_results(found: Search, shares: Sequence[Share], known: Certainty) -> tuple[EffectResult, ...]:
-    spans = intervals(found.problem, found.fit, known)
+def _effect_results(
+    found: Search, shares: Sequence[Share], spans: Sequence[dict[str, list[Interval] | None]]
+) -> tuple[EffectResult, ...]:
     results = []
     for effect, share, ends in zip(found.fit.effects, shares, spans, strict=False):  # shifts come last
         results.append(
