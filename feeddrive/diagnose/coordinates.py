@@ -14,6 +14,7 @@ import numpy as np
 from feeddrive.diagnose.declared_friction import declared_level, declared_viscous
 from feeddrive.diagnose.predictor import Machine
 from feeddrive.effects.base import Effect, Value
+from feeddrive.effects.tabulated import Tabulated
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray
 
@@ -155,6 +156,8 @@ def coordinates_of(effect: Effect, plant: Machine) -> list[Coordinate]:
         return [Sine(effect.parameter("amplitude").size), Linear("order", ORDER_SIZE)]
     if effect.name in TWO_HEATS:
         return [TWO_HEATS[effect.name]]
+    if isinstance(effect, Tabulated):
+        return [Linear(key, effect.parameter(key).size) for key in effect.tables]
     result: list[Coordinate] = []
     for parameter in effect.parameters:
         pair = (effect.name, parameter.key)

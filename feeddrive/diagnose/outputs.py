@@ -34,7 +34,8 @@ def write_outputs(diagnosis: Diagnosis, effects: Sequence[Effect], plant_text: s
     folder.mkdir(parents=True, exist_ok=True)
     tables = carried_remarks(diagnosis)
     # what only changed between recordings comes last, and is no finding of its own
-    changed = ["as in the last recording; see changes in diagnosis.json"] * (len(effects) - len(diagnosis.effects) - len(tables))
+    count = len(effects) - len(diagnosis.effects) - len(tables)
+    changed = ["as in the last recording; see changes in diagnosis.json"] * count
     remarks = [*(result.evidence for result in diagnosis.effects), *changed, *tables]
     write_text_atomically(folder / "plant_after.toml", plant_text_with_effects(plant_text, effects, remarks))
     write_text_atomically(folder / "prediction.csv", prediction_table(diagnosis))

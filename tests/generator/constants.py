@@ -71,6 +71,16 @@ class Constants(NamedTuple):
     torque_lateness: float = 0.0
     angle_lateness: float = 0.0
     table_lateness: float = 0.0
+    cogging_force: float = 0.0
+    cogging_period: float = 1.0
+    cogging_phase: float = 0.0
+    spot_force: float = 0.0
+    spot_centre: float = 0.0
+    spot_half_width: float = 1.0
+    square_drag: float = 0.0
+    later_friction: float = 0.0
+    later_time: float = 0.0
+    cable_drag: float = 0.0
 
 
 def declared_constants(axis: AxisParameters) -> Constants:

@@ -12,6 +12,7 @@ from tests.generator.constants import Constants
 from tests.generator.friction import screw_drag, table_friction
 from tests.generator.state import State, compiled
 from tests.generator.transmission import nut_forces, side_of
+from tests.generator.unlisted import unlisted_force
 
 CONTACT_HALVINGS = 45
 
@@ -36,7 +37,7 @@ def slopes(state: State, torque: float, side: int, c: Constants) -> State:
     if c.ripple_amplitude != 0.0:
         ripple = c.ripple_amplitude * math.sin(c.ripple_order * state.angle + c.ripple_phase)
     friction, bristle = table_friction(state, c)
-    resisting = c.constant_force + c.spring_stiffness * (state.position - c.spring_zero)
+    resisting = c.constant_force + c.spring_stiffness * (state.position - c.spring_zero) + unlisted_force(state, c)
     pull, mass_acceleration = further_mass(state, c)
     return State(
         state.speed,
