@@ -13,6 +13,7 @@ from feeddrive.diagnose.cross_validation import LEAST_GAIN
 from feeddrive.diagnose.evidence import Evidence
 from feeddrive.diagnose.fit import Fit
 from feeddrive.diagnose.judge import Judged, Share, channel_results, judged_recordings, prepared_for_judging, share_of
+from feeddrive.diagnose.ledger_entry import kept_of
 from feeddrive.diagnose.next_experiment import next_experiments
 from feeddrive.diagnose.physical_reading import physical_reading
 from feeddrive.diagnose.preparation import prepared
@@ -48,6 +49,7 @@ def diagnose(
     split: float = 0.75,
     simulate: bool = False,
     said: Said = lambda text: None,
+    start: Sequence[Effect] = (),
 ) -> tuple[Diagnosis, tuple[Effect, ...]]:
     """Find what the plant lacks.
 
@@ -58,6 +60,7 @@ def diagnose(
         split: share of each recording that is fitted where there is no `validation`.
         simulate: add the closed-loop simulation error, where the controller is declared.
         said: told what is going on.
+        start: effects found earlier, asked again before others are searched.
 
     Returns:
         The diagnosis, and the effects to add to the plant: the named ones, then tables of what no name explains.
@@ -68,7 +71,7 @@ def diagnose(
     if not 0.2 <= split <= 0.95:
         raise InputError(f"--split is {split:g}", "", "use a share between 0.2 and 0.95, such as 0.75")
     problem, kept_for_judging, told = prepared(plant, recordings, validation, split)
-    searched = search_recordings(problem, said)
+    searched = search_recordings(problem, said, start)
     found = searched.search
     said("judging on data not fitted")
     judged, rehomed = _judged(found, kept_for_judging)
@@ -105,6 +108,7 @@ def diagnose(
         recordings=series,
         simulation=simulation,
         changes=compared.changes,
+        kept=kept_of(found, known),
         alike=alike,
         next_experiments=further,
         correlation=correlation(found.problem, found.fit, known),

@@ -1,9 +1,8 @@
 """Parameters that are other in one recording than in the others, and the predictor that applies them.
 
 A shift is a difference in the coordinates in which an effect is fitted, bound to one recording. It stands in the list
-of effects, so that fits, intervals and cross-validation treat it like any other unknown; before anything is simulated the
-predictor takes it out and moves the effect that it is about. Recordings without a shift keep the effect as it stands:
-those are the ones that a later recording is compared with.
+of effects, so that fits, intervals and cross-validation treat it like any other unknown; before anything is simulated
+the predictor takes it out and moves the effect that it is about. Recordings without a shift keep the effect as it is.
 """
 
 from __future__ import annotations

@@ -12,13 +12,14 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
+from feeddrive.diagnose.attempt import with_predictable
 from feeddrive.diagnose.change_candidates import levels
 from feeddrive.diagnose.change_words import FACTORS
 from feeddrive.diagnose.changes import Changes, find_changes
 from feeddrive.diagnose.drift_table import normalised
 from feeddrive.diagnose.evidence import Evidence
 from feeddrive.diagnose.fit import Problem, fit
-from feeddrive.diagnose.recordings import RecordingPredictor, RecordingShift, Target, is_shift
+from feeddrive.diagnose.recordings import RecordingPredictor, RecordingShift, Target, is_shift, without_shifts
 from feeddrive.diagnose.search import UNEXPLAINED, Search, search
 from feeddrive.diagnose.still_needed import still_needed
 from feeddrive.effects.base import Effect
@@ -43,13 +44,21 @@ class Searched:
     changes: Changes | None
 
 
-def search_recordings(problem: Problem, said: Callable[[str], None] = lambda text: None) -> Searched:
+def search_recordings(
+    problem: Problem, said: Callable[[str], None] = lambda text: None, start: Sequence[Effect] = ()
+) -> Searched:
     """Find the effects that the plant lacks, and the parameters that differ between the recordings.
 
     Args:
         problem: declared plant and recordings; the last one is the machine as it is now.
         said: told what is going on.
+        start: effects found earlier; they are asked again with all recordings before others are searched.
     """
+    if start:
+        continued = _continued(numbered(problem), start, said)
+        if _explained(continued):
+            return continued
+        return _better(continued, search_recordings(problem, said))
     if len(problem.evidence) < 2:
         return Searched(normalised(search(problem, said)), None)
     problem = numbered(problem)
@@ -74,6 +83,20 @@ def _followed(problem: Problem, held: Changes, earlier: Sequence[int], said: Cal
     if changes.targets:
         changes = replace(changes, fit=still_needed(found.problem, changes.fit))
     return Searched(replace(found, fit=changes.fit), changes)
+
+
+def _continued(problem: Problem, start: Sequence[Effect], said: Callable[[str], None]) -> Searched:
+    """The effects found earlier, those that still pay; then what else is lacking, and what differs."""
+    said("asking again for the effects found earlier")
+    problem = with_predictable(problem, start)
+    earlier = range(len(problem.evidence) - 1)
+    again = find_changes(problem, fit(problem, start).effects, earlier)
+    again = replace(again, fit=still_needed(problem, again.fit))
+    more = _searched(problem, again, said)
+    effects = (*without_shifts(again.fit.effects), *more.fit.effects)
+    changes = find_changes(more.problem, effects, earlier)
+    together = still_needed(more.problem, fit(more.problem, changes.fit.effects))
+    return Searched(replace(more, fit=together), replace(changes, fit=together))
 
 
 def _better(first: Searched, second: Searched) -> Searched:
@@ -109,7 +132,7 @@ def numbered(problem: Problem, more: Sequence[Evidence] = ()) -> Problem:
 
 def _searched(problem: Problem, held: Changes, said: Callable[[str], None]) -> Search:
     """The search on the declared plant with what differs held; its result on the declared plant."""
-    if not held.targets:
+    if not held.fit.effects:
         return search(problem, said)
     nuisance = problem.plant.with_effects(*held.fit.effects)
     found = search(replace(problem, plant=nuisance), said)

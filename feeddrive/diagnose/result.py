@@ -8,6 +8,7 @@ import numpy as np
 
 from feeddrive.diagnose.certainty_result import Ambiguity, Correlation, NextExperiment
 from feeddrive.diagnose.change_result import RecordingChanges
+from feeddrive.diagnose.ledger_result import Kept
 from feeddrive.diagnose.unexplained_result import Dependence as Dependence
 from feeddrive.diagnose.unexplained_result import Unexplained as Unexplained
 from feeddrive.typing import FloatArray
@@ -165,7 +166,8 @@ class Diagnosis:
     correlation: Correlation | None = None
     alike: tuple[Ambiguity, ...] = ()
     next_experiments: tuple[NextExperiment, ...] = ()
-    changes: RecordingChanges = RecordingChanges()
+    changes: RecordingChanges = field(default_factory=RecordingChanges)
+    kept: Kept = field(default_factory=Kept)
 
     @property
     def nothing_missing(self) -> bool:
