@@ -120,7 +120,7 @@ def fitted_away(
     for stretch in stretches(evidence, rows):
         slopes = rfft(stretch.on_comb(columns), stretch.size, axis=1)
         pairs = np.einsum("cfi,ij,dfj->cdf", np.conj(slopes), inverse, slopes, optimize=True)
-        zero = np.abs(rfft(stretch.on_comb(np.ones_like(columns[:, 0])), stretch.size, axis=1)[0]) ** 2
+        zero = np.abs(rfft(stretch.on_comb(np.ones(len(columns))), stretch.size, axis=1)[0]) ** 2
         for channel in stretch.floating:
             pairs[channel, channel] += zero / len(stretch.places)
         total += _scatter(pairs, columns, stretch)

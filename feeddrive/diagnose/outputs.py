@@ -64,6 +64,17 @@ def diagnosis_record(diagnosis: Diagnosis) -> dict[str, Any]:
             for one in diagnosis.alike
         ],
         "rehomed": list(diagnosis.rehomed),
+        "next_experiment": [
+            {
+                "question": list(one.question),
+                "scenario": one.scenario,
+                "kind": "interval" if len(one.question) == 1 else "distance_sigma",
+                "figure": one.figure,
+                "sentence": one.sentence,
+                "ranking": [{"scenario": name, "figure": value} for name, value in one.ranking],
+            }
+            for one in diagnosis.next_experiments
+        ],
         **changes_record(diagnosis.changes),
         "unexplained": unexplained_record(diagnosis),
         "notes": list(diagnosis.notes),

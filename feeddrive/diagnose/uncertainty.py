@@ -63,6 +63,8 @@ def certainty(problem: Problem, fitted: Fit) -> Certainty:
     """How well the coordinates of a fit of all effects are known; k is 0 where nothing was fitted."""
     if not fitted.jacobian.shape[1]:
         return Certainty(np.zeros((0, 0)), np.zeros(0))
+    if not fitted.effects:
+        return Certainty(np.zeros((0, 0)), np.zeros(0))
     jacobian = slopes(problem, fitted)
     inverse = inverse_information(jacobian.T @ jacobian)
     rows = [evidence.fit_rows for evidence in problem.evidence]
