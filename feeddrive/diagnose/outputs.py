@@ -115,7 +115,7 @@ def _effect(effect: EffectResult) -> dict[str, Any]:
         "name": effect.name,
         "parameters": {key: _parameter(parameter) for key, parameter in effect.parameters.items()},
         "explains": effect.explains,
-        "carries": effect.carries,
+        "carries": bool(effect.carries),
         "evidence": effect.evidence,
         "reading": effect.reading,
     }
