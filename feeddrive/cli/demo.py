@@ -12,8 +12,8 @@ def command(
     out: Annotated[Path, typer.Option("--out", help="Folder for the report.")] = Path("feeddrive-demo"),
 ) -> None:
     """Diagnose a shipped machine from a shipped recording, and say where the report is."""
-    from feeddrive.cli.diagnosing import Job, run_job
+    from feeddrive.cli.diagnosing import Job, Source, run_job
     from feeddrive.files import find_plant, find_scenario_file
 
     recording = find_scenario_file("recordings/demo.csv.gz")
-    run_job(Job(find_plant("bench_axis"), (recording,), (), out))
+    run_job(Job(find_plant("bench_axis"), (Source(recording),), (), out))

@@ -9,13 +9,26 @@ import typer
 
 
 def command(
-    plant: Annotated[str, typer.Argument(help="Plant file, or the name of a shipped plant.")],
-    recordings: Annotated[list[Path], typer.Argument(metavar="REC...", help="Recordings that are fitted.")],
-    out: Annotated[Path, typer.Option("--out", help="Folder for the report and its files.")],
+    arguments: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="PLANT REC...",
+            help="Plant file, or the name of a shipped plant; then the recordings that are fitted, oldest first. With "
+            "--continue the plant may be left out.",
+        ),
+    ],
+    out: Annotated[
+        Path | None, typer.Option("--out", help="Folder for the report and its files; that of --continue if left out.")
+    ] = None,
     validate: Annotated[
         list[Path] | None, typer.Option("--validate", help="Recording to judge on; may be given again.")
     ] = None,
-    split: Annotated[float, typer.Option("--split", help="Share fitted where no --validate is given.")] = 0.75,
+    earlier: Annotated[
+        Path | None, typer.Option("--continue", help="Folder of an earlier diagnosis that the recordings are added to.")
+    ] = None,
+    split: Annotated[
+        float | None, typer.Option("--split", help="Share fitted where no --validate is given; 0.75 if left out.")
+    ] = None,
     mapping: Annotated[Path | None, typer.Option("--map", help="Mapping of a foreign file to channels.")] = None,
     decimal: Annotated[str | None, typer.Option("--decimal", help="Decimal sign of CSV files: '.' or ','.")] = None,
     simulate: Annotated[
@@ -24,8 +37,9 @@ def command(
     as_json: Annotated[bool, typer.Option("--json", help="Print diagnosis.json instead of the summary.")] = False,
 ) -> None:
     """Find what a machine's model lacks, from recordings of it, and report the error before and after."""
-    from feeddrive.cli.diagnosing import Job, run_job
-    from feeddrive.files import find_plant
+    from feeddrive.cli.continuing import continued_job, first_job
+    from feeddrive.cli.diagnosing import Options, run_job
 
-    files = tuple(recordings), tuple(validate or ())
-    run_job(Job(find_plant(plant), *files, out, split, mapping, decimal, simulate), as_json)
+    options = Options(out, tuple(validate or ()), split, mapping, decimal, simulate)
+    job = first_job(arguments, options) if earlier is None else continued_job(arguments, earlier, options)
+    run_job(job, as_json)

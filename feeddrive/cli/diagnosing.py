@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from rich.console import Console
@@ -10,10 +11,14 @@ from rich.table import Table
 
 from feeddrive.cli.machine import read_machine
 from feeddrive.diagnose.diagnosis import diagnose
+from feeddrive.diagnose.ledger import FileUse, RunFiles, runs_of, write_ledger
+from feeddrive.diagnose.ledger_continued import Earlier, changed_since
 from feeddrive.diagnose.outputs import diagnosis_json, write_outputs
 from feeddrive.diagnose.result import Diagnosis
+from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 from feeddrive.recording import Recording, read_recording
+from feeddrive.report.certainty import experiment_sentences
 from feeddrive.report.figures import render_figures, save_figures
 from feeddrive.report.html import write_report
 from feeddrive.report.people import error_text, share_text
@@ -23,17 +28,38 @@ DECIMAL_SIGNS = (None, ".", ",")
 
 
 @dataclass(frozen=True)
-class Job:
-    """One run of the main job: files, and the options of `feeddrive diagnose`."""
+class Options:
+    """What was typed beside the files."""
 
-    plant: Path
-    recordings: tuple[Path, ...]
-    validation: tuple[Path, ...]
-    out: Path
-    split: float = 0.75
+    out: Path | None
+    validate: tuple[Path, ...] = ()
+    split: float | None = None
     mapping: Path | None = None
     decimal: str | None = None
     simulate: bool = False
+
+
+@dataclass(frozen=True)
+class Source:
+    """A recording file and how it is read."""
+
+    path: Path
+    mapping: Path | None = None
+    decimal: str | None = None
+
+
+@dataclass(frozen=True)
+class Job:
+    """One run of the main job: files and options, and the earlier diagnosis that it takes up."""
+
+    plant: Path
+    recordings: tuple[Source, ...]
+    validation: tuple[Source, ...]
+    out: Path
+    split: float = 0.75
+    simulate: bool = False
+    start: tuple[Effect, ...] = ()
+    earlier: Earlier | None = None
 
 
 def run_job(job: Job, as_json: bool = False) -> Diagnosis:
@@ -42,22 +68,27 @@ def run_job(job: Job, as_json: bool = False) -> Diagnosis:
     Raises:
         InputError: an input that cannot be used; nothing is written then.
     """
-    if job.decimal not in DECIMAL_SIGNS:
-        raise InputError(f"--decimal is {job.decimal!r}", "", "use '.' or ','")
+    for source in (*job.recordings, *job.validation):
+        if source.decimal not in DECIMAL_SIGNS:
+            raise InputError(f"--decimal is {source.decimal!r}", "", "use '.' or ','")
     if job.out.exists() and not job.out.is_dir():
         raise InputError("--out is a file", str(job.out), "give a folder")
+    runs = runs_of(job.out)
     plant = read_machine(job.plant)
-    fitted, judged = ([_read(path, job) for path in paths] for paths in (job.recordings, job.validation))
+    fitted, judged = ([_read(source) for source in sources] for sources in (job.recordings, job.validation))
     if any("screw_speed" in recording for recording in fitted):
         plant = read_machine(job.plant, fitted)  # a file may declare motion and heat
     with Console(stderr=True).status("reading") as status:
         said = status.update
-        result, effects = diagnose(plant, fitted, judged, job.split, job.simulate, said)
+        result, effects = diagnose(plant, fitted, judged, job.split, job.simulate, said, job.start)
+        result = _since(result, job)
         said("writing the report")
         write_outputs(result, effects, job.plant.read_text(encoding="utf-8"), job.out)
         pictures = render_figures(result)
         save_figures(result, job.out, pictures)
         write_report(result, job.out / "report.html", pictures)
+        before = job.earlier.runs if job.earlier is not None and not runs else runs
+        write_ledger(job.out, before, result, effects, _files(job, fitted, judged, before))
     if as_json:
         print(diagnosis_json(result), end="")
     else:
@@ -65,8 +96,28 @@ def run_job(job: Job, as_json: bool = False) -> Diagnosis:
     return result
 
 
-def _read(path: Path, job: Job) -> Recording:
-    return read_recording(path, job.mapping, decimal=job.decimal)
+def _read(source: Source) -> Recording:
+    return read_recording(source.path, source.mapping, decimal=source.decimal)
+
+
+def _since(result: Diagnosis, job: Job) -> Diagnosis:
+    """The diagnosis with what it says otherwise than the one that it takes up."""
+    if job.earlier is None:
+        return result
+    return replace(result, kept=replace(result.kept, since=changed_since(job.earlier.told, result.effects)))
+
+
+def _files(job: Job, fitted: Sequence[Recording], judged: Sequence[Recording], before: Sequence[object]) -> RunFiles:
+    continues = len(before) if job.earlier is not None else None
+    uses = (_uses(job.recordings, fitted), _uses(job.validation, judged))
+    return RunFiles(job.plant.resolve(), uses[0], uses[1], job.split, continues)
+
+
+def _uses(sources: Sequence[Source], recordings: Sequence[Recording]) -> tuple[FileUse, ...]:
+    return tuple(
+        FileUse(source.path.resolve(), recording.sha256, source.mapping and source.mapping.resolve(), source.decimal)
+        for source, recording in zip(sources, recordings, strict=True)
+    )
 
 
 def _print_summary(result: Diagnosis, report: Path) -> None:
@@ -83,8 +134,14 @@ def _print_summary(result: Diagnosis, report: Path) -> None:
     console.print(table)
     for effect in result.effects:
         console.print(f"{effect.name}: {effect.evidence} {effect.reading}", markup=False)
-    for names in result.ambiguous:
-        console.print(f"cannot be told apart by these recordings: {', '.join(names)}", markup=False)
+    for sentence in result.kept.since:
+        console.print(f"since the earlier diagnosis: {sentence}", markup=False)
+    for one in result.alike:
+        console.print(f"cannot be told apart by these recordings: {', '.join(one.names)}: {one.reason}", markup=False)
+    for sentence in experiment_sentences(result):
+        console.print(sentence, markup=False)
+    for pair in result.correlation.told if result.correlation is not None else ():
+        console.print(pair, markup=False)
     if result.simulation is not None:
         before, after = (share_text(e) for e in (result.simulation.before, result.simulation.after))
         console.print(

@@ -171,8 +171,8 @@ class Diagnosis:
 
     @property
     def nothing_missing(self) -> bool:
-        """True when the declared plant is enough."""
-        return not self.effects
+        """True when the declared plant is enough, or all that is known of it."""
+        return not self.effects and not any(left.carried for left in self.unexplained.values())
 
 
 def error_figures(error: FloatArray, reference_rms: float) -> ErrorFigures:
