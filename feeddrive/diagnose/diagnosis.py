@@ -14,6 +14,7 @@ from feeddrive.diagnose.evidence import Evidence
 from feeddrive.diagnose.fit import Fit
 from feeddrive.diagnose.judge import Judged, Share, channel_results, judged_recordings, prepared_for_judging, share_of
 from feeddrive.diagnose.ledger_entry import kept_of
+from feeddrive.diagnose.needs import WITHOUT_TORQUE
 from feeddrive.diagnose.next_experiment import next_experiments
 from feeddrive.diagnose.physical_reading import physical_reading
 from feeddrive.diagnose.preparation import prepared
@@ -31,6 +32,7 @@ from feeddrive.diagnose.result import (
 )
 from feeddrive.diagnose.search import Search
 from feeddrive.diagnose.simulation import simulation_error
+from feeddrive.diagnose.torque_channel import without_torque_sentence
 from feeddrive.diagnose.uncertainty import Interval, certainty, intervals
 from feeddrive.diagnose.unexplained import explain_rest
 from feeddrive.effects.base import Effect
@@ -115,7 +117,7 @@ def diagnose(
         notes=(
             *told,
             *other_places(found, judged),
-            *_notes(recordings, validation, found, problem.evidence, simulate, simulation),
+            *_notes(problem.evidence, kept_for_judging, found, simulate, simulation),
         ),
     )
     return result, (*effects, *rest.effects)
@@ -225,10 +227,16 @@ def _why_not(gain: float, error: float) -> str:
 
 
 def _notes(
-    recordings: Sequence[Recording], validation: Sequence[Recording], found: Search, fitted: Sequence[Evidence],
-    asked: bool, simulation: SimulationResult | None,
+    fitted: Sequence[Evidence], judged: Sequence[Evidence], found: Search, asked: bool,
+    simulation: SimulationResult | None,
 ) -> tuple[str, ...]:  # fmt: skip
-    notes = [f"{recording.name}: {note}" for recording in (*recordings, *validation) for note in recording.notes]
+    ready = {id(evidence): evidence.recording for evidence in (*fitted, *judged)}
+    notes = [f"{recording.name}: {note}" for recording in ready.values() for note in recording.notes]
+    declared = found.problem.plant
+    notes += found.problem.predictor.told(declared, declared.with_effects(*found.fit.effects))
+    unseen = {name for name, reason in found.impossible.items() if reason == WITHOUT_TORQUE}
+    if unseen:
+        notes.append(without_torque_sentence(unseen))
     for before, after in zip(fitted, found.problem.evidence, strict=True):
         lost = float(np.sum(before.counted & ~after.counted)) * before.recording.sample_time
         if lost > 0:

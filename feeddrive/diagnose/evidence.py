@@ -8,6 +8,7 @@ from typing import Self
 import numpy as np
 
 from feeddrive.diagnose.band import END_CUT, Band, comparison_band, held, white_noise
+from feeddrive.diagnose.torque_channel import with_torque
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
@@ -86,28 +87,38 @@ class AxisEvidence(Evidence):
     Attributes:
         motion: of the motor.
         band: of the comparison.
+        scaled_from: channel that the motor torque is only proportional to; empty where the torque is known.
     """
 
     motion: MotorMotion
     band: Band
+    scaled_from: str = ""
+
+    def with_scale(self, scale: float) -> AxisEvidence:
+        """The evidence with its motor torque times `scale`."""
+        name = "motor_torque"
+        channels = {**self.recording.channels, name: scale * self.recording[name]}
+        measured = {**self.measured, name: scale * self.measured[name]}
+        noise = {**self.noise, name: abs(scale) * self.noise[name]}
+        return replace(self, recording=replace(self.recording, channels=channels), measured=measured, noise=noise)
 
 
 def prepare(recording: Recording, plant: Plant, share: float) -> AxisEvidence:
     """Evidence of a recording, its first `share` fitted and the rest judged.
 
     Args:
-        recording: with motor_torque or table_position beside the motor angle.
+        recording: with a torque, a current or the table position beside the motor angle.
         plant: whose lead and band apply.
         share: 1 to fit on all of it, 0 to judge on all of it.
 
     Raises:
         InputError: too short, or channels that are needed are missing.
     """
-    recording = _with_motor_angle(recording, plant)
+    recording, scaled_from = with_torque(_with_motor_angle(recording, plant), plant)
     measured_names = [name for name in PREDICTED if name in recording]
-    if "motor_torque" not in measured_names:
-        mend = "record the motor torque, or the current and a torque constant in the mapping file"
-        raise InputError("no channel motor_torque", recording.name, mend)
+    if not measured_names:
+        mend = "record the motor torque or current, or the table position beside the motor angle"
+        raise InputError("nothing that the motor's motion predicts", recording.name, mend)
     if recording.duration < SHORTEST:
         mend = f"record at least {SHORTEST:g} s"
         raise InputError(f"the recording lasts {recording.duration:.3g} s, too short to compare", recording.name, mend)
@@ -115,7 +126,7 @@ def prepare(recording: Recording, plant: Plant, share: float) -> AxisEvidence:
     band = comparison_band(plant, rate)
     time: FloatArray = np.arange(len(recording), dtype=np.float64) * recording.sample_time
     raw = {name: recording[name] for name in measured_names}
-    acting = {**raw, "motor_torque": held(raw["motor_torque"])}
+    acting = {name: held(series) if name == "motor_torque" else series for name, series in raw.items()}
     counted = (time >= END_CUT) & (time <= time[-1] - END_CUT)
     return AxisEvidence(
         recording,
@@ -130,6 +141,7 @@ def prepare(recording: Recording, plant: Plant, share: float) -> AxisEvidence:
         {},
         motor_motion(time, recording["motor_angle"]),
         band,
+        scaled_from,
     )
 
 

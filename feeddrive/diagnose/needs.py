@@ -20,6 +20,10 @@ LEAST_STROKE_TURNS = 1.0
 """Stroke in revolutions of the screw from which position and angle are different things."""
 
 
+WITHOUT_TORQUE = "the recordings hold no torque or current"
+"""Why what acts at the motor cannot be seen."""
+
+
 def both_directions(scene: AxisScene) -> str:
     """The table must move both ways."""
     moved = [_moved(run, evidence) for run, evidence in zip(scene.runs, scene.problem.evidence, strict=True)]
@@ -70,8 +74,30 @@ def gap(scene: AxisScene) -> str:
 
 def friction(scene: AxisScene) -> str:
     """Friction at the table needs a declared level and both directions."""
-    declared = any(effect.name == "guide_friction" for effect in scene.plant.effects)
-    return both_directions(scene) if declared else "the plant declares no guide_friction to act on"
+    if not any(effect.name == "guide_friction" for effect in scene.plant.effects):
+        return "the plant declares no guide_friction to act on"
+    return force(scene) or both_directions(scene)
+
+
+def torque(scene: AxisScene) -> str:
+    """What acts at the motor shows in its torque alone, as the motor's motion is given."""
+    seen = any("motor_torque" in evidence.channels for evidence in scene.problem.evidence)
+    return "" if seen else WITHOUT_TORQUE
+
+
+def torque_turns(scene: AxisScene) -> str:
+    """A ripple of the motor needs its torque and some revolutions."""
+    return torque(scene) or turns(scene)
+
+
+def torque_inertia(scene: AxisScene) -> str:
+    """Inertias need the torque, and something between them and the table."""
+    return torque(scene) or inertia(scene)
+
+
+def force(scene: AxisScene) -> str:
+    """Forces show in the torque, or in what an elastic chain gives way."""
+    return torque(scene) and ("" if scene.plant.chain.elastic else WITHOUT_TORQUE)
 
 
 def nothing(scene: AxisScene) -> str:
@@ -116,6 +142,16 @@ def duration(scene: AxisScene) -> str:
     return "" if seconds >= LEAST_SECONDS else f"the recording lasts {seconds:.2g} s; it needs {LEAST_SECONDS:g} s"
 
 
+def force_stroke(scene: AxisScene) -> str:
+    """A force over the position needs forces and a stroke."""
+    return force(scene) or stroke(scene)
+
+
+def force_duration(scene: AxisScene) -> str:
+    """Friction that changes needs forces and time."""
+    return force(scene) or duration(scene)
+
+
 def scale_duration(scene: AxisScene) -> str:
     """Growth needs a table position and time."""
     return scale(scene) or duration(scene)
@@ -125,6 +161,8 @@ def screw_drag(scene: AxisScene) -> str:
     """What changes the drag of the screw needs a declared one, and a force that the chain knows."""
     if not declared_level(scene.plant, Port.SCREW):
         return "the plant declares no nut_drag or bearing_drag to act on"
+    if torque(scene):
+        return WITHOUT_TORQUE
     return elastic(scene) or both_directions(scene)
 
 

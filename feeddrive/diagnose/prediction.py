@@ -17,6 +17,7 @@ from feeddrive.diagnose.predictability import predictable_samples
 from feeddrive.diagnose.predictor import Predictor
 from feeddrive.diagnose.scene import AxisScene, Candidate
 from feeddrive.diagnose.timing import lag_of, lagging
+from feeddrive.diagnose.torque_channel import scale_of, scale_sentence
 from feeddrive.effects.base import ChainEffect, DriveEffect, Effect, Kind, Motion, Port, SourceEffect
 from feeddrive.plant.motor_torque import asked_torques
 from feeddrive.plant.plant import Plant
@@ -33,8 +34,15 @@ class AxisPredictor(Predictor[Plant, AxisEvidence]):
     """Predicts recordings, and remembers what the load side did.
 
     Not a frozen record: it is a cache.
+
+    Attributes:
+        scaled: fitted recordings whose torque is known but for its scale, which every plant sets for itself.
+        declared_scale: that their torque was brought to [N m per unit of the channel].
     """
 
+    scaled: tuple[AxisEvidence, ...] = ()
+    declared_scale: float = 1.0
+    _scales: OrderedDict[object, float] = field(default_factory=OrderedDict)
     _runs: OrderedDict[object, LoadMotion] = field(default_factory=OrderedDict)
     _lock: Lock = field(default_factory=Lock)
 
@@ -59,7 +67,33 @@ class AxisPredictor(Predictor[Plant, AxisEvidence]):
         torque = asked_torques(plant, run.torque + motor_sources(plant, run))
         raw = {"motor_torque": torque, "table_position": run.table_position}
         step = evidence.recording.sample_time
-        return {name: lagging(evidence.band.filter(raw[name]), lag_of(plant, name), step) for name in evidence.channels}
+        series = {name: evidence.band.filter(raw[name]) for name in evidence.channels}
+        if evidence.scaled_from:
+            series["motor_torque"] *= self.scale(plant)
+        return {name: lagging(one, lag_of(plant, name), step) for name, one in series.items()}
+
+    def scale(self, plant: Plant) -> float:
+        """Factor on the predicted torque that fits the recordings in `scaled` best."""
+        key = (_values_key(_load_side(plant)), _values_key(plant))
+        if key not in self._scales:
+            measured, predicted = [], []
+            for evidence in self.scaled:
+                rows = evidence.thinned(evidence.fit_rows)
+                unscaled = self.predict(plant, replace(evidence, scaled_from=""))
+                predicted.append(unscaled["motor_torque"][rows])
+                measured.append(evidence.measured["motor_torque"][rows])
+            scale = scale_of(np.concatenate(measured), np.concatenate(predicted))
+            with self._lock:
+                self._scales[key] = scale
+                while len(self._scales) > REMEMBERED:
+                    self._scales.popitem(last=False)
+            return scale
+        return self._scales[key]
+
+    def told(self, before: Plant, after: Plant) -> tuple[str, ...]:
+        """The scale of the torque, where it is fitted."""
+        scales = [self.declared_scale / self.scale(plant) for plant in (before, after)] if self.scaled else []
+        return tuple(scale_sentence(self.scaled[0].scaled_from, *scales) for _ in scales[:1])
 
     @property
     def candidates(self) -> tuple[Candidate, ...]:

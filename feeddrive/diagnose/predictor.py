@@ -65,6 +65,10 @@ class Predictor(ABC, Generic[M, E]):
     def is_material(self, effect: Effect, plant: M) -> bool:
         """Whether an effect is of a size that matters on this machine."""
 
+    def told(self, before: M, after: M) -> tuple[str, ...]:
+        """What is to be said of this way to predict, with the declared plant and with what was found."""
+        return ()
+
     def predictable(self, plant: M, evidence: E) -> BoolArray:
         """Samples that can be predicted at all, (n,)."""
         return evidence.counted | True

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from feeddrive.diagnose.evidence import Evidence, prepare
+from feeddrive.diagnose.evidence import AxisEvidence, Evidence, prepare
 from feeddrive.diagnose.fit import Problem
 from feeddrive.diagnose.heat_evidence import left_out_channels, prepare_heat, within_range
 from feeddrive.diagnose.heat_prediction import heat_predictor
 from feeddrive.diagnose.prediction import AxisPredictor
+from feeddrive.diagnose.torque_channel import refuse_what_is_no_torque
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording, check_against_lead
@@ -41,7 +43,40 @@ def prepared(
         check_against_lead(recording, 2 * np.pi * plant.chain.motor_radius, recording.name)
     fitted = tuple(prepare(recording, plant, 1.0 if validation else split) for recording in recordings)
     judged: list[Evidence] = [prepare(recording, plant, 0.0) for recording in validation] or list(fitted)
-    return Problem(plant, fitted, AxisPredictor()), judged, ()
+    return _scaled(plant, fitted, judged)
+
+
+def _scaled(plant: Plant, fitted: tuple[AxisEvidence, ...], judged: list[Evidence]) -> Prepared:
+    """The recordings with a torque of unknown scale brought to that of the declared plant."""
+    unknown = tuple(evidence for evidence in fitted if evidence.scaled_from)
+    if not unknown:
+        for evidence in judged:
+            if isinstance(evidence, AxisEvidence) and evidence.scaled_from and any(map(_has_torque, fitted)):
+                what = f"only {evidence.scaled_from}, and what is fitted has a torque"
+                raise InputError(what, evidence.recording.name, "declare torque_constant in [motor] of the plant")
+        return Problem(plant, fitted, AxisPredictor()), judged, ()
+    predictor = AxisPredictor(unknown)
+    scale = 1 / predictor.scale(plant)
+    for one in unknown:
+        predicted = predictor.predict(plant, replace(one, scaled_from=""))["motor_torque"]
+        refuse_what_is_no_torque(one.scaled_from, one.measured["motor_torque"], predicted, one.recording.name)
+    known = {id(one): one.with_scale(scale) if one.scaled_from else one for one in fitted}
+    others = [_known(one, known, scale) for one in judged]
+    inside = tuple(known[id(one)] for one in fitted)
+    predictor = AxisPredictor(tuple(one for one in inside if one.scaled_from), scale)
+    return Problem(plant, inside, predictor), others, ()
+
+
+def _has_torque(evidence: AxisEvidence) -> bool:
+    return "motor_torque" in evidence.channels and not evidence.scaled_from
+
+
+def _known(evidence: Evidence, known: dict[int, AxisEvidence], scale: float) -> Evidence:
+    if id(evidence) in known:
+        return known[id(evidence)]
+    if isinstance(evidence, AxisEvidence) and evidence.scaled_from:
+        return evidence.with_scale(scale)
+    return evidence
 
 
 def _prepared_heat(

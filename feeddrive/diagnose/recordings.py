@@ -176,6 +176,11 @@ class RecordingPredictor(Predictor[Any, Any]):
         """Whether an effect is of a size that matters."""
         return self.inner.is_material(effect, plant)
 
+    def told(self, before: Any, after: Any) -> tuple[str, ...]:
+        """What is to be said of the way to predict, recordings without shifts."""
+        plain = [replace(plant, effects=without_shifts(plant.effects)) for plant in (before, after)]
+        return self.inner.told(*plain)
+
     def predictable(self, plant: Any, evidence: Any) -> BoolArray:
         """Samples that can be predicted."""
         return self.inner.predictable(self.machine(plant, evidence), evidence)

@@ -9,6 +9,7 @@ import numpy as np
 from feeddrive.diagnose.declared_friction import declared_level, declared_viscous
 from feeddrive.diagnose.periodogram import sine_at, strongest_orders
 from feeddrive.diagnose.position_curve import bump_of, friction_over_position
+from feeddrive.diagnose.residual_force import residual_force
 from feeddrive.diagnose.scene import AxisScene
 from feeddrive.effects.backlash import Backlash
 from feeddrive.effects.base import Effect, Port
@@ -28,7 +29,7 @@ LEAST_SINE = 0.001
 since a sine of the whole recording misses what the band takes off it in fast strokes."""
 
 LEAST_CURVE = 0.01
-"""Share of the torque residual's square that must follow the position before a table is tried."""
+"""Share of the residual force's square that must follow the position before a table is tried."""
 
 
 def plain(effect: Effect) -> Callable[[AxisScene], list[list[Effect]]]:
@@ -116,17 +117,14 @@ def over_position(scene: AxisScene) -> list[list[Effect]]:
     at = scene.longest
     evidence, run = scene.problem.evidence[at], scene.runs[at]
     rows = evidence.fit_rows
-    radius = scene.plant.chain.motor_radius
-    curve = friction_over_position(
-        run.table_position[rows], run.table_velocity[rows], scene.residuals[at]["motor_torque"][rows] / radius
-    )
+    force = residual_force(scene, at)[rows]
+    curve = friction_over_position(run.table_position[rows], run.table_velocity[rows], force)
     if curve is None:
         return []
     bumps: list[Effect] = [
         FrictionVsPosition.of(peak=peak, centre=centre, half_width=width) for peak, centre, width in bump_of(curve)
     ]
-    torque = scene.residuals[at]["motor_torque"][rows]
-    follows = float(np.sum(curve.samples * (radius * curve.force) ** 2)) / float(np.sum(torque**2))
+    follows = float(np.sum(curve.samples * curve.force**2)) / float(np.sum(force**2))
     if follows < LEAST_CURVE:
         return [bumps]
     nodes = np.linspace(curve.position[0], curve.position[-1], TABLE_NODES)

@@ -6,6 +6,7 @@ import numpy as np
 
 from feeddrive.diagnose.declared_friction import declared_viscous
 from feeddrive.diagnose.periodogram import strongest_orders
+from feeddrive.diagnose.residual_force import residual_force
 from feeddrive.diagnose.scene import AxisScene
 from feeddrive.diagnose.starts import explains, highest_order, sine
 from feeddrive.effects.ball_pass_ripple import BallPassRipple
@@ -22,7 +23,7 @@ def position_spring(scene: AxisScene) -> list[list[Effect]]:
     """The straight line of the residual force over the position."""
     at = scene.longest
     rows, run = scene.problem.evidence[at].fit_rows, scene.runs[at]
-    force = scene.residuals[at]["motor_torque"][rows] / scene.plant.chain.motor_radius
+    force = residual_force(scene, at)[rows]
     position = run.table_position[rows]
     slope, offset = np.polyfit(position, force, 1)
     zero = -offset / slope if slope else float(np.mean(position))
@@ -51,7 +52,8 @@ def ball_pass_ripple(scene: AxisScene) -> list[list[Effect]]:
     speed = run.screw_speed[rows]
     moving = np.abs(speed) > 0.01 * np.abs(speed).max()
     angle = run.screw_angle[rows][moving]
-    resisting = (scene.residuals[at]["motor_torque"][rows] * np.sign(speed))[moving]
+    torque = scene.plant.chain.radius * residual_force(scene, at)[rows]
+    resisting = (torque * np.sign(speed))[moving]
     orders = strongest_orders(angle, resisting, highest_order(scene, at), count=1)
     starts = (sine(BallPassRipple, angle, resisting, order) for order in orders)
     return [[start] for start in starts if explains(start, resisting)]

@@ -34,6 +34,8 @@ def channel_delay(scene: AxisScene) -> list[list[Effect]]:
     shifts = {TORQUE: {TORQUE: 1}, ANGLE: {TORQUE: -1, TABLE: -1}, TABLE: {TABLE: 1}}
     if TABLE not in channels:
         shifts = {TORQUE: shifts[TORQUE]}
+    if TORQUE not in channels:
+        del shifts[TORQUE]
     taken = {effect.place for effect in scene.found if effect.name == ChannelDelay.name}
     forms: list[list[Effect]] = []
     for place, moved in shifts.items():

@@ -8,6 +8,7 @@
     [motor]
     inertia = "2.6e-3 kg m^2"
     torque_limit = "30 N m"          # may be left out
+    torque_constant = "1.2 N m/A"    # may be left out; where a recording holds the current and no torque
     [ball_screw]
     lead = { value = "20 mm", source = "measured", tolerance = "0.1 %" }
     inertia = "2.37e-3 kg m^2"
@@ -157,6 +158,8 @@ def plant_from_entries(entries: Mapping[str, Any], path: Path) -> Plant:
     chain, drive = read_chain(top)
     motor = top.table("motor")
     limit = positive(motor, "torque_limit", "N m", "torque_limit") if "torque_limit" in motor.entries else float("inf")
+    constant = "torque_constant"
+    per_ampere = positive(motor, constant, "N m/A", constant) if constant in motor.entries else None
     declared = read_effects(top, EFFECTS)
     effects = (*declared, *derived_effects(top, declared))
     refuse_what_cannot_compose(effects, chain.elastic, top.where)
@@ -171,6 +174,7 @@ def plant_from_entries(entries: Mapping[str, Any], path: Path) -> Plant:
         drive=drive,
         data=read_data(top),
         origins=top.origins.found,
+        torque_constant=per_ampere,
     )
     _refuse_moving_mass(plant, str(path))
     _refuse_stroke_off_screw(plant, str(path))
@@ -227,7 +231,7 @@ def _further(section: str, structure: type[Chain], parts: bool) -> tuple[str, ..
     """Keys of a section that are neither values of a chain nor of a part, where something reads them."""
     placed = structure is DistributedScrew or parts
     keys = {
-        "motor": ("torque_limit",),
+        "motor": ("torque_limit", "torque_constant"),
         "ball_screw": ("elements",) if structure is DistributedScrew else (),
         "transmission": ("nut_position",) if structure is ThreeInertias and parts else (),
         "table": ("stroke", *WEIGHT_KEYS, *(("first_nut_position",) if placed else ())),

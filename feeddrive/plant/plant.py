@@ -76,6 +76,7 @@ class Plant:
         chain: linear chain with its values, SI; further masses on the table are taken from the effects.
         effects: declared friction and whatever was found, each with its values.
         torque_limit: of the motor [N m]; infinite if not declared.
+        torque_constant: of the motor [N m/A], where declared; peak current is meant where the recording holds it so.
         sensors: declared sensors.
         controller: the controller that drives the axis, where declared.
         stroke: least and greatest table position [m], where declared.
@@ -94,6 +95,7 @@ class Plant:
     drive: BallScrewDrive | None = None
     data: Mapping[str, Datum] = field(default_factory=dict)
     origins: Mapping[str, str] = field(default_factory=dict)
+    torque_constant: float | None = None
 
     def __post_init__(self) -> None:
         refuse_what_cannot_compose(self.effects, self.chain.elastic, self.name)

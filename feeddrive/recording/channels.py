@@ -14,6 +14,7 @@ CHANNEL_UNITS: dict[str, str] = {
     "setpoint": "m",
     "motor_torque": "N m",
     "motor_current": "A",
+    "motor_torque_share": "1",
     "motor_angle": "rad",
     "motor_speed": "rad/s",
     "table_position": "m",
@@ -23,7 +24,7 @@ CHANNEL_UNITS: dict[str, str] = {
 }
 """Canonical channel -> SI unit; temperatures and growths have open names."""
 
-MOTION_AND_TORQUE = ("motor_torque", "motor_current", "motor_angle", "motor_speed", "table_position", "table_velocity")
+MOTION_AND_TORQUE = ("motor_torque", "motor_current", "motor_torque_share", "motor_angle", "motor_speed", "table_position", "table_velocity")
 """Channels that must change during a recording."""
 
 _OPEN_NAMES = ((re.compile(r"[a-z0-9_]+_temperature"), "degC"), (re.compile(r"table_growth_[a-z0-9_]+"), "m"))

@@ -1,0 +1,29 @@
+"""The force on the table that the present residual stands for."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from feeddrive.diagnose.scene import AxisScene
+from feeddrive.plant.plant import Plant
+from feeddrive.typing import FloatArray
+
+
+def residual_force(scene: AxisScene, at: int) -> FloatArray:
+    """Force that resists + motion beyond what is predicted [N], shape (n,), of the recording number `at`.
+
+    From the torque over the radius; without a torque from the table lagging on the spring that holds it.
+    """
+    residual = scene.residuals[at]
+    if "motor_torque" in residual:
+        force: FloatArray = residual["motor_torque"] / scene.plant.chain.motor_radius
+        return force
+    return -static_stiffness(scene.plant) * residual["table_position"]
+
+
+def static_stiffness(plant: Plant) -> float:
+    """Force per travel of the table with the motor held, at the middle of the stroke [N/m]; infinite where rigid."""
+    if not plant.chain.elastic:
+        return float("inf")
+    K = np.array(plant.chain.stiffness(plant.chain_values(), plant.middle), dtype=float)[1:, 1:]
+    return float(1 / np.linalg.inv(K)[-1, -1])
