@@ -134,7 +134,7 @@ def other_places(found: Search, judged: Sequence[Judged]) -> tuple[str, ...]:
     for index, effect in placed:
         taken = {e.place for e in found.fit.effects if e.name == effect.name}
         tried = [
-            _in_place(found, judged, index, type(effect).of(place=place, **effect.values), mine)
+            _in_place(found, judged, index, type(effect).of(None, place, **effect.values), mine)
             for place in effect.places
             if place not in taken
         ]

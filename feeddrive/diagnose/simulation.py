@@ -9,8 +9,10 @@ import numpy as np
 from feeddrive.diagnose.evidence import AxisEvidence
 from feeddrive.diagnose.judge import Judged
 from feeddrive.diagnose.result import SimulationResult
+from feeddrive.effects.channel_delay import lateness
 from feeddrive.plant.plant import Plant
 from feeddrive.simulate.closed_loop import simulate_closed_loop
+from feeddrive.simulate.lateness import late_mean
 from feeddrive.typing import FloatArray
 
 
@@ -30,7 +32,8 @@ def _relative(plant: Plant, judged: Sequence[Judged]) -> float:
         time: FloatArray = np.arange(len(recording), dtype=np.float64) * recording.sample_time
         position, speed = _start(j)
         run = simulate_closed_loop(plant, time, recording["setpoint"], position, speed)
-        error: FloatArray = (recording["motor_torque"] - run.torque)[rows]
+        told = late_mean(run.torque, recording.sample_time, lateness(plant.effects, "motor_torque"))
+        error: FloatArray = (recording["motor_torque"] - told)[rows]
         missed += float(error @ error)
         measured += float(np.sum(recording["motor_torque"][rows] ** 2))
     return float(np.sqrt(missed / measured))
