@@ -12,6 +12,7 @@ from feeddrive.report.figure_dependence import dependence_figure
 from feeddrive.report.figure_effects import curve_figures, explains_figure, trials_figure
 from feeddrive.report.figure_series import series_figure
 from feeddrive.report.figure_spectrum import spectrum_figure
+from feeddrive.report.figure_unexplained import unexplained_figures
 from feeddrive.report.selection import detailed_channels, drawn_series
 
 
@@ -27,6 +28,7 @@ def report_figures(diagnosis: Diagnosis) -> Iterator[ReportFigure]:
         for figure in (dependence_figure(diagnosis, channel), spectrum_figure(diagnosis, channel)):
             if figure is not None:
                 yield figure
+    yield from unexplained_figures(diagnosis)
     tried = trials_figure(diagnosis)
     if tried is not None:
         yield tried

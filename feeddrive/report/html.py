@@ -7,15 +7,16 @@ from pathlib import Path
 from feeddrive.diagnose.result import Diagnosis
 from feeddrive.files import write_text_atomically
 from feeddrive.report.drawing import RenderedFigure
+from feeddrive.report.figure_unexplained import STEM
 from feeddrive.report.figures import render_figures
 from feeddrive.report.markup import figure, paragraph, section, text
 from feeddrive.report.people import share_text
 from feeddrive.report.records import recordings_section, simulation_section, stamp_section, tried_section
+from feeddrive.report.section_unexplained import unexplained_section
 from feeddrive.report.sections import (
     ambiguous_section,
     effects_section,
     error_section,
-    unexplained_section,
     verdict_section,
 )
 from feeddrive.report.selection import MOST_CHANNELS_IN_DETAIL, drawn_series
@@ -41,7 +42,8 @@ def report_page(diagnosis: Diagnosis, figures: tuple[RenderedFigure, ...]) -> st
     """The page as text, in the order in which a servo engineer asks."""
     tried = "".join(figure(one) for one in figures if one.stem == "tried")
     explaining = "".join(figure(one) for one in figures if one.stem.startswith(("explains", "curve")))
-    others = [one for one in figures if not one.stem.startswith(("explains", "curve", "tried"))]
+    left = "".join(figure(one) for one in figures if one.stem.startswith(STEM))
+    others = [one for one in figures if not one.stem.startswith(("explains", "curve", "tried", STEM))]
     sections = (
         verdict_section(diagnosis),
         error_section(diagnosis),
@@ -49,7 +51,7 @@ def report_page(diagnosis: Diagnosis, figures: tuple[RenderedFigure, ...]) -> st
         ambiguous_section(diagnosis),
         simulation_section(diagnosis),
         section("Measured and predicted", *map(figure, others), _not_drawn(diagnosis)),
-        unexplained_section(diagnosis),
+        unexplained_section(diagnosis, left),
         tried_section(diagnosis, tried),
         recordings_section(diagnosis),
         stamp_section(diagnosis),

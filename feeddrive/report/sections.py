@@ -1,10 +1,10 @@
-"""The findings of the report as HTML: verdict, errors, effects, ambiguity, what is unexplained."""
+"""The findings of the report as HTML: verdict, errors, effects, ambiguity."""
 
 from __future__ import annotations
 
 import math
 
-from feeddrive.diagnose.result import ChannelResult, Diagnosis, EffectResult, ErrorFigures, Unexplained
+from feeddrive.diagnose.result import ChannelResult, Diagnosis, EffectResult, ErrorFigures
 from feeddrive.report.markup import (
     Cell,
     bullets,
@@ -19,7 +19,7 @@ from feeddrive.report.markup import (
 from feeddrive.report.parameters import parameter_text
 from feeddrive.report.people import DASH, Scale, band_text, scale_for_error, share_text, significant, with_unit
 from feeddrive.report.verdict import is_noise, verdict_sentences
-from feeddrive.report.words import effect_words, joined, plain, variable_words
+from feeddrive.report.words import effect_words, joined, plain
 
 
 def verdict_section(diagnosis: Diagnosis) -> str:
@@ -109,26 +109,3 @@ def ambiguous_section(diagnosis: Diagnosis) -> str:
         return ""
     note = "Each of a set explains these data within 5 % of the same error. The one with fewest parameters was taken."
     return section("What these data cannot tell apart", bullets(lines), paragraph(note, "note"))
-
-
-def unexplained_section(diagnosis: Diagnosis) -> str:
-    """What is left above noise, and on what it depends."""
-    if not diagnosis.unexplained:
-        return section("What is unexplained", paragraph("Nothing above the sensor noise."))
-    heads = [words("Channel"), number("share of the signal's square"), words("Depends on")]
-    rows = [
-        [words(plain(name)), number(share_text(one.share)), words(_dependences(one))]
-        for name, one in diagnosis.unexplained.items()
-    ]
-    note = "The share in brackets is the part of the unexplained square that a curve over this variable takes away."
-    shown = any(one.depends_on for one in diagnosis.unexplained.values())
-    return section("What is unexplained", table(heads, rows), paragraph(note, "note") if shown else "")
-
-
-def _dependences(unexplained: Unexplained) -> str:
-    """The variables that what is left depends on."""
-    texts = []
-    for one in unexplained.depends_on:
-        period = f", period {one.period}" if one.period else ""
-        texts.append(f"{variable_words(one.variable)} ({share_text(one.share)}{period})")
-    return joined(texts) or "none of the measured variables"

@@ -15,7 +15,9 @@ _NOISE_REACHED = 1.5
 
 def verdict_sentences(diagnosis: Diagnosis) -> list[str]:
     """The verdict in plain text, the main finding first."""
-    sentences = [_main_finding(diagnosis), _errors(diagnosis), *_above_noise(diagnosis)]
+    tables = _tables(diagnosis) if diagnosis.effects else ""
+    beside = f"Beside these it carries what no named effect explains: {tables}." if tables else ""
+    sentences = [_main_finding(diagnosis), beside, _errors(diagnosis), *_above_noise(diagnosis)]
     return [sentence for sentence in sentences + _doubts(diagnosis) if sentence]
 
 
@@ -36,9 +38,17 @@ def _main_finding(diagnosis: Diagnosis) -> str:
     if diagnosis.effects:
         found = "; ".join(effect_sentence(effect) for effect in diagnosis.effects)
         return f"The declared plant lacks: {found}."
+    if tables := _tables(diagnosis):
+        return f"The declared plant lacks something of no known name: {tables}."
     if all(is_noise(channel) for channel in diagnosis.channels):
         return "Nothing is missing: the declared plant explains the recording down to sensor noise."
     return "No known effect was found that the declared plant lacks, but it does not explain the recording fully."
+
+
+def _tables(diagnosis: Diagnosis) -> str:
+    """What the plant carries as tables because no named effect explains it."""
+    carried = [one for left in diagnosis.unexplained.values() for one in left.carried]
+    return "; ".join(f"{effect_words(one.name)} over {plain(one.variable)}" for one in carried)
 
 
 def _errors(diagnosis: Diagnosis) -> str:

@@ -39,6 +39,10 @@ _EFFECTS = {
     "heat_sink": "attached mass taking heat from the nut",
     "structure_growth": "growth of the machine frame under the scale",
     "sensor_lag": "lag of a sensor",
+    "tabulated_force": "a force on the table",
+    "tabulated_torque": "a torque on a shaft",
+    "tabulated_friction": "friction of the table",
+    "tabulated_travel": "a travel error",
 }
 
 # The parameters that a one-line verdict names; elsewhere all are given.
@@ -68,6 +72,10 @@ _VARIABLES = {
     "screw_speed": "speed of the screw",
     "nut_rise": "rise of the nut",
     "ambient_temperature": "surroundings",
+    "table_acceleration": "table acceleration",
+    "predicted_torque": "torque that the plant predicts",
+    "travel_since_reversal": "travel since the last reversal",
+    "direction": "the direction",
 }
 _GLYPHS = "\u00a0√−→αβγδΔηθλµμνπρσΣτφϕψωΩ°"
 
