@@ -62,7 +62,7 @@ class Excess:
     @property
     def is_left(self) -> bool:
         """Whether something is left above the noise."""
-        return self.share > max(ABOVE * self.standard_error, MATERIAL)
+        return bool(self.share > max(ABOVE * self.standard_error, MATERIAL))
 
 
 def noise_floor(evidence: Evidence, channel: str, radius: float = 0.0) -> Floor:
@@ -113,4 +113,5 @@ def excess(residuals: Sequence[FloatArray], blocks: Sequence[IntegerArray], floo
     # scatter of the blocks about the mean is also how the error differs along the motion, which is no doubt about the
     # rms of this recording; it is counted, so that a single bad block is not taken for a machine
     error = math.hypot(noise / square * math.sqrt(scatter) / total, doubt) / square if square > 0 else 0.0
-    return Excess(1 - noise / square if square > 0 else 0.0, error, math.sqrt(square), math.sqrt(noise))
+    share = float(1 - noise / square) if square > 0 else 0.0
+    return Excess(share, error, math.sqrt(square), math.sqrt(noise))
