@@ -32,7 +32,7 @@ def command(
     mapping: Annotated[Path | None, typer.Option("--map", help="Mapping of a foreign file to channels.")] = None,
     decimal: Annotated[str | None, typer.Option("--decimal", help="Decimal sign of CSV files: '.' or ','.")] = None,
     simulate: Annotated[
-        bool, typer.Option("--simulate", help="Add the closed-loop simulation error, where a controller is declared.")
+        bool, typer.Option("--simulate", help="Simulate the closed loop where a controller is declared, and refine.")
     ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print diagnosis.json instead of the summary.")] = False,
 ) -> None:

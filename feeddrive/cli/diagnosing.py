@@ -22,6 +22,7 @@ from feeddrive.report.certainty import experiment_sentences
 from feeddrive.report.figures import render_figures, save_figures
 from feeddrive.report.html import write_report
 from feeddrive.report.people import error_text, share_text
+from feeddrive.report.simulated import simulation_lines
 from feeddrive.report.verdict import verdict_sentences
 
 DECIMAL_SIGNS = (None, ".", ",")
@@ -143,8 +144,6 @@ def _print_summary(result: Diagnosis, report: Path) -> None:
     for pair in result.correlation.told if result.correlation is not None else ():
         console.print(pair, markup=False)
     if result.simulation is not None:
-        before, after = (share_text(e) for e in (result.simulation.before, result.simulation.after))
-        console.print(
-            f"closed-loop simulation, {result.simulation.channel}, unfiltered: {before} before, {after} after"
-        )
+        for line in simulation_lines(result.simulation):
+            console.print(line, markup=False)
     console.print(f"report: {report.resolve()}", markup=False)

@@ -14,6 +14,7 @@ from feeddrive.diagnose.evidence import Evidence
 from feeddrive.diagnose.fit import Fit
 from feeddrive.diagnose.judge import Judged, Share, channel_results, judged_recordings, prepared_for_judging, share_of
 from feeddrive.diagnose.ledger_entry import kept_of
+from feeddrive.diagnose.loop_evidence import refuse_unfit_loop
 from feeddrive.diagnose.needs import WITHOUT_TORQUE
 from feeddrive.diagnose.next_experiment import next_experiments
 from feeddrive.diagnose.physical_reading import physical_reading
@@ -21,6 +22,7 @@ from feeddrive.diagnose.preparation import prepared
 from feeddrive.diagnose.recordings import without_shifts
 from feeddrive.diagnose.recordings_compared import compared_recordings, machine_as_last, with_carrying
 from feeddrive.diagnose.recordings_search import search_recordings
+from feeddrive.diagnose.refinement import Refinement, refined
 from feeddrive.diagnose.rehoming import rehomed_plant
 from feeddrive.diagnose.result import (
     Diagnosis,
@@ -28,10 +30,8 @@ from feeddrive.diagnose.result import (
     FileStamp,
     ParameterResult,
     RefusedEffect,
-    SimulationResult,
 )
 from feeddrive.diagnose.search import Search
-from feeddrive.diagnose.simulation import simulation_error
 from feeddrive.diagnose.torque_channel import without_torque_sentence
 from feeddrive.diagnose.uncertainty import Interval, certainty, intervals
 from feeddrive.diagnose.unexplained import explain_rest
@@ -60,7 +60,7 @@ def diagnose(
         recordings: fitted; without `validation` their last part is kept for judging.
         validation: judged only.
         split: share of each recording that is fitted where there is no `validation`.
-        simulate: add the closed-loop simulation error, where the controller is declared.
+        simulate: simulate the closed loop and refine what was found in it, where the controller is declared.
         said: told what is going on.
         start: effects found earlier, asked again before others are searched.
 
@@ -72,6 +72,8 @@ def diagnose(
     """
     if not 0.2 <= split <= 0.95:
         raise InputError(f"--split is {split:g}", "", "use a share between 0.2 and 0.95, such as 0.75")
+    if simulate and isinstance(plant, Plant):
+        refuse_unfit_loop(plant, (*recordings, *validation))
     problem, kept_for_judging, told = prepared(plant, recordings, validation, split)
     searched = search_recordings(problem, said, start)
     found = searched.search
@@ -81,6 +83,12 @@ def diagnose(
     if found is not searched.search:
         searched = replace(searched, search=found)
         judged, rehomed = _judged(found, kept_for_judging)
+    refinement = Refinement(found, (judged, rehomed))
+    if simulate and isinstance(plant, Plant):
+        said("simulating the closed loop, and refining in simulation")
+        refinement = refined(found, refinement.outcome, lambda other: _judged(other, kept_for_judging))
+        found, (judged, rehomed) = refinement.found, refinement.outcome
+        searched = replace(searched, search=found)
     alike = ambiguous_sets(found, rivals)
     said("looking at what is left")
     rest = explain_rest(found.problem, found.fit.effects, judged, channel_results(found.problem, judged))
@@ -93,9 +101,6 @@ def diagnose(
     shares = [share_of(found.problem, judged, found.fit.effects, i) for i in range(count)]
     said("looking for what would settle doubts")
     further = next_experiments(found, rivals, spans)
-    simulation = None
-    if simulate and isinstance(plant, Plant):
-        simulation = simulation_error(plant, plant.with_effects(*effects, *rest.effects), judged)
     result = Diagnosis(
         plant=plant.name,
         fit=_stamps(recordings),
@@ -108,7 +113,7 @@ def diagnose(
         unexplained=rest.unexplained,
         trials=found.trials,
         recordings=series,
-        simulation=simulation,
+        simulation=refinement.reported(rest.judged if rest.effects else judged),
         changes=compared.changes,
         kept=kept_of(found, known),
         alike=alike,
@@ -117,7 +122,8 @@ def diagnose(
         notes=(
             *told,
             *other_places(found, judged),
-            *_notes(problem.evidence, kept_for_judging, found, simulate, simulation),
+            *_notes(problem.evidence, kept_for_judging, found),
+            *refinement.notes,
         ),
     )
     return result, (*effects, *rest.effects)
@@ -226,10 +232,7 @@ def _why_not(gain: float, error: float) -> str:
     return f"it lowers the squared error by {gain:.2%}, {scatter}"
 
 
-def _notes(
-    fitted: Sequence[Evidence], judged: Sequence[Evidence], found: Search, asked: bool,
-    simulation: SimulationResult | None,
-) -> tuple[str, ...]:  # fmt: skip
+def _notes(fitted: Sequence[Evidence], judged: Sequence[Evidence], found: Search) -> tuple[str, ...]:
     ready = {id(evidence): evidence.recording for evidence in (*fitted, *judged)}
     notes = [f"{recording.name}: {note}" for recording in ready.values() for note in recording.notes]
     declared = found.problem.plant
@@ -243,10 +246,6 @@ def _notes(
             notes.append(
                 f"{before.recording.name}: {lost:.1f} s are left out: with free play the motion is chaotic there"
             )
-    if asked and simulation is None:
-        notes.append(
-            "no closed-loop simulation: the plant file declares no controller, or the recording has no setpoint"
-        )
     return tuple(notes)
 
 

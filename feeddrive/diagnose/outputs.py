@@ -14,6 +14,7 @@ import numpy as np
 from feeddrive import __version__
 from feeddrive.diagnose.change_outputs import changes_record
 from feeddrive.diagnose.result import ChannelResult, Diagnosis, EffectResult, ErrorFigures, ParameterResult
+from feeddrive.diagnose.simulation_record import simulation_record
 from feeddrive.diagnose.unexplained_outputs import carried_remarks, unexplained_record
 from feeddrive.effects.base import Effect
 from feeddrive.files import write_text_atomically
@@ -81,8 +82,7 @@ def diagnosis_record(diagnosis: Diagnosis) -> dict[str, Any]:
         "plant_after": "plant_after.toml",
     }
     if diagnosis.simulation is not None:
-        sim = diagnosis.simulation
-        record["simulation"] = {"channel": sim.channel, "before": sim.before, "after": sim.after}
+        record["simulation"] = simulation_record(diagnosis.simulation)
     if diagnosis.correlation is not None:
         known = diagnosis.correlation
         condition = known.condition if math.isfinite(known.condition) else None

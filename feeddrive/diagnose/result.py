@@ -9,6 +9,7 @@ import numpy as np
 from feeddrive.diagnose.certainty_result import Ambiguity, Correlation, NextExperiment
 from feeddrive.diagnose.change_result import RecordingChanges
 from feeddrive.diagnose.ledger_result import Kept
+from feeddrive.diagnose.simulation_result import SimulationResult as SimulationResult
 from feeddrive.diagnose.unexplained_result import Dependence as Dependence
 from feeddrive.diagnose.unexplained_result import Unexplained as Unexplained
 from feeddrive.typing import FloatArray
@@ -116,15 +117,6 @@ class FileStamp:
 
     file: str
     sha256: str
-
-
-@dataclass(frozen=True)
-class SimulationResult:
-    """Closed-loop simulation error where the controller is declared: relative, unfiltered, over the judged samples."""
-
-    channel: str
-    before: float
-    after: float
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from feeddrive.report.figure_unexplained import STEM
 from feeddrive.report.figures import render_figures
 from feeddrive.report.markup import figure, paragraph, section, text
 from feeddrive.report.people import share_text
-from feeddrive.report.records import recordings_section, simulation_section, stamp_section, tried_section
+from feeddrive.report.records import recordings_section, stamp_section, tried_section
 from feeddrive.report.section_unexplained import unexplained_section
 from feeddrive.report.sections import (
     ambiguous_section,
@@ -20,6 +20,7 @@ from feeddrive.report.sections import (
     verdict_section,
 )
 from feeddrive.report.selection import MOST_CHANNELS_IN_DETAIL, drawn_series
+from feeddrive.report.simulated import simulation_section
 from feeddrive.report.style import STYLE
 
 

@@ -54,17 +54,6 @@ def _percent(share: float) -> str:
     return with_unit(fixed(100.0 * share, 2), "%")
 
 
-def simulation_section(diagnosis: Diagnosis) -> str:
-    """Closed-loop simulation error, where there is one."""
-    run = diagnosis.simulation
-    if run is None:
-        return ""
-    heads = [words("Channel"), number("before"), number("after")]
-    rows = [[words(plain(run.channel)), number(share_text(run.before)), number(share_text(run.after))]]
-    note = "The closed loop simulated from the setpoint alone with the declared controller; relative, unfiltered."
-    return section("Closed-loop simulation error", table(heads, rows), paragraph(note, "note"))
-
-
 def recordings_section(diagnosis: Diagnosis) -> str:
     """The judged recordings with what was left out, notes and re-homed effects."""
     heads = [words("Judged recording"), number("duration"), number("samples"), words("Channels, part used")]
