@@ -37,7 +37,7 @@ CANDIDATES: tuple[Candidate, ...] = (
     Candidate("preload_loss", starts_transmission.preload_loss, needs.elastic, scanned=True),
     Candidate("backlash", starts.backlash, needs.gap, scanned=True),
     Candidate("payload", starts.plain(Payload.of(mass=0.0)), needs.force),
-    Candidate("structural_mode", starts_mode.structural_mode, needs.elastic, scanned=True),
+    Candidate("structural_mode", starts_mode.structural_mode, needs.elastic, scanned=True, brief=True),
     Candidate("inertia_deviation", starts_drive.inertia, needs.torque_inertia),
     Candidate("torque_constant_droop", starts_drive.droop, needs.torque),
     Candidate("drive_delay", starts_drive.drive_delay, needs.torque),

@@ -61,9 +61,11 @@ class Candidate:
         forms: started separately, each a list of values of which the best is refined.
         needs: why the recordings cannot show it, or an empty text.
         scanned: whether the starts are compared as they are; otherwise after one step of the fit.
+        brief: whether a brief passage of the recording may be all that shows it.
     """
 
     name: str
     forms: Callable[[Any], list[list[Effect]]]
     needs: Callable[[Any], str]
     scanned: bool = False
+    brief: bool = False

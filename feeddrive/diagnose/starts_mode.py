@@ -12,13 +12,14 @@ channel weighted by its noise. Mass and spectrum alone say where the resonance i
 from __future__ import annotations
 
 import numpy as np
+from scipy.optimize import minimize
 from scipy.signal.windows import hann
 
 from feeddrive.diagnose.materiality import is_material
 from feeddrive.diagnose.scene import AxisScene
 from feeddrive.effects.base import Effect
 from feeddrive.effects.structural_mode import StructuralMode
-from feeddrive.typing import BoolArray, FloatArray
+from feeddrive.typing import BoolArray, ComplexArray, FloatArray
 
 FREQUENCIES = 60
 """Frequencies that are tried, from a few periods in the recording to `HIGHEST` times the edge of the band."""
@@ -49,17 +50,33 @@ def structural_mode(scene: AxisScene) -> list[list[Effect]]:
         for f in np.geomspace(LOWEST, HIGHEST * seen.edge, FREQUENCIES)
         for zeta in RATIOS
     ]
-    (share, mass), f, zeta = max(grid, key=lambda entry: entry[0][0] if entry[0][1] > 0 else 0.0)
-    start = StructuralMode.of(mass=max(mass, 1e-6), frequency=float(f), damping=zeta)
+    _, f, zeta = max(grid, key=lambda entry: entry[0][0] if entry[0][1] > 0 else 0.0)
+    (share, mass), f, zeta = _polished(seen, float(f), zeta)
+    start = StructuralMode.of(mass=max(mass, 1e-6), frequency=f, damping=zeta)
     better = share - payload > LEAST_SHARE * (1 - payload)
     shows = better or (share > LEAST_SHARE and f < seen.edge)
     return [[start]] if shows and is_material(start, scene.plant) else []
 
 
-def _transmissibility(frequency: FloatArray, own: float, zeta: float) -> FloatArray:
+def _polished(seen: _Spectra, f: float, zeta: float) -> tuple[tuple[float, float], float, float]:
+    """Share and mass, frequency and damping ratio where the share is greatest near these."""
+
+    def lacking(logarithms: FloatArray) -> float:
+        own, ratio = np.exp(logarithms)
+        return -seen.fitted(_transmissibility(seen.frequency, float(own), float(ratio)))[0]
+
+    found = minimize(lacking, np.log([f, zeta]), method="Nelder-Mead", options={"xatol": 1e-3, "fatol": 1e-5})
+    own, ratio = (float(value) for value in np.exp(found.x))
+    ratio = min(ratio, 1.0)
+    allowed = StructuralMode.parameter("frequency")
+    own = min(max(own, allowed.minimum), allowed.maximum)
+    return seen.fitted(_transmissibility(seen.frequency, own, ratio)), own, ratio
+
+
+def _transmissibility(frequency: FloatArray, own: float, zeta: float) -> ComplexArray:
     """T at frequencies [Hz] of a mode with its own frequency [Hz] and damping ratio; complex, shape (n,)."""
     ratio = 1j * frequency / own
-    result: FloatArray = (1 + 2 * zeta * ratio) / (1 + 2 * zeta * ratio + ratio**2)
+    result: ComplexArray = (1 + 2 * zeta * ratio) / (1 + 2 * zeta * ratio + ratio**2)
     return result
 
 
@@ -79,7 +96,8 @@ class _Spectra:
         window = _faded(evidence.fit_rows, evidence.recording.sample_time)
         every = np.fft.rfftfreq(len(window), evidence.recording.sample_time)
         kept = (every > 0) & (every < evidence.edge)
-        self.frequency, self.edge = every[kept], evidence.edge
+        self.frequency: FloatArray = every[kept].astype(np.float64)
+        self.edge = evidence.edge
         noise = np.array([evidence.noise[name] for name in evidence.channels])[:, None]
         self.left = np.array([np.fft.rfft(window * residual[n])[kept] for n in evidence.channels]) / noise
         acceleration = np.fft.rfft(window * np.gradient(run.table_velocity, evidence.recording.sample_time))[kept]
@@ -87,7 +105,7 @@ class _Spectra:
         per_force = np.array([responses[name] for name in evidence.channels])
         self.unit = -per_force * acceleration / noise
 
-    def fitted(self, transmissibility: FloatArray) -> tuple[float, float]:
+    def fitted(self, transmissibility: ComplexArray | FloatArray) -> tuple[float, float]:
         """Share of the weighted square that the best mass takes away, and that mass [kg]."""
         shape = self.unit * transmissibility
         energy = float(np.sum(np.abs(shape) ** 2))
@@ -103,7 +121,7 @@ def _faded(rows: BoolArray, sample_time: float) -> FloatArray:
     return faded
 
 
-def _responses(scene: AxisScene, frequency: FloatArray) -> dict[str, FloatArray]:
+def _responses(scene: AxisScene, frequency: FloatArray) -> dict[str, ComplexArray]:
     """Table position and motor torque per force on the table with the motor's motion as it is; complex, shape (n,)."""
     plant = scene.plant.with_effects(*scene.found)
     p, x = plant.chain_values(), plant.middle
