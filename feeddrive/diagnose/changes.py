@@ -13,26 +13,26 @@ from dataclasses import dataclass
 
 from scipy.stats import norm
 
-from feeddrive.diagnose.change_candidates import Movable, levels, movables
+from feeddrive.diagnose.change_candidates import levels, movables
+from feeddrive.diagnose.change_fits import (
+    JOINT_STEPS,
+    REFERENCE_STEPS,
+    belongs,
+    compared_fits,
+    in_common,
+    machine_first,
+    set_free,
+)
 from feeddrive.diagnose.change_offers import Offer, offers
 from feeddrive.diagnose.change_values import material_difference
-from feeddrive.diagnose.cross_validation import (
-    Comparison,
-    block_numbers,
-    compare_left_out,
-    least_gain,
-    left_out_residual,
-)
+from feeddrive.diagnose.cross_validation import Comparison
 from feeddrive.diagnose.fit import Fit, Problem, fit
-from feeddrive.diagnose.recordings import RecordingShift, Target, is_shift
+from feeddrive.diagnose.recordings import Target
 from feeddrive.effects.base import Effect
-from feeddrive.thermal.plant import ThermalPlant
+from feeddrive.effects.friction_deviation import FrictionDeviation
 
 FALSE_ALARMS = 0.05
 """Chance of one false change in a whole diagnosis, shared out among all parameters that are tried."""
-
-REFERENCE_STEPS, JOINT_STEPS = 8, 10
-"""Steps of the fit with everything in common, and of the fit with what differs."""
 
 OFFERS = 2
 """Parameters that are fitted before the recordings are said to share the rest."""
@@ -85,10 +85,10 @@ def find_changes(problem: Problem, effects: Sequence[Effect], recordings: Sequen
     current, kept = _forward(problem, common, recordings, ranked)
     while kept:
         worst = _worst(problem, current, kept, recordings, len(ranked))
-        if worst is None:
-            return Changes(_machine_first(problem, current), tuple(kept), _trials(ranked, kept))
-        kept = [target for target in kept if target is not worst]
-        current = _without(problem, common, current, worst, recordings)
+        if not worst:
+            return Changes(machine_first(problem, current), tuple(kept), _trials(ranked, kept))
+        kept = [target for target in kept if target not in worst]
+        current = in_common(problem, common, current, worst, recordings)
     return Changes(common, (), _trials(ranked, ()))
 
 
@@ -99,8 +99,7 @@ def _forward(
     taken: list[Target] = []
     current = common
     while len(taken) < MOST_CHANGES:
-        neutral = levels(problem, current.effects)
-        at_rest = fit(problem, [*current.effects, *neutral], iterations=0)
+        at_rest = fit(problem, [*current.effects, *levels(problem, current.effects)], iterations=0)
         free = [one for one in movables(at_rest.effects, problem) if one.target not in taken]
         offered = offers(problem, at_rest, free, recordings)
         for one, comparison in offered:
@@ -108,10 +107,11 @@ def _forward(
                 ranked[one.target] = one, comparison
         likely = [one for one, c in offered if c.gain > max(c.least, c.standard_error)]
         for one in likely[:OFFERS]:
-            wider, comparison = _set_free(problem, current, at_rest.effects[one.effect], one, recordings)
+            group = [other for other in free if other is one or _partners(one.target, other.target)]
+            wider, comparison = set_free(problem, current, at_rest.effects[one.effect], group, recordings)
             ranked[one.target] = one, comparison
             if _pays(comparison, len(free) + len(taken)) and _material(problem, wider, one.target, recordings):
-                taken.append(one.target)
+                taken += [other.target for other in group]
                 current = wider
                 break
         else:
@@ -119,40 +119,9 @@ def _forward(
     return current, taken
 
 
-def _set_free(
-    problem: Problem, current: Fit, effect: Effect, one: Movable, recordings: Sequence[int]
-) -> tuple[Fit, Comparison]:
-    """The fit with one parameter free by recording, beside the one that has it in common."""
-    shared = current
-    if effect not in current.effects:
-        shared = fit(problem, [*current.effects, effect], iterations=JOINT_STEPS)
-    shifts = one.shifts(recordings, isinstance(problem.plant, ThermalPlant))
-    wider = fit(problem, [*shared.effects, *shifts], iterations=JOINT_STEPS)
-    return wider, _comparison(problem, shared, wider)
-
-
-def _machine_first(problem: Problem, fitted: Fit) -> Fit:
-    """The same fit with the shifts at the end."""
-    machine = [effect for effect in fitted.effects if not is_shift(effect)]
-    shifts = [effect for effect in fitted.effects if is_shift(effect)]
-    return fit(problem, [*machine, *shifts], iterations=REFERENCE_STEPS)
-
-
-def _without(problem: Problem, common: Fit, current: Fit, target: Target, recordings: Sequence[int]) -> Fit:
-    """The fit with one parameter in common again; a level that was not there before goes with its shifts."""
-    kept = [effect for effect in current.effects if not _of(effect, target, recordings)]
-    moved = [effect.target for effect in kept if isinstance(effect, RecordingShift)]
-    before = [one for one in common.effects if not is_shift(one)]
-    places = {(one.name, one.port, one.place) for one in before} | {(t.name, t.port, t.place) for t in moved}
-    kept = [effect for effect in kept if is_shift(effect) or (effect.name, effect.port, effect.place) in places]
-    return fit(problem, kept, iterations=JOINT_STEPS)
-
-
-def _comparison(problem: Problem, without: Fit, having: Fit) -> Comparison:
-    blocks = block_numbers(problem)
-    before = left_out_residual(without.residual, without.jacobian, blocks)
-    after = left_out_residual(having.residual, having.jacobian, blocks)
-    return compare_left_out(before, after, blocks, least_gain(problem, before))
+def _partners(one: Target, other: Target) -> bool:
+    """Whether two are the parts of one friction: each is known only with the other free, so they are freed together."""
+    return one.name == FrictionDeviation.name and (one.name, one.port) == (other.name, other.port)
 
 
 def _material(problem: Problem, shifted: Fit, target: Target, recordings: Sequence[int]) -> bool:
@@ -167,24 +136,21 @@ def _pays(comparison: Comparison, tried: int) -> bool:
 
 def _worst(
     problem: Problem, shifted: Fit, kept: Sequence[Target], recordings: Sequence[int], tried: int
-) -> Target | None:
-    """The change that is immaterial, or that pays least and not enough; None where all are to stay."""
+) -> list[Target]:
+    """What is immaterial, or pays least and not enough; nothing where all are to stay."""
     for target in kept:
         if not _material(problem, shifted, target, recordings):
-            return target
-    if len(kept) == 1:
-        return None  # it was compared when it was taken
+            return [target]
+    groups = [[other for other in kept if other is one or _partners(one, other)] for one in kept]
+    if all(len(group) == len(kept) for group in groups):
+        return []  # they were compared when they were taken
     compared = []
-    for target in kept:
+    for group in groups:
         # what is left out keeps its level in common, so that only the difference is judged
-        removed = [effect for effect in shifted.effects if not _of(effect, target, recordings)]
-        compared.append((_comparison(problem, fit(problem, removed, iterations=JOINT_STEPS), shifted), target))
-    comparison, target = min(compared, key=lambda pair: pair[0].gain)
-    return None if _pays(comparison, tried) else target
-
-
-def _of(effect: Effect, target: Target, recordings: Sequence[int]) -> bool:
-    return isinstance(effect, RecordingShift) and effect.target == target and effect.recording in recordings
+        removed = [effect for effect in shifted.effects if not belongs(effect, group, recordings)]
+        compared.append((compared_fits(problem, fit(problem, removed, iterations=JOINT_STEPS), shifted), group))
+    comparison, group = min(compared, key=lambda pair: pair[0].gain)
+    return [] if _pays(comparison, tried) else group
 
 
 def _trials(ranked: dict[Target, Offer], kept: Sequence[Target]) -> tuple[ChangeTrial, ...]:
