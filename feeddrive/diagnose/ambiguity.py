@@ -1,10 +1,11 @@
 """Effects that cannot be told apart: a rival in an effect's place, with the same error on data not fitted.
 
-    Lambda = (|r_B|^2 - |r_A|^2) / c,     c = d' Gamma d / d'd,     distance = |d| / sqrt(c),     d = r_B - r_A
+    Lambda = (|r_B|^2 - |r_A|^2) / c + 2 (k_B - k_A),  c = d' Gamma d / d'd,  d = r_B - r_A,  distance = |d| / sqrt(c)
 
 | symbol | meaning | unit |
 |---|---|---|
-| r_A, r_B | weighted residuals with the effect taken and with its rival, all others refitted, on data not fitted | 1 |
+| r_A, r_B | weighted residuals with the effect taken and with its rival, all others refitted; all recordings | 1 |
+| k_A, k_B | coordinates fitted; each takes one of Lambda from the fitted data, and adds one on others (Akaike) | 1 |
 | Gamma | covariance of the residual, from its spectrum (`noise_colour`) | 1 |
 | c | variance of what the noise adds to a sum along d, over that of white noise of variance one | 1 |
 
@@ -27,7 +28,6 @@ import numpy as np
 from feeddrive.diagnose.attempt import Attempt
 from feeddrive.diagnose.certainty_result import Ambiguity
 from feeddrive.diagnose.coordinates import read_coordinates
-from feeddrive.diagnose.cross_validation import block_numbers, left_out_residual
 from feeddrive.diagnose.fit import Fit, Problem, fit
 from feeddrive.diagnose.judge import Judged, error_series
 from feeddrive.diagnose.noise_colour import score_covariance
@@ -57,8 +57,8 @@ MOST_RIVALS = 4
 PLACED = ("inertia_deviation", "channel_delay")
 """Effects whose place is put to the question."""
 
-ITERATIONS = 5
-"""Steps of that fit; it starts from values that were fitted in the round of the search."""
+ITERATIONS = 12
+"""Steps of that fit at most; it starts from values that were fitted in the round of the search, others with it."""
 
 
 @dataclass(frozen=True)
@@ -111,7 +111,9 @@ def ambiguous_sets(found: Search, rivals: Sequence[list[Rival]]) -> tuple[Ambigu
     sets = []
     for effect, alike in zip(found.fit.effects, rivals, strict=True):
         twins = twins_of(effect, found.problem.plant, found.problem.evidence)
-        others = [*((twin.name, 0.0) for twin in twins), *((rival.effect.name, rival.distance) for rival in alike)]
+        apart = {rival.effect.name: rival.distance for rival in alike}
+        others = list((apart | {twin.name: 0.0 for twin in twins}).items())
+        others.sort(key=lambda other: other[1])
         if others:
             names, distances = zip(*others[: LARGEST_SET - 1], strict=True)
             told = [*(twin.reason for twin in twins), *([_reason(effect, alike)] if alike else [])]
@@ -199,16 +201,17 @@ def _in_place(found: Search, judged: Sequence[Judged], place: int, rival: Effect
 
 @dataclass(frozen=True)
 class _Residuals:
-    """Weighted residuals of one set of effects: on blocks left out of the fit, and thinned on the judged samples."""
+    """Weighted residuals of one set of effects: as fitted, and thinned on the judged samples; its coordinates."""
 
     fitted: FloatArray
     judged: FloatArray
+    coordinates: int
 
     @classmethod
     def of(cls, problem: Problem, fitted: Fit, plants: Sequence[tuple[Machine, Judged]]) -> _Residuals:
         """Of a fit, with the plant that it gives for each judged recording."""
-        left_out = left_out_residual(fitted.residual, fitted.jacobian, block_numbers(problem))
-        return cls(left_out, np.concatenate([_thinned_error(problem, plant, j) for plant, j in plants]))
+        judged = np.concatenate([_thinned_error(problem, plant, j) for plant, j in plants])
+        return cls(fitted.residual, judged, len(fitted.coordinates))
 
 
 def _thinned_error(problem: Problem, plant: Machine, judged: Judged) -> FloatArray:
@@ -233,7 +236,8 @@ def _odds(problem: Problem, judged: Sequence[Judged], mine: _Residuals, its: _Re
     if not scatter > 0:
         return (0.0, 0.0) if square == 0 else (excess, float("inf"))
     colour = scatter / square
-    return excess / colour, float(np.sqrt(square / colour))
+    more = 2.0 * (its.coordinates - mine.coordinates)
+    return excess / colour + more, float(np.sqrt(square / colour))
 
 
 def _reason(effect: Effect, alike: Sequence[Rival]) -> str:

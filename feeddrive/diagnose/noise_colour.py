@@ -22,7 +22,7 @@ import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
 from scipy.signal.windows import parzen
 
-from feeddrive.diagnose.evidence import AxisEvidence, Evidence
+from feeddrive.diagnose.evidence import BLOCK, AxisEvidence, Evidence
 from feeddrive.typing import BoolArray, ComplexArray, FloatArray, IntegerArray
 
 WINDOW_FREEDOM = 3.71
@@ -71,7 +71,7 @@ def stretches(evidence: Sequence[Evidence], rows: Sequence[BoolArray]) -> Iterat
         last = first + len(at) * len(one.channels)
         step = one.thinning * one.recording.sample_time
         if len(at):
-            lags = max(2, min(round(WINDOW * one.block / step), len(at) // 3))
+            lags = max(2, min(round(WINDOW * max(one.block, BLOCK) / step), len(at) // 3))
             floating = tuple(i for i, name in enumerate(one.channels) if name in one.floating)
             yield Stretch(slice(first, last), len(one.channels), floating, (at - at[0]) // one.thinning, lags)
         first = last

@@ -13,8 +13,10 @@ from feeddrive.recording.recording import Recording
 from feeddrive.simulate.scenario import Scenario
 from feeddrive.typing import FloatArray
 
+_NOT_SIMULATED = ("time", "motor_current", "motor_torque_share", "screw_speed")
+
 SERIES: dict[str, str] = {
-    **{name: unit for name, unit in CHANNEL_UNITS.items() if name not in ("time", "motor_current", "screw_speed")},
+    **{name: unit for name, unit in CHANNEL_UNITS.items() if name not in _NOT_SIMULATED},
     "speed_command": "rad/s",
 }
 """Series of a run and their SI units."""

@@ -1,0 +1,175 @@
+"""Ambiguous sets hold what the data cannot tell apart, and nothing else; the next experiment is the one that would."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from feeddrive.diagnose.ambiguity import ambiguous_sets, rivals_of, with_the_simplest
+from feeddrive.diagnose.cross_validation import compare_left_out
+from feeddrive.diagnose.evidence import AxisEvidence, prepare
+from feeddrive.diagnose.fit import Problem, fit
+from feeddrive.diagnose.judge import share_of
+from feeddrive.diagnose.next_experiment import distance, hardly_known, next_experiments
+from feeddrive.diagnose.noise_colour import independent_share
+from feeddrive.diagnose.prediction import AxisPredictor
+from feeddrive.diagnose.rehearsal import Rehearsal, moving_inertia, rehearsals
+from feeddrive.effects.base import Effect, Port
+from feeddrive.effects.catalogue import EFFECTS
+from tests.recovery.drawn import drawn, settled
+from tests.recovery.planted import axis_plant, pair
+
+
+def level() -> Effect:
+    return EFFECTS["friction_deviation"].of(Port.TABLE)
+
+
+def force(size: float) -> Effect:
+    return EFFECTS["constant_force"].of(force=size)
+
+
+def asymmetry(size: float) -> Effect:
+    return EFFECTS["coulomb_asymmetry"].of(delta_force=size)
+
+
+def lead(slope: float) -> Effect:
+    return EFFECTS["lead_error_cumulative"].of(slope=slope)
+
+
+def growth(strain: float, time_constant: float) -> Effect:
+    return EFFECTS["thermal_growth"].of(strain=strain, time_constant=time_constant)
+
+
+def test_growth_within_a_tenth_of_a_second_is_another_lead() -> None:
+    """What has grown before the comparison begins is a screw of another lead; the search may have taken either."""
+    found, judged = settled([lead(2e-6)], [lead(2e-6)], growth(2e-6, 0.1), seed=3)
+    (one,) = ambiguous_sets(found, rivals_of(found, judged))
+    assert one.names == ("lead_error_cumulative", "thermal_growth")
+    # one further coordinate takes about one standard deviation of the noise; 3.5 has a chance below one in a thousand
+    assert one.distances[0] < 3.5
+    assert "same signature" in one.reason
+
+
+@pytest.mark.parametrize("others", [[], [level()]])
+def test_asymmetry_is_no_constant_force(others: list[Effect]) -> None:
+    """Even where the level is free: at rest a constant force bends the drive, and friction of any level does not."""
+    found, judged = settled([asymmetry(14.0)], [asymmetry(14.0), *others], force(7.0), seed=1)
+    assert ambiguous_sets(found, rivals_of(found, judged)) == ()
+
+
+def test_small_effect_is_not_alike_to_whatever_costs_less_than_5_per_cent() -> None:
+    """The contract's 5 % alone would let a payload stand in for a force that is ten standard deviations large."""
+    found, judged = settled([force(1.0)], [force(1.0)], asymmetry(1.0), seed=5)
+    rivals = rivals_of(found, judged)
+    assert ambiguous_sets(found, rivals) == ()
+
+
+def test_set_is_led_by_the_member_with_fewest_parameters() -> None:
+    found, judged = settled([lead(2e-6)], [growth(2e-6, 0.1)], lead(2e-6), seed=3)
+    found, rivals = with_the_simplest(found, rivals_of(found, judged))
+    assert [effect.name for effect in found.fit.effects] == ["lead_error_cumulative"]
+    (one,) = ambiguous_sets(found, rivals)
+    assert one.names == ("lead_error_cumulative", "thermal_growth")
+
+
+def test_effect_carries_where_the_judged_data_show_it_and_not_where_it_is_absent() -> None:
+    found, judged = settled([force(3.0)], [force(3.0)], asymmetry(6.0), seed=7)
+    assert share_of(found.problem, judged, found.fit.effects, 0).carries
+    plant, evidence = axis_plant("bench"), judged[0].evidence
+    assert isinstance(evidence, AxisEvidence)
+    without = [replace(judged[0], evidence=drawn(plant, evidence, [], 9))]
+    assert not share_of(found.problem, without, found.fit.effects, 0).carries
+
+
+def test_gain_that_comes_from_a_few_blocks_is_no_scatter() -> None:
+    """As a delay shows in a chirp alone: 40 blocks, two of which hold all of the gain."""
+    generator = np.random.default_rng(1)
+    blocks = np.repeat(np.arange(40), 250)
+    after = generator.standard_normal(len(blocks))
+    before = after + np.where(blocks < 2, 0.5, 0.0)
+    comparison = compare_left_out(before, after, blocks)
+    # d^2 = 500 x 0.25 of 10^4; chance 2 |d| = 22 of 10^4, but for the draw of two blocks
+    assert comparison.gain == pytest.approx(0.0125, abs=0.004)
+    assert comparison.standard_error < 0.004
+    assert comparison.pays
+
+
+def test_repeated_recording_leaves_the_rival_where_it_was() -> None:
+    """A repeat of the recording itself: the rival, fitted to it already, stays, and d is its misfit."""
+    plant = axis_plant("bench")
+    evidence = prepare(pair("bench", "null")[0], plant, 1.0)
+    exact = replace(evidence, measured=AxisPredictor().predict(plant.with_effects(force(5.0)), evidence))
+    problem = Problem(plant, (exact,), AxisPredictor())
+    rival = fit(problem, [asymmetry(1.0)])
+    d = distance(problem, [force(5.0)], rival, Rehearsal("repeat", exact, 0.0))
+    # 1e-3: the fit ends where a step gains no more than 1e-4 of the square
+    assert d == pytest.approx(np.sqrt(independent_share(exact) * rival.squared_error), rel=1e-3)
+
+
+def test_odds_after_an_experiment_are_those_that_were_foretold() -> None:
+    """The mean of the rival's excess over many draws of an experiment is d^2, in independent values; 12 draws."""
+    plant = axis_plant("bench")
+    evidence = prepare(pair("bench", "null")[1], plant, 1.0)
+    truth, wrong = force(1.0), asymmetry(1.0)
+    exact = replace(evidence, measured=AxisPredictor().predict(plant.with_effects(truth), evidence))
+    problem = Problem(plant, (exact,), AxisPredictor())
+    rival = fit(problem, [wrong])
+    d = distance(problem, [truth], rival, Rehearsal("again", exact, 0.0))
+    share, excess = independent_share(evidence), []
+    for seed in range(12):
+        one = Problem(plant, (drawn(plant, evidence, [truth], 50 + seed),), AxisPredictor())
+        excess.append(fit(one, [wrong]).squared_error - fit(one, [truth]).squared_error)
+    # the excess scatters by 2 d a draw: 4 standard deviations of the mean of 12, and the share that colours it
+    assert share * np.mean(excess) == pytest.approx(d**2, abs=4 * 2 * d / np.sqrt(12) + 0.05 * d**2)
+
+
+def test_rehearsed_scenarios_fit_the_axis() -> None:
+    plant = axis_plant("light")
+    evidence = prepare(pair("light", "null")[0], plant, 1.0)
+    ready = rehearsals(plant, plant, [evidence])
+    reached = plant.chain.motor_radius * evidence.motion.angle
+    assert {"slow_reversal", "lost_motion"} <= {one.name for one in ready}
+    # a force that no recording holds, too short, and longer than what this axis has been seen to travel
+    assert not {"milling", "step_position", "iso230_2"} & {one.name for one in ready}
+    for one in ready:
+        motion = plant.chain.motor_radius * one.evidence.motion.angle
+        # 2 mm: the slack that is given at either end, and overshoot
+        assert motion.min() > reached.min() - 2e-3 and motion.max() < reached.max() + 2e-3
+        assert np.abs(one.evidence.recording["motor_torque"]).max() < plant.torque_limit
+        assert one.evidence.recording.sample_time == pytest.approx(evidence.recording.sample_time)
+        assert one.evidence.noise["motor_torque"] == pytest.approx(evidence.noise["motor_torque"], rel=1e-6)
+
+
+def test_moving_inertia_is_that_of_three_inertias() -> None:
+    """Motor 2.6e-3, screw 2.37e-3 and 134 kg at 20 mm per revolution: the sum by hand."""
+    assert moving_inertia(axis_plant("bench")) == pytest.approx(2.6e-3 + 2.37e-3 + 134 * (0.02 / 2 / np.pi) ** 2)
+
+
+def test_next_experiment_says_that_there_is_none_where_there_is_none() -> None:
+    """What has grown within a tenth of a second is told from a lead by no scenario that begins later."""
+    found, judged = settled([lead(2e-6)], [lead(2e-6)], growth(2e-6, 0.1), seed=3)
+    (none,) = next_experiments(found, rivals_of(found, judged), [{}])
+    assert none.scenario == "" and none.figure < 3.0
+    assert none.sentence.startswith("no shipped scenario tells lead_error_cumulative from thermal_growth")
+    assert next_experiments(found, [[]], [{}]) == ()
+
+
+def test_next_experiment_names_the_scenario_that_moves_the_mass() -> None:
+    """A mass is known from acceleration: a sweep of the velocity beats the slow motions by far."""
+    effect = EFFECTS["payload"].of(mass=0.1)
+    found, _ = settled([effect], [effect], force(1.0), seed=3)
+    (one,) = next_experiments(found, [[]], [{"mass": [(0.0, 0.3)]}])
+    assert one.question == ("payload.mass",)
+    assert one.scenario == "frf_sweep"
+    assert one.figure < 0.7
+    assert dict(one.ranking)["slow_reversal"] == pytest.approx(1.0, abs=0.01)
+
+
+def test_hardly_known_are_sizes_whose_interval_is_as_wide_as_they_are() -> None:
+    effects = [EFFECTS["stribeck"].of(delta_force=-2.0, velocity=6e-3), level()]
+    wide: dict[str, list[tuple[float, float]] | None] = {"delta_force": [(-4.0, 0.0)], "velocity": [(5.9e-3, 6.1e-3)]}
+    factors: dict[str, list[tuple[float, float]] | None] = {"coulomb_factor": [(0.99, 1.01)], "viscous_factor": None}
+    doubts = hardly_known(effects, [wide, factors])
+    assert [(doubt.place, doubt.key) for doubt in doubts] == [(1, "coulomb_factor"), (0, "delta_force")]
