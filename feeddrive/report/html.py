@@ -6,15 +6,16 @@ from pathlib import Path
 
 from feeddrive.diagnose.result import Diagnosis
 from feeddrive.files import write_text_atomically
+from feeddrive.report.certainty import ambiguous_section, correlation_section, experiments_section
 from feeddrive.report.drawing import RenderedFigure
 from feeddrive.report.figure_unexplained import STEM
 from feeddrive.report.figures import render_figures
 from feeddrive.report.markup import figure, paragraph, section, text
 from feeddrive.report.people import share_text
 from feeddrive.report.records import recordings_section, stamp_section, tried_section
+from feeddrive.report.section_changes import changes_section, since_section
 from feeddrive.report.section_unexplained import unexplained_section
 from feeddrive.report.sections import (
-    ambiguous_section,
     effects_section,
     error_section,
     verdict_section,
@@ -49,7 +50,9 @@ def report_page(diagnosis: Diagnosis, figures: tuple[RenderedFigure, ...]) -> st
         verdict_section(diagnosis),
         error_section(diagnosis),
         effects_section(diagnosis) + explaining,
-        ambiguous_section(diagnosis),
+        changes_section(diagnosis) + since_section(diagnosis),
+        ambiguous_section(diagnosis) + experiments_section(diagnosis),
+        correlation_section(diagnosis),
         simulation_section(diagnosis),
         section("Measured and predicted", *map(figure, others), _not_drawn(diagnosis)),
         unexplained_section(diagnosis, left),

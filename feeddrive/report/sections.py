@@ -1,4 +1,4 @@
-"""The findings of the report as HTML: verdict, errors, effects, ambiguity."""
+"""The findings of the report as HTML: verdict, errors, effects."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ import math
 from feeddrive.diagnose.result import ChannelResult, Diagnosis, EffectResult, ErrorFigures
 from feeddrive.report.markup import (
     Cell,
-    bullets,
     catalogue_name,
     number,
     paragraph,
@@ -19,7 +18,7 @@ from feeddrive.report.markup import (
 from feeddrive.report.parameters import parameter_text
 from feeddrive.report.people import DASH, Scale, band_text, scale_for_error, share_text, significant, with_unit
 from feeddrive.report.verdict import is_noise, verdict_sentences
-from feeddrive.report.words import effect_words, joined, plain
+from feeddrive.report.words import effect_words, plain
 
 
 def verdict_section(diagnosis: Diagnosis) -> str:
@@ -100,12 +99,3 @@ def _story(effect: EffectResult) -> str:
         return ""
     reading = f" <i>{text(effect.reading)}</i>" if effect.reading else ""
     return f"<dt>{text(effect_words(effect.name))}</dt><dd>{text(effect.evidence)}{reading}</dd>\n"
-
-
-def ambiguous_section(diagnosis: Diagnosis) -> str:
-    """Sets of effects that these data cannot tell apart."""
-    lines = [joined([f"{effect_words(name)} ({name})" for name in names]) for names in diagnosis.ambiguous]
-    if not lines:
-        return ""
-    note = "Each of a set explains these data within 5 % of the same error. The one with fewest parameters was taken."
-    return section("What these data cannot tell apart", bullets(lines), paragraph(note, "note"))

@@ -1,0 +1,94 @@
+"""How sure a diagnosis is, as HTML: effects alike, experiments worth running, parameters known only together."""
+
+from __future__ import annotations
+
+from feeddrive.diagnose.certainty_result import Ambiguity, Correlation, NextExperiment
+from feeddrive.diagnose.result import Diagnosis
+from feeddrive.report.markup import Cell, bullets, number, paragraph, section, table, text, words
+from feeddrive.report.people import DASH, significant
+from feeddrive.report.words import effect_words, joined, plain
+
+_LARGEST_MATRIX = 10
+_SCENARIOS_SHOWN = 4
+
+
+def ambiguous_section(diagnosis: Diagnosis) -> str:
+    """Sets of effects that these data cannot tell apart, the reason, and the experiment that would."""
+    lines = [joined([f"{effect_words(name)} ({name})" for name in names]) for names in diagnosis.ambiguous]
+    if not lines:
+        return ""
+    reasons = "".join(paragraph(f"{_names(one)}: {one.reason}") for one in diagnosis.alike)
+    note = (
+        "Each of a set explains these data within 5 % of the same error, and the data give less than 20 to 1 "
+        "against it. The one with fewest parameters was taken."
+    )
+    return section("What these data cannot tell apart", bullets(lines), reasons, paragraph(note, "note"))
+
+
+def experiments_section(diagnosis: Diagnosis) -> str:
+    """Scenarios that would settle what is open."""
+    if not diagnosis.next_experiments:
+        return ""
+    told = bullets([_sentence(one) for one in diagnosis.next_experiments])
+    rows = [_ranked(one) for one in diagnosis.next_experiments if one.ranking]
+    heads = [words("Question"), words("Scenarios, the best first")]
+    note = (
+        "Every shipped scenario that this axis can run was run by the plant with the effects found. To tell apart: "
+        "distance of the two predictions in standard deviations of the sensor noise after the rival is fitted to both "
+        "recordings; 3 is a hint, 5 settles it. To know better: width of the interval after it over that before."
+    )
+    return section("Which experiment next", told, table(heads, rows) if rows else "", paragraph(note, "note"))
+
+
+def correlation_section(diagnosis: Diagnosis) -> str:
+    """Correlations of the fitted parameters, the condition number, and which are known only together."""
+    known = diagnosis.correlation
+    if known is None:
+        return ""
+    warned = bullets(known.told) if known.told else paragraph("No two parameters are known only together.")
+    condition = paragraph(f"Condition number of what was fitted: {significant(known.condition, 2)}.")
+    note = (
+        "Correlation of the errors of two parameters: near ±1 they can be changed together at hardly any cost, and "
+        "each is known only with the other. A condition number above 30 says the same of several at once."
+    )
+    return section("Which parameters hang together", warned, _matrix(known), condition, paragraph(note, "note"))
+
+
+def experiment_sentences(diagnosis: Diagnosis) -> list[str]:
+    """What to run next, one sentence each."""
+    return [f"{_sentence(one)}." for one in diagnosis.next_experiments]
+
+
+def _sentence(one: NextExperiment) -> str:
+    return one.sentence[:1].upper() + one.sentence[1:]
+
+
+def _names(one: Ambiguity) -> str:
+    return joined([effect_words(name) for name in one.names])
+
+
+def _ranked(one: NextExperiment) -> list[Cell]:
+    question = f"{plain(one.question[0])} known better" if len(one.question) == 1 else joined(list(one.question))
+    shown = [f"{name} {significant(figure, 2)}" for name, figure in one.ranking[:_SCENARIOS_SHOWN]]
+    return [words(question), words(", ".join(shown))]
+
+
+def _matrix(known: Correlation) -> str:
+    """The matrix below its diagonal; nothing where it is too large to be read."""
+    if len(known.names) > _LARGEST_MATRIX:
+        return ""
+    heads = [words(""), *(Cell(text(_short(name)), number=True) for name in known.names[:-1])]
+    rows = [
+        [
+            words(_short(name)),
+            *(number(f"{known.matrix[i][j]:+.2f}" if j < i else DASH) for j in range(len(known.names) - 1)),
+        ]
+        for i, name in enumerate(known.names)
+        if i > 0
+    ]
+    return table(heads, rows)
+
+
+def _short(name: str) -> str:
+    effect, _, key = name.rpartition(".")
+    return f"{effect_words(effect)}: {plain(key)}"
