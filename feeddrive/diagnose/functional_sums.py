@@ -83,8 +83,7 @@ class Sums:
         return np.concatenate([self._fixed, *(self._at[term] for term in terms)]).astype(np.int64)
 
     def _solved(self, gram: FloatArray, moment: FloatArray) -> FloatArray:
-        solved: FloatArray = np.linalg.solve(gram + RIDGE * np.eye(len(moment)), moment)
-        return solved
+        return np.asarray(np.linalg.solve(gram + RIDGE * np.eye(len(moment)), moment), dtype=np.float64)
 
     def _fold_values(self, at: IntegerArray) -> list[FloatArray]:
         """Values fitted without each fold."""

@@ -71,7 +71,7 @@ def _breakpoints(term: Term) -> FloatArray:
     if term.form is Form.POWERS:
         half = term.nodes[0] * np.array(POWER_NODES)
         return np.concatenate([-half[::-1], [0.0], half])
-    return np.array([np.nextafter(term.nodes[0], -np.inf), term.nodes[0]]) if term.form is Form.STEP else np.zeros(1)
+    return np.array([np.nextafter(term.nodes[0], -np.inf), term.nodes[0]]) if term.form is Form.STEP else np.ones(1)
 
 
 def statement_of(term: Term, table: Table) -> str:
@@ -81,7 +81,7 @@ def statement_of(term: Term, table: Table) -> str:
     if term.form is Form.STEP:
         return f"changes by {_shown(values[-1], table.unit)}{by} at {_shown(term.nodes[0], table.breakpoint_unit)}"
     if term.form is Form.LEVEL:
-        return f"{_shown(values[0], table.unit)}{by}"
+        return f"{_shown(values[0], table.unit)} against the motion"
     low, high = int(np.argmin(values)), int(np.argmax(values))
     if term.form is Form.SINE:
         harmonics = _harmonics(values)

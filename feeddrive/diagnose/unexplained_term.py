@@ -33,7 +33,7 @@ class Term:
         variable: whose function it is.
         times: factor, as "direction" or "table_velocity"; empty for none.
         nodes: breakpoints of a curve, the place of a step, the angle [rad] of one period of a sine, the largest value
-            of powers; none for a level.
+            of powers; none for a level, which is the variable itself.
     """
 
     form: Form
@@ -64,7 +64,7 @@ class Term:
             share = at / self.nodes[0]
             shape = np.column_stack([share, np.abs(share), share * np.abs(share), share**2])
         else:
-            shape = np.ones((len(at), 1))
+            shape = at[:, None]
         return shape * values[self.times][:, None] if self.times else shape
 
 
