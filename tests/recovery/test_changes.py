@@ -1,0 +1,144 @@
+"""What is other in one recording of an axis is said so, with its size; where nothing is, nothing is claimed.
+
+The rigid recordings are written down in closed form (`rigid_runs`), those of the bench axis come from
+`tests/generator`; neither shares code with the package.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from feeddrive.diagnose.diagnosis import diagnose
+from feeddrive.diagnose.result import Diagnosis
+from feeddrive.files import plants_folder
+from feeddrive.plant.files import read_plant
+from feeddrive.plant.plant import Plant
+from feeddrive.recording import Recording
+from tests.generator import BENCH, recording_pair
+from tests.generator import effects as planted
+from tests.recovery.rigid_runs import PLANT, Truth, rigid_run
+
+
+@pytest.fixture(scope="module")
+def rigid(tmp_path_factory: pytest.TempPathFactory) -> Plant:
+    """The declared rigid axis."""
+    path = tmp_path_factory.mktemp("plant") / "rigid.toml"
+    path.write_text(PLANT, encoding="utf-8")
+    return read_plant(path)
+
+
+def changed(result: Diagnosis) -> dict[tuple[str, str], float]:
+    """Parameter and recording of every change to its difference."""
+    return {(one.parameter, one.recording): one.difference.value for one in result.changes.changes}
+
+
+@pytest.mark.parametrize("seed", [2, pytest.param(3, marks=pytest.mark.slow), pytest.param(4, marks=pytest.mark.slow)])
+def test_nothing_changed_nothing_claimed(rigid: Plant, seed: int) -> None:
+    first, second = rigid_run("a", Truth(seed=seed)), rigid_run("b", Truth(seed=10 + seed), slow=1.3)
+    both, _ = diagnose(rigid, [first, second])
+    apart, _ = diagnose(rigid, [first], [second])
+    for result in (both, apart):
+        assert [effect.name for effect in result.effects] == []
+        assert result.changes.changes == ()
+        assert result.changes.trials  # it was asked
+
+
+@pytest.mark.parametrize(
+    ("truth", "parameter", "size"),
+    [
+        (Truth(coulomb=1.1, seed=2), "coulomb_factor", 0.1),
+        pytest.param(Truth(viscous=0.85, seed=2), "viscous_factor", -0.15, marks=pytest.mark.slow),
+        pytest.param(Truth(mass=5.0, seed=2), "mass", 5.0, marks=pytest.mark.slow),
+        pytest.param(Truth(force=4.0, seed=2), "force", 4.0, marks=pytest.mark.slow),
+    ],
+)
+def test_a_level_is_other_in_the_second_recording(rigid: Plant, truth: Truth, parameter: str, size: float) -> None:
+    first, second = rigid_run("a", Truth()), rigid_run("b", truth, slow=1.3)
+    result, effects = diagnose(rigid, [first, second])
+    assert [effect.name for effect in result.effects] == []  # what changed is no effect of the machine
+    # 10 %: what is asked of a planted size
+    assert changed(result) == {(parameter, "b"): pytest.approx(size, rel=0.1)}
+    (change,) = result.changes.changes
+    low, high = change.difference.ci95
+    # the interval is one of 95 %; half of it more keeps this seed from deciding
+    assert low - 0.25 * (high - low) <= size <= high + 0.25 * (high - low)
+    assert [effect.values[parameter] for effect in effects] == [pytest.approx(change.here.value)]
+    # the error is that of the noise, since each recording has its own level
+    (torque,) = result.channels
+    assert torque.after.rms < 1.2 * torque.noise_rms
+
+
+def test_a_judged_recording_with_another_level_is_recognised_and_its_error_stays(rigid: Plant) -> None:
+    ripple = 0.01
+    first = rigid_run("a", Truth(ripple=ripple))
+    second = rigid_run("b", Truth(ripple=ripple, coulomb=1.15, seed=2), slow=1.3)
+    result, _ = diagnose(rigid, [first], [second])
+    assert [effect.name for effect in result.effects] == ["torque_ripple"]
+    assert result.effects[0].carries
+    assert changed(result) == {("coulomb_factor", "b"): pytest.approx(0.15, rel=0.1)}
+    (change,) = result.changes.changes
+    assert not change.fitted
+    assert change.statement.startswith("guide Coulomb level 1")
+    assert "% (± 0.3 %) higher in b than in a" in change.statement
+    assert "wear" in change.reading
+    (torque,) = result.channels
+    assert torque.after.rms > 3 * torque.noise_rms  # the change is stated, and lowers no error
+    assert result.changes.explains is not None
+    assert result.changes.explains["motor_torque"] > 0.9
+
+
+@pytest.mark.slow
+def test_an_effect_that_is_not_in_the_judged_recording_does_not_carry(rigid: Plant) -> None:
+    first, second = rigid_run("a", Truth(ripple=0.01)), rigid_run("b", Truth(seed=2), slow=1.3)
+    result, _ = diagnose(rigid, [first], [second])
+    (effect,) = result.effects
+    assert effect.name == "torque_ripple"
+    assert not effect.carries
+    assert "Not in b as fitted" in effect.evidence
+
+
+@pytest.mark.slow
+def test_three_recordings_and_an_effect_of_all(rigid: Plant) -> None:
+    ripple = 0.01
+    runs = [
+        rigid_run("monday", Truth(ripple=ripple)),
+        rigid_run("tuesday", Truth(ripple=ripple, seed=2), slow=1.3),
+        rigid_run("friday", Truth(ripple=ripple, viscous=0.8, seed=3), slow=1.1),
+    ]
+    result, _ = diagnose(rigid, runs)
+    assert [effect.name for effect in result.effects] == ["torque_ripple"]
+    assert changed(result) == {("viscous_factor", "friday"): pytest.approx(-0.2, rel=0.1)}
+    (own,) = [one for one in result.changes.per_recording if one.parameter == "viscous_factor"]
+    # 0.02: the physical minimum of a friction factor
+    assert [own.values[name].value for name in ("monday", "tuesday", "friday")] == pytest.approx([1, 1, 0.8], abs=0.02)
+    assert "torque_ripple.amplitude" in result.changes.shared
+
+
+def bench(name: str, effects: tuple[object, ...], seeds: tuple[int, int], **off: float) -> tuple[Recording, Recording]:
+    """A pair of short recordings of the bench axis."""
+    both = recording_pair(BENCH, effects, seeds, (8.0, 6.0), off=off)  # type: ignore[arg-type]
+    channels = [dict(one) for one in both]
+    runs = [Recording(f"{name}{i}", one.pop("time"), one, BENCH.sample_time) for i, one in enumerate(channels)]
+    return runs[0], runs[1]
+
+
+@pytest.mark.slow
+def test_level_of_an_elastic_axis_beside_its_effects() -> None:
+    plant = read_plant(Path(plants_folder()) / "bench_axis.toml")
+    effects = (planted.TorqueRipple(amplitude=0.09, order=6.0, phase=0.7), planted.Stribeck(-22.0, 6e-3))
+    result, _ = diagnose(plant, [bench("a", effects, (1, 2))[0], bench("b", effects, (3, 4), guide_coulomb=1.1)[1]])
+    assert sorted(effect.name for effect in result.effects) == ["stribeck", "torque_ripple"]
+    assert changed(result) == {("coulomb_factor", "b1"): pytest.approx(0.1, rel=0.1)}
+
+
+@pytest.mark.slow
+def test_play_that_grew() -> None:
+    plant = read_plant(Path(plants_folder()) / "bench_axis.toml")
+    first, _ = bench("a", (planted.Backlash(4e-6),), (5, 6))
+    _, second = bench("b", (planted.Backlash(9e-6),), (7, 8))
+    result, _ = diagnose(plant, [first, second])
+    assert [effect.name for effect in result.effects] == ["backlash"]
+    assert changed(result) == {("width", "b1"): pytest.approx(5e-6, rel=0.1)}
+    assert "wear" in result.changes.changes[0].reading
