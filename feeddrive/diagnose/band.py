@@ -12,6 +12,7 @@ import numpy as np
 from scipy import signal
 
 from feeddrive.plant.plant import Plant
+from feeddrive.recording.findings import quantisation_step
 from feeddrive.typing import FloatArray
 
 WIDEST_BAND = 150.0
@@ -83,6 +84,17 @@ def held(series: FloatArray) -> FloatArray:
     padded = np.concatenate([np.full(3, series[0]), series, np.full(2, series[-1])])
     acting: FloatArray = np.convolve(padded, taps, mode="valid")
     return acting
+
+
+def sensor_noise(series: FloatArray, band: Band) -> float:
+    """Rms of what a sensor adds, in the band.
+
+    Steps larger than twice the noise are not dithered by it: their error, step / sqrt(12), follows the motion, and in
+    slow motion all of it is in the band.
+    """
+    white, step = white_noise(series, band.sample_rate), quantisation_step(series)
+    coarse = step / math.sqrt(12) if step > 2 * white else 0.0
+    return math.hypot(white * band.noise_gain, coarse)
 
 
 def white_noise(series: FloatArray, sample_rate: float) -> float:

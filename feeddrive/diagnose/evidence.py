@@ -7,7 +7,7 @@ from typing import Self
 
 import numpy as np
 
-from feeddrive.diagnose.band import END_CUT, Band, comparison_band, held, white_noise
+from feeddrive.diagnose.band import END_CUT, Band, comparison_band, held, sensor_noise
 from feeddrive.diagnose.torque_channel import with_torque
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
@@ -131,7 +131,7 @@ def prepare(recording: Recording, plant: Plant, share: float) -> AxisEvidence:
     return AxisEvidence(
         recording,
         {name: band.filter(series) for name, series in acting.items()},
-        {name: white_noise(series, rate) * band.noise_gain for name, series in raw.items()},
+        {name: sensor_noise(series, band) for name, series in raw.items()},
         counted,
         time < share * time[-1] if share < 1 else np.ones(len(time), dtype=bool),
         band.edge,

@@ -38,7 +38,8 @@ Values = dict[str, FloatArray]
 
 def terms_of(views: Sequence[View]) -> list[Term]:
     """Curves, levels and steps over the variables of these recordings."""
-    seen = {name: np.concatenate([view.values[name][view.rows] for view in views]) for name in views[0].values}
+    common = [name for name in views[0].values if all(name in view.values for view in views)]
+    seen = {name: np.concatenate([view.values[name][view.rows] for view in views]) for name in common}
     if "table_velocity" not in seen:
         return [*_curves(seen, "time", "", _trend(seen)), *_plain(seen)]
     terms = [Term(Form.LEVEL, "direction")] if np.ptp(seen["direction"]) > 1 else []
@@ -51,7 +52,7 @@ def terms_of(views: Sequence[View]) -> list[Term]:
     for shares in SPEEDS:
         half = fastest * np.array(shares)
         terms += _curves(seen, "table_velocity", "", np.concatenate([-half[::-1], [0.0], half]))
-    for name in ("table_acceleration", "predicted_torque"):
+    for name in sorted(seen.keys() & {"table_acceleration", "predicted_torque"}):
         for times in ("", "direction"):
             terms += _curves(seen, name, times, np.unique(np.quantile(seen[name], np.linspace(0.005, 0.995, 7))))
     farthest = float(seen["travel_since_reversal"].max())

@@ -104,11 +104,12 @@ def variables_of(
     motion = problem.predictor.variables(plant, evidence)
     position, velocity = motion["table_position"], motion["table_velocity"]
     direction = np.tanh(velocity / _turning_speed(plant, velocity))
+    torque = {"predicted_torque": predicted["motor_torque"]} if "motor_torque" in predicted else {}
     return {
         "time": clock,
         **motion,
         "table_acceleration": np.gradient(velocity, evidence.recording.sample_time),
-        "predicted_torque": predicted["motor_torque"],
+        **torque,
         "direction": direction,
         "travel_since_reversal": travel_since_reversal(position, direction),
     }
