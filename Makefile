@@ -1,10 +1,12 @@
 # A fresh machine needs Python 3.11 or newer and make; every target sets up what it uses.
-# Overridable: PYTHON (interpreter for .venv), WORKERS (test processes), TESTS (what `make test` runs).
+# Overridable: PYTHON (interpreter for .venv), WORKERS (test processes), TESTS (what `make test` runs), RECOVERY
+# (options of the recovery suite, such as RECOVERY=--half; --help lists them).
 
 VENV := .venv
 BIN := $(VENV)/bin
 WORKERS ?= 2
 TESTS ?= tests
+RECOVERY ?=
 
 # The first interpreter that is new enough; asked only when .venv has to be made.
 PYTHON ?= $(shell for name in python3.11 python3 python3.12 python3.13 python; do \
@@ -17,20 +19,26 @@ PIP_INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help demo test recovery bench lint types format develop clean
+.PHONY: help demo test test-slow recovery recovery-smoke bench lint types format develop clean
 
 help: ## show this list
 	@echo "make TARGET, where TARGET is"
-	@sed -n 's/^\([a-z]*\):.*## \(.*\)/  \1	\2/p' $(MAKEFILE_LIST) | expand -t 14
+	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  \1	\2/p' $(MAKEFILE_LIST) | expand -t 18
 
 demo: $(VENV)/.installed ## install, then diagnose a shipped machine; ends with the path of the report
 	$(BIN)/feeddrive demo
 
-test: $(VENV)/.developing ## the tests, without the slow ones of `make recovery`
+test: $(VENV)/.developing ## the tests, without the slow ones
 	$(PYTEST) -m 'not slow' $(TESTS)
 
-recovery: $(VENV)/.developing ## only the tests that plant an effect and must find it
-	$(PYTEST) tests/recovery
+test-slow: $(VENV)/.developing ## the slow tests alone
+	$(PYTEST) -m slow $(TESTS)
+
+recovery: $(VENV)/.recovery ## plant every effect, diagnose it, write docs/recovery.md; goes on where it was stopped
+	$(ONE_THREAD) $(BIN)/python -m tests.recovery.suite --workers $(WORKERS) $(RECOVERY)
+
+recovery-smoke: $(VENV)/.developing ## one planted case for every effect
+	$(PYTEST) tests/recovery/test_suite_smoke.py
 
 bench: $(VENV)/.developing ## timings beside those of other programs
 	@for script in benchmarks/[!_]*.py; do echo "== $$script"; $(ONE_THREAD) $(BIN)/python "$$script" || exit 1; done
@@ -65,3 +73,7 @@ $(VENV)/.installed: $(VENV)/.created pyproject.toml
 $(VENV)/.developing: $(VENV)/.created pyproject.toml
 	$(PIP_INSTALL) -e '.[dev]'
 	@touch $(VENV)/.installed $@
+
+$(VENV)/.recovery: $(VENV)/.developing
+	$(PIP_INSTALL) -e '.[dev,recovery]'
+	@touch $@

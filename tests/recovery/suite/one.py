@@ -40,7 +40,7 @@ def run(case: Case, with_rivals: bool = True) -> Record:
         "planted": case.planted,
     }
     try:
-        record |= found(*diagnose(declared(case.machine), [fitted], [judged]))
+        record |= found(case, *diagnose(declared(case.machine), [fitted], [judged]))
     except Exception:
         record |= {"raised": traceback.format_exc(), "found": [], "ambiguous": [], "after": {}}
     clock.lap("diagnosis")
@@ -65,9 +65,10 @@ def recorded(case: Case) -> tuple[Recording, Recording]:
     return motion_recordings(case.machine, effects, case.noise, case.seeds, case.seconds, case.off)
 
 
-def found(result: Diagnosis, effects: Sequence[PackageEffect]) -> Record:
-    """What the diagnosis says."""
+def found(case: Case, result: Diagnosis, effects: Sequence[PackageEffect]) -> Record:
+    """What the diagnosis says, and why it refused what was planted."""
     return {
+        "refused": {refused.name: refused.reason for refused in result.refused if refused.name in case.planted},
         "found": [
             {
                 "name": one.name,

@@ -16,7 +16,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
-from typing import cast
+from typing import Self, cast
 
 import numpy as np
 
@@ -33,7 +33,11 @@ NOISES = (1.0, 3.0)
 FILE = Path(__file__).with_name("sizes.json")
 
 NEAR = math.log(2.5)
-"""Sizes nearer than this on both sides are interpolated between."""
+"""Sizes nearer than this are interpolated between."""
+
+DECADES = (1e-3, 1e-2, 1e-1, 1.0)
+"""Sizes that are simulated first in a warm-up, and interpolated between: what an effect of heat brings is nearly
+proportional to it."""
 
 NEVER_SMALL = {"presliding": (0.5, 1.0, 2.0)}
 """Sizes over the example's of an effect that does not vanish when it is made small: a stiff bristle is a sharp step at
@@ -79,6 +83,7 @@ class Curve:
 
     brings: Callable[[Planting], Errors]
     example: Planting
+    near: float
     known: dict[float, Errors] = field(default_factory=dict)
 
     def __call__(self, factor: float) -> Errors:
@@ -87,12 +92,18 @@ class Curve:
         sizes = sorted(self.known)
         at = bisect.bisect_left(sizes, here)
         around = sizes[max(at - 1, 0) : at + 1]
-        if len(around) == 2 and around[1] - around[0] <= NEAR:
+        if len(around) == 2 and around[1] - around[0] <= self.near:
             share = (here - around[0]) / (around[1] - around[0])
             low, high = (self.known[size] for size in around)
             return {name: low[name] ** (1 - share) * high[name] ** share for name in low}
         self.known[here] = self.brings(self.example.scaled(factor))
         return self.known[here]
+
+    def begin(self, *factors: float) -> Self:
+        """With these sizes simulated."""
+        for factor in factors:
+            self.known[math.log(factor)] = self.brings(self.example.scaled(factor))
+        return self
 
 
 def factors(curve: Curve, quiet: Errors) -> list[float | None]:
@@ -129,9 +140,15 @@ def made(machine: str, only: str = "") -> Sizes:
     for examples in variants(machine).values():
         for example in examples:
             if only in ("", example.name):
-                curve = Curve(_warm_up_brings(machine) if is_warm_up(machine) else _motion_brings(machine), example)
+                curve = _curve(machine, example)
                 result[key_of(machine, example)] = {noise: factors(curve, q) for noise, q in noises.items()}
     return result
+
+
+def _curve(machine: str, example: Planting) -> Curve:
+    if is_warm_up(machine):
+        return Curve(_warm_up_brings(machine), example, math.log(10.1)).begin(*DECADES)
+    return Curve(_motion_brings(machine), example, NEAR)
 
 
 @cache

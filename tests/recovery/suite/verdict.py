@@ -100,9 +100,10 @@ class Verdict:
 
     @property
     def false_names(self) -> list[str]:
-        """Found, and neither planted nor the name of a declared number that is off."""
+        """Found, and neither planted nor the name of a declared number that is off, nor ambiguous with such a name."""
         allowed = {*self.planted, *(SAYS[number] for number in self.record["off"] if number in SAYS)}
-        return [name for name in self.names if name not in allowed]
+        in_sets = {names[0] for names in self.sets if allowed & set(names)}
+        return [name for name in self.names if name not in allowed | in_sets]
 
     @property
     def error(self) -> float | None:
