@@ -16,6 +16,9 @@ from feeddrive.typing import FloatArray
 LONGEST = 0.1
 """Delays that are looked for [s]; a channel that is later than that belongs to another motion."""
 
+CONTINUOUS = 0.3
+"""Torque at which a droop is told, over the declared limit: about what a servo motor gives continuously."""
+
 TORQUE, ANGLE, TABLE = "motor_torque", "motor_angle", "table_position"
 
 
@@ -52,9 +55,11 @@ def inertia(scene: AxisScene) -> list[list[Effect]]:
 
 
 def droop(scene: AxisScene) -> list[list[Effect]]:
-    """None, told at the largest torque of the recordings to two digits."""
-    largest = max(float(np.abs(e.measured[TORQUE][e.fit_rows]).max()) for e in scene.problem.evidence)
-    return [[TorqueConstantDroop.of(share=0.0, at_torque=float(f"{largest:.1e}"))]] if largest > 0 else []
+    """None, told at the same torque for every recording of a machine; at the largest recorded one where no limit is."""
+    at = CONTINUOUS * scene.plant.torque_limit
+    if not np.isfinite(at):
+        at = max(float(np.abs(e.measured[TORQUE][e.fit_rows]).max()) for e in scene.problem.evidence)
+    return [[TorqueConstantDroop.of(share=0.0, at_torque=float(f"{at:.1e}"))]] if at > 0 else []
 
 
 def _least_error(scene: AxisScene, moved: dict[str, int]) -> float:
