@@ -17,9 +17,10 @@ from feeddrive.diagnose.change_result import ParameterChange
 from feeddrive.diagnose.changes import Changes, find_changes
 from feeddrive.diagnose.fit import Problem
 from feeddrive.diagnose.judge import Judged, error_series, judged_channels, share_of
-from feeddrive.diagnose.recordings import without_shifts
+from feeddrive.diagnose.recordings import RecordingShift, without_shifts
 from feeddrive.diagnose.recordings_search import numbered
 from feeddrive.diagnose.search import Search
+from feeddrive.effects.base import Effect
 
 FITTED = "the fitted recordings"
 """What judged recordings are compared with where there are several."""
@@ -69,7 +70,8 @@ def judged_changes(found: Search, judged: Sequence[Judged]) -> JudgedChanges | N
     allowed = [Judged(j.evidence, j.before, problem.plant.with_effects(*changes.fit.effects)) for j in judged]
     carrying = replace(found.problem, predictor=problem.predictor)
     count = len(without_shifts(found.fit.effects))
-    carries = tuple(share_of(carrying, allowed, changes.fit.effects, i).carries for i in range(count))
+    numbers = [question.here for question in questions]
+    carries = tuple(_carries(carrying, judged, changes.fit.effects, i, numbers) for i in range(count))
     return JudgedChanges(changes, stated, carries, _explained(carrying, judged, allowed))
 
 
@@ -77,6 +79,20 @@ def _together(problem: Problem, apart: Sequence[Judged]) -> Problem:
     """Fitted and judged recordings in one problem, all of them fitted."""
     more = [replace(j.evidence, fitted=np.ones(len(j.evidence.fitted), dtype=bool)) for j in apart]
     return replace(numbered(problem, more), evidence=(*problem.evidence, *more))
+
+
+def _carries(
+    problem: Problem, judged: Sequence[Judged], effects: Sequence[Effect], index: int, numbers: Sequence[int]
+) -> bool:
+    """Whether an effect carries with its own values as fitted, and everything else as it is in the judged recordings."""
+    mine = effects[index]
+    own = [
+        effect
+        for effect in effects
+        if not (isinstance(effect, RecordingShift) and effect.recording in numbers and effect.target.meets(mine))
+    ]
+    plant = problem.plant.with_effects(*own)
+    return bool(share_of(problem, [Judged(j.evidence, j.before, plant) for j in judged], own, index).carries)
 
 
 def _explained(problem: Problem, judged: Sequence[Judged], allowed: Sequence[Judged]) -> dict[str, float]:

@@ -164,7 +164,8 @@ class Diagnosis:
     @property
     def nothing_missing(self) -> bool:
         """True when the declared plant is enough, or all that is known of it."""
-        return not self.effects and not any(left.carried for left in self.unexplained.values())
+        differs = any(change.fitted for change in self.changes.changes)
+        return not self.effects and not differs and not any(left.carried for left in self.unexplained.values())
 
 
 def error_figures(error: FloatArray, reference_rms: float) -> ErrorFigures:

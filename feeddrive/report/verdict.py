@@ -7,6 +7,7 @@ import math
 from feeddrive.diagnose.result import ChannelResult, Diagnosis
 from feeddrive.report.parameters import effect_sentence
 from feeddrive.report.people import error_text, share_text, significant
+from feeddrive.report.section_changes import change_sentences
 from feeddrive.report.words import effect_words, joined, plain, variable_words
 
 _NOISE_REACHED = 1.5
@@ -17,7 +18,8 @@ def verdict_sentences(diagnosis: Diagnosis) -> list[str]:
     """The verdict in plain text, the main finding first."""
     tables = _tables(diagnosis) if diagnosis.effects else ""
     beside = f"Beside these it carries what no named effect explains: {tables}." if tables else ""
-    sentences = [_main_finding(diagnosis), beside, _errors(diagnosis), *_above_noise(diagnosis)]
+    found = [_main_finding(diagnosis), beside, *change_sentences(diagnosis)]
+    sentences = [*found, _errors(diagnosis), *_above_noise(diagnosis)]
     return [sentence for sentence in sentences + _doubts(diagnosis) if sentence]
 
 
@@ -40,6 +42,8 @@ def _main_finding(diagnosis: Diagnosis) -> str:
         return f"The declared plant lacks: {found}."
     if tables := _tables(diagnosis):
         return f"The declared plant lacks something of no known name: {tables}."
+    if diagnosis.changes.changes:
+        return "No effect is missing in every recording, but the recordings differ."
     if all(is_noise(channel) for channel in diagnosis.channels):
         return "Nothing is missing: the declared plant explains the recording down to sensor noise."
     return "No known effect was found that the declared plant lacks, but it does not explain the recording fully."
