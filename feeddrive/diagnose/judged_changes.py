@@ -84,7 +84,7 @@ def _together(problem: Problem, apart: Sequence[Judged]) -> Problem:
 def _carries(
     problem: Problem, judged: Sequence[Judged], effects: Sequence[Effect], index: int, numbers: Sequence[int]
 ) -> bool:
-    """Whether an effect carries with its own values as fitted, and everything else as it is in the judged recordings."""
+    """Whether an effect carries by its own values, everything else being as it is in the judged recordings."""
     mine = effects[index]
     own = [
         effect
