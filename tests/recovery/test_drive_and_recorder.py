@@ -47,7 +47,7 @@ CASES: dict[str, tuple[Effect, Effect]] = {
     "light/table": (planted.ChannelDelay("table_position", 30e-9), planted.ChannelDelay("table_position", 113e-9)),
 }
 
-SMOKE = ("bench/droop", "light/screw", "light/angle")
+SMOKE = ("bench/droop", "light/angle")
 """Run in every suite at the smaller size; all others are marked slow."""
 
 MINE = {"torque_constant_droop", "inertia_deviation", "channel_delay"}
