@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 import traceback
 from collections.abc import Sequence
+from dataclasses import asdict
 from typing import Any, cast
 
 from feeddrive.diagnose.diagnosis import diagnose
@@ -49,8 +50,7 @@ def run(case: Case, with_rivals: bool = True) -> Record:
     clock.lap("truth")
     if with_rivals and rivals.installed():
         axis = AXES.get(case.machine)
-        after, terms = rivals.sparse(pair, axis)
-        record["sparse"] = {"after": after, "terms": terms}
+        record["sparse"] = asdict(rivals.sparse(pair, axis))
         clock.lap("sparse regression")
         record["black box"] = {"after": rivals.black_box(pair, axis)}
         clock.lap("black box")

@@ -55,12 +55,22 @@ def columns(pair: Prepared, evidence: Evidence) -> dict[str, Column]:
     return {name: Column(error[rows] / evidence.noise[name], blocks, rows) for name, error in errors.items()}
 
 
-def sparse(pair: Prepared, axis: AxisParameters | None) -> tuple[Errors, dict[str, list[str]]]:
-    """Sparse regression by PySINDy: error after per channel [SI], and its strongest terms."""
+@dataclass(frozen=True)
+class Sparse:
+    """A sparse regression: error after per channel [SI], its strongest terms, and how many it keeps."""
+
+    after: Errors
+    terms: dict[str, list[str]]
+    kept: dict[str, int]
+
+
+def sparse(pair: Prepared, axis: AxisParameters | None) -> Sparse:
+    """Sparse regression by PySINDy."""
     fitted, judged = pair.problem.evidence[0], pair.judged[0]
     terms, there = terms_of(fitted, axis), terms_of(judged, axis)
     after: Errors = {}
     named: dict[str, list[str]] = {}
+    kept: dict[str, int] = {}
     scale = {name: float(np.sqrt(np.mean(series**2))) or 1.0 for name, series in terms.items()}
     targets = columns(pair, judged)
     for name, column in columns(pair, fitted).items():
@@ -72,7 +82,8 @@ def sparse(pair: Prepared, axis: AxisParameters | None) -> tuple[Errors, dict[st
         strength[0] = abs(weights[0])  # a constant has no spread
         order = np.argsort(-strength)[:STRONGEST]
         named[name] = [list(terms)[i] for i in order if weights[i] != 0]
-    return after, named
+        kept[name] = int(np.count_nonzero(weights))
+    return Sparse(after, named, kept)
 
 
 def _sparse_weights(features: np.ndarray, column: Column) -> np.ndarray:

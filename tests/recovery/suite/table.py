@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
@@ -19,7 +20,9 @@ TEXT = """\
 
 Every effect is planted by a simulator that shares no code with the package (`tests/generator`), diagnosed as a user
 would, and set beside the truth. This file is written by `make recovery`, which goes on where it was stopped;
-`make recovery-smoke` does one case an effect. {holds}
+`make recovery-smoke` does one case an effect.
+
+{holds}
 
 How a case is made and judged:
 
@@ -34,7 +37,7 @@ How a case is made and judged:
   (Cramér–Rao); `tests/recovery/suite/bound.py`.
 - Sparse regression: the declared plant's error regressed by PySINDy (STLSQ) on a library of some fifty terms, the
   threshold by held-out blocks and the one-standard-error rule. It counts as naming an effect where a term that is the
-  effect's (`tests/recovery/suite/library.py`) is among the three strongest of a channel.
+  effect's (`tests/recovery/suite/library.py`) is among the three strongest of a channel, whatever else it keeps.
 - Black box: a Gaussian process over x, v and sign v on at most 1000 points (warm-up: over the speed and what follows
   it); it names nothing.
 - Errors are over the floor, on the worst channel, medians of the cases unless said otherwise.
@@ -70,9 +73,8 @@ def _holds(cases: Sequence[Case], verdicts: Sequence[Verdict]) -> str:
     if len(verdicts) < len(cases):
         said += " **The figures below are of this part only.**"
     if lost := unreachable():
-        listed = ", ".join(lost)
-        said += f" {len(lost)} further cases do not exist, as no size of the effect reaches the share: {listed}."
-    return said
+        said += f" Not among the cases, as no size of the effect reaches the share: {', '.join(lost)}."
+    return textwrap.fill(said, 118, break_long_words=False, break_on_hyphens=False)
 
 
 def _figure_row(figure: Figure) -> tuple[str, ...]:
@@ -153,8 +155,12 @@ def _otherwise(verdicts: Sequence[Verdict]) -> str:
             _count([set(v.planted) <= set(v.names) for v in mine]), _count([v.sparse_named for v in mine]), "none",
         ),
         (
+            "names or terms in the answer, median",
+            _middle([len(v.names) for v in mine], digits=0), _middle([v.sparse_kept for v in mine], digits=0), "–",
+        ),
+        (
             "says something where nothing is planted",
-            _count([bool(v.names) for v in nulls]), _count([v.sparse_says_something for v in nulls]), "–",
+            _count([bool(v.names) for v in nulls]), _count([v.sparse_kept > 0 for v in nulls]), "–",
         ),
     ]  # fmt: skip
     return _table(heads, rows)

@@ -152,9 +152,9 @@ class Verdict:
         return all(terms & same(name, values) for name, values in self.planted.items())
 
     @property
-    def sparse_says_something(self) -> bool:
-        """Whether sparse regression keeps any term."""
-        return any(self.record.get("sparse", {}).get("terms", {}).values())
+    def sparse_kept(self) -> int:
+        """Terms that sparse regression keeps, over all channels."""
+        return sum(self.record.get("sparse", {}).get("kept", {}).values())
 
     @property
     def cpu(self) -> float:
