@@ -22,9 +22,9 @@ from feeddrive.effects.stiffness_vs_position import StiffnessVsPosition
 from feeddrive.plant.stiffness_budget import stiffness_budget
 from feeddrive.typing import FloatArray
 
-LEAST_LAG = 0.002
-"""Share of the square of what is left of the position that must follow the force: less than half of what an effect must
-take away of all channels, and four times what the best of the forces tried takes from noise."""
+LEAST_LAG = 0.004
+"""Share of the square of what is left of the position that must follow the force: less than what an effect must take
+away of all channels together, and twice what the best of the forces tried takes from noise in some seconds."""
 
 FORCES = 16
 """Forces F1 that are tried, up to the greatest transmitted one."""

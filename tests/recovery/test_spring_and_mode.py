@@ -1,0 +1,164 @@
+"""Preload loss, stiffness along the stroke and a structural mode: found with their sizes, and not where they are not.
+
+The fast tests look at one candidate: its start read off the residual, its fit, and that nothing is read off a null. The
+slow ones are whole diagnoses at the sizes that are worth 10 % and 50 % of the error, on both axes.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from feeddrive.diagnose import starts_mode, starts_transmission
+from feeddrive.diagnose.diagnosis import diagnose
+from feeddrive.diagnose.evidence import prepare
+from feeddrive.diagnose.fit import Problem, fit
+from feeddrive.diagnose.prediction import AxisPredictor
+from feeddrive.effects.base import Effect
+from feeddrive.effects.catalogue import EFFECTS
+from feeddrive.recording import Recording
+from tests.generator import effects as planted
+from tests.generator import recording_pair, sized
+from tests.generator.axis import AXES
+from tests.generator.effects import Effect as Planted
+from tests.recovery.planted import SIZE, Verdict, axis_plant, declared_errors
+
+SECONDS = (7.0, 6.0)
+STARTS = {
+    "preload_loss": starts_transmission.preload_loss,
+    "stiffness_vs_position": starts_transmission.stiffness_vs_position,
+    "structural_mode": starts_mode.structural_mode,
+}
+LOADS = {"bench": (16.0, 150.0), "light": (7.0, 90.0)}
+"""Mass of a fixture [kg], and a preload that is lost [N]."""
+
+
+def example(axis: str, name: str) -> Planted:
+    """An effect of a size that a service engineer would meet."""
+    mass, force = LOADS[axis]
+    made: dict[str, Planted] = {
+        "preload_loss": planted.PreloadLoss(ratio=0.35, force=force),
+        "stiffness_vs_position": planted.StiffnessVsPosition(share_over_stroke=0.4),
+        "structural_mode": planted.StructuralMode(mass=mass, frequency=70.0, damping=0.03),
+    }
+    return made[name]
+
+
+def in_the_package(effect: Planted, axis: str) -> Effect:
+    """The planted effect under the package's name and keys."""
+    values = dataclasses.asdict(effect)
+    if effect.name == "stiffness_vs_position":
+        values |= dict(zip(("low", "high"), AXES[axis].travel, strict=True))
+    return EFFECTS[effect.name].of(**values)
+
+
+def recordings(axis: str, *effects: Planted, seeds: tuple[int, int] = (1, 2), noise: float = 1.0) -> list[Recording]:
+    """The pair to fit and to judge."""
+    made = []
+    for channels in recording_pair(AXES[axis], effects, seeds, SECONDS, noise):
+        rest = {name: series for name, series in channels.items() if name != "time"}
+        made.append(Recording("planted", channels["time"], rest, float(np.mean(np.diff(channels["time"])))))
+    return made
+
+
+def problem_of(axis: str, *effects: Planted, **options: float) -> Problem:
+    """The training recording, all of it fitted."""
+    plant = axis_plant(axis)
+    fitted, _ = recordings(axis, *effects, **options)  # type: ignore[arg-type]
+    return Problem(plant, (prepare(fitted, plant, 1.0),), AxisPredictor())
+
+
+def started(problem: Problem, name: str) -> list[Effect]:
+    """All starts of a candidate on the declared plant."""
+    return [start for form in STARTS[name](problem.predictor.scene(problem, ())) for start in form]  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("axis", list(AXES))
+@pytest.mark.parametrize("name", list(STARTS))
+def test_start_leads_to_the_planted_values(axis: str, name: str) -> None:
+    effect = example(axis, name)
+    problem = problem_of(axis, effect)
+    (start,) = started(problem, name)
+    found = fit(problem, (start,))
+    for key, value in in_the_package(effect, axis).values.items():
+        # the damper of a mode is a width of 2 Hz in a spectrum of some seconds
+        assert found.effects[0].values[key] == pytest.approx(value, rel=0.1 if key == "damping" else 0.02, abs=1e-3)
+    assert found.squared_error < 1.3 * len(found.residual)  # noise alone gives one, the quantised motor a tenth more
+
+
+@pytest.mark.parametrize("axis", list(AXES))
+@pytest.mark.parametrize("name", list(STARTS))
+def test_nothing_is_read_off_a_null(axis: str, name: str) -> None:
+    assert started(problem_of(axis, seeds=(21, 22)), name) == []  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("axis", list(AXES))
+def test_payload_is_no_mode_in_the_band(axis: str) -> None:
+    assert started(problem_of(axis, planted.Payload(mass=5.0)), "structural_mode") == []
+
+
+def test_softer_spring_everywhere_does_not_fall_along_the_stroke() -> None:
+    assert started(problem_of("bench", planted.StiffnessDeviation(factor=0.8)), "stiffness_vs_position") == []
+
+
+@pytest.mark.parametrize(("wrong", "true"), [("backlash", "preload_loss"), ("preload_loss", "backlash")])
+def test_play_and_lost_preload_are_apart_by_orders_once_simulated(wrong: str, true: str) -> None:
+    """Of like lag: 4 um of play, and 60 N in which the spring gives way by 2 um more either way."""
+    both: dict[str, Planted] = {
+        "backlash": planted.Backlash(width=4e-6),
+        "preload_loss": planted.PreloadLoss(ratio=0.2, force=60.0),
+    }
+    plant = axis_plant("light")
+    channels, _ = recording_pair(
+        dataclasses.replace(AXES["light"], chirp_amplitude=0.0), (both[true],), (1, 2), SECONDS
+    )
+    rest = {key: series for key, series in channels.items() if key != "time"}
+    recording = Recording("planted", channels["time"], rest, float(np.mean(np.diff(channels["time"]))))
+    problem = Problem(plant, (prepare(recording, plant, 1.0),), AxisPredictor())
+    errors = {name: fit(problem, (in_the_package(both[name], "light"),), iterations=6) for name in (wrong, true)}
+    assert errors[true].squared_error < 2 * len(errors[true].residual)
+    assert errors[wrong].squared_error > 100 * errors[true].squared_error
+
+
+def of_size(axis: str, name: str, share: float) -> Planted:
+    """The effect so large that leaving it out costs this share of the error."""
+
+    def error_ratio(effect: Planted) -> float:
+        plant = axis_plant(axis)
+        _, judged = recordings(axis, effect)
+        declared, right = (
+            declared_errors(p, judged) for p in (plant, plant.with_effects(in_the_package(effect, axis)))
+        )
+        return min(right[channel].after.rms / declared[channel].after.rms for channel in declared)
+
+    return sized(example(axis, name), share, error_ratio)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("share", [0.1, 0.5, None])
+@pytest.mark.parametrize("name", list(STARTS))
+@pytest.mark.parametrize("axis", list(AXES))
+def test_found_at_its_size(axis: str, name: str, share: float | None) -> None:
+    """Named, or in an ambiguous set: a preload lost up to a newton cannot be told from a play of 20 nm."""
+    effect = example(axis, name) if share is None else of_size(axis, name, share)
+    fitted, judged = recordings(axis, effect)
+    result, _ = diagnose(axis_plant(axis), [fitted], [judged])
+    _, quiet = recordings(axis)
+    truth = {name: dataclasses.asdict(effect)}
+    verdict = Verdict(result, truth, declared_errors(axis_plant(axis), quiet))
+    print(f"\n{verdict.line(f'{axis}/{name}/{share}')}")
+    misses = [*verdict._name_misses(), *verdict._error_misses()]
+    if share is None:  # small ones are known as well as the noise lets them be
+        misses += verdict._parameter_misses()
+    assert misses == [], SIZE
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("noise", [0.3, 3.0])
+@pytest.mark.parametrize("axis", list(AXES))
+def test_nothing_is_found_on_a_null(axis: str, noise: float) -> None:
+    fitted, judged = recordings(axis, seeds=(31, 32), noise=noise)
+    result, effects = diagnose(axis_plant(axis), [fitted], [judged])
+    assert effects == () and result.effects == ()
