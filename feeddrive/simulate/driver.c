@@ -87,6 +87,7 @@ int feeddrive_run(long long samples, place_of_run *run, double *memory, double *
                   const constants_of_run *table, in settings, in values, const tangents_of_run *tangents, double *seen,
                   double *report, double *room, long long *iw, double *w) {
   double next[N_OWN + BLANK], held[N_PARTS * N_HELD + BLANK], rooms[3][N_MEMORY + BLANK];
+  double sums[N_BEFORE + N_AFTER + BLANK] = {0}, reported[REPORTS];
   memories_of_run m = {rooms[0], rooms[0], rooms[1], rooms[2]};
   int status = DONE;
   for (int k = 0; k < N_MEMORY; ++k) m.start[k] = memory[k];
@@ -94,6 +95,7 @@ int feeddrive_run(long long samples, place_of_run *run, double *memory, double *
     in row = fed + run->sample * N_FED;
     double *shown = seen + run->sample * (N_BEFORE + N_AFTER), start = row[N_FED - 1];
     long long level_before = run->level, cell_before = run->cell;
+    for (int k = 0; k < REPORTS; ++k) reported[k] = report[k];
     {
       in arg[] = {m.now, own, row, settings, values};
       double *res[] = {next, held, shown};
@@ -107,6 +109,7 @@ int feeddrive_run(long long samples, place_of_run *run, double *memory, double *
     }
     if (status != DONE) {
       restore_tangents(tangents, room);
+      for (int k = 0; k < REPORTS; ++k) report[k] = reported[k];
       run->needed_level = run->level;
       run->level = level_before;
       run->cell = cell_before;
@@ -121,7 +124,9 @@ int feeddrive_run(long long samples, place_of_run *run, double *memory, double *
       double *res[] = {shown + N_BEFORE};
       feeddrive_after(arg, res, iw, w, 0);
     }
+    for (int k = 0; k < N_BEFORE + N_AFTER; ++k) sums[k] += shown[k];
   }
+  for (int k = 0; k < N_BEFORE + N_AFTER; ++k) report[SEEN] += sums[k];
   for (int k = 0; k < N_MEMORY; ++k) memory[k] = m.start[k];
   return status;
 }

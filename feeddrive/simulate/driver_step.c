@@ -7,8 +7,9 @@
 #define BLANK 1 /* C has no arrays of length zero */
 #define SWEEPS 12
 
-/* steps, refused, sweeps, steps over the tolerance, error of the worst, sum of theirs, finest level, largest sweep */
-enum { STEPS, REFUSED, SWEPT, OVER, WORST, EXCESS, FINEST, LAST_SWEEP, REPORTS };
+/* steps, refused, sweeps, steps over the tolerance, error of the worst, sum of theirs, finest level, largest sweep, sum
+   of all that is seen: no number where any of it is none */
+enum { STEPS, REFUSED, SWEPT, OVER, WORST, EXCESS, FINEST, LAST_SWEEP, SEEN, REPORTS };
 
 typedef const double *in;
 

@@ -133,30 +133,27 @@ def run_machine(
         InputError: the nut would leave the screw.
     """
     program = machine.program
-    task = _task(program, plant, feed)
+    source = _Source(plant, program, feed.torque_lag, tolerance)
+    table = _table(source, tuple(feed.spans.tolist())) if along is None else _Table(source, len(feed.spans))
+    task = _task(program, plant, feed, table)
     if along is not None:
         task = replace(task, tangents=along.begun(task))
     seen, report = np.empty((len(feed.fed), program.sizes["N_BEFORE"] + program.sizes["N_AFTER"])), np.zeros(REPORTS)
-    source = _Source(plant, program, feed.torque_lag, tolerance)
     stop = machine.run(task, start, 0, seen, report)
     while stop.status == Status.NEEDS_CONSTANTS:
         _make_constants(task, source, feed, stop)
         if along is not None:
             along.make_constants(task, stop)
         stop = machine.run(task, stop.position, stop.sample, seen, report)
-    _refuse_failure(plant, feed, stop, seen)
+    _refuse_failure(plant, feed, stop, seen, report)
     return Outcome(seen, stop.position, _told(report, len(seen), tolerance))
 
 
-def _task(program: Program, plant: Plant, feed: Feed) -> Task:
-    first, count = _cells(plant)
-    levels = DEEPEST + 1
-    fixed = np.zeros((len(feed.spans), count, levels, program.sizes["N_FIXED"]))
-    made = np.zeros((count, levels), dtype=np.uint8)
+def _task(program: Program, plant: Plant, feed: Feed, table: _Table) -> Task:
     fed, spans, settings, values = (
         np.ascontiguousarray(given) for given in (feed.fed, feed.spans, feed.settings, parameter_values(plant))
     )
-    return Task(fed, spans, settings, values, fixed, made, first)
+    return Task(fed, spans, settings, values, table.fixed, table.made, table.first)
 
 
 def _cells(plant: Plant) -> tuple[int, int]:
@@ -173,7 +170,7 @@ class _Source:
     """All that the constants of steps depend on, as the key under which they are kept."""
 
     def __init__(self, plant: Plant, program: Program, torque_lag: float, tolerance: float) -> None:
-        self.plant, self.layout = plant, program.step.layout
+        self.plant, self.layout, self.size = plant, program.step.layout, program.sizes["N_FIXED"]
         self.varies, self.torque_lag, self.tolerance = program.varies, torque_lag, tolerance
         chain = (type(plant.chain), plant.chain.key, tuple(plant.chain_values().items()))
         self._key = (chain, self.layout, torque_lag, tolerance)
@@ -183,6 +180,21 @@ class _Source:
 
     def __hash__(self) -> int:
         return hash(self._key)
+
+
+class _Table:
+    """The constants of a run by part, cell and level, and which of them are made."""
+
+    def __init__(self, source: _Source, parts: int) -> None:
+        self.first, count = _cells(source.plant)
+        self.fixed = np.zeros((parts, count, DEEPEST + 1, source.size))
+        self.made = np.zeros((count, DEEPEST + 1), dtype=np.uint8)
+
+
+@lru_cache(maxsize=16)
+def _table(source: _Source, spans: tuple[float, ...]) -> _Table:
+    """The table of earlier runs of the same plant: a fit that moves friction alone makes no constants again."""
+    return _Table(source, len(spans))
 
 
 def _make_constants(task: Task, source: _Source, feed: Feed, stop: Stop) -> None:
@@ -206,14 +218,15 @@ def _linear(source: _Source, cell: int) -> Linear:
 
 def forget_constants() -> None:
     """Make all constants of steps anew."""
+    _table.cache_clear()
     _constants.cache_clear()
     _linear.cache_clear()
 
 
-def _refuse_failure(plant: Plant, feed: Feed, stop: Stop, seen: FloatArray) -> None:
+def _refuse_failure(plant: Plant, feed: Feed, stop: Stop, seen: FloatArray, report: FloatArray) -> None:
     at = stop.sample
     if stop.status == Status.DONE:
-        if np.isfinite(seen.sum()):
+        if np.isfinite(report[-1]):
             return
         at = int(np.argmin(np.isfinite(seen).all(axis=1)))
     time = feed.fed[min(at, len(feed.fed) - 1), -1]
@@ -238,7 +251,7 @@ def _steepest(plant: Plant) -> str:
 
 
 def _told(report: FloatArray, samples: int, tolerance: float) -> StepReport:
-    steps, refused, sweeps, over, _, excess, finest, last = report
+    steps, refused, sweeps, over, _, excess, finest, last, _ = report
     return StepReport(
         samples, int(steps), int(refused), int(sweeps), int(finest), float(last), int(over),
         float(excess * tolerance) if over else 0.0, tolerance,

@@ -69,9 +69,10 @@ class _Interpreter:
                 at += done
                 if not refused:
                     continue
-            before = place.position
+            before, reported = place.position, report.copy()
             status = self._sample(task, at, place, seen, report)
             if status != Status.DONE:
+                report[:] = reported
                 cell = self._cell(task, place.memory)
                 return Stop(status, at, before, cell - task.first_cell, place.level)
             at += 1
@@ -106,6 +107,7 @@ class _Interpreter:
             report[2] += good * pace.sweeps
             report[4] = max(report[4], error[:good].max())
             report[7] = max(report[7], change[:good].max())
+            report[8] += shown[:good].sum()
             place.memory, place.own = memories[good - 1], owns[good - 1]
         return good, _refused(pace, good, first, change)
 
@@ -127,6 +129,7 @@ class _Interpreter:
             start += task.spans[part]
         (after,) = self.after(place.memory, own_after, row, task.settings, task.values)
         place.own, seen[at] = own_after, np.concatenate([shown, after])
+        report[8] += seen[at].sum()
         return Status.DONE
 
     def _advance(

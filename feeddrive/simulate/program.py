@@ -138,8 +138,8 @@ class StepReport:
         return f"finished: {self.steps} steps for {self.samples} samples; {told}"
 
 
-REPORTS = 8
-"""Entries of the driver's report: steps, refused, sweeps, over, worst, excess, finest, last sweep."""
+REPORTS = 9
+"""Entries of the driver's report: steps, refused, sweeps, over, worst, excess, finest, last sweep, sum of all seen."""
 
 
 @dataclass(frozen=True)
@@ -225,4 +225,4 @@ class Stop:
 
 
 Run = Callable[[Task, Position, int, FloatArray, FloatArray], Stop]
-"""(task, position, first sample, seen (n, s), report (8,)) -> where it stopped; seen and report are filled in place."""
+"""(task, position, first sample, seen (n, s), report (9,)) -> where it stopped; seen and report are filled in place."""
