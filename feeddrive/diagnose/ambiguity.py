@@ -1,20 +1,9 @@
 """Effects that cannot be told apart: a rival in an effect's place, with the same error on data not fitted.
 
-    Lambda = (|r_B|^2 - |r_A|^2) / c + 2 (k_B - k_A),  c = d' Gamma d / d'd,  d = r_B - r_A,  distance = |d| / sqrt(c)
-
-| symbol | meaning | unit |
-|---|---|---|
-| r_A, r_B | weighted residuals with the effect taken and with its rival, all others refitted; all recordings | 1 |
-| k_A, k_B | coordinates fitted; each takes one of Lambda from the fitted data, and adds one on others (Akaike) | 1 |
-| Gamma | covariance of the residual, from its spectrum (`noise_colour`) | 1 |
-| c | variance of what the noise adds to a sum along d, over that of white noise of variance one | 1 |
-
-Lambda is twice the logarithm of the odds for the effect taken. A rival is in the set where the data give less than 20
-to 1 against it; the true effect is left out of a set in less than one of a hundred cases, however near the rival is,
-and a rival five standard deviations away comes into a set in one of thirty. The contract's bound holds beside it: the
-same validation error within 5 %. Without the odds that bound would fill the set of every small effect, since leaving
-it away altogether costs less than 5 %.
-Source: Royall, Statistical Evidence (1997), section 1.6 (odds that mislead); Vuong, Econometrica 57 (1989) 307.
+A rival is in the set where the data give less than 20 to 1 against it (`rival_odds`). The true effect is left out of a
+set in less than one of a hundred cases, however near the rival is, and a rival five standard deviations away comes into
+a set in one of thirty. The contract's bound holds beside it: the same validation error within 5 %. Alone it would fill
+the sets of all small effects, since to leave such an effect away altogether costs less.
 """
 
 from __future__ import annotations
@@ -27,17 +16,16 @@ import numpy as np
 
 from feeddrive.diagnose.attempt import Attempt
 from feeddrive.diagnose.certainty_result import Ambiguity
-from feeddrive.diagnose.coordinates import read_coordinates
-from feeddrive.diagnose.fit import Fit, Problem, fit
-from feeddrive.diagnose.judge import Judged, error_series
-from feeddrive.diagnose.noise_colour import score_covariance
+from feeddrive.diagnose.coordinates import LOGARITHMIC, read_coordinates
+from feeddrive.diagnose.fit import Fit, fit
+from feeddrive.diagnose.judge import Judged
 from feeddrive.diagnose.predictor import Machine
 from feeddrive.diagnose.recordings import is_shift
+from feeddrive.diagnose.rival_odds import Residuals, odds_and_distance
 from feeddrive.diagnose.same_by_law import twins_of
 from feeddrive.diagnose.search import Search
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
-from feeddrive.typing import FloatArray
 
 SAME_ERROR = 1.05
 """Ratio of validation errors (rms) within which two effects count as the same."""
@@ -56,6 +44,9 @@ MOST_RIVALS = 4
 
 PLACED = ("inertia_deviation", "channel_delay")
 """Effects whose place is put to the question."""
+
+NEAR_END = 0.02
+"""Share of an end of a parameter's range within which it is said to stand there."""
 
 ITERATIONS = 12
 """Steps of that fit at most; it starts from values that were fitted in the round of the search, others with it."""
@@ -97,11 +88,12 @@ def rivals_of(found: Search, judged: Sequence[Judged]) -> list[list[Rival]]:
         found: what the search took and tried.
         judged: recordings with the found effects in.
     """
-    mine = _Residuals.of(found.problem, found.fit, [(j.after, j) for j in judged])
+    mine = Residuals.of(found.problem, found.fit, [(j.after, j) for j in judged])
     result = []
     for place in range(len(found.fit.effects)):
         tried = [_in_place(found, judged, place, attempt.fit.effects[-1], mine) for attempt in _near(found, place)]
-        alike = sorted((rival for rival in tried if rival is not None and rival.as_good), key=lambda rival: rival.odds)
+        good = [rival for rival in tried if rival is not None and rival.as_good and not at_its_limit(rival.effect)]
+        alike = sorted(good, key=lambda rival: rival.odds)
         result.append(alike[: LARGEST_SET - 1])
     return result
 
@@ -131,7 +123,7 @@ def other_places(found: Search, judged: Sequence[Judged]) -> tuple[str, ...]:
     placed = [(i, effect) for i, effect in enumerate(found.fit.effects) if effect.name in PLACED]
     if not placed:
         return ()
-    mine = _Residuals.of(found.problem, found.fit, [(j.after, j) for j in judged])
+    mine = Residuals.of(found.problem, found.fit, [(j.after, j) for j in judged])
     told = []
     for index, effect in placed:
         taken = {e.place for e in found.fit.effects if e.name == effect.name}
@@ -147,8 +139,27 @@ def other_places(found: Search, judged: Sequence[Judged]) -> tuple[str, ...]:
     return tuple(told)
 
 
+def at_its_limit(effect: Effect) -> bool:
+    """Whether a parameter that is known to a factor has run to an end of its range, where the law is another one.
+
+    A Stribeck velocity beyond all speeds is a level, growth within no time another lead, a mode above all frequencies
+    a mass. Such a rival says nothing that the simpler law does not.
+    """
+    for key, value in effect.values.items():
+        if (effect.name, key) in LOGARITHMIC and isinstance(value, float | int):
+            parameter = effect.parameter(key)
+            if value <= parameter.minimum * (1 + NEAR_END) or value >= parameter.maximum * (1 - NEAR_END):
+                return True
+    return False
+
+
+def _simplicity(effect: Effect, plant: Machine) -> tuple[int, bool]:
+    """What comes first in a tie: fewest parameters, and none at an end of its range."""
+    return len(read_coordinates([effect], plant)), at_its_limit(effect)
+
+
 def with_the_simplest(found: Search, rivals: Sequence[list[Rival]]) -> tuple[Search, list[list[Rival]]]:
-    """The search and its rivals with the first effect replaced that has a rival of fewer parameters; else the same.
+    """The search and its rivals with the first effect replaced that has a simpler rival; else the same.
 
     The search takes the simpler of two that tie when they are tried; later effects can make others tie.
     """
@@ -156,12 +167,12 @@ def with_the_simplest(found: Search, rivals: Sequence[list[Rival]]) -> tuple[Sea
     if any(is_shift(effect) for effect in found.fit.effects):
         return found, list(rivals)  # what one recording has otherwise belongs to the effect taken
     for place, alike in enumerate(rivals):
-        own = len(read_coordinates([found.fit.effects[place]], plant))
-        for simple in alike:
-            if len(read_coordinates([simple.effect], plant)) < own:
+        own = _simplicity(found.fit.effects[place], plant)
+        for simple in sorted(alike, key=lambda rival: _simplicity(rival.effect, plant)):
+            if _simplicity(simple.effect, plant) < own:
                 ousted = Rival(place, found.fit, -simple.odds, simple.distance, 1 / simple.error_ratio)
                 others = [replace(rival, odds=rival.odds - simple.odds) for rival in alike if rival is not simple]
-                rest = [rival for rival in (ousted, *others) if rival.as_good]
+                rest = [rival for rival in (ousted, *others) if rival.as_good and not at_its_limit(rival.effect)]
                 refitted = fit(found.problem, simple.fit.effects)
                 return replace(found, fit=refitted), [*rivals[:place], rest, *rivals[place + 1 :]]
     return found, list(rivals)
@@ -182,62 +193,21 @@ def _near(found: Search, place: int) -> list[Attempt]:
     return []
 
 
-def _in_place(found: Search, judged: Sequence[Judged], place: int, rival: Effect, mine: _Residuals) -> Rival | None:
+def _in_place(found: Search, judged: Sequence[Judged], place: int, rival: Effect, mine: Residuals) -> Rival | None:
     """A rival in the place of an effect, all refitted; None where the plant cannot hold or follow it."""
     effects = [*found.fit.effects]
     effects[place] = rival
     try:
         swapped = fit(found.problem, effects, iterations=ITERATIONS)
-        its = _Residuals.of(
+        its = Residuals.of(
             found.problem, swapped, [(j.with_effects(found.problem, swapped.effects), j) for j in judged]
         )
     except InputError:
         return None
     if not np.all(np.isfinite(its.fitted)):
         return None
-    odds, distance = _odds(found.problem, judged, mine, its)
+    odds, distance = odds_and_distance(found.problem, judged, mine, its)
     return Rival(place, swapped, odds, distance, float(np.linalg.norm(its.judged) / np.linalg.norm(mine.judged)))
-
-
-@dataclass(frozen=True)
-class _Residuals:
-    """Weighted residuals of one set of effects: as fitted, and thinned on the judged samples; its coordinates."""
-
-    fitted: FloatArray
-    judged: FloatArray
-    coordinates: int
-
-    @classmethod
-    def of(cls, problem: Problem, fitted: Fit, plants: Sequence[tuple[Machine, Judged]]) -> _Residuals:
-        """Of a fit, with the plant that it gives for each judged recording."""
-        judged = np.concatenate([_thinned_error(problem, plant, j) for plant, j in plants])
-        return cls(fitted.residual, judged, len(fitted.coordinates))
-
-
-def _thinned_error(problem: Problem, plant: Machine, judged: Judged) -> FloatArray:
-    evidence = judged.evidence
-    errors = error_series(problem, plant, evidence)
-    rows = evidence.thinned(evidence.judged_rows)
-    return np.concatenate([errors[name][rows] / evidence.noise[name] for name in evidence.channels])
-
-
-def _odds(problem: Problem, judged: Sequence[Judged], mine: _Residuals, its: _Residuals) -> tuple[float, float]:
-    """Lambda and distance, fitted and judged samples together."""
-    parts = (
-        (list(problem.evidence), [e.fit_rows for e in problem.evidence], mine.fitted, its.fitted),
-        ([j.evidence for j in judged], [j.evidence.judged_rows for j in judged], mine.judged, its.judged),
-    )
-    excess, square, scatter = 0.0, 0.0, 0.0
-    for evidence, rows, left, other in parts:
-        difference = other - left
-        excess += float(other @ other - left @ left)
-        square += float(difference @ difference)
-        scatter += float(score_covariance(evidence, rows, left, difference[:, None])[0, 0])
-    if not scatter > 0:
-        return (0.0, 0.0) if square == 0 else (excess, float("inf"))
-    colour = scatter / square
-    more = 2.0 * (its.coordinates - mine.coordinates)
-    return excess / colour + more, float(np.sqrt(square / colour))
 
 
 def _reason(effect: Effect, alike: Sequence[Rival]) -> str:
