@@ -4,7 +4,7 @@ A level that is other in one recording looks, to effects held in common, like a 
 and an effect that is not yet found looks, in recordings of other motions, like levels that differ. So both orders are
 followed: differences first, held while the effects are searched; and effects first, the differences asked after them.
 In either the differences are asked again with the effects in, and effects that then no longer pay are dropped. The
-second order is spared where the first leaves no more than noise, or finds no difference.
+second order is spared where the first leaves no more than noise, or ends with the differences that it held.
 """
 
 from __future__ import annotations
@@ -56,7 +56,8 @@ def search_recordings(
     """
     if start:
         continued = _continued(numbered(problem), start, said)
-        if _explained(continued):
+        kept = {(effect.name, effect.port, effect.place) for effect in continued.search.fit.effects}
+        if _explained(continued) or all((effect.name, effect.port, effect.place) in kept for effect in start):
             return continued
         return _better(continued, search_recordings(problem, said))
     if len(problem.evidence) < 2:
@@ -67,11 +68,10 @@ def search_recordings(
     held = find_changes(problem, (), earlier)
     best = _followed(problem, held if _plausible(held) else _nothing(problem), earlier, said)
     assert best.changes is not None
-    if not best.changes.targets or _explained(best):
+    confirmed = _levels_of(problem, best.changes) == (_levels_of(problem, held) if _plausible(held) else set())
+    if confirmed or _explained(best):
         return best
     other = _nothing(problem) if _plausible(held) and held.targets else _levels_alone(problem, best.changes, earlier)
-    if _levels_of(problem, other) == _levels_of(problem, held):
-        return best
     return _better(best, _followed(problem, other, earlier, said))
 
 
@@ -140,10 +140,10 @@ def _searched(problem: Problem, held: Changes, said: Callable[[str], None]) -> S
     return replace(found, problem=declared, fit=fit(declared, found.fit.effects, iterations=0))
 
 
-def _levels_of(problem: Problem, changes: Changes) -> set[tuple[str, str, int]]:
-    """Of what differs, what differs without an effect that would have to be found first."""
+def _levels_of(problem: Problem, changes: Changes) -> set[tuple[str, str]]:
+    """Of what differs, name and port of what differs without an effect that would have to be found first."""
     known = {(effect.name, effect.port) for effect in levels(problem, ())}
-    return {(t.name, t.port, t.coordinate) for t in changes.targets if (t.name, t.port) in known}
+    return {(t.name, t.port) for t in changes.targets if (t.name, t.port) in known}
 
 
 def _levels_alone(problem: Problem, changes: Changes, earlier: Sequence[int]) -> Changes:
