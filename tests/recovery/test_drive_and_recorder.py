@@ -41,7 +41,7 @@ CASES: dict[str, tuple[Effect, Effect]] = {
     "light/droop": (planted.TorqueConstantDroop(0.0362, 3.0), planted.TorqueConstantDroop(0.113, 3.0)),
     "light/motor": (planted.InertiaDeviation("motor", 1.64e-5), planted.InertiaDeviation("motor", 5.96e-5)),
     "light/screw": (planted.InertiaDeviation("screw", -1.46e-5), planted.InertiaDeviation("screw", -5.47e-5)),
-    "light/drive": (planted.DriveDelay(136e-6), planted.DriveDelay(480e-6)),
+    "light/drive": (planted.DriveDelay(98e-6), planted.DriveDelay(351e-6)),
     "light/torque": (planted.ChannelDelay("motor_torque", 107e-6), planted.ChannelDelay("motor_torque", 398e-6)),
     "light/angle": (planted.ChannelDelay("motor_angle", 36.9e-9), planted.ChannelDelay("motor_angle", 121e-9)),
     "light/table": (planted.ChannelDelay("table_position", 30e-9), planted.ChannelDelay("table_position", 113e-9)),
