@@ -11,6 +11,7 @@ Roberts et al., Ecography 40 (2017) 913 (blocks).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -116,11 +117,16 @@ def _best(sums: Sums, chosen: list[Term], terms: Sequence[Term]) -> tuple[Term, 
             tied.append(other)
         elif sums.squared_error([*chosen, other]) > (1 + 2 * TIE) * sums.squared_error([*chosen, first]):
             break
-    winner = min(tied, key=lambda t: (bool(t.times), np.ceil(np.log(t.size) / np.log(COUNT)), ranked.index(t)))
+    winner = min(tied, key=lambda term: (*_complexity(term), ranked.index(term)))
     others = {
         (t.variable, t.times): t for t in reversed(tied) if (t.variable, t.times) != (winner.variable, winner.times)
     }
     return winner, tuple(others.values())
+
+
+def _complexity(term: Term) -> tuple[bool, bool, int]:
+    """What is taken last of terms that do alike: what need not come again, a product, more columns."""
+    return term.variable == "time", bool(term.times), math.ceil(math.log(term.size) / math.log(COUNT))
 
 
 def _as_good(sums: Sums, chosen: list[Term], other: Term, best: Term) -> bool:

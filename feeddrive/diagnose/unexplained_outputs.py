@@ -35,6 +35,8 @@ def _channel(left: Unexplained) -> dict[str, Any]:
         record["not_carried"] = list(left.not_carried)
     if left.share_after is not None:
         record["share_after"] = left.share_after
+    if left.instead is not None:
+        record["instead"] = {"of": list(left.instead.names), **_carried(left.instead.carried)}
     return record
 
 

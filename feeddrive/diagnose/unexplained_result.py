@@ -100,6 +100,21 @@ class Carried:
 
 
 @dataclass(frozen=True)
+class Instead:
+    """One table with which the declared plant does as well as with several named effects.
+
+    Attributes:
+        channel: where it was found.
+        carried: the table; before: errors of the declared plant, after: with the table alone.
+        names: of the effects that it takes the place of.
+    """
+
+    channel: str
+    carried: Carried
+    names: tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class Above:
     """What the named effects leave on the judged data beside the noise.
 
@@ -130,6 +145,7 @@ class Unexplained:
         carried: tabulated terms taken into the plant for it.
         not_carried: why terms that were found are not carried.
         share_after: share of the measured signal's square that is left with what is carried; None where nothing is.
+        instead: one table that does as well as all named effects; None where there is none.
     """
 
     share: float
@@ -139,3 +155,4 @@ class Unexplained:
     carried: tuple[Carried, ...] = ()
     not_carried: tuple[str, ...] = field(default=())
     share_after: float | None = None
+    instead: Instead | None = None

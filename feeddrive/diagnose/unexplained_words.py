@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from feeddrive.diagnose.result import ChannelResult
-from feeddrive.diagnose.unexplained_result import Above, Dependence, Unexplained
+from feeddrive.diagnose.unexplained_result import Above, Dependence, Instead, Unexplained
 from feeddrive.quantity import format_quantity
 
 WORDS = {
@@ -67,7 +67,21 @@ def rest_in_words(channel: ChannelResult, rest: Unexplained, lost: Sequence[Depe
     if after is not None and abs(after - rest.above.rms) > CHANGE * rest.above.rms:
         change = f"{_shown(rest.above.rms, channel.unit)} → {_shown(after, channel.unit)} rms"
         sentences.append(f"With what the plant carries as tables: {change}.")
+    if rest.instead is not None:
+        sentences.append(_instead(rest.instead))
     return " ".join([*sentences, *(f"{reason[:1].upper()}{reason[1:]}." for reason in rest.not_carried)])
+
+
+def _instead(one: Instead) -> str:
+    over = one.carried.variable.replace("periodic_", "one period of the ").replace("_", " ")
+    period = (
+        f" ({_shown(one.carried.table.period, one.carried.table.breakpoint_unit)})" if one.carried.table.period else ""
+    )
+    names = " and ".join(one.names)
+    return (
+        f"One {one.carried.name.replace('_', ' ')} over {over}{period} does as well on the judged data as {names} "
+        "together: these names may stand in for one effect that has none."
+    )
 
 
 def _level(above: Above, unit: str) -> str:
