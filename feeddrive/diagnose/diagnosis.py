@@ -35,6 +35,7 @@ from feeddrive.diagnose.search import Search
 from feeddrive.diagnose.torque_channel import without_torque_sentence
 from feeddrive.diagnose.uncertainty import Interval, certainty, intervals
 from feeddrive.diagnose.unexplained import explain_rest
+from feeddrive.diagnose.unexplained_instead import without_stand_ins
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
@@ -79,6 +80,9 @@ def diagnose(
     found = searched.search
     said("judging on data not fitted")
     judged, rehomed = _judged(found, kept_for_judging)
+    if (fewer := without_stand_ins(found, judged)) is not found:
+        found, searched = fewer, replace(searched, search=fewer)
+        judged, rehomed = _judged(found, kept_for_judging)
     found, rivals = with_the_simplest(found, rivals_of(found, judged))
     if found is not searched.search:
         searched = replace(searched, search=found)

@@ -9,7 +9,7 @@ import numpy as np
 from feeddrive.diagnose.result import ChannelResult, Diagnosis
 from feeddrive.diagnose.unexplained_result import Dependence
 from feeddrive.report.drawing import AFTER, MEASURED, NOISE, ReportFigure, dress, legend_above, new_figure
-from feeddrive.report.people import Scale, axis_label, scale_for_signal, scale_for_value
+from feeddrive.report.people import axis_label, scale_for_signal, scale_for_value
 from feeddrive.report.selection import stem_of
 from feeddrive.report.words import plain, variable_words
 
@@ -20,7 +20,6 @@ STEM = "left_over"
 """How the file names of these figures begin."""
 
 _COLUMNS = 2
-_LEVEL_WIDTH = 0.02
 
 
 def unexplained_figures(diagnosis: Diagnosis) -> list[ReportFigure]:
@@ -41,7 +40,7 @@ def _channel_figure(diagnosis: Diagnosis, channel: ChannelResult) -> ReportFigur
     for axes in panels[len(drawn) :]:
         axes.remove()
     for axes, one in zip(panels, drawn, strict=False):
-        _panel(axes, channel, one)
+        _panel(axes, one)
     title = f"What is left of {plain(channel.name)}, over what it follows"
     caption = (
         "Points: mean over the judged data of what the named effects leave, other terms taken out, with its standard "
@@ -51,7 +50,7 @@ def _channel_figure(diagnosis: Diagnosis, channel: ChannelResult) -> ReportFigur
     return ReportFigure(f"{STEM}_{stem_of(channel.name)}", title, caption, figure)
 
 
-def _panel(axes: Axes, channel: ChannelResult, one: Dependence) -> None:
+def _panel(axes: Axes, one: Dependence) -> None:
     """One variable: points with errors and the term."""
     table, seen = one.table, one.seen
     assert table is not None and seen is not None
@@ -62,7 +61,7 @@ def _panel(axes: Axes, channel: ChannelResult, one: Dependence) -> None:
     elif len(centre):  # constant outside the breakpoints
         ends = np.array([min(at[0], centre.min()), max(at[-1], centre.max())])
         at, values, errors = (np.concatenate([a, b, c]) for a, b, c in _held(ends, at, values, errors))
-    over = scale_for_signal(_plain_variable(one), float(np.abs(at).max()), table.breakpoint_unit)
+    over = scale_for_signal(one.variable, float(np.abs(at).max()), table.breakpoint_unit)
     up = scale_for_value(float(np.abs([*values, *mean]).max()), table.unit)
     axes.fill_between(
         over.factor * at, up.factor * (values - errors), up.factor * (values + errors), color=AFTER, alpha=0.2, lw=0
@@ -74,7 +73,7 @@ def _panel(axes: Axes, channel: ChannelResult, one: Dependence) -> None:
     )  # fmt: skip
     if _spreads(one):
         axes.set_xscale("symlog", linthresh=float(over.factor * max(centre[0], 1e-9)))
-    dress(axes, axis_label(_over(one), over.unit), axis_label(_of(channel, one), _per(up, one)))
+    dress(axes, axis_label(_over(one), over.unit), axis_label(_of(one), up.unit))
     legend_above(axes)
 
 
@@ -82,10 +81,6 @@ def _held(ends: np.ndarray, at: np.ndarray, values: np.ndarray, errors: np.ndarr
     """Breakpoints, values and errors, each with its ends held to the ends of the data."""
     first, last = ends[:1], ends[1:]
     return [(first, at, last), (values[:1], values, values[-1:]), (errors[:1], errors, errors[-1:])]
-
-
-def _plain_variable(one: Dependence) -> str:
-    return one.variable
 
 
 def _spreads(one: Dependence) -> bool:
@@ -97,11 +92,6 @@ def _over(one: Dependence) -> str:
     return f"{variable_words(one.variable)}{' in one period' if one.table is not None and one.table.period else ''}"
 
 
-def _of(channel: ChannelResult, one: Dependence) -> str:
-    """What is drawn: the residual, or its part with the direction or per velocity."""
-    kind = {"direction": " against the motion", "table_velocity": " per velocity"}.get(one.times, "")
-    return f"left of {plain(channel.name)}{kind}"
-
-
-def _per(scale: Scale, one: Dependence) -> str:
-    return scale.unit
+def _of(one: Dependence) -> str:
+    """What is drawn: the residual, or its part with the direction or per velocity; the title names the channel."""
+    return "left" + {"direction": ", against the motion", "table_velocity": ", per velocity"}.get(one.times, "")
