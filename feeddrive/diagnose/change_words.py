@@ -53,12 +53,16 @@ def change_statement(moved: Moved, recording: str, against: str) -> str:
     way = "higher" if moved.difference > 0 else "lower"
     places = f"in {recording} than in {against}"
     if moved.key in FACTORS and moved.there > 0:
-        size, spread = abs(moved.difference) / moved.there, moved.half / moved.there
-        return f"{subject} {_percent(size, spread)} {way} {places}"
-    digits = format_quantity(abs(moved.difference), moved.unit)
-    spread_text = format_quantity(moved.half, moved.unit)
-    values = f"{format_quantity(moved.here, moved.unit)} after {format_quantity(moved.there, moved.unit)}"
-    return f"{subject} {digits} (± {spread_text}) {way} {places}: {values}"
+        percent = _percent(abs(moved.difference) / moved.there, moved.half / moved.there)
+        return f"{subject} {percent} {way} {places}"
+    size, spread = _short(abs(moved.difference), moved.unit), _short(moved.half, moved.unit)
+    # a level counts from what is declared, so that its values alone would say nothing
+    values = "" if name else f": {_short(moved.here, moved.unit)} after {_short(moved.there, moved.unit)}"
+    return f"{subject} {size} (± {spread}) {way} {places}{values}"
+
+
+def _short(value: float, unit: str) -> str:
+    return format_quantity(float(f"{value:.3g}"), unit)
 
 
 def _percent(size: float, spread: float) -> str:
