@@ -50,7 +50,8 @@ class ShaftDrag(FrictionEffect):
     def viscous(self, motion: Motion, p: Mapping[str, Expression]) -> Expression:
         """Lubricant torque [N m]."""
         speed = motion.velocity
-        return p["viscous"] * speed * (speed**2 + REST_SPEED**2) ** (-1 / 6)
+        # the power as an exponential is its own derivative, which spares Newton a second power
+        return p["viscous"] * speed * ca.exp(ca.log(speed**2 + REST_SPEED**2) / -6)
 
 
 class NutDrag(ShaftDrag):
