@@ -15,7 +15,8 @@ from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.sampled import SampledController
 from feeddrive.simulate.controlled import TorqueLoop, simulate_controlled
-from feeddrive.simulate.output_error import OutputErrorFit, RecordedRun, fit_recorded_run, with_values
+from feeddrive.simulate.output_error import OutputErrorFit, fit_recorded_run
+from feeddrive.simulate.recorded_run import RecordedRun, with_values
 from feeddrive.typing import FloatArray
 from tests.convergence.test_controlled import SAMPLE, cascade
 from tests.convergence.test_simulate import BENCH
