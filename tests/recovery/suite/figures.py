@@ -51,6 +51,7 @@ def figures(verdicts: Sequence[Verdict]) -> list[Figure]:
         _share("two effects: both named right", [v.right for v in pairs], BOTH),
         _share("two effects, ambiguous sets counted", [v.right_in_sets for v in pairs], None),
         _alarms(nulls),
+        _tables(nulls),
         *_intervals([i for v in verdicts if v.kind in (Kind.SINGLE, Kind.PAIR) for i in v.intervals]),
         *_errors([v for v in verdicts if v.kind is not Kind.OFF]),
         _share("one effect, the 2 % size: named right", [v.right for v in small], None),
@@ -69,6 +70,12 @@ def _alarms(nulls: Sequence[Verdict]) -> Figure:
     alarms = sum(bool(v.names) for v in nulls)
     met = False if alarms > FALSE_ALARMS else (True if len(nulls) >= 40 else None)
     return Figure("nothing planted: false alarms", f"at most {FALSE_ALARMS} of 40", str(alarms), len(nulls), met)
+
+
+def _tables(nulls: Sequence[Verdict]) -> Figure:
+    """No name, but said to be there."""
+    count = sum(bool(v.record.get("tables")) for v in nulls)
+    return Figure("nothing planted: tables of what no name explains", "–", str(count), len(nulls), None)
 
 
 def _intervals(intervals: Sequence[Interval]) -> list[Figure]:

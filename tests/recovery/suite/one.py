@@ -75,8 +75,10 @@ def found(case: Case, result: Diagnosis, effects: Sequence[PackageEffect]) -> Re
                 "place": effect.place or str(effect.port),
                 "parameters": {k: {"value": p.value, "ci95": p.ci95} for k, p in one.parameters.items()},
             }
-            for one, effect in zip(result.effects, effects, strict=True)
+            for one, effect in zip(result.effects, effects, strict=False)
         ],
+        # After the named ones stand tables of what no name explains.
+        "tables": [effect.name for effect in effects[len(result.effects) :]],
         "ambiguous": [list(names) for names in result.ambiguous],
         "after": {channel.name: channel.after.rms for channel in result.channels},
     }

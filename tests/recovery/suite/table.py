@@ -32,6 +32,7 @@ How a case is made and judged:
   that is judged, on the channel where it takes away most. `service` is what a service engineer would meet, mostly much
   larger. {presliding} cannot be made small and is planted at half, once and twice the size of service.
 - Named right: exactly what was planted and nothing else, each at its port, part or channel.
+- In parentheses: tables of what no name explains, which the diagnosis adds after the names.
 - Floor: the error of the true plant, the package's own plant with the planted values, on the same samples.
 - Bound: the narrowest 95 % interval that any unbiased estimate can have in this noise, its colour counted
   (Cramér–Rao); `tests/recovery/suite/bound.py`.
@@ -198,7 +199,8 @@ def _time(verdicts: Sequence[Verdict]) -> str:
 def _found(v: Verdict) -> str:
     if "raised" in v.record:
         return "error: " + v.record["raised"].strip().splitlines()[-1][:120]
-    return ", ".join(_in_words(v, one) for one in v.record["found"]) or "nothing"
+    names = [_in_words(v, one) for one in v.record["found"]]
+    return ", ".join([*names, *(f"({name})" for name in v.record.get("tables", []))]) or "nothing"
 
 
 def _in_words(v: Verdict, one: dict[str, object]) -> str:
