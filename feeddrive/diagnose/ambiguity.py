@@ -214,11 +214,15 @@ def _reason(effect: Effect, alike: Sequence[Rival]) -> str:
     """How alike the members are, and what each follows."""
     apart = joined([f"{rival.effect.name} by {rival.distance:.1f}" for rival in alike])
     members = (effect, *(rival.effect for rival in alike))
-    follows = "; ".join(f"{one.name} with {one.signature.variable}" for one in members)
+    variables = list(dict.fromkeys(one.signature.variable for one in members))
+    if len(variables) == 1:
+        part = f"All follow {variables[0]}: only a larger motion or less noise shows how their shapes differ."
+    else:
+        follows = "; ".join(f"{one.name} with {one.signature.variable}" for one in members)
+        part = f"They part where these vary differently: {follows}."
     return (
         f"the same signature in these data: when all else is refitted, the prediction with {effect.name} differs from "
-        f"that with {apart} standard deviations of the noise, all samples together. "
-        f"They part where these vary differently: {follows}."
+        f"that with {apart} standard deviations of the noise, all samples together. {part}"
     )
 
 
