@@ -20,7 +20,7 @@ from feeddrive.diagnose.next_experiment import next_experiments
 from feeddrive.diagnose.physical_reading import physical_reading
 from feeddrive.diagnose.preparation import prepared
 from feeddrive.diagnose.recordings import without_shifts
-from feeddrive.diagnose.recordings_compared import compared_recordings, machine_as_last, with_carrying
+from feeddrive.diagnose.recordings_compared import compared_recordings, last_state, machine_as_last, with_carrying
 from feeddrive.diagnose.recordings_search import search_recordings
 from feeddrive.diagnose.refinement import Refinement, refined
 from feeddrive.diagnose.rehoming import rehomed_plant
@@ -126,6 +126,7 @@ def diagnose(
         notes=(
             *told,
             *other_places(found, judged),
+            *last_state(searched),
             *_notes(problem.evidence, kept_for_judging, found),
             *refinement.notes,
         ),

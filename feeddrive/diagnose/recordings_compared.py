@@ -88,6 +88,14 @@ def machine_as_last(searched: Searched, listed: Sequence[bool]) -> tuple[Effect,
     return (*first, *rest)
 
 
+def last_state(searched: Searched) -> tuple[str, ...]:
+    """Of which recording the plant is that was found, where they differ."""
+    if searched.changes is None or not searched.changes.targets:
+        return ()
+    last = searched.search.problem.evidence[-1].recording.name
+    return (f"the recordings differ: values and plant_after.toml are of the machine as it was in {last}",)
+
+
 def with_carrying(results: Sequence[EffectResult], compared: Compared) -> tuple[EffectResult, ...]:
     """The listed effects; whether they carry is asked with the levels of the judged recordings, and that is said."""
     carries = compared.judged.carries if compared.judged is not None else ()
