@@ -9,7 +9,7 @@ from feeddrive.diagnose.fit import Problem
 from feeddrive.diagnose.judge import Judged
 from feeddrive.diagnose.result import ChannelResult
 from feeddrive.diagnose.unexplained_analysis import Analysis
-from feeddrive.diagnose.unexplained_carry import Judgement, carried_result, with_carried
+from feeddrive.diagnose.unexplained_carry import Judgement, carried_result, joint_step, judged_with, with_carried
 from feeddrive.diagnose.unexplained_instead import instead_of
 from feeddrive.diagnose.unexplained_result import Above, Dependence, Instead, Unexplained
 from feeddrive.diagnose.unexplained_trial import analysis_of, finer_forms, tried
@@ -61,6 +61,7 @@ def explain_rest(
                 carried.append((channel.name, judgement))
             else:
                 reasons[channel.name].append(f"{term_in_words(seen)}: {judgement}")
+    carried = _together(problem, effects, judged, carried)
     own = [judgement.effect for _, judgement in carried]
     after = with_carried(judged, *own)
     other = instead_of(problem, effects, judged, channels)
@@ -69,6 +70,20 @@ def explain_rest(
         for c in channels
     }
     return Rest(said, tuple(own), tuple(after))
+
+
+def _together(
+    problem: Problem, effects: Sequence[Effect], judged: Sequence[Judged], carried: list[tuple[str, Judgement]]
+) -> list[tuple[str, Judgement]]:
+    """Several tables fitted together, since each was found while the others were not there."""
+    if len(carried) < 2:
+        return carried
+    tables, _ = joint_step(problem, effects, [judgement.effect for _, judgement in carried])
+    result = []
+    for place, (channel, _) in enumerate(carried):
+        others = [*tables[:place], *tables[place + 1 :]]
+        result.append((channel, judged_with(problem, with_carried(judged, *others), tables[place])))
+    return result if all(judgement.pays for _, judgement in result) else carried
 
 
 def _happened(one: Dependence) -> bool:

@@ -113,21 +113,34 @@ def resampled(found: Found, finer: Found) -> Found:
 
 def fitted_step(problem: Problem, before: Sequence[Effect], new: Tabulated) -> tuple[Tabulated, float]:
     """The table after one damped linear step on all channels, the other effects as they are, and the squared error."""
-    free = [*[False] * len(before), True]
-    residual = problem.residual((*before, new))
+    (moved,), error = joint_step(problem, before, [new])
+    return moved, error
+
+
+def joint_step(
+    problem: Problem, before: Sequence[Effect], tables: Sequence[Tabulated]
+) -> tuple[list[Tabulated], float]:
+    """Several tables after one damped linear step together, and the squared error; as they are where it does not help.
+
+    Raises:
+        InputError: the plant cannot be simulated with them.
+    """
+    free = [*[False] * len(before), *[True] * len(tables)]
+    residual = problem.residual((*before, *tables))
     base = problem.measured() - residual
-    jacobian = problem.jacobian((*before, new), free, base)
+    jacobian = problem.jacobian((*before, *tables), free, base)
     here = float(residual @ residual)
     if not (np.isfinite(here) and np.all(np.isfinite(jacobian))):
-        raise InputError(f"{new.name} could not be simulated", new.name)
+        raise InputError(f"{tables[-1].name} could not be simulated", tables[-1].name)
     normal = jacobian.T @ jacobian
     scale = np.diag(normal) + 1e-9 * np.trace(normal) + 1e-300
     step = np.linalg.solve(normal + DAMPING * np.diag(scale), jacobian.T @ residual)
-    (moved,) = write_coordinates([new], problem.plant, read_coordinates([new], problem.plant) + step)
-    assert isinstance(moved, Tabulated)
-    left = problem.residual((*before, moved))
+    moved = write_coordinates(tables, problem.plant, read_coordinates(tables, problem.plant) + step)
+    left = problem.residual((*before, *moved))
     there = float(left @ left)
-    return (moved, there) if there < here else (new, here)
+    if not there < here:
+        return list(tables), here
+    return [one for one in moved if isinstance(one, Tabulated)], there
 
 
 def judged_with(problem: Problem, judged: Sequence[Judged], new: Tabulated) -> Judgement:

@@ -131,6 +131,17 @@ def test_a_travel_error_of_no_period_of_the_screw_is_found_and_carried() -> None
 
 
 @pytest.mark.slow
+def test_two_at_once_are_told_apart_and_fitted_together() -> None:
+    said = said_of("bench", (SquareDrag(150.0), Cogging(6.0, 0.03, 0.4)), (1, 2))
+    for channel in ("motor_torque", "table_position"):
+        drag, cogging = said.rest.unexplained[channel].depends_on
+        assert (drag.variable, cogging.variable) == ("table_velocity", "table_position")
+        assert cogging.table is not None and cogging.table.period == pytest.approx(0.03, rel=0.005)
+        assert said.over_floor(channel) < AT_THE_FLOOR
+    assert len(said.rest.effects) == 2
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "effect", [SquareDrag(250.0), LaterFriction(12.0, 4.1), Cogging(6.0, 0.03, 0.4)], ids=lambda effect: effect.name
 )
