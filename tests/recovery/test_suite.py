@@ -62,6 +62,17 @@ def test_numbers_of_the_other_cases() -> None:
         assert all(OFF_LEAST <= abs(factor - 1) <= OFF_MOST for factor in case.off.values())
 
 
+def test_half_is_balanced() -> None:
+    """Of every effect and size one case on each machine of its kind, and one with each noise."""
+    half = [case for case in all_cases() if case.kind is Kind.SINGLE and case.in_half]
+    for case in half:
+        alike = [other for other in half if (*other.planted, other.size) == (*case.planted, case.size)]
+        if len(alike) == 2:  # the largest size does not exist everywhere
+            assert alike[0].machine != alike[1].machine
+            assert {other.noise for other in alike} == {1.0, 3.0}
+    assert len(half) == pytest.approx(0.5 * sum(case.kind is Kind.SINGLE for case in all_cases()), abs=1)
+
+
 def test_smoke_holds_every_effect_once() -> None:
     names = [next(iter(case.planted)) for case in smoke_cases()]
     assert len(names) == len(set(names))

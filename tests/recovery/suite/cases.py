@@ -6,12 +6,14 @@ import hashlib
 import json
 from dataclasses import dataclass, field
 from enum import StrEnum
+from typing import cast
 
 import numpy as np
 
 from tests.generator.axis import MECHANICAL
+from tests.generator.effects import Effect
 from tests.generator.sizing import SHARES
-from tests.recovery.suite.motion import SECONDS
+from tests.recovery.suite.motion import SECONDS, seconds_for
 from tests.recovery.suite.pairs import HEAT_PAIRS, PAIRS
 from tests.recovery.suite.planting import MACHINES, Planting, Values, is_warm_up, values_of, variants
 from tests.recovery.suite.sizes import NOISES, planted_size
@@ -142,8 +144,12 @@ def _single(machine: str, name: str, noise: float, share: float) -> Case | None:
     effect = planted_size(machine, example, noise, share)
     if effect is None:
         return None
-    seconds = SECONDS.get(machine, (0.0, 0.0))
-    return Case(_label(machine, name, noise, share), Kind.SINGLE, machine, noise, (effect,), f"{share:.0%}", seconds)
+    label, seconds = _label(machine, name, noise, share), _seconds(machine, (effect,))
+    return Case(label, Kind.SINGLE, machine, noise, (effect,), f"{share:.0%}", seconds)
+
+
+def _seconds(machine: str, effects: tuple[Planting, ...]) -> tuple[float, float]:
+    return (0.0, 0.0) if is_warm_up(machine) else seconds_for(machine, cast(tuple[Effect, ...], effects))
 
 
 def _label(machine: str, name: str, noise: float, share: float) -> str:
@@ -167,7 +173,7 @@ def _pair(machine: str, first: tuple[str, int], second: tuple[str, int], large: 
     effects = tuple(effect or example for effect, example in zip(sized, examples, strict=True))
     size = "service" if large else f"{SHARES[2]:.0%}"
     label = f"{first[0]} + {second[0]} {size} {machine}"
-    return Case(label, Kind.PAIR, machine, 1.0, effects, size, SECONDS.get(machine, (0.0, 0.0)))
+    return Case(label, Kind.PAIR, machine, 1.0, effects, size, _seconds(machine, effects))
 
 
 def nulls() -> list[Case]:

@@ -16,6 +16,15 @@ from tests.generator.recording import COLUMNS, QUICK_STEP, simulate
 SECONDS = {"bench": (12.0, 7.6), "light": (6.8, 6.0)}
 """Lengths of the recordings for fitting and for judging [s]."""
 
+SLOW = {"thermal_growth": 10.0, "viscous_warmup": 10.0}
+"""Effects that settle with time, and the shortest recording for fitting that is to show them [s]."""
+
+
+def seconds_for(axis: str, effects: tuple[Effect, ...]) -> tuple[float, float]:
+    """Lengths of the recordings of these effects [s]; sizes depend on the second alone."""
+    fitted, judged = SECONDS[axis]
+    return max(fitted, *(SLOW.get(effect.name, 0.0) for effect in effects), 0.0), judged
+
 
 def motion_recordings(
     axis: str,

@@ -152,9 +152,10 @@ class Verdict:
         return all(terms & same(name, values) for name, values in self.planted.items())
 
     @property
-    def sparse_kept(self) -> int:
-        """Terms that sparse regression keeps, over all channels."""
-        return sum(self.record.get("sparse", {}).get("kept", {}).values())
+    def sparse_kept(self) -> int | None:
+        """Terms that sparse regression keeps, over all channels; None where that was not kept."""
+        kept = self.record.get("sparse", {}).get("kept")
+        return None if kept is None else sum(kept.values())
 
     @property
     def cpu(self) -> float:
