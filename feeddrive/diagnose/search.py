@@ -119,7 +119,7 @@ def _greedy(
         trials += [_trial(len(rounds), attempt, attempt.name == taken) for attempt in attempts]
         if winner is None:
             break
-        problem, found = winner.problem, _without_idle(winner.problem, winner.fit)
+        problem, found = winner.problem, _without_idle(winner.problem, winner.fit, 0 if pair is not None else 1)
         said(f"found so far: {', '.join(effect.name for effect in found.effects)}")
         names = tuple(sorted(effect.name for effect in found.effects))
         if names in met:  # the new ones only take each other's place
@@ -204,20 +204,23 @@ def _best_per_name(attempts: Sequence[Attempt]) -> list[Attempt]:
     return list(best.values())
 
 
-def _without_idle(problem: Problem, found: Fit) -> Fit:
-    """The fit without effects that no longer pay once the others are there."""
+def _without_idle(problem: Problem, found: Fit, proved: int) -> Fit:
+    """The fit without effects that no longer pay once the others are there.
+
+    The last `proved` of them have just paid by themselves; of a pair either may have paid for both.
+    """
     if len(found.effects) < 2:
         return found
     blocks = block_numbers(problem)
     errors = left_out_residual(found.residual, found.jacobian, blocks)
-    for i in range(len(found.effects) - 1):
+    for i in range(len(found.effects) - proved):
         if _cost_of_dropping(problem, found, i, blocks, errors) > CLEARLY_NEEDED:
             continue
         rest = fit(problem, found.effects[:i] + found.effects[i + 1 :], iterations=JOINT_ITERATIONS)
         without = left_out_residual(rest.residual, rest.jacobian, blocks)
         gain = compare_left_out(without, errors, blocks, least_gain(problem, without))
         if not gain.pays:
-            return _without_idle(problem, fit(problem, rest.effects, iterations=JOINT_ITERATIONS))
+            return _without_idle(problem, fit(problem, rest.effects, iterations=JOINT_ITERATIONS), proved)
     return found
 
 
