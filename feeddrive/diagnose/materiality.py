@@ -7,17 +7,21 @@ from feeddrive.effects.base import Effect, Port
 from feeddrive.effects.inertia_deviation import InertiaDeviation, declared_inertia
 from feeddrive.plant.plant import Plant
 
-LEAST_FACTOR = 0.02
-"""Deviation of a friction factor from 1; declared friction is never known better."""
+LEAST_FACTOR = 0.005
+"""Deviation of a friction factor from 1. No declared friction is known to that, but a quiet drive shows it, and whatever
+shows and is left without its name leaves the error to the next best one."""
+
+LEAST_SOFTENING = 0.02
+"""Stiffness that is lost around zero force, over that under load."""
 
 LEAST_STIFFNESS_SHARE = 0.003
 """Deviation of a stiffness from the declared one. No catalogue knows it to that, but a scale shows it; left without its
 name it would be taken for a free play of some nanometres."""
 
-LEAST_FORCE_SHARE = 0.01
+LEAST_FORCE_SHARE = 0.003
 """A force over the declared Coulomb level of the guide."""
 
-LEAST_MASS_SHARE = 0.005
+LEAST_MASS_SHARE = 0.001
 """A mass over the declared table mass, an inertia over the declared one of its shaft."""
 
 LEAST_MODE_SHARE = 0.001
@@ -34,7 +38,7 @@ def is_material(effect: Effect, plant: Plant) -> bool:
         return any(abs(values[key] - 1) >= LEAST_FACTOR for key in ("coulomb_factor", "viscous_factor"))
     if effect.name == "stiffness_vs_position":
         return abs(values["share_over_stroke"]) >= LEAST_STIFFNESS_SHARE
-    if effect.name == "preload_loss" and values["ratio"] > 1 - LEAST_FACTOR:
+    if effect.name == "preload_loss" and values["ratio"] > 1 - LEAST_SOFTENING:
         return False
     if effect.name == "structural_mode":
         return abs(values["mass"]) >= LEAST_MODE_SHARE * plant.chain.values["table_mass"]
