@@ -30,7 +30,7 @@ PAIRS_FITTED = 2
 def masked_pair(attempts: Sequence[Attempt], found: Fit, winner: Attempt | None) -> Attempt | None:
     """Two candidates that hide each other, as a rise with speed hides a drop of the level.
 
-    Together they are worth more than the best single one, and than the sum of what they are worth alone. Pairs are
+    Together they are worth more than the best single one, and, where that pays, than the sum of both alone. Pairs are
     ranked by one linear step from the Jacobians at hand, at no simulation; the best are fitted.
     """
     least = winner.comparison.gain if winner is not None else 0.0
@@ -38,11 +38,13 @@ def masked_pair(attempts: Sequence[Attempt], found: Fit, winner: Attempt | None)
     usable = [a for a in usable if len(a.fit.residual) == len(found.residual)]
     ranked = []
     for first, second, most in _most_together(usable, found):
-        alone = max(first.comparison.gain, 0.0) + max(second.comparison.gain, 0.0)
-        if most <= max(SUPERADDITIVE * alone, least):
+        gains = max(first.comparison.gain, 0.0), max(second.comparison.gain, 0.0)
+        # where none pays alone, each lost in what the other leaves, they need not be worth more than their sum
+        alone = max(gains) if winner is None else SUPERADDITIVE * sum(gains)
+        if most <= max(alone, least):
             continue
         linear = _linear_pair(first, second, found)
-        if linear.pays and linear.gain > max(SUPERADDITIVE * alone, least):
+        if linear.pays and linear.gain > max(alone, least):
             ranked.append((linear.gain, first, second))
     ranked.sort(key=lambda entry: -entry[0])
     for _, first, second in ranked[:PAIRS_FITTED]:
