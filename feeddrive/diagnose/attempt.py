@@ -160,9 +160,9 @@ def with_short_blocks(problem: Problem) -> Problem:
 
 
 def with_predictable(problem: Problem, effects: Sequence[Effect]) -> Problem:
-    """The problem without the samples that a plant with these effects cannot predict."""
+    """The problem without the samples that tell nothing of a plant with these effects."""
     plant = problem.plant.with_effects(*effects)
-    kept = tuple(e.where_predictable(problem.predictor.predictable(plant, e)) for e in problem.evidence)
+    kept = tuple(e.where_predictable(problem.predictor.to_fit(plant, e)) for e in problem.evidence)
     if any(not e.fit_rows.any() for e in kept):
         return problem
     return replace(problem, evidence=kept)

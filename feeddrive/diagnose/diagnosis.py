@@ -249,7 +249,7 @@ def _notes(fitted: Sequence[Evidence], judged: Sequence[Evidence], found: Search
         lost = float(np.sum(before.counted & ~after.counted)) * before.recording.sample_time
         if lost > 0:
             notes.append(
-                f"{before.recording.name}: {lost:.1f} s are left out: with free play the motion is chaotic there"
+                f"{before.recording.name}: {lost:.1f} s are not fitted: free play magnifies the encoder's noise there"
             )
     return tuple(notes)
 

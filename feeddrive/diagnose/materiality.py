@@ -8,7 +8,7 @@ from feeddrive.effects.inertia_deviation import InertiaDeviation, declared_inert
 from feeddrive.plant.plant import Plant
 
 LEAST_FACTOR = 0.005
-"""Deviation of a friction factor from 1. No declared friction is known to that, but a quiet drive shows it, and whatever
+"""Deviation of a friction factor from 1. No declared friction is known to that, but a quiet drive shows it, and what
 shows and is left without its name leaves the error to the next best one."""
 
 LEAST_SOFTENING = 0.02

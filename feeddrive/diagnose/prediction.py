@@ -13,7 +13,7 @@ from feeddrive.diagnose.candidates import CANDIDATES
 from feeddrive.diagnose.evidence import AxisEvidence
 from feeddrive.diagnose.fit import Problem
 from feeddrive.diagnose.materiality import is_material
-from feeddrive.diagnose.predictability import predictable_samples
+from feeddrive.diagnose.predictability import predictable_samples, samples_to_fit
 from feeddrive.diagnose.predictor import Predictor
 from feeddrive.diagnose.scene import AxisScene, Candidate
 from feeddrive.diagnose.timing import lag_of, lagging
@@ -115,6 +115,10 @@ class AxisPredictor(Predictor[Plant, AxisEvidence]):
     def predictable(self, plant: Plant, evidence: AxisEvidence) -> BoolArray:
         """Samples without chaos."""
         return predictable_samples(plant, evidence)
+
+    def to_fit(self, plant: Plant, evidence: AxisEvidence) -> BoolArray:
+        """Samples without chaos, and without contacts that the encoder's noise moves."""
+        return samples_to_fit(plant, evidence)
 
     def variables(self, plant: Plant, evidence: AxisEvidence) -> dict[str, FloatArray]:
         """Motion that a residual may depend on."""

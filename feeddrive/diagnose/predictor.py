@@ -72,3 +72,7 @@ class Predictor(ABC, Generic[M, E]):
     def predictable(self, plant: M, evidence: E) -> BoolArray:
         """Samples that can be predicted at all, (n,)."""
         return evidence.counted | True
+
+    def to_fit(self, plant: M, evidence: E) -> BoolArray:
+        """Samples that a fit can learn from, (n,)."""
+        return self.predictable(plant, evidence)

@@ -185,6 +185,10 @@ class RecordingPredictor(Predictor[Any, Any]):
         """Samples that can be predicted."""
         return self.inner.predictable(self.machine(plant, evidence), evidence)
 
+    def to_fit(self, plant: Any, evidence: Any) -> BoolArray:
+        """Samples that a fit can learn from."""
+        return self.inner.to_fit(self.machine(plant, evidence), evidence)
+
 
 def shift_of(target: Target, recording: int, count: int, thermal: bool) -> RecordingShift:
     """A shift of nothing yet, of as many coordinates as the target has."""

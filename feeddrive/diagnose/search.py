@@ -131,8 +131,9 @@ def _greedy(
 
 def _simplest_of_the_best(attempts: Sequence[Attempt]) -> Attempt | None:
     """The best attempt, or one with fewer parameters that cannot be told from it; None if the best does not pay."""
-    attempts = [a for a in attempts if a.problem.predictor.is_material(a.fit.effects[-1], a.problem.plant)]
-    if not attempts or not attempts[0].comparison.pays:
+    paying = [a for a in attempts if a.comparison.pays]  # a larger gain by chance does not hide a smaller sure one
+    attempts = [a for a in paying if a.problem.predictor.is_material(a.fit.effects[-1], a.problem.plant)]
+    if not attempts:
         return None
     best = attempts[0]
     tied = [best]

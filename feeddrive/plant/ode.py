@@ -2,7 +2,8 @@
 
     x' = f(t, x, u, p),  y = g(t, x, p)
 
-x: coordinates, their rates, bristle deflections. u: motor torque as asked for [N m], cutting force on the table, along + motion [N].
+x: coordinates, their rates, bristle deflections. u: motor torque as asked for [N m], cutting force on the
+table, along + motion [N].
 y: motor angle [rad], motor speed [rad/s], table position [m], table velocity [m/s].
 """
 

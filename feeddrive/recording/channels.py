@@ -24,7 +24,15 @@ CHANNEL_UNITS: dict[str, str] = {
 }
 """Canonical channel -> SI unit; temperatures and growths have open names."""
 
-MOTION_AND_TORQUE = ("motor_torque", "motor_current", "motor_torque_share", "motor_angle", "motor_speed", "table_position", "table_velocity")
+MOTION_AND_TORQUE = (
+    "motor_torque",
+    "motor_current",
+    "motor_torque_share",
+    "motor_angle",
+    "motor_speed",
+    "table_position",
+    "table_velocity",
+)
 """Channels that must change during a recording."""
 
 _OPEN_NAMES = ((re.compile(r"[a-z0-9_]+_temperature"), "degC"), (re.compile(r"table_growth_[a-z0-9_]+"), "m"))
