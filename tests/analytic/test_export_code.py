@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 from feeddrive.compiler import find_compiler
+from feeddrive.effects.base import Value
 from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.export.c_source import source_text
 from feeddrive.export.casadi_file import casadi_function
@@ -24,7 +25,7 @@ from feeddrive.export.writing import Form, write_export
 from feeddrive.plant.linear import ode_parameters, state_space, timed_ode
 from feeddrive.plant.plant import Plant
 from tests.analytic.export_cases import BENCH, EMPS, LEAD_ERROR, MANY, PLANTS, TESTBED
-from tests.analytic.test_effects import NEUTRAL
+from tests.analytic.test_effects import NEUTRAL, PLACES
 
 MOVING = Point(0.1, 0.05)
 
@@ -89,13 +90,21 @@ print(float(f(x=0, cutting_force=6.7, table_mass=67)["xdot"][5]))
     assert table == pytest.approx(0.1, rel=1e-14)
 
 
+VALUES: dict[str, dict[str, Value]] = {
+    "presliding": {"stiffness": 5e6},
+    "structural_mode": {"mass": 8.0, "frequency": 70.0, "damping": 0.03},
+}
+"""Of effects that have no values at which they are not there."""
+
+
 @pytest.mark.parametrize("name", EFFECTS)
 def test_every_effect_is_exported(name: str) -> None:
     if name in {effect.name for effect in BENCH.effects}:
         plant = BENCH
     else:
-        values = NEUTRAL.get(name) or {"stiffness": 5e6}
-        plant = BENCH.with_effects(EFFECTS[name].of(**values) if name != "friction_deviation" else EFFECTS[name].of())
+        plant = BENCH.with_effects(
+            EFFECTS[name].of(place=PLACES.get(name, ""), **VALUES.get(name, NEUTRAL.get(name, {})))
+        )
     model = model_of(plant, Point(0.1))
     assert casadi_function(model).n_in() == 2 + 2 + len(ode_parameters(plant))
     assert f"{model.identifier}_ode(" in source_text(model)

@@ -1,0 +1,31 @@
+"""The demo finds what was planted in its recording, with the digits that the README prints."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+from feeddrive.cli.main import main
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def test_demo_finds_what_was_planted(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["demo", "--out", str(tmp_path)]) == 0
+    said = capsys.readouterr().out.replace("\N{NO-BREAK SPACE}", " ")
+    result = json.loads((tmp_path / "diagnosis.json").read_text(encoding="utf-8"))
+    assert {effect["name"] for effect in result["effects"]} == {"lead_error_periodic", "friction_vs_position"}
+    found = {effect["name"]: effect["parameters"] for effect in result["effects"]}
+    # planted: 2.1 um at order 1, 38 N at 160 mm; noise leaves 0.02 % of the first, half a percent of the other
+    assert found["lead_error_periodic"]["amplitude"]["value"] == pytest.approx(2.1e-6, rel=1e-3)
+    assert found["friction_vs_position"]["peak"]["value"] == pytest.approx(38.0, rel=0.01)
+    assert found["friction_vs_position"]["centre"]["value"] == pytest.approx(0.160, abs=2e-4)
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    printed = re.search(r"```text\n(The declared plant lacks: .*?)```", readme, re.DOTALL)
+    assert printed is not None
+    for claim in ("2.1002 µm", "37.99 N", "160.06 mm"):
+        assert claim in printed[1] and claim in said
+    assert (tmp_path / "report.html").is_file()

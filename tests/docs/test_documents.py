@@ -1,0 +1,52 @@
+"""The documents name tests, scripts, plants and commands that exist; the tutorial of the real drive runs."""
+
+from __future__ import annotations
+
+import os
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+
+from feeddrive.cli.main import COMMANDS, load, main
+
+ROOT = Path(__file__).resolve().parents[2]
+DOCUMENTS = sorted((ROOT / "docs").glob("*.md"))
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.name)
+def test_links_and_files_exist(document: Path) -> None:
+    text = document.read_text(encoding="utf-8")
+    for link in re.findall(r"\]\((?!https?:)([^)#\s]+)", text):
+        assert (document.parent / link).exists(), link
+    for path in re.findall(r"`((?:tests|benchmarks|plants|scenarios)/[\w./-]+)`", text):
+        assert (ROOT / path).exists(), path
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.name)
+def test_commands_exist_with_their_options(document: Path) -> None:
+    text = document.read_text(encoding="utf-8")
+    lines = re.findall(r"^    (feeddrive .*)$|`(feeddrive [a-z][^`]*)`", text, re.MULTILINE)
+    for line in (first or second for first, second in lines):
+        words = shlex.split(line)
+        assert words[1] in COMMANDS, line
+        known = {option for parameter in load(words[1]).params for option in parameter.opts}
+        assert {word.split("=")[0] for word in words if word.startswith("--")} <= known | {"--help"}, line
+
+
+@pytest.mark.slow
+def test_tutorial_of_the_real_drive_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    data = Path(os.environ.get("FEEDDRIVE_EMPS", ROOT.parent / "shared" / "data" / "emps" / "DATA_EMPS.mat"))
+    if not data.is_file():
+        pytest.skip("DATA_EMPS.mat is not here; name it in FEEDDRIVE_EMPS")
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "DATA_EMPS.mat").write_bytes(data.read_bytes())
+    (tmp_path / "plants").symlink_to(ROOT / "plants")
+    text = (ROOT / "docs" / "tutorial_real_drive.md").read_text(encoding="utf-8")
+    typed = [shlex.split(line) for line in re.findall(r"^    feeddrive (.*)$", text, re.MULTILINE)]
+    assert len(typed) >= 4
+    for words in typed:
+        if "--continue" not in words:  # needs a recording of another day
+            assert main(words) == 0, words
+    assert (tmp_path / "emps_report" / "report.html").is_file()
