@@ -15,7 +15,7 @@ from feeddrive.diagnose.evidence import AxisEvidence, Evidence
 from feeddrive.diagnose.judge import error_series, whole
 from feeddrive.diagnose.predictor import Machine
 from tests.generator.axis import AxisParameters
-from tests.recovery.suite.library import terms_of
+from tests.recovery.suite.regression_terms import terms_of
 from tests.recovery.suite.truth import Errors, Prepared
 
 THRESHOLDS = (0.02, 0.05, 0.1, 0.2, 0.5)

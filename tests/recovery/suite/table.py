@@ -38,8 +38,9 @@ How a case is made and judged:
 - Bound: the narrowest 95 % interval that any unbiased estimate can have in this noise, its colour counted
   (Cramér–Rao); `tests/recovery/suite/bound.py`.
 - Sparse regression: the declared plant's error regressed by PySINDy (STLSQ) on a library of some forty terms, the
-  threshold by held-out blocks and the one-standard-error rule. It counts as naming an effect where a term that is the
-  effect's (`tests/recovery/suite/library.py`) is among the three strongest of a channel, whatever else it keeps.
+  threshold by held-out blocks and the one-standard-error rule. It counts as naming an effect where a term
+  that is the effect's (`tests/recovery/suite/regression_terms.py`) is among the three strongest of a channel, whatever
+  else it keeps.
 - Black box: a Gaussian process over x, v and sign v on at most 1000 points (warm-up: over the speed and what follows
   it); it names nothing.
 - Errors are over the floor, on the worst channel, medians of the cases unless said otherwise.

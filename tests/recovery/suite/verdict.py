@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from tests.recovery.suite.cases import Kind
-from tests.recovery.suite.library import same
 from tests.recovery.suite.one import Record
 from tests.recovery.suite.planting import place_of
+from tests.recovery.suite.regression_terms import same
 from tests.recovery.suite.truth import worst_ratio
 
 LARGEST_SET = 3
