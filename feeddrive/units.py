@@ -99,7 +99,12 @@ def _unit(unit_text: str) -> Any:
     if not spelled or len(spelled) > _LONGEST_UNIT:
         raise UnitError(f'"{unit_text[:_LONGEST_UNIT]}" is not a unit', "write a unit such as mm, rev/min, N m")
     try:
-        return _registry().parse_units(spelled)
+        registry = _registry()
+    except Exception as error:  # a file of the folder that is started from, named like a module of Python
+        mend = "start from a folder without Python files, or use the command feeddrive"
+        raise UnitError(f"the unit library cannot be loaded ({error})", mend) from error
+    try:
+        return registry.parse_units(spelled)
     except Exception as error:  # pint, its tokenizer and Python's arithmetic each raise their own kinds
         raise UnitError(f'unknown unit "{unit_text}"', _nearest_unit(unit_text)) from error
 
