@@ -9,8 +9,9 @@ from feeddrive.effects.thermal.base import curve
 from feeddrive.effects.thermal.bearing_heat import reference_heat
 from feeddrive.thermal.plant import ThermalPlant
 
-LEAST_HEAT_SHARE = 0.01
-"""A heat over that of the nut at the highest declared speed."""
+LEAST_HEAT_SHARE = 2e-4
+"""A heat over that of the nut at the highest declared speed: a sensor on a flange shows milliwatts, and what shows is
+named, lest another name be given to it."""
 
 LEAST_FACTOR, LEAST_CONTACT_FACTOR = 0.03, 0.05
 """Deviation of a film coefficient and of the contact conductance from 1; neither is ever known better."""
@@ -21,7 +22,7 @@ LEAST_DRIFT = 0.05
 LEAST_COEFFICIENT = 1e-3
 """Of load or viscous torque [1/K]."""
 
-LEAST_CAPACITY_SHARE = 0.01
+LEAST_CAPACITY_SHARE = 1e-3
 """A mass over the nut's capacity, a conductance over the film's of the nut."""
 
 LEAST_GROWTH = 0.1e-6
