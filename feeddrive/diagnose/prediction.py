@@ -74,21 +74,23 @@ class AxisPredictor(Predictor[Plant, AxisEvidence]):
 
     def scale(self, plant: Plant) -> float:
         """Factor on the predicted torque that fits the recordings in `scaled` best."""
-        key = (_values_key(_load_side(plant)), _values_key(plant))
-        if key not in self._scales:
-            measured, predicted = [], []
-            for evidence in self.scaled:
-                rows = evidence.thinned(evidence.fit_rows)
-                unscaled = self.predict(plant, replace(evidence, scaled_from=""))
-                predicted.append(unscaled["motor_torque"][rows])
-                measured.append(evidence.measured["motor_torque"][rows])
-            scale = scale_of(np.concatenate(measured), np.concatenate(predicted))
-            with self._lock:
-                self._scales[key] = scale
-                while len(self._scales) > REMEMBERED:
-                    self._scales.popitem(last=False)
-            return scale
-        return self._scales[key]
+        key = _values_key(plant)
+        with self._lock:
+            known = self._scales.get(key)
+        if known is not None:
+            return known
+        measured, predicted = [], []
+        for evidence in self.scaled:
+            rows = evidence.thinned(evidence.fit_rows)
+            unscaled = self.predict(plant, replace(evidence, scaled_from=""))
+            predicted.append(unscaled["motor_torque"][rows])
+            measured.append(evidence.measured["motor_torque"][rows])
+        scale = scale_of(np.concatenate(measured), np.concatenate(predicted))
+        with self._lock:
+            self._scales[key] = scale
+            while len(self._scales) > REMEMBERED:
+                self._scales.popitem(last=False)
+        return scale
 
     def told(self, before: Plant, after: Plant) -> tuple[str, ...]:
         """The scale of the torque, where it is fitted."""
@@ -184,5 +186,5 @@ def _at_motor_alone(effect: Effect) -> bool:
 
 
 def _values_key(plant: Plant) -> object:
-    effects = tuple((e.name, str(e.port), tuple(e.values.items())) for e in plant.effects)
+    effects = tuple((e.name, str(e.port), e.place, tuple(e.values.items())) for e in plant.effects)
     return (tuple(plant.chain.values.items()), effects)
