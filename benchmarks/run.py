@@ -22,9 +22,9 @@ from _peers import cvodes, radau
 from _timing import interleaved, once
 
 from feeddrive.compiler import find_compiler
+from feeddrive.plant.structure import forget_machines
 from feeddrive.simulate.controlled import ControlledRun, TorqueLoop, simulate_controlled
 from feeddrive.simulate.sensitivity import Sensitivity, simulate_sensitivity
-from feeddrive.simulate.structure import forget_machines
 from feeddrive.typing import FloatArray
 
 HERE = Path(__file__).resolve().parent

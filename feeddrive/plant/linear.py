@@ -17,6 +17,7 @@ from feeddrive.plant.equations import parameter_values
 from feeddrive.plant.ode import INPUTS, OUTPUTS, ode, ode_parameters, state_names, timed_ode
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.steady import MOVING, SteadyMotion, steady_motion, steady_motions
+from feeddrive.plant.structure import per_structure
 from feeddrive.typing import FloatArray
 
 if TYPE_CHECKING:
@@ -67,10 +68,16 @@ def linear_matrices(plant: Plant, velocity: float = MOVING, position: float = 0.
     Raises:
         InputError: as `state_space`.
     """
-    function, point = ode(plant), steady_motion(plant, velocity, position)
+    point = steady_motion(plant, velocity, position)
+    at = _jacobians(plant)(point.state, [point.torque, 0.0], parameter_values(plant))
+    return tuple(np.array(matrix.full()) for matrix in at)
+
+
+@per_structure
+def _jacobians(plant: Plant) -> ca.Function:
+    """A, B, C, D as a function (x, u, p)."""
+    function = ode(plant)
     x, u, p = (ca.SX.sym(name, function.size1_in(name)) for name in ("x", "u", "p"))
     xdot, y = function(x, u, p)
     pairs = [(xdot, x), (xdot, u), (y, x), (y, u)]
-    jacobians = ca.Function("jacobians", [x, u, p], [ca.jacobian(of, to) for of, to in pairs])
-    at = jacobians(point.state, [point.torque, 0.0], parameter_values(plant))
-    return tuple(np.array(matrix.full()) for matrix in at)
+    return ca.Function("jacobians", [x, u, p], [ca.jacobian(of, to) for of, to in pairs])

@@ -23,6 +23,7 @@ from feeddrive.plant.equations import (
 )
 from feeddrive.plant.motor_torque import acting_torque
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.structure import per_structure
 from feeddrive.plant.symbols import Symbols
 from feeddrive.typing import Expression
 
@@ -46,6 +47,7 @@ def _state_pair(coordinate: str) -> tuple[str, str]:
     return f"{coordinate}_angle", f"{coordinate}_speed"
 
 
+@per_structure
 def ode(plant: Plant) -> ca.Function:
     """The equations of motion as a function (x, u, p) -> (xdot, y).
 
@@ -64,6 +66,7 @@ def ode(plant: Plant) -> ca.Function:
     return ca.Function("ode", [x, u, p], [xdot, y], ["x", "u", "p"], ["xdot", "y"])
 
 
+@per_structure
 def timed_ode(plant: Plant) -> ca.Function:
     """The equations of motion as a function (time, x, u, p) -> (xdot, y), with what changes as time goes on.
 

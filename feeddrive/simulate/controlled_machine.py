@@ -12,12 +12,12 @@ from feeddrive.errors import InputError
 from feeddrive.plant.equations import parameter_symbols
 from feeddrive.plant.motor_torque import acting_torque
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.structure import per_structure
 from feeddrive.servo.sampled import MEASUREMENTS, SampledController
 from feeddrive.simulate.engine import Machine, machine_of
 from feeddrive.simulate.held_torque import readings_of
 from feeddrive.simulate.program import Program
 from feeddrive.simulate.step import torque_step
-from feeddrive.simulate.structure import per_structure
 from feeddrive.simulate.timing import Timing, timing_of
 from feeddrive.typing import Expression
 

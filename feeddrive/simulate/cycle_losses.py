@@ -26,10 +26,10 @@ from feeddrive.plant.equations import bristle_count, chain_symbols, parameter_sy
 from feeddrive.plant.friction_law import resisting_force
 from feeddrive.plant.motor_torque import acting_torques
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.structure import per_structure
 from feeddrive.plant.symbols import Symbols
 from feeddrive.plant.transmission_law import nut_force
 from feeddrive.simulate.controlled import ControlledRun, TorqueLoop
-from feeddrive.simulate.structure import per_structure
 from feeddrive.simulate.timing import timing_of
 from feeddrive.typing import Expression, FloatArray
 

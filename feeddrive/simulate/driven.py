@@ -18,11 +18,11 @@ from feeddrive.plant.equations import (
     travel_deviation,
 )
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.structure import per_structure
 from feeddrive.simulate.engine import Feed, Machine, machine_of, rested, run_machine
 from feeddrive.simulate.program import Program, StepReport
 from feeddrive.simulate.step import driven_step
 from feeddrive.simulate.step_constants import Layout
-from feeddrive.simulate.structure import per_structure
 from feeddrive.typing import FloatArray
 
 TOLERANCE = 1e-10

@@ -22,13 +22,13 @@ import casadi as ca
 
 from feeddrive.plant.equations import Symbols, bristle_count, parameter_symbols
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.structure import without_left_out
 from feeddrive.simulate.algebra import part
 from feeddrive.simulate.node_forces import Pull, node_forces
 from feeddrive.simulate.propagators import NODES
 from feeddrive.simulate.step_constants import Layout
 from feeddrive.simulate.step_nodes import NodeEquations
 from feeddrive.simulate.step_symbols import StepSymbols, torque_beyond
-from feeddrive.simulate.structure import without_left_out
 from feeddrive.typing import Expression
 
 

@@ -19,10 +19,10 @@ from feeddrive.effects.stiffness_vs_position import StiffnessVsPosition
 from feeddrive.effects.stribeck import Stribeck
 from feeddrive.effects.structural_mode import StructuralMode
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.structure import forget_machines
 from feeddrive.simulate.driven import motor_motion, simulate_driven
 from feeddrive.simulate.held_torque import simulate_torque
 from feeddrive.simulate.step_constants import SimulationError
-from feeddrive.simulate.structure import forget_machines
 from feeddrive.typing import FloatArray
 from tests.convergence.test_simulate import SAMPLE, bench, torque_curve
 

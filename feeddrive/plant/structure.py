@@ -10,8 +10,8 @@ from typing import TypeVar, TypeVarTuple
 import casadi as ca
 
 from feeddrive.effects.base import Effect
-from feeddrive.plant.equations import Symbols
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.symbols import Symbols
 
 Options = TypeVarTuple("Options")
 Machine = TypeVar("Machine")
@@ -62,8 +62,11 @@ def forget_machines() -> None:
 
 
 def structure_key(plant: Plant) -> tuple[object, ...]:
-    """What makes two plants the same equations: chain; per effect name, port, place, table lengths, parts left out."""
-    return (plant.chain.key, *(_effect_key(effect) for effect in plant.effects))
+    """What makes two plants the same equations: chain; per effect name, port, place, table lengths, parts left out.
+
+    The order of the values is part of it, since it is that of the columns which the equations read.
+    """
+    return (plant.chain.key, tuple(plant.chain.values), *(_effect_key(effect) for effect in plant.effects))
 
 
 def _effect_key(effect: Effect) -> tuple[object, ...]:
