@@ -18,6 +18,7 @@ from feeddrive.diagnose.attempt import Attempt
 from feeddrive.diagnose.certainty_result import Ambiguity
 from feeddrive.diagnose.coordinates import LOGARITHMIC, read_coordinates
 from feeddrive.diagnose.fit import Fit, fit
+from feeddrive.diagnose.imitations import imitations_of
 from feeddrive.diagnose.judge import Judged
 from feeddrive.diagnose.predictor import Machine
 from feeddrive.diagnose.recordings import is_shift
@@ -91,10 +92,16 @@ def rivals_of(found: Search, judged: Sequence[Judged]) -> list[list[Rival]]:
     mine = Residuals.of(found.problem, found.fit, [(j.after, j) for j in judged])
     result = []
     for place in range(len(found.fit.effects)):
-        tried = [_in_place(found, judged, place, attempt.fit.effects[-1], mine) for attempt in _near(found, place)]
+        near = [attempt.fit.effects[-1] for attempt in _near(found, place)]
+        like = [
+            other for other in imitations_of(found.fit.effects[place], found.problem.plant) if _is_free(found, other)
+        ]
+        tried = [_in_place(found, judged, place, rival, mine) for rival in (*near, *like)]
         good = [rival for rival in tried if rival is not None and rival.as_good and not at_its_limit(rival.effect)]
-        alike = sorted(good, key=lambda rival: rival.odds)
-        result.append(alike[: LARGEST_SET - 1])
+        best: dict[str, Rival] = {}
+        for rival in sorted(good, key=lambda rival: rival.odds):
+            best.setdefault(rival.effect.name, rival)
+        result.append([*best.values()][: LARGEST_SET - 1])
     return result
 
 
@@ -191,6 +198,12 @@ def _near(found: Search, place: int) -> list[Attempt]:
         free = [a for a in near if a.name not in present or a.fit.effects[-1].repeatable]
         return sorted(free, key=lambda a: -a.comparison.gain)[:MOST_RIVALS]
     return []
+
+
+def _is_free(found: Search, effect: Effect) -> bool:
+    """Whether an effect can be put in: asked of these recordings, and not in yet."""
+    asked = {candidate.name for candidate in found.problem.predictor.candidates} - set(found.impossible)
+    return effect.name in asked and (effect.repeatable or effect.name not in {e.name for e in found.fit.effects})
 
 
 def _in_place(found: Search, judged: Sequence[Judged], place: int, rival: Effect, mine: Residuals) -> Rival | None:
