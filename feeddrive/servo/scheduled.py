@@ -28,7 +28,8 @@ def scheduled(positions: FloatArray, designs: Sequence[SampledController]) -> Sa
         designs: k controllers that differ in parameters alone and read the table position.
 
     Raises:
-        InputError: designs of other equations, positions that do not ascend, no table position to read.
+        InputError: designs of other equations, positions that do not ascend, no table position to read, a limit that
+            is infinite in some of them alone.
     """
     places, first = np.asarray(positions, dtype=float), designs[0]
     if len(places) != len(designs) or len(places) < 2 or not (np.diff(places) > 0).all():
@@ -37,6 +38,9 @@ def scheduled(positions: FloatArray, designs: Sequence[SampledController]) -> Sa
         raise InputError("designs of different equations", "schedule", "let them differ in gains alone")
     if _PLACE not in first.measurements:
         raise InputError("the designs do not read the table position", "schedule", "use feedback from the table")
+    settings = np.array([design.parameters for design in designs])
+    if not (np.isfinite(settings).all(axis=0) | (settings == settings[0]).all(axis=0)).all():
+        raise InputError("a limit is infinite in some designs alone", "schedule", "give the limit in every design")
     names = [first.function.name_in(i) for i in range(5)]
     count = first.function.size1_in(4)
     arguments = [ca.SX.sym(name, first.function.size1_in(i)) for i, name in enumerate(names[:4])]
@@ -57,5 +61,6 @@ def _between(place: ca.SX, table: ca.SX, designs: int, count: int) -> ca.SX:
     for i in range(designs - 1):
         share = (place - table[i]) / (table[i + 1] - table[i])
         start, end = (table[designs + j * count : designs + (j + 1) * count] for j in (i, i + 1))
-        values = values + ca.fmin(ca.fmax(share, 0.0), 1.0) * (end - start)
+        step = ca.if_else(end == start, 0.0, end - start)  # limits that are infinite in both have no difference
+        values = values + ca.fmin(ca.fmax(share, 0.0), 1.0) * step
     return values

@@ -119,3 +119,17 @@ def test_designs_that_do_not_belong_together_are_refused() -> None:
     blind = cascade_controller(replace(DRIVE, feedback=Feedback.MOTOR))
     with pytest.raises(InputError, match="do not read the table position"):
         scheduled(np.array([0.0, 1.0]), [blind, blind])
+    limited = cascade_controller(replace(DRIVE, speed_limit=100.0))
+    with pytest.raises(InputError, match="infinite in some designs alone"):
+        scheduled(np.array([0.0, 1.0]), [cascade_controller(DRIVE), limited])
+
+
+def test_limits_that_are_infinite_everywhere_stay_so() -> None:
+    """Infinity less infinity is no number: the blend must not meet it."""
+    one = cascade_controller(replace(DRIVE, reset_time=0.02))
+    assert not np.isfinite(one.parameters).all()
+    following = scheduled(np.array([0.0, 0.5, 1.0]), [one, one, one])
+    outputs = following.function(following.initial, [0.101, 0, 0, 0, 0], [0.0, 0.1], 0, following.parameters)
+    alone = one.function(one.initial, [0.101, 0, 0, 0, 0], [0.0, 0.1], 0, one.parameters)
+    for blended, single in zip(outputs, alone, strict=True):
+        np.testing.assert_array_equal(blended.full(), single.full())
