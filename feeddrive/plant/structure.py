@@ -1,4 +1,4 @@
-"""One machine per structure: plants that differ in values alone share their equations and their compiled loop."""
+"""Made once per structure: plants that differ in values alone share their equations and their compiled loop."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def per_structure(build: Callable[[Plant, *Options], Machine]) -> Callable[[Plan
     """`build`, run once per structure of plant and further options; it must not use the plant's values.
 
     Args:
-        build: maker of a machine from a plant and hashable options.
+        build: maker of equations or of what runs them, from a plant and hashable options.
 
     Returns:
         The same maker with a memory.
@@ -56,7 +56,7 @@ def per_structure(build: Callable[[Plant, *Options], Machine]) -> Callable[[Plan
 
 
 def forget_machines() -> None:
-    """Make every machine anew at its next use, for instance because another compiler is to be used."""
+    """Make all of them anew at their next use, for instance because another compiler is to be used."""
     for forget in _CACHES:
         forget()
 
