@@ -135,7 +135,7 @@ def compared(problem: Problem, name: str, result: Fit, before: Sequence[Effect])
     reference = _reference(problem, before, result)
     without = left_out_residual(reference.residual, reference.jacobian, blocks)
     errors = left_out_residual(result.residual, result.jacobian, blocks)
-    comparison = compare_left_out(without, errors, blocks, least_gain(problem, without))
+    comparison = compare_left_out(without, errors, blocks, least_gain(problem, without, errors))
     return Attempt(name, result, comparison, problem, errors)
 
 

@@ -61,4 +61,4 @@ def compared_fits(problem: Problem, without: Fit, having: Fit) -> Comparison:
     blocks = block_numbers(problem)
     before = left_out_residual(without.residual, without.jacobian, blocks)
     after = left_out_residual(having.residual, having.jacobian, blocks)
-    return compare_left_out(before, after, blocks, least_gain(problem, before))
+    return compare_left_out(before, after, blocks, least_gain(problem, before, after))

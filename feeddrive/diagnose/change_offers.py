@@ -38,12 +38,11 @@ def offers(problem: Problem, current: Fit, free: Sequence[Movable], recordings: 
     """
     blocks, rows = block_numbers(problem), recording_of_rows(problem)
     without = _left_out(current.residual, current.jacobian, blocks)
-    least = least_gain(problem, without)
     found: list[tuple[Movable, Comparison, FloatArray]] = []
     for one in free:
         wider = np.hstack([current.jacobian, _columns(current, one, rows, recordings)])
         errors = _left_out(current.residual, wider, blocks)
-        found.append((one, compare_left_out(without, errors, blocks, least), errors))
+        found.append((one, compare_left_out(without, errors, blocks, least_gain(problem, without, errors)), errors))
     found.sort(key=lambda offer: -offer[1].gain)
     for other in found:
         if other[0].target.name == "friction_deviation":

@@ -8,6 +8,7 @@ Source: Stone, J. Roy. Statist. Soc. B 36 (1974) 111; Roberts et al., Ecography 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -106,7 +107,7 @@ def compare_left_out(
     return Comparison((total - float(after @ after)) / total, error / total, least)
 
 
-def least_gain(problem: Problem, before: FloatArray) -> float:
+def least_gain(problem: Problem, before: FloatArray, after: FloatArray) -> float:
     """Gain that is asked for: half a percent, or more where chance or the model's own error does as much.
 
     A band of width B over T seconds holds 2 B T independent values a channel, whatever the sample rate.
@@ -114,20 +115,45 @@ def least_gain(problem: Problem, before: FloatArray) -> float:
     Args:
         problem: recordings, with what the model itself may miss.
         before: weighted residual without the new effect, (m,).
+        after: with it, (m,).
     """
     values = 0.0
     for evidence in problem.evidence:
         seconds = float(np.sum(evidence.fit_rows)) * evidence.recording.sample_time
         values += 2 * evidence.edge * seconds * len(evidence.channels)
-    total = float(before @ before)
-    return max(LEAST_GAIN, CHANCE / values, model_share(problem) / total if total > 0 else 0.0)
+    rows = model_error_rows(problem.evidence, [e.thinned(e.fit_rows) for e in problem.evidence])
+    return max(LEAST_GAIN, CHANCE / values, gain_of_model_error(rows, before, after))
 
 
-def model_share(problem: Problem) -> float:
-    """Weighted squared error that the model itself may make on the fitted samples [1]; 0 where it is exact."""
-    return sum(model_error_square(evidence, evidence.thinned(evidence.fit_rows)) for evidence in problem.evidence)
+def model_error_rows(evidence: Sequence[Evidence], rows: Sequence[BoolArray]) -> FloatArray:
+    """What the model itself may miss, as the weighted squared error E_c of a whole channel, at every row of a residual.
+
+    The errors of two channels are taken as independent, those of one channel, in all recordings, as one error.
+
+    Args:
+        evidence: recordings.
+        rows: of each, the samples that the residual holds.
+
+    Returns:
+        E_c of the channel of every row, (m,) [1]; 0 where the model is exact.
+    """
+    whole: dict[str, float] = {}
+    for one, chosen in zip(evidence, rows, strict=True):
+        for name, error in one.model_error.items():
+            whole[name] = whole.get(name, 0.0) + float(np.sum(chosen)) * (error / one.noise[name]) ** 2
+    parts = [
+        np.full(int(np.sum(chosen)), whole.get(name, 0.0))
+        for one, chosen in zip(evidence, rows, strict=True)
+        for name in one.channels
+    ]
+    return np.concatenate(parts)
 
 
-def model_error_square(evidence: Evidence, rows: BoolArray) -> float:
-    """The same on some samples of one recording, shape (n,)."""
-    return float(np.sum(rows)) * sum((e / evidence.noise[name]) ** 2 for name, e in evidence.model_error.items())
+def gain_of_model_error(rows: FloatArray, before: FloatArray, after: FloatArray) -> float:
+    """Share of the squared error that the model's own error could take away where a new effect does, all (m,).
+
+    Along the direction of d = before - after it is at most the sum of E_c |d_c|^2 / |d|^2 over the channels.
+    """
+    square, total = (before - after) ** 2, float(before @ before)
+    moved = float(np.sum(square))
+    return float(rows @ square) / (moved * total) if moved > 0 and total > 0 else 0.0

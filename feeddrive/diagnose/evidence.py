@@ -75,6 +75,24 @@ class Evidence:
         comb[:: self.thinning] = True
         return rows & comb
 
+    def weighted(self, series: dict[str, FloatArray], rows: BoolArray) -> FloatArray:
+        """Channels at some samples over their noise, without what their sensors leave open, one after the other.
+
+        Args:
+            series: channel to measurement, prediction or their difference, (n,) each.
+            rows: the samples, (n,).
+        """
+        return np.concatenate([self.without_open(name, series[name][rows], rows) for name in self.channels])
+
+    def without_open(self, name: str, part: FloatArray, rows: BoolArray) -> FloatArray:
+        """One channel over its noise, (k,), without what its sensor leaves open: the zero of a scale."""
+        part = part / self.noise[name]
+        return part - np.mean(part) if name in self.floating else part
+
+    def missed(self, name: str) -> float:
+        """Rms of what the model itself may miss of a channel."""
+        return self.model_error.get(name, 0.0)
+
     def where_predictable(self, predictable: BoolArray) -> Self:
         """The evidence without the samples that cannot be predicted."""
         return replace(self, counted=self.counted & predictable)

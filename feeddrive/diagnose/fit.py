@@ -19,7 +19,7 @@ from feeddrive.diagnose.coordinates import read_coordinates, write_coordinates
 from feeddrive.diagnose.evidence import Evidence
 from feeddrive.diagnose.predictor import Machine, Predictor
 from feeddrive.effects.base import Effect
-from feeddrive.typing import BoolArray, FloatArray
+from feeddrive.typing import FloatArray
 
 DIFFERENCE = 1e-4
 """Step of the differences in coordinates of size one."""
@@ -68,24 +68,16 @@ class Problem:
     evidence: tuple[Evidence, ...]
     predictor: Predictor[Any, Any]
 
-    def weighted(self, series: dict[str, FloatArray], evidence: Evidence, rows: BoolArray) -> FloatArray:
-        """Channels of one recording at some samples, over their noise, one after the other."""
-        parts = []
-        for name in evidence.channels:
-            part = series[name][rows] / evidence.noise[name]
-            parts.append(part - np.mean(part) if name in evidence.floating else part)
-        return np.concatenate(parts)
-
     def predicted(self, effects: Sequence[Effect]) -> FloatArray:
         """Weighted prediction at the fitted samples of all recordings."""
         plant = self.plant.with_effects(*effects)
         return np.concatenate(
-            [self.weighted(self.predictor.predict(plant, e), e, e.thinned(e.fit_rows)) for e in self.evidence]
+            [e.weighted(self.predictor.predict(plant, e), e.thinned(e.fit_rows)) for e in self.evidence]
         )
 
     def measured(self) -> FloatArray:
         """Weighted measurement at the fitted samples of all recordings."""
-        return np.concatenate([self.weighted(e.measured, e, e.thinned(e.fit_rows)) for e in self.evidence])
+        return np.concatenate([e.weighted(e.measured, e.thinned(e.fit_rows)) for e in self.evidence])
 
     def residual(self, effects: Sequence[Effect]) -> FloatArray:
         """Weighted residual at the fitted samples of all recordings."""

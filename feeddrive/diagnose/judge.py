@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from feeddrive.diagnose.cross_validation import Comparison, compare_left_out, model_error_square
+from feeddrive.diagnose.cross_validation import Comparison, compare_left_out, gain_of_model_error, model_error_rows
 from feeddrive.diagnose.evidence import Evidence
 from feeddrive.diagnose.fit import Problem, fit
 from feeddrive.diagnose.predictor import Machine
@@ -94,9 +94,10 @@ def judged_residual(problem: Problem, plant_of: Sequence[tuple[Machine, Evidence
     residuals, numbers, first = [], [], 0
     for plant, evidence in plant_of:
         errors = error_series(problem, plant, evidence)
-        rows = np.flatnonzero(evidence.judged_rows)
-        blocks = (rows * evidence.recording.sample_time / evidence.block).astype(np.int64)
-        residuals += [error[rows] / evidence.noise[name] for name, error in errors.items()]
+        blocks = (np.flatnonzero(evidence.judged_rows) * evidence.recording.sample_time / evidence.block).astype(
+            np.int64
+        )
+        residuals.append(evidence.weighted(errors, evidence.judged_rows))
         numbers += [first + blocks] * len(errors)
         first += int(blocks.max(initial=-1)) + 1
     return np.concatenate(residuals), np.concatenate(numbers)
@@ -145,11 +146,10 @@ def share_of(problem: Problem, judged: Sequence[Judged], effects: Sequence[Effec
     }
     before, blocks = judged_residual(problem, lacking)
     after, _ = judged_residual(problem, having)
-    total = float(before @ before)
-    model = sum(model_error_square(j.evidence, j.evidence.judged_rows) for j in judged)
-    comparison = compare_left_out(before, after, blocks, model / total)
+    rows = model_error_rows([j.evidence for j in judged], [j.evidence.judged_rows for j in judged])
+    comparison = compare_left_out(before, after, blocks, gain_of_model_error(rows, before, after))
     # of a difference d the chance part of the gain scatters by 2 |d|, so this is |d|
-    predicted, chance = float(np.sum((before - after) ** 2)), comparison.standard_error * total
+    predicted, chance = float(np.sum((before - after) ** 2)), comparison.standard_error * float(before @ before)
     return Share(explains, comparison, 2 * predicted / chance if chance > 0 else float("inf"))
 
 

@@ -96,7 +96,7 @@ def _linear_pair(first: Attempt, second: Attempt, found: Fit) -> Comparison:
     step = np.linalg.lstsq(jacobian, first.fit.residual, rcond=1e-10)[0]
     together = left_out_residual(first.fit.residual - jacobian @ step, jacobian, blocks)
     before = left_out_residual(found.residual, found.jacobian, blocks)
-    return compare_left_out(before, together, blocks, least_gain(first.problem, before))
+    return compare_left_out(before, together, blocks, least_gain(first.problem, before, together))
 
 
 def _own_columns(attempt: Attempt) -> FloatArray:

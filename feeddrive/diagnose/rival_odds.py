@@ -1,12 +1,14 @@
 """How much the data speak for an effect against a rival in its place, and how far apart the two are.
 
-    Lambda = (|r_B|^2 - |r_A|^2) / c + 2 (k_B - k_A),  c = d' Gamma d / d'd,  d = r_B - r_A,  distance = |d| / sqrt(c)
+    Lambda = (|r_B|^2 - |r_A|^2) / c + 2 (k_B - k_A),    distance = |d| / sqrt(c)
+    d = r_B - r_A,    c = d' (Gamma + M) d / d'd
 
 | symbol | meaning | unit |
 |---|---|---|
 | r_A, r_B | weighted residuals with the effect taken and with its rival, all others refitted; all recordings | 1 |
 | k_A, k_B | coordinates fitted; each takes one of Lambda from the fitted data, and adds one on others (Akaike) | 1 |
 | Gamma | covariance of the residual, from its spectrum (`noise_colour`) | 1 |
+| M | what the model itself may miss, a bound of 95 % in every channel (`model_error_rows`) | 1 |
 | c | variance of what the noise adds to a sum along d, over that of white noise of variance one | 1 |
 
 Lambda is twice the logarithm of the odds for the effect taken. Valid where both fits are at their optimum.
@@ -20,6 +22,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from feeddrive.diagnose.cross_validation import model_error_rows
 from feeddrive.diagnose.fit import Fit, Problem
 from feeddrive.diagnose.judge import Judged, error_series
 from feeddrive.diagnose.noise_colour import score_covariance
@@ -45,8 +48,7 @@ class Residuals:
 def _thinned_error(problem: Problem, plant: Machine, judged: Judged) -> FloatArray:
     evidence = judged.evidence
     errors = error_series(problem, plant, evidence)
-    rows = evidence.thinned(evidence.judged_rows)
-    return np.concatenate([errors[name][rows] / evidence.noise[name] for name in evidence.channels])
+    return evidence.weighted(errors, evidence.thinned(evidence.judged_rows))
 
 
 def odds_and_distance(
@@ -70,6 +72,8 @@ def odds_and_distance(
         excess += float(other @ other - left @ left)
         square += float(difference @ difference)
         scatter += float(score_covariance(evidence, rows, left, difference[:, None])[0, 0])
+        model = model_error_rows(evidence, [e.thinned(r) for e, r in zip(evidence, rows, strict=True)])
+        scatter += float(model @ difference**2) / 1.96**2
     if not scatter > 0:
         return (0.0, 0.0) if square == 0 else (excess, float("inf"))
     colour = scatter / square

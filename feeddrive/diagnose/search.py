@@ -219,7 +219,7 @@ def _without_idle(problem: Problem, found: Fit, proved: int) -> Fit:
             continue
         rest = fit(problem, found.effects[:i] + found.effects[i + 1 :], iterations=JOINT_ITERATIONS)
         without = left_out_residual(rest.residual, rest.jacobian, blocks)
-        gain = compare_left_out(without, errors, blocks, least_gain(problem, without))
+        gain = compare_left_out(without, errors, blocks, least_gain(problem, without, errors))
         if not gain.pays:
             return _without_idle(problem, fit(problem, rest.effects, iterations=JOINT_ITERATIONS), proved)
     return found

@@ -37,7 +37,7 @@ def still_needed(problem: Problem, found: Fit) -> Fit:
             continue
         rest = fit(problem, bound.effects, iterations=STEPS)
         without = left_out_residual(rest.residual, rest.jacobian, blocks)
-        comparison = compare_left_out(without, errors, blocks, least_gain(problem, without))
+        comparison = compare_left_out(without, errors, blocks, least_gain(problem, without, errors))
         if not comparison.pays:
             offers.append((comparison.gain, rest))
     if not offers:

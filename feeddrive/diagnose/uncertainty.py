@@ -11,9 +11,9 @@ see widen a coordinate's interval:
   they count correlation of any form, but are few, so that alone they would make every interval wide and uncertain.
 
 Intervals use Student's t with the degrees of freedom of whichever is used. What the model itself may miss (thermal
-plants) is added as the worst it can do to a coordinate: an error of that rms along the one direction of the residual
-that moves it, taken as a bound of 95 %. Logarithmic coordinates give intervals that are a factor to either side; all
-end at the parameter's physical range.
+plants) is added as the worst it can do to a coordinate: in every channel an error of that rms along the one direction
+of the residual that moves it, taken as a bound of 95 %; errors of two channels are independent. Logarithmic
+coordinates give intervals that are a factor to either side; all end at the parameter's physical range.
 Source: Priestley, Spectral Analysis and Time Series (1981), section 7.8; Liang and Zeger, Biometrika 73 (1986) 13 and
 Newey and West, Econometrica 55 (1987) 703 (blocks).
 """
@@ -27,7 +27,7 @@ from scipy.stats import chi2
 from scipy.stats import t as student
 
 from feeddrive.diagnose.coordinates import LOGARITHMIC, spread_to_values, write_coordinates
-from feeddrive.diagnose.cross_validation import block_numbers, model_share
+from feeddrive.diagnose.cross_validation import block_numbers, model_error_rows
 from feeddrive.diagnose.fit import DIFFERENCE, Fit, Problem
 from feeddrive.diagnose.information import inverse_information
 from feeddrive.diagnose.noise_colour import fitted_away, score_covariance, spectral_freedom
@@ -70,6 +70,7 @@ def certainty(problem: Problem, fitted: Fit) -> Certainty:
     rows = [evidence.fit_rows for evidence in problem.evidence]
     middle = score_covariance(problem.evidence, rows, fitted.residual, jacobian)
     influence = jacobian @ inverse
+    model = model_error_rows(problem.evidence, [e.thinned(e.fit_rows) for e in problem.evidence])
     covariance = inverse @ middle @ inverse
     missed = np.diag(inverse @ fitted_away(problem.evidence, rows, jacobian, inverse) @ inverse)
     widened = np.sqrt(_where_it_matters(problem, fitted.residual, influence) / _left(missed, np.diag(inverse)))
@@ -78,7 +79,7 @@ def certainty(problem: Problem, fitted: Fit) -> Certainty:
     spread = np.diag(covariance)
     believed = blocks > spread * chi2.ppf(BEYOND_CHANCE, freedom) / freedom
     more = np.sqrt(np.where(believed & (spread > 0), blocks / np.where(spread > 0, spread, 1.0), 1.0))
-    covariance = covariance * np.outer(more, more) + model_share(problem) / 1.96**2 * inverse
+    covariance = covariance * np.outer(more, more) + influence.T @ (model[:, None] * influence) / 1.96**2
     reach = student.ppf(0.975, np.where(believed, freedom, max(spectral_freedom(problem.evidence, rows), 2.0)))
     return Certainty(covariance, reach)
 

@@ -73,7 +73,7 @@ def noise_floor(evidence: Evidence, channel: str, radius: float = 0.0) -> Floor:
         channel: its name.
         radius: travel per motor angle [m/rad] by which the angle's steps show in the channel; 0 where they do not.
     """
-    noise, missed = evidence.noise[channel], evidence.model_error.get(channel, 0.0)
+    noise, missed = evidence.noise[channel], evidence.missed(channel)
     if not isinstance(evidence, AxisEvidence):
         return Floor(math.hypot(noise, missed), 0.1 * noise)
     samples = max(16, int(NOISE_BLOCK / evidence.recording.sample_time))

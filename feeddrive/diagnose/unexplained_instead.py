@@ -154,7 +154,7 @@ def _needed_beside(problem: Problem, effects: Sequence[Effect], table: Tabulated
         rest = fit(problem, kept.effects[:place] + kept.effects[place + 1 :], iterations=ITERATIONS)
         without = left_out_residual(rest.residual, rest.jacobian, blocks)
         having = left_out_residual(kept.residual, kept.jacobian, blocks)
-        if compare_left_out(without, having, blocks, least_gain(problem, without)).pays:
+        if compare_left_out(without, having, blocks, least_gain(problem, without, having)).pays:
             place += 1
         else:
             kept = rest
