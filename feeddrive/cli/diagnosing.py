@@ -11,8 +11,8 @@ from rich.table import Table
 
 from feeddrive.cli.machine import read_machine
 from feeddrive.diagnose.diagnosis import diagnose
-from feeddrive.diagnose.ledger import FileUse, RunFiles, runs_of, write_ledger
-from feeddrive.diagnose.ledger_continued import Earlier, changed_since
+from feeddrive.diagnose.ledger.continued import Earlier, changed_since
+from feeddrive.diagnose.ledger.ledger import FileUse, RunFiles, runs_of, write_ledger
 from feeddrive.diagnose.outputs import diagnosis_json, write_outputs
 from feeddrive.diagnose.result import Diagnosis
 from feeddrive.effects.base import Effect

@@ -6,8 +6,8 @@ position, velocities and stiffnesses from a short scan. Each candidate then is r
 
 from __future__ import annotations
 
-from feeddrive.diagnose import needs, starts, starts_drift, starts_drive, starts_mode, starts_transmission
 from feeddrive.diagnose.scene import Candidate
+from feeddrive.diagnose.starts import drift, drive, mode, needs, starts, transmission
 from feeddrive.effects.constant_force import ConstantForce
 from feeddrive.effects.coulomb_asymmetry import CoulombAsymmetry
 from feeddrive.effects.lead_error_cumulative import LeadErrorCumulative
@@ -19,28 +19,28 @@ from feeddrive.effects.viscous_asymmetry import ViscousAsymmetry
 CANDIDATES: tuple[Candidate, ...] = (
     Candidate("friction_deviation", starts.deviation, needs.force),
     Candidate("constant_force", starts.plain(ConstantForce.of(force=0.0)), needs.force),
-    Candidate("position_spring", starts_drift.position_spring, needs.force_stroke),
+    Candidate("position_spring", drift.position_spring, needs.force_stroke),
     Candidate("coulomb_asymmetry", starts.plain(CoulombAsymmetry.of(delta_force=0.0)), needs.friction),
     Candidate("viscous_asymmetry", starts.plain(ViscousAsymmetry.of(delta_viscous=0.0)), needs.friction),
-    Candidate("viscous_warmup", starts_drift.viscous_warmup, needs.force_duration),
+    Candidate("viscous_warmup", drift.viscous_warmup, needs.force_duration),
     Candidate("load_dependent_friction", starts.plain(LoadDependentFriction.of(coefficient=0.0)), needs.screw_drag),
     Candidate("stribeck", starts.stribeck, needs.friction),
     Candidate("presliding", starts.presliding, needs.friction_reversals, scanned=True),
     Candidate("friction_vs_position", starts.over_position, needs.friction),
     Candidate("torque_ripple", starts.ripple, needs.torque_turns),
-    Candidate("ball_pass_ripple", starts_drift.ball_pass_ripple, needs.screw_drag_turns),
+    Candidate("ball_pass_ripple", drift.ball_pass_ripple, needs.screw_drag_turns),
     Candidate("lead_error_periodic", starts.lead_error, needs.lead),
     Candidate("lead_error_cumulative", starts.plain(LeadErrorCumulative.of(slope=0.0)), needs.scale),
-    Candidate("thermal_growth", starts_drift.thermal_growth, needs.scale_duration),
+    Candidate("thermal_growth", drift.thermal_growth, needs.scale_duration),
     Candidate("stiffness_deviation", starts.plain(StiffnessDeviation.of(factor=1.0)), needs.elastic),
-    Candidate("stiffness_vs_position", starts_transmission.stiffness_vs_position, needs.elastic_stroke),
-    Candidate("preload_loss", starts_transmission.preload_loss, needs.elastic, scanned=True),
+    Candidate("stiffness_vs_position", transmission.stiffness_vs_position, needs.elastic_stroke),
+    Candidate("preload_loss", transmission.preload_loss, needs.elastic, scanned=True),
     Candidate("backlash", starts.backlash, needs.gap, scanned=True),
     Candidate("payload", starts.plain(Payload.of(mass=0.0)), needs.force),
-    Candidate("structural_mode", starts_mode.structural_mode, needs.elastic, scanned=True, brief=True),
-    Candidate("inertia_deviation", starts_drive.inertia, needs.torque_inertia),
-    Candidate("torque_constant_droop", starts_drive.droop, needs.torque),
-    Candidate("drive_delay", starts_drive.drive_delay, needs.torque),
-    Candidate("channel_delay", starts_drive.channel_delay, needs.nothing),
+    Candidate("structural_mode", mode.structural_mode, needs.elastic, scanned=True, brief=True),
+    Candidate("inertia_deviation", drive.inertia, needs.torque_inertia),
+    Candidate("torque_constant_droop", drive.droop, needs.torque),
+    Candidate("drive_delay", drive.drive_delay, needs.torque),
+    Candidate("channel_delay", drive.channel_delay, needs.nothing),
 )
 """Effects that `diagnose` tries, and how."""

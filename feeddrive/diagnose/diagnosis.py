@@ -7,31 +7,31 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from feeddrive.diagnose.ambiguity import Rival, ambiguous_sets, other_places, rivals_of, with_the_simplest
-from feeddrive.diagnose.correlation import correlation
+from feeddrive.diagnose.certainty.ambiguity import Rival, ambiguous_sets, other_places, rivals_of, with_the_simplest
+from feeddrive.diagnose.certainty.correlation import correlation
+from feeddrive.diagnose.certainty.next_experiment import next_experiments
+from feeddrive.diagnose.certainty.uncertainty import certainty, intervals
 from feeddrive.diagnose.effect_results import effect_results, refused_effects
 from feeddrive.diagnose.evidence import Evidence
 from feeddrive.diagnose.fit import Problem
 from feeddrive.diagnose.judge import Judged, channel_results, judged_recordings, prepared_for_judging, share_of
-from feeddrive.diagnose.ledger_entry import kept_of
-from feeddrive.diagnose.loop_evidence import refuse_unfit_loop
-from feeddrive.diagnose.needs import WITHOUT_TORQUE
-from feeddrive.diagnose.next_experiment import next_experiments
+from feeddrive.diagnose.ledger.entry import kept_of
 from feeddrive.diagnose.preparation import prepared
-from feeddrive.diagnose.recordings import without_shifts
-from feeddrive.diagnose.recordings_compared import compared_recordings, last_state, machine_as_last, with_carrying
-from feeddrive.diagnose.recordings_search import Searched, search_recordings
-from feeddrive.diagnose.refinement import Refinement, refined
-from feeddrive.diagnose.rehoming import rehomed_plant
+from feeddrive.diagnose.recordings.compared import compared_recordings, last_state, machine_as_last, with_carrying
+from feeddrive.diagnose.recordings.recordings import without_shifts
+from feeddrive.diagnose.recordings.rehoming import rehomed_plant
+from feeddrive.diagnose.recordings.search import Searched, search_recordings
 from feeddrive.diagnose.result import (
     Diagnosis,
     FileStamp,
 )
 from feeddrive.diagnose.search import Search
+from feeddrive.diagnose.simulated.loop_evidence import refuse_unfit_loop
+from feeddrive.diagnose.simulated.refinement import Refinement, refined
+from feeddrive.diagnose.starts.needs import WITHOUT_TORQUE
 from feeddrive.diagnose.torque_channel import without_torque_sentence
-from feeddrive.diagnose.uncertainty import certainty, intervals
-from feeddrive.diagnose.unexplained import explain_rest
-from feeddrive.diagnose.unexplained_instead import without_stand_ins
+from feeddrive.diagnose.unexplained.instead import without_stand_ins
+from feeddrive.diagnose.unexplained.unexplained import explain_rest
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant

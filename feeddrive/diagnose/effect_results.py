@@ -6,12 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from feeddrive.diagnose.certainty.uncertainty import Interval
 from feeddrive.diagnose.cross_validation import LEAST_GAIN
 from feeddrive.diagnose.judge import Share
 from feeddrive.diagnose.physical_reading import physical_reading
 from feeddrive.diagnose.result import EffectResult, ParameterResult, RefusedEffect
 from feeddrive.diagnose.search import Search
-from feeddrive.diagnose.uncertainty import Interval
 from feeddrive.effects.base import Effect
 
 

@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 
 from feeddrive import __version__
-from feeddrive.diagnose.change_outputs import changes_record
+from feeddrive.diagnose.recordings.change_outputs import changes_record
 from feeddrive.diagnose.result import ChannelResult, Diagnosis, EffectResult, ErrorFigures, ParameterResult
-from feeddrive.diagnose.simulation_record import simulation_record
-from feeddrive.diagnose.unexplained_outputs import carried_remarks, unexplained_record
+from feeddrive.diagnose.simulated.simulation_record import simulation_record
+from feeddrive.diagnose.unexplained.outputs import carried_remarks, unexplained_record
 from feeddrive.effects.base import Effect
 from feeddrive.files import write_text_atomically
 from feeddrive.plant.effect_text import plant_text_with_effects

@@ -1,6 +1,6 @@
 """What the search needs to know of a kind of machine: how recordings are predicted, and which effects are tried.
 
-Two kinds are known: motion and torque (`prediction`) and temperatures and growth (`heat_prediction`). Search, fit,
+Two kinds are known: motion and torque (`prediction`) and temperatures and growth (`heat.prediction`). Search, fit,
 cross-validation and judging are the same for both.
 """
 

@@ -9,8 +9,8 @@ import numpy as np
 
 from feeddrive.diagnose.evidence import AxisEvidence, Evidence, prepare
 from feeddrive.diagnose.fit import Problem
-from feeddrive.diagnose.heat_evidence import left_out_channels, prepare_heat, within_range
-from feeddrive.diagnose.heat_prediction import heat_predictor
+from feeddrive.diagnose.heat.evidence import left_out_channels, prepare_heat, within_range
+from feeddrive.diagnose.heat.prediction import heat_predictor
 from feeddrive.diagnose.prediction import AxisPredictor
 from feeddrive.diagnose.torque_channel import refuse_what_is_no_torque
 from feeddrive.errors import InputError

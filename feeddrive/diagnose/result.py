@@ -6,12 +6,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from feeddrive.diagnose.certainty_result import Ambiguity, Correlation, NextExperiment
-from feeddrive.diagnose.change_result import RecordingChanges
-from feeddrive.diagnose.ledger_result import Kept
-from feeddrive.diagnose.simulation_result import SimulationResult as SimulationResult
-from feeddrive.diagnose.unexplained_result import Dependence as Dependence
-from feeddrive.diagnose.unexplained_result import Unexplained as Unexplained
+from feeddrive.diagnose.certainty.certainty_result import Ambiguity, Correlation, NextExperiment
+from feeddrive.diagnose.ledger.result import Kept
+from feeddrive.diagnose.recordings.change_result import RecordingChanges
+from feeddrive.diagnose.simulated.simulation_result import SimulationResult as SimulationResult
+from feeddrive.diagnose.unexplained.result import Dependence as Dependence
+from feeddrive.diagnose.unexplained.result import Unexplained as Unexplained
 from feeddrive.typing import FloatArray
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from feeddrive.diagnose.certainty_result import Ambiguity, Correlation, NextExperiment
+from feeddrive.diagnose.certainty.certainty_result import Ambiguity, Correlation, NextExperiment
 from feeddrive.diagnose.result import Diagnosis
 from feeddrive.report.markup import Cell, bullets, number, paragraph, section, table, text, words
 from feeddrive.report.people import DASH, significant

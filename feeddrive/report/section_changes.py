@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from feeddrive.diagnose.change_result import CommonTrial, Measure, ParameterChange, PerRecording
+from feeddrive.diagnose.recordings.change_result import CommonTrial, Measure, ParameterChange, PerRecording
 from feeddrive.diagnose.result import Diagnosis, ParameterResult
 from feeddrive.report.markup import bullets, number, paragraph, section, table, words
 from feeddrive.report.parameters import parameter_text

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from feeddrive.diagnose.result import ChannelResult, Diagnosis
-from feeddrive.diagnose.unexplained_result import Carried, Dependence, Unexplained
+from feeddrive.diagnose.unexplained.result import Carried, Dependence, Unexplained
 from feeddrive.report.markup import Cell, bullets, catalogue_name, number, paragraph, section, table, words
 from feeddrive.report.people import DASH, error_text, fixed, share_text
 from feeddrive.report.words import joined, plain, variable_words

@@ -6,8 +6,15 @@ from pathlib import Path
 
 import pytest
 
-from feeddrive.diagnose.change_words import Moved, change_reading, change_statement
-from feeddrive.diagnose.recordings import RecordingShift, in_recording, is_shift, shift_of, target_of, without_shifts
+from feeddrive.diagnose.recordings.change_words import Moved, change_reading, change_statement
+from feeddrive.diagnose.recordings.recordings import (
+    RecordingShift,
+    in_recording,
+    is_shift,
+    shift_of,
+    target_of,
+    without_shifts,
+)
 from feeddrive.effects.backlash import Backlash
 from feeddrive.effects.base import Effect, Port
 from feeddrive.effects.friction_deviation import FrictionDeviation

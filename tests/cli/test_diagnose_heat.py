@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from feeddrive.cli.main import main
-from feeddrive.diagnose.heat_evidence import prepare_heat
-from feeddrive.diagnose.heat_prediction import heat_predictor
+from feeddrive.diagnose.heat.evidence import prepare_heat
+from feeddrive.diagnose.heat.prediction import heat_predictor
 from feeddrive.files import plants_folder
 from feeddrive.recording import read_recording
 from feeddrive.thermal.files import read_thermal_plant

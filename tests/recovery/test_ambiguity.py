@@ -7,15 +7,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from feeddrive.diagnose.ambiguity import ambiguous_sets, at_its_limit, rivals_of, with_the_simplest
+from feeddrive.diagnose.certainty.ambiguity import ambiguous_sets, at_its_limit, rivals_of, with_the_simplest
+from feeddrive.diagnose.certainty.next_experiment import distance, hardly_known, next_experiments
+from feeddrive.diagnose.certainty.noise_colour import independent_share
+from feeddrive.diagnose.certainty.rehearsal import Rehearsal, moving_inertia, rehearsals
 from feeddrive.diagnose.cross_validation import compare_left_out
 from feeddrive.diagnose.evidence import AxisEvidence, prepare
 from feeddrive.diagnose.fit import Problem, fit
 from feeddrive.diagnose.judge import share_of
-from feeddrive.diagnose.next_experiment import distance, hardly_known, next_experiments
-from feeddrive.diagnose.noise_colour import independent_share
 from feeddrive.diagnose.prediction import AxisPredictor
-from feeddrive.diagnose.rehearsal import Rehearsal, moving_inertia, rehearsals
 from feeddrive.effects.base import Effect, Port
 from feeddrive.effects.catalogue import EFFECTS
 from tests.recovery.drawn import drawn, settled

@@ -15,12 +15,12 @@ import numpy as np
 import pytest
 from scipy import signal
 
+from feeddrive.diagnose.certainty.information import cramer_rao
+from feeddrive.diagnose.certainty.uncertainty import certainty, intervals
 from feeddrive.diagnose.coordinates import read_coordinates
 from feeddrive.diagnose.evidence import AxisEvidence, prepare
 from feeddrive.diagnose.fit import Fit, Problem, fit
-from feeddrive.diagnose.information import cramer_rao
 from feeddrive.diagnose.prediction import AxisPredictor
-from feeddrive.diagnose.uncertainty import certainty, intervals
 from feeddrive.effects.base import Effect
 from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.typing import FloatArray

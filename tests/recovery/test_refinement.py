@@ -13,14 +13,14 @@ from feeddrive.compiler import find_compiler
 from feeddrive.diagnose.evidence import Evidence
 from feeddrive.diagnose.fit import fit
 from feeddrive.diagnose.judge import Judged, prepared_for_judging
-from feeddrive.diagnose.loop_evidence import loop_evidence
-from feeddrive.diagnose.loop_fit import LoopProblem, alike, foretold, loop_problem
 from feeddrive.diagnose.preparation import prepared
-from feeddrive.diagnose.refinement import DELAYED, Outcome, Refinement, refined, why_not_kept
 from feeddrive.diagnose.search import Search
-from feeddrive.diagnose.simulation import before_and_after
-from feeddrive.diagnose.simulation_record import simulation_record
-from feeddrive.diagnose.simulation_result import ErrorFigure
+from feeddrive.diagnose.simulated.loop_evidence import loop_evidence
+from feeddrive.diagnose.simulated.loop_fit import LoopProblem, alike, foretold, loop_problem
+from feeddrive.diagnose.simulated.refinement import DELAYED, Outcome, Refinement, refined, why_not_kept
+from feeddrive.diagnose.simulated.simulation import before_and_after
+from feeddrive.diagnose.simulated.simulation_record import simulation_record
+from feeddrive.diagnose.simulated.simulation_result import ErrorFigure
 from feeddrive.effects.base import Effect
 from feeddrive.effects.drive_delay import DriveDelay
 from feeddrive.effects.payload import Payload

@@ -11,11 +11,11 @@ import dataclasses
 import numpy as np
 import pytest
 
-from feeddrive.diagnose import starts_mode, starts_transmission
 from feeddrive.diagnose.diagnosis import diagnose
 from feeddrive.diagnose.evidence import prepare
 from feeddrive.diagnose.fit import Problem, fit
 from feeddrive.diagnose.prediction import AxisPredictor
+from feeddrive.diagnose.starts import mode, transmission
 from feeddrive.effects.base import Effect
 from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.recording import Recording
@@ -27,9 +27,9 @@ from tests.recovery.planted import SIZE, Verdict, axis_plant, declared_errors
 
 SECONDS = (7.0, 6.0)
 STARTS = {
-    "preload_loss": starts_transmission.preload_loss,
-    "stiffness_vs_position": starts_transmission.stiffness_vs_position,
-    "structural_mode": starts_mode.structural_mode,
+    "preload_loss": transmission.preload_loss,
+    "stiffness_vs_position": transmission.stiffness_vs_position,
+    "structural_mode": mode.structural_mode,
 }
 LOADS = {"bench": (16.0, 150.0), "light": (7.0, 90.0)}
 """Mass of a fixture [kg], and a preload that is lost [N]."""

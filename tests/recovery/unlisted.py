@@ -12,8 +12,8 @@ from feeddrive.diagnose.fit import Problem
 from feeddrive.diagnose.judge import Judged, channel_results, prepared_for_judging
 from feeddrive.diagnose.prediction import AxisPredictor
 from feeddrive.diagnose.result import ChannelResult
-from feeddrive.diagnose.unexplained import Rest, explain_rest
-from feeddrive.diagnose.unexplained_result import Dependence
+from feeddrive.diagnose.unexplained.result import Dependence
+from feeddrive.diagnose.unexplained.unexplained import Rest, explain_rest
 from feeddrive.recording import Recording
 from tests.generator.axis import AXES
 from tests.generator.effects import Effect

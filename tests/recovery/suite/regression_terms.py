@@ -13,7 +13,7 @@ import numpy as np
 from scipy.signal import lfilter
 
 from feeddrive.diagnose.evidence import AxisEvidence, Evidence
-from feeddrive.diagnose.heat_evidence import HeatEvidence
+from feeddrive.diagnose.heat.evidence import HeatEvidence
 from tests.generator.axis import AxisParameters
 
 Terms = dict[str, np.ndarray]

@@ -1,0 +1,1 @@
+"""How sure a diagnosis is: intervals, correlations, effects that look alike, and the experiment that settles it."""

@@ -1,0 +1,1 @@
+"""Several recordings of one machine: what they share, and what changed from one to the next."""
