@@ -41,7 +41,7 @@ class Mesh:
         along, across: conductances between neighbours along the axis, over the radius [W/K], per ring.
         volume: of a cell of each ring [m³].
         spacing: length of a cell [m].
-        half: half the thickness of a ring [m].
+        half: depth at which the mean of the ring at a surface is found [m].
     """
 
     along: np.ndarray
@@ -56,7 +56,9 @@ def _mesh(inner: float, outer: float, rings: int, length: float, cells: int) -> 
     spacing, width = length / cells, (outer - inner) / rings
     area = math.pi * np.diff(faces**2)
     across = CONDUCTIVITY * 2 * math.pi * faces[1:-1] * spacing / width
-    return Mesh(CONDUCTIVITY * area / spacing, across, area * spacing, spacing, width / 2)
+    # A shaft that warms evenly has a parabola over its radius: there the mean of the last ring lies this deep.
+    half = (outer**2 - faces[-2] ** 2) / (4 * outer) if inner == 0 else width / 2
+    return Mesh(CONDUCTIVITY * area / spacing, across, area * spacing, spacing, half)
 
 
 def mean_overlap(centres: int = 4000) -> np.ndarray:

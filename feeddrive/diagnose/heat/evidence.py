@@ -29,10 +29,9 @@ HEAT_BLOCK = 900.0
 FEWEST_ROWS = 60
 """Rows from which an effect can be told from noise at all."""
 
-GAIN_ERROR = 2e-3
-"""Standard deviation of a sensor's gain, what the model misses in proportion to a rise included: a class A thermometer
-(IEC 60751) has 0.2 %, two careful models of one rig differ by up to 0.16 %. An effect that would only scale a channel
-is not told from it."""
+GAIN_ERROR = 1e-3
+"""Standard deviation of what sensor and model miss in proportion to a rise: two careful models of one rig differ by 0.09
+and 0.14 % of it, thermometers by as much. An effect that would only scale a channel by so little is not told from it."""
 
 MODEL_ERROR = {"degC": 4e-3, "m": 1e-8}
 """What two careful models of one rig differ by beside a gain [K, m]: grids, rows, laws between their nodes. It is added

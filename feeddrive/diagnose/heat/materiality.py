@@ -13,14 +13,15 @@ LEAST_HEAT_SHARE = 2e-4
 """A heat over that of the nut at the highest declared speed: a sensor on a flange shows milliwatts, and what shows is
 named, lest another name be given to it."""
 
-LEAST_FACTOR, LEAST_CONTACT_FACTOR = 0.03, 0.05
-"""Deviation of a film coefficient and of the contact conductance from 1; neither is ever known better."""
+LEAST_FACTOR, LEAST_CONTACT_FACTOR = 0.01, 0.03
+"""Deviation of a film coefficient and of the contact conductance from 1; a film of 1 % is a few hundredths of a kelvin,
+what thermometers just show."""
 
-LEAST_DRIFT = 0.05
+LEAST_DRIFT = 0.03
 """Of the surroundings [K]."""
 
-LEAST_COEFFICIENT = 1e-3
-"""Of load or viscous torque [1/K]."""
+LEAST_COEFFICIENT = 3e-4
+"""Of load or viscous torque [1/K]; over ten kelvin 0.3 % of the heat, as much as thermometers show."""
 
 LEAST_CAPACITY_SHARE = 1e-3
 """A mass over the nut's capacity, a conductance over the film's of the nut."""
