@@ -30,8 +30,8 @@ FEWEST_ROWS = 60
 """Rows from which an effect can be told from noise at all."""
 
 GAIN_ERROR = 1e-3
-"""Standard deviation of what sensor and model miss in proportion to a rise: two careful models of one rig differ by 0.09
-and 0.14 % of it, thermometers by as much. An effect that would only scale a channel by so little is not told from it."""
+"""Standard deviation of what sensor and model miss in proportion to a rise: two careful models of one rig differ by
+0.09 and 0.14 %, thermometers by as much. An effect that would only scale a channel by so little is not told from it."""
 
 MODEL_ERROR = {"degC": 4e-3, "m": 1e-8}
 """What two careful models of one rig differ by beside a gain [K, m]: grids, rows, laws between their nodes. It is added
