@@ -27,6 +27,12 @@ DRIFT_NODES = 9
 PERIODS = (0.25, 0.4, 0.6, 1.0, 1.6, 2.5, 4.0)
 """Of sines of the surroundings, over the longest run."""
 
+CONDUCTANCES = (0.1, 0.003)
+"""Of coolants and masses at the nut [W/K]: as much as the film of a small nut, and what thermometers just show."""
+
+SINK_TIMES = (500.0, 2e3, 8e3, 3e4)
+"""Time constants of masses [s]."""
+
 GROWTH = "table_growth"
 
 
@@ -96,9 +102,9 @@ def ambient_drift(scene: Scene) -> list[list[Effect]]:
 
 
 def cooling(scene: Scene) -> list[list[Effect]]:
-    """A tenth of a watt per kelvin from several times on."""
+    """Strong and weak cooling from several times on; a strong one hides where a weak one began."""
     starts = np.linspace(0.0, 0.9, 13) * _duration(scene)
-    return [[Cooling.of(conductance=0.05, start=float(start)) for start in starts]]
+    return [[Cooling.of(conductance=k, start=float(start)) for start in starts] for k in CONDUCTANCES]
 
 
 def convection(scene: Scene) -> list[list[Effect]]:
@@ -112,8 +118,8 @@ def contact(scene: Scene) -> list[list[Effect]]:
 
 
 def heat_sink(scene: Scene) -> list[list[Effect]]:
-    """A loosely tied mass of several sizes."""
-    return [[HeatSink.of(conductance=0.1, capacity=capacity) for capacity in (50.0, 200.0, 800.0, 3000.0)]]
+    """A loosely tied mass of several time constants, strongly and weakly tied."""
+    return [[HeatSink.of(conductance=k, capacity=τ * k) for τ in SINK_TIMES] for k in CONDUCTANCES]
 
 
 def structure_growth(scene: Scene) -> list[list[Effect]]:
