@@ -48,10 +48,6 @@ SIGNIFICANCE = 1.5
 """Gain over its standard error that is asked for; the one-standard-error rule (Breiman et al., 1984, section
 3.4.3) and a half more, because a dozen candidates are tried a round."""
 
-CHANCE = 30.0
-"""Degrees of freedom of the noise that the luckiest wrong candidate takes away: 2 ln K for the best of K = 10^4 trials
-(orders, places, velocities) and two for each of its parameters, with a margin."""
-
 
 def block_numbers(problem: Problem) -> IntegerArray:
     """Block of every row of the residual, counted over all recordings; channels share their blocks. Shape (m,)."""
@@ -122,7 +118,7 @@ def least_gain(problem: Problem, before: FloatArray, after: FloatArray) -> float
         seconds = float(np.sum(evidence.fit_rows)) * evidence.recording.sample_time
         values += 2 * evidence.edge * seconds * len(evidence.channels)
     rows = model_error_rows(problem.evidence, [e.thinned(e.fit_rows) for e in problem.evidence])
-    return max(LEAST_GAIN, CHANCE / values, gain_of_model_error(rows, before, after))
+    return max(LEAST_GAIN, problem.predictor.chance / values, gain_of_model_error(rows, before, after))
 
 
 def model_error_rows(evidence: Sequence[Evidence], rows: Sequence[BoolArray]) -> FloatArray:

@@ -7,9 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from feeddrive.diagnose.certainty.ambiguity import Rival, ambiguous_sets, other_places, rivals_of, with_the_simplest
+from feeddrive.diagnose.certainty.ambiguity import Rival, ambiguous_sets, other_places, rivals_of
 from feeddrive.diagnose.certainty.correlation import correlation
 from feeddrive.diagnose.certainty.next_experiment import next_experiments
+from feeddrive.diagnose.certainty.preferred import with_the_preferred
 from feeddrive.diagnose.certainty.uncertainty import certainty, intervals
 from feeddrive.diagnose.effect_results import effect_results, refused_effects
 from feeddrive.diagnose.evidence import Evidence
@@ -141,9 +142,9 @@ def _settled(
     if (fewer := without_stand_ins(found, judged)) is not found:
         found = fewer
         judged, rehomed = _judged(found, evidence)
-    simplest, rivals = with_the_simplest(found, rivals_of(found, judged))
-    if simplest is not found:
-        found = simplest
+    preferred, rivals = with_the_preferred(found, rivals_of(found, judged))
+    if preferred is not found:
+        found = preferred
         judged, rehomed = _judged(found, evidence)
     refinement = Refinement(found, (judged, rehomed))
     if simulate:

@@ -18,6 +18,10 @@ if TYPE_CHECKING:
     from feeddrive.diagnose.fit import Problem
     from feeddrive.diagnose.scene import Candidate, Scene
 
+CHANCE = 30.0
+"""Degrees of freedom of the noise that the luckiest wrong candidate takes away: 2 ln K for the best of K = 10^4 trials
+(orders, places, velocities) and two for each of its three parameters, and a fifth more."""
+
 
 class Machine(Protocol):
     """A declared plant, of motion or of heat."""
@@ -39,6 +43,9 @@ class Predictor(ABC, Generic[M, E]):
 
     retries: ClassVar[int] = 0
     """How many other first effects are tried where the search leaves much unexplained."""
+
+    chance: ClassVar[float] = CHANCE
+    """Degrees of freedom of the noise that the luckiest wrong candidate takes away."""
 
     @property
     @abstractmethod

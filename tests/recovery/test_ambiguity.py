@@ -7,9 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from feeddrive.diagnose.certainty.ambiguity import ambiguous_sets, at_its_limit, rivals_of, with_the_simplest
+from feeddrive.diagnose.certainty.ambiguity import ambiguous_sets, at_its_limit, rivals_of
 from feeddrive.diagnose.certainty.next_experiment import distance, hardly_known, next_experiments
 from feeddrive.diagnose.certainty.noise_colour import independent_share
+from feeddrive.diagnose.certainty.preferred import with_the_preferred
 from feeddrive.diagnose.certainty.rehearsal import Rehearsal, moving_inertia, rehearsals
 from feeddrive.diagnose.cross_validation import compare_left_out
 from feeddrive.diagnose.evidence import AxisEvidence, prepare
@@ -75,7 +76,7 @@ def test_small_effect_is_not_alike_to_whatever_costs_less_than_5_per_cent() -> N
 
 def test_set_is_led_by_the_member_with_fewest_parameters() -> None:
     found, judged = settled([lead(1e-8)], [growth(1e-8, 1.0)], lead(1e-8), seed=3)
-    found, rivals = with_the_simplest(found, rivals_of(found, judged))
+    found, rivals = with_the_preferred(found, rivals_of(found, judged))
     assert [effect.name for effect in found.fit.effects] == ["lead_error_cumulative"]
     (one,) = ambiguous_sets(found, rivals)
     assert one.names == ("lead_error_cumulative", "thermal_growth")

@@ -9,7 +9,7 @@ the sets of all small effects, since to leave such an effect away altogether cos
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import log
 
 import numpy as np
@@ -19,11 +19,9 @@ from feeddrive.diagnose.certainty.certainty_result import Ambiguity
 from feeddrive.diagnose.certainty.imitations import imitations_of
 from feeddrive.diagnose.certainty.rival_odds import Residuals, odds_and_distance
 from feeddrive.diagnose.certainty.same_by_law import twins_of
-from feeddrive.diagnose.coordinates import LOGARITHMIC, read_coordinates
+from feeddrive.diagnose.coordinates import LOGARITHMIC
 from feeddrive.diagnose.fit import Fit, fit
 from feeddrive.diagnose.judge import Judged
-from feeddrive.diagnose.predictor import Machine
-from feeddrive.diagnose.recordings.recordings import is_shift
 from feeddrive.diagnose.search import Search
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
@@ -158,31 +156,6 @@ def at_its_limit(effect: Effect) -> bool:
             if value <= parameter.minimum * (1 + NEAR_END) or value >= parameter.maximum * (1 - NEAR_END):
                 return True
     return False
-
-
-def _simplicity(effect: Effect, plant: Machine) -> tuple[int, bool]:
-    """What comes first in a tie: fewest parameters, and none at an end of its range."""
-    return len(read_coordinates([effect], plant)), at_its_limit(effect)
-
-
-def with_the_simplest(found: Search, rivals: Sequence[list[Rival]]) -> tuple[Search, list[list[Rival]]]:
-    """The search and its rivals with the first effect replaced that has a simpler rival; else the same.
-
-    The search takes the simpler of two that tie when they are tried; later effects can make others tie.
-    """
-    plant = found.problem.plant
-    if any(is_shift(effect) for effect in found.fit.effects):
-        return found, list(rivals)  # what one recording has otherwise belongs to the effect taken
-    for place, alike in enumerate(rivals):
-        own = _simplicity(found.fit.effects[place], plant)
-        for simple in sorted(alike, key=lambda rival: _simplicity(rival.effect, plant)):
-            if _simplicity(simple.effect, plant) < own:
-                ousted = Rival(place, found.fit, -simple.odds, simple.distance, 1 / simple.error_ratio)
-                others = [replace(rival, odds=rival.odds - simple.odds) for rival in alike if rival is not simple]
-                rest = [rival for rival in (ousted, *others) if rival.as_good and not at_its_limit(rival.effect)]
-                refitted = fit(found.problem, simple.fit.effects)
-                return replace(found, fit=refitted), [*rivals[:place], rest, *rivals[place + 1 :]]
-    return found, list(rivals)
 
 
 def _near(found: Search, place: int) -> list[Attempt]:

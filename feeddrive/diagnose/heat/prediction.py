@@ -45,6 +45,7 @@ class HeatPredictor(Predictor[ThermalPlant, HeatEvidence]):
     """
 
     retries: ClassVar[int] = 4
+    chance: ClassVar[float] = 18.0  # as that of motion, of some hundred starts
 
     declared: ThermalPlant
     model: HeatModel

@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from feeddrive.diagnose.cross_validation import CHANCE, LEAST_GAIN, compare_left_out
+from feeddrive.diagnose.cross_validation import LEAST_GAIN, compare_left_out
+from feeddrive.diagnose.predictor import CHANCE
 from feeddrive.diagnose.unexplained.candidates import finer_steps, sines, terms_of
 from feeddrive.diagnose.unexplained.floor import Excess, excess
 from feeddrive.diagnose.unexplained.functional_anova import Decomposition, Found, decompose
