@@ -8,6 +8,7 @@ from typing import Self
 import numpy as np
 
 from feeddrive.diagnose.band import END_CUT, Band, comparison_band, held, sensor_noise
+from feeddrive.diagnose.slow_rows import is_slow, known_motion, refuse_unknown_motion, sentence
 from feeddrive.diagnose.torque_channel import with_torque
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
@@ -144,8 +145,14 @@ def prepare(recording: Recording, plant: Plant, share: float) -> AxisEvidence:
     band = comparison_band(plant, rate)
     time: FloatArray = np.arange(len(recording), dtype=np.float64) * recording.sample_time
     raw = {name: recording[name] for name in measured_names}
-    acting = {name: held(series) if name == "motor_torque" else series for name, series in raw.items()}
+    slow = is_slow(recording)
+    acting = {name: held(series) if name == "motor_torque" and not slow else series for name, series in raw.items()}
     counted = (time >= END_CUT) & (time <= time[-1] - END_CUT)
+    if slow:
+        known = known_motion(recording, plant, band)
+        refuse_unknown_motion(known, counted, recording)
+        recording = replace(recording, notes=(*recording.notes, sentence(known, recording)))
+        counted &= known
     return AxisEvidence(
         recording,
         {name: band.filter(series) for name, series in acting.items()},

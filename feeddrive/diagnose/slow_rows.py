@@ -1,0 +1,106 @@
+"""Recordings with fewer rows than the drive has cycles: what their torque is, and where the motion is known.
+
+A drive holds its torque for one cycle, so that a recording with one row a cycle tells all of it. Where rows are further
+apart, a row is the torque of that instant, and between two rows the motor may have done anything. Where it was smooth,
+the fourth difference of its angle is small:
+
+    delta a = |D4 theta| / (12 h^2),    delta T = J delta a,    delta x = m r delta a / k_XS
+
+| symbol | meaning | unit |
+|---|---|---|
+| D4 theta | fourth difference of the motor angle over the rows | rad |
+| h | time between rows | s |
+| delta a | error of the acceleration, that of the second difference | rad/s^2 |
+| delta T, delta x | what it misses of the torque, of the table position | N m, m |
+| J, m | inertia of all that moves, at the motor; table mass | kg m^2, kg |
+| r, k_XS | lead / 2 pi, axial stiffness | m/rad, N/m |
+
+Rows at which either is more than the noise of its sensor are left out, and those at which the torque jumps from row to
+row. Valid where what the drive does between rows shows at the rows; a vibration at a multiple of their rate does not.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.ndimage import binary_dilation, uniform_filter1d
+
+from feeddrive.diagnose.band import Band, white_noise
+from feeddrive.errors import InputError
+from feeddrive.plant.plant import Plant
+from feeddrive.recording import Recording
+from feeddrive.typing import BoolArray
+
+SLOWEST_CYCLE = 2e-3
+"""Cycle of a servo loop at most [s]: those of machine tools take 0.03 to 2 ms."""
+
+ROUGH = 4.5
+"""Fourth difference over its rms, beyond which it is no noise; of white noise none of 10^5 is."""
+
+VIBRATION = 2.0
+"""Length of stretches [s] of which nothing is kept where the torque jumps at half of their rows."""
+
+FEWEST_ROWS = 100
+"""Rows with known motion from which an effect can be told from noise at all."""
+
+
+def is_slow(recording: Recording) -> bool:
+    """Whether rows are further apart than any drive's cycles."""
+    return recording.sample_time > SLOWEST_CYCLE * (1 + 1e-6)
+
+
+def known_motion(recording: Recording, plant: Plant, band: Band) -> BoolArray:
+    """Rows of a slow recording at which the motion between rows is known, as far as the filter reaches; (n,).
+
+    Args:
+        recording: with a motor angle.
+        plant: whose inertia and stiffness apply.
+        band: of the comparison.
+    """
+    missed = np.zeros(len(recording))
+    missed[2:-2] = np.abs(np.diff(recording["motor_angle"], 4)) / (12 * recording.sample_time**2)
+    unknown: BoolArray = missed > _least_acceleration(recording, plant)
+    if "motor_torque" in recording:
+        rough = np.abs(np.diff(recording["motor_torque"], 4)) / np.sqrt(70)  # of white noise, its rms
+        jumps = np.zeros(len(recording), dtype=bool)
+        jumps[2:-2] = rough > ROUGH * white_noise(recording["motor_torque"], band.sample_rate)
+        # a vibration passes a multiple of the rows' rate and looks slow for a moment
+        share = uniform_filter1d(jumps.astype(float), max(1, round(VIBRATION * band.sample_rate)), mode="nearest")
+        unknown |= jumps | (share > 0.5)
+    reach = int(np.ceil(band.sample_rate / band.edge))
+    return ~np.asarray(binary_dilation(unknown, iterations=reach))
+
+
+def _least_acceleration(recording: Recording, plant: Plant) -> float:
+    """Error of the acceleration that shows in a channel [rad/s²]; infinite where none shows it."""
+    values, rate = plant.chain_values(), 1 / recording.sample_time
+    r, mass = plant.chain.motor_radius, values["table_mass"]
+    shown = [np.inf]
+    if "motor_torque" in recording:
+        inertia = values["motor_inertia"] + values["screw_inertia"] + mass * r**2
+        shown.append(white_noise(recording["motor_torque"], rate) / inertia)
+    if "table_position" in recording and plant.chain.elastic:
+        shown.append(white_noise(recording["table_position"], rate) * values["axial_stiffness"] / (mass * r))
+    return float(min(shown))
+
+
+def refuse_unknown_motion(known: BoolArray, counted: BoolArray, recording: Recording) -> None:
+    """Refuse a recording of which hardly a row is left.
+
+    Raises:
+        InputError: fewer than `FEWEST_ROWS`.
+    """
+    left = int(np.sum(known & counted))
+    if left < FEWEST_ROWS:
+        what = f"the motion between rows {recording.sample_time * 1e3:.3g} ms apart is known at {left} of them"
+        mend = f"record at {1 / SLOWEST_CYCLE:.0f} Hz or more, or a motion of long strokes at constant speed"
+        raise InputError(what, recording.name, mend)
+
+
+def sentence(known: BoolArray, recording: Recording) -> str:
+    """What is to be said of a slow recording."""
+    lost = 100 * (1 - float(np.mean(known)))
+    return (
+        f"rows are {recording.sample_time * 1e3:.3g} ms apart, further than a drive's cycles: a torque is that of its "
+        f"row's instant, {lost:.0f} % of the rows are left out because the motion between them is not known, and "
+        f"nothing faster than {0.1 / recording.sample_time:.3g} Hz is seen"
+    )
