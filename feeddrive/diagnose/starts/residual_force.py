@@ -14,11 +14,20 @@ def residual_force(scene: AxisScene, at: int) -> FloatArray:
 
     From the torque over the radius; without a torque from the table lagging on the spring that holds it.
     """
-    residual = scene.residuals[at]
+    return residual_forces(scene, at)[0]
+
+
+def residual_forces(scene: AxisScene, at: int) -> list[FloatArray]:
+    """The same force by every channel that shows it, the torque's first; shape (n,) each.
+
+    On a soft drive the lag of the table tells forces that are lost in the noise of the torque.
+    """
+    residual, forces = scene.residuals[at], []
     if "motor_torque" in residual:
-        force: FloatArray = residual["motor_torque"] / scene.plant.chain.motor_radius
-        return force
-    return -static_stiffness(scene.plant) * residual["table_position"]
+        forces.append(residual["motor_torque"] / scene.plant.chain.motor_radius)
+    if "table_position" in residual and scene.plant.chain.elastic:
+        forces.append(-static_stiffness(scene.plant) * residual["table_position"])
+    return forces
 
 
 def static_stiffness(plant: Plant) -> float:

@@ -10,7 +10,7 @@ from feeddrive.diagnose.declared_friction import declared_level, declared_viscou
 from feeddrive.diagnose.scene import AxisScene
 from feeddrive.diagnose.starts.periodogram import sine_at, strongest_orders
 from feeddrive.diagnose.starts.position_curve import bump_of, friction_over_position
-from feeddrive.diagnose.starts.residual_force import residual_force
+from feeddrive.diagnose.starts.residual_force import residual_forces
 from feeddrive.effects.backlash import Backlash
 from feeddrive.effects.base import Effect, Port
 from feeddrive.effects.friction_deviation import FrictionDeviation
@@ -115,18 +115,20 @@ def explains(start: Effect, residual: FloatArray) -> bool:
 def over_position(scene: AxisScene) -> list[list[Effect]]:
     """Bumps that fit the friction left over, and a table where it follows the position."""
     at = scene.longest
-    evidence, run = scene.problem.evidence[at], scene.runs[at]
-    rows = evidence.fit_rows
-    force = residual_force(scene, at)[rows]
-    curve = friction_over_position(run.table_position[rows], run.table_velocity[rows], force)
-    if curve is None:
-        return []
-    bumps: list[Effect] = [
-        FrictionVsPosition.of(peak=peak, centre=centre, half_width=width) for peak, centre, width in bump_of(curve)
-    ]
-    follows = float(np.sum(curve.samples * curve.force**2)) / float(np.sum(force**2))
-    if follows < LEAST_CURVE:
-        return [bumps]
-    nodes = np.linspace(curve.position[0], curve.position[-1], TABLE_NODES)
-    table = FrictionVsPosition.of(position=tuple(nodes.tolist()), delta_force=tuple([0.0] * TABLE_NODES))
-    return [bumps, [table]]
+    rows, run = scene.problem.evidence[at].fit_rows, scene.runs[at]
+    bumps: list[Effect] = []
+    tables: list[Effect] = []
+    for whole in residual_forces(scene, at):
+        force = whole[rows]
+        curve = friction_over_position(run.table_position[rows], run.table_velocity[rows], force)
+        if curve is None:
+            continue
+        bumps += [
+            FrictionVsPosition.of(peak=peak, centre=centre, half_width=width) for peak, centre, width in bump_of(curve)
+        ]
+        follows = float(np.sum(curve.samples * curve.force**2)) / float(np.sum(force**2))
+        if follows >= LEAST_CURVE and not tables:
+            nodes = np.linspace(curve.position[0], curve.position[-1], TABLE_NODES)
+            levels = tuple([0.0] * TABLE_NODES)
+            tables.append(FrictionVsPosition.of(position=tuple(nodes.tolist()), delta_force=levels))
+    return [form for form in (bumps, tables) if form]
