@@ -6,6 +6,7 @@ from collections import OrderedDict
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from threading import Lock
+from typing import ClassVar
 
 import numpy as np
 
@@ -39,6 +40,8 @@ class AxisPredictor(Predictor[Plant, AxisEvidence]):
         scaled: fitted recordings whose torque is known but for its scale, which every plant sets for itself.
         declared_scale: that their torque was brought to [N m per unit of the channel].
     """
+
+    retries: ClassVar[int] = 2
 
     scaled: tuple[AxisEvidence, ...] = ()
     declared_scale: float = 1.0

@@ -7,13 +7,12 @@ together with what was found before.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from feeddrive.diagnose.attempt import JOINT_ITERATIONS, PROMISE, Attempt, refined, started, together
+from feeddrive.diagnose.attempt import JOINT_ITERATIONS, Attempt, together
 from feeddrive.diagnose.coordinates import read_coordinates
 from feeddrive.diagnose.cross_validation import (
     LEAST_GAIN,
@@ -25,22 +24,11 @@ from feeddrive.diagnose.cross_validation import (
 from feeddrive.diagnose.fit import Fit, Problem, fit
 from feeddrive.diagnose.pairs import masked_pair
 from feeddrive.diagnose.result import Trial
-from feeddrive.diagnose.scene import Scene
-from feeddrive.effects.base import Effect
+from feeddrive.diagnose.round import TIE, one_round, simplest_of_the_best
 from feeddrive.typing import FloatArray, IntegerArray
 
 MOST_EFFECTS = 8
 """Rounds at most; an axis that lacks more needs another declaration."""
-
-FINALISTS = 3
-"""Candidates of a round that are refitted together with what was found before."""
-
-FAIR_PART = 0.3
-"""Gain over that of the best fitted candidate, from which a candidate is fitted too: starts are near by design (orders
-from a periodogram, velocities and stiffnesses scanned), so that one linear step shows most of an effect's worth."""
-
-TIE = 0.05
-"""Share of the squared error by which a simpler candidate may be worse, if the difference is not significant."""
 
 CLEARLY_NEEDED = 0.1
 """Share of the squared error that an effect must bring, by one linear step, not to be refitted without it."""
@@ -48,26 +36,48 @@ CLEARLY_NEEDED = 0.1
 UNEXPLAINED = 1.3
 """Weighted squared error per sample beyond which much is left; noise alone gives one."""
 
-WORKERS = 2
-"""Candidates tried at the same time; the loop over samples runs outside Python's lock."""
+MANY_VALUES = 8
+"""Fitted values beyond which one of the effects may be a curve that takes the place of others."""
+
+NEARLY = 0.5
+"""Gain over that of the candidate taken, from which another was nearly taken."""
 
 
 @dataclass(frozen=True)
 class Search:
-    """What the search found, and everything that it tried."""
+    """What the search found, and everything that it tried.
+
+    Attributes:
+        problem: recordings with the samples that the effects found can predict.
+        fit: of the effects found.
+        trials: every candidate of every round.
+        rounds: the same as fitted, the best first.
+        impossible: candidate to why the recordings cannot show it.
+        before: what each round began with.
+    """
 
     problem: Problem
     fit: Fit
     trials: tuple[Trial, ...]
     rounds: tuple[tuple[Attempt, ...], ...]
     impossible: dict[str, str]
+    before: tuple[tuple[Problem, Fit], ...] = ()
+
+
+@dataclass(frozen=True)
+class _Turn:
+    """A candidate that was nearly taken, and the number of its round, from 0."""
+
+    search: Search
+    number: int
+    attempt: Attempt
 
 
 def search(problem: Problem, said: Callable[[str], None] = lambda text: None) -> Search:
     """Find the effects that the declared plant lacks.
 
-    Where much is left unexplained and the machine is cheap to simulate, the search is begun again with the next best
-    first effects: two effects at once can look most like a third.
+    Two effects at once can look most like a third, and one with many values like any. Where much is left, or many
+    values were fitted, the search goes back to the turns where another candidate was nearly taken.
 
     Args:
         problem: declared plant and recordings.
@@ -77,41 +87,68 @@ def search(problem: Problem, said: Callable[[str], None] = lambda text: None) ->
         The effects found, fitted together, and the ledger of the search.
     """
     best = _greedy(problem, said)
-    openings = [] if not best.rounds else [a for a in best.rounds[0] if a.comparison.pays]
-    taken = best.fit.effects[0].name if best.fit.effects else ""
-    for first in [a for a in openings if a.name != taken][: problem.predictor.retries]:
-        if _explained(best):
+    for turn in _turns(best)[: problem.predictor.retries]:
+        if not _is_doubtful(best):
             break
-        said(f"much is left: again, {first.name} first")
-        other = _greedy(problem, said, (best.rounds[0], first))
-        if other.fit.squared_error < (1 - TIE) * best.fit.squared_error:
+        said(f"again, {turn.attempt.name} in round {turn.number + 1}")
+        other = _greedy(problem, said, turn)
+        if _is_better(other, best):
             best = replace(other, impossible=best.impossible)
     return best
 
 
-def _explained(found: Search) -> bool:
-    return found.fit.squared_error < UNEXPLAINED * len(found.fit.residual)
+def _is_doubtful(found: Search) -> bool:
+    return _error(found.fit) > UNEXPLAINED or len(found.fit.coordinates) > MANY_VALUES
 
 
-def _greedy(
-    problem: Problem, said: Callable[[str], None], opening: tuple[tuple[Attempt, ...], Attempt] | None = None
-) -> Search:
-    """The search, its first round as given where there is an opening: the attempts, and the one to be taken."""
+def _error(fitted: Fit) -> float:
+    """Squared error per sample."""
+    return fitted.squared_error / max(len(fitted.residual), 1)
+
+
+def _is_better(other: Search, best: Search) -> bool:
+    """Whether a search ends clearly nearer, or as near (Akaike) with fewer values."""
+    fewer = len(best.fit.coordinates) - len(other.fit.coordinates)
+    ratio, samples = _error(other.fit) / _error(best.fit), len(best.fit.residual)
+    return ratio < 1 - TIE or (fewer > 0 and (ratio - 1) * _error(best.fit) * samples < 2 * fewer)
+
+
+def _turns(found: Search) -> list[_Turn]:
+    """Candidates that were nearly taken, the nearest first."""
+    turns = []
+    for number in range(len(found.before)):
+        taken = next((t for t in found.trials if t.round == number + 1 and t.taken), None)
+        for attempt in found.rounds[number] if taken is not None else ():
+            near = attempt.comparison.gain / taken.gain if taken is not None else 0.0
+            if taken is not None and attempt.name not in taken.name.split(" with ") and attempt.comparison.pays:
+                turns.append((near, _Turn(found, number, attempt)))
+    return [turn for near, turn in sorted(turns, key=lambda entry: -entry[0]) if near > NEARLY]
+
+
+def _greedy(problem: Problem, said: Callable[[str], None], turn: _Turn | None = None) -> Search:
+    """Round after round from the beginning, or from a turn on; then given up where it falls behind that search."""
     found = fit(problem, ())
     trials: list[Trial] = []
     rounds: list[tuple[Attempt, ...]] = []
+    before: list[tuple[Problem, Fit]] = []
+    if turn is not None:
+        rounds, before = [*turn.search.rounds[: turn.number]], [*turn.search.before[: turn.number]]
+        trials = [trial for trial in turn.search.trials if trial.round <= turn.number]
+        problem, found = turn.search.before[turn.number]
     impossible: dict[str, str] = {}
     met: set[tuple[str, ...]] = set()
     while len(rounds) < MOST_EFFECTS:
         said(f"round {len(rounds) + 1}: {len(found.effects)} effects so far")
+        before.append((problem, found))
         winner: Attempt | None
-        if opening is not None and not rounds:
-            attempts, winner, pair = [*opening[0]], together(opening[1], found), None
-            rounds.append(opening[0])
-        else:
-            attempts = _round(problem.predictor.scene(problem, found.effects), found, impossible)
+        if turn is not None and len(rounds) == turn.number:
+            attempts, pair = [*turn.search.rounds[turn.number]], None
+            winner = together(turn.attempt, found)
             rounds.append(tuple(attempts))
-            winner = _simplest_of_the_best(attempts)
+        else:
+            attempts = one_round(problem.predictor.scene(problem, found.effects), found, impossible)
+            rounds.append(tuple(attempts))
+            winner = simplest_of_the_best(attempts)
             pair = masked_pair(attempts, found, winner)
         if pair is not None:
             winner, attempts = pair, [pair, *attempts]
@@ -122,87 +159,24 @@ def _greedy(
         problem, found = winner.problem, _without_idle(winner.problem, winner.fit, 0 if pair is not None else 1)
         said(f"found so far: {', '.join(effect.name for effect in found.effects)}")
         names = tuple(sorted(effect.name for effect in found.effects))
-        if names in met:  # the new ones only take each other's place
+        if names in met or _is_behind(found, len(rounds), turn):  # the new ones only take each other's place
             break
         met.add(names)
     found = fit(problem, found.effects)
-    return Search(problem, found, tuple(trials), tuple(rounds), impossible)
+    return Search(problem, found, tuple(trials), tuple(rounds), impossible, tuple(before))
 
 
-def _simplest_of_the_best(attempts: Sequence[Attempt]) -> Attempt | None:
-    """The best attempt, or one with fewer parameters that cannot be told from it; None if the best does not pay."""
-    paying = [a for a in attempts if a.comparison.pays]  # a larger gain by chance does not hide a smaller sure one
-    attempts = [a for a in paying if a.problem.predictor.is_material(a.fit.effects[-1], a.problem.plant)]
-    if not attempts:
-        return None
-    best = attempts[0]
-    tied = [best]
-    for other in attempts[1:]:
-        if other.comparison.pays and len(other.errors) == len(best.errors):
-            better = compare_left_out(other.errors, best.errors, block_numbers(best.problem), LEAST_GAIN)
-            if better.gain < max(LEAST_GAIN, min(2 * better.standard_error, TIE)):
-                tied.append(other)
-    return min(tied, key=lambda a: len(read_coordinates(a.fit.effects[-1:], a.problem.plant)))
+def _is_behind(found: Fit, rounds: int, turn: _Turn | None) -> bool:
+    """Whether a search from a turn on, a round after it or later, is no nearer than the first was by then."""
+    if turn is None or rounds <= turn.number + 1:
+        return False
+    first = turn.search.before[rounds][1] if rounds < len(turn.search.before) else turn.search.fit
+    many = len(first.coordinates) - len(found.coordinates)
+    return many <= 0 and _error(found) > _error(first)
 
 
 def _trial(number: int, attempt: Attempt, taken: bool) -> Trial:
     return Trial(number, attempt.name, attempt.comparison.gain, attempt.comparison.standard_error, taken)
-
-
-def _round(scene: Scene, found: Fit, impossible: dict[str, str]) -> list[Attempt]:
-    """All candidates of one round, the best first."""
-    ready = []
-    for candidate in scene.problem.predictor.candidates:
-        if _already(candidate.name, found.effects):
-            continue
-        reason = candidate.needs(scene)
-        if reason:
-            impossible[candidate.name] = reason
-        else:
-            ready.append(candidate)
-    with ThreadPoolExecutor(WORKERS) as pool:
-        groups = pool.map(lambda candidate: started(scene, candidate), ready)
-        attempts = _promising_refined(scene, [attempt for group in groups for attempt in group], pool)
-        best = _best_per_name(attempts)
-        promising = max(PROMISE, FAIR_PART * best[0].comparison.gain) if best else PROMISE
-        names = [attempt.name for attempt in best[:FINALISTS] if attempt.comparison.gain > promising]
-        finalists = [attempt for attempt in _best_per_place(attempts) if attempt.name in names]
-        joint = list(pool.map(lambda attempt: together(attempt, found), finalists))
-        others = [attempt for attempt in best if attempt.name not in names]
-        best = _best_per_name(sorted([*joint, *others], key=lambda a: -a.comparison.gain))
-    return best
-
-
-def _promising_refined(scene: Scene, attempts: list[Attempt], pool: ThreadPoolExecutor) -> list[Attempt]:
-    """The attempts, the best first, those fitted that promise a fair part of the best."""
-    waiting = sorted(attempts, key=lambda attempt: -attempt.comparison.gain)
-    done: list[Attempt] = []
-    while waiting:
-        best = max((attempt.comparison.gain for attempt in done), default=0.0)
-        if waiting[0].comparison.gain <= max(PROMISE, FAIR_PART * best):
-            break
-        now, waiting = waiting[:WORKERS], waiting[WORKERS:]
-        done += [attempt for attempt in pool.map(lambda one: refined(scene, one), now) if attempt is not None]
-    return sorted([*done, *waiting], key=lambda attempt: -attempt.comparison.gain)
-
-
-def _best_per_place(attempts: Sequence[Attempt]) -> list[Attempt]:
-    """The best of each name and place: which film, which sensor is settled only with the other effects free."""
-    best: dict[tuple[str, str], Attempt] = {}
-    for attempt in attempts:
-        best.setdefault((attempt.name, attempt.fit.effects[-1].place), attempt)
-    return list(best.values())
-
-
-def _already(name: str, effects: Sequence[Effect]) -> bool:
-    return any(effect.name == name and not effect.repeatable for effect in effects)
-
-
-def _best_per_name(attempts: Sequence[Attempt]) -> list[Attempt]:
-    best: dict[str, Attempt] = {}
-    for attempt in attempts:
-        best.setdefault(attempt.name, attempt)
-    return list(best.values())
 
 
 def _without_idle(problem: Problem, found: Fit, proved: int) -> Fit:
