@@ -41,7 +41,7 @@ class AxisPredictor(Predictor[Plant, AxisEvidence]):
         declared_scale: that their torque was brought to [N m per unit of the channel].
     """
 
-    retries: ClassVar[int] = 2
+    retries: ClassVar[int] = 1
 
     scaled: tuple[AxisEvidence, ...] = ()
     declared_scale: float = 1.0

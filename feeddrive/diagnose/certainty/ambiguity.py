@@ -166,7 +166,9 @@ def _near(found: Search, place: int) -> list[Attempt]:
         taken = next((t for t in found.trials if t.round == number + 1 and t.taken), None)
         if taken is None or effect.name not in taken.name.split(" with "):
             continue
-        others = [a for a in attempts if a.name != effect.name and " with " not in a.name and a.comparison.pays]
+        # one that gains more and scatters too much to be taken may yet be what it is
+        able = [a for a in attempts if a.comparison.pays or a.comparison.gain > taken.gain]
+        others = [a for a in able if a.name != effect.name and " with " not in a.name]
         near = [a for a in others if a.comparison.gain > NEAR * taken.gain or a.name in effect.signature.confused_with]
         free = [a for a in near if a.name not in present or a.fit.effects[-1].repeatable]
         return sorted(free, key=lambda a: -a.comparison.gain)[:MOST_RIVALS]
