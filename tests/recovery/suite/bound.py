@@ -9,7 +9,8 @@
 | n | samples |
 
 Slopes are those of the package's prediction in its own coordinates, at the samples that it fits; the density is
-Welch's. No unbiased estimate from this band has narrower intervals.
+Welch's. No unbiased estimate from this band has narrower intervals. Of heat, what lies along a channel's own rise is
+discounted in both by the gain that sensor and model leave open.
 Source: S. M. Kay, Fundamentals of statistical signal processing: estimation theory, 1993, section 3.9.
 """
 

@@ -36,7 +36,7 @@ How a case is made and judged:
 - In parentheses: tables of what no name explains, which the diagnosis adds after the names.
 - Floor: the error of the true plant, the package's own plant with the planted values, on the same samples.
 - Bound: the narrowest 95 % interval that any unbiased estimate can have in this noise, its colour counted
-  (Cramér–Rao); `tests/recovery/suite/bound.py`.
+  (Cramér–Rao), for heat the gain of 0.1 % too that sensor and model leave open; `tests/recovery/suite/bound.py`.
 - Sparse regression: the declared plant's error regressed by PySINDy (STLSQ) on a library of some forty terms, the
   threshold by held-out blocks and the one-standard-error rule. It counts as naming an effect where a term
   that is the effect's (`tests/recovery/suite/regression_terms.py`) is among the three strongest of a channel, whatever
