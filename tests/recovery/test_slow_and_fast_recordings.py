@@ -82,7 +82,7 @@ def test_vibration_between_the_rows_is_no_effect() -> None:
 
 
 def test_motion_that_is_unknown_between_the_rows_is_refused() -> None:
-    pair = recording_pair(AXES["light"], (), (83, 84), (40.0, 30.0))
+    pair = recording_pair(AXES["light"], (), (83, 84), (14.0, 12.0))  # 140 rows, most of them between strokes
     with pytest.raises(InputError, match="the motion between rows 100 ms apart is known at"):
         diagnosed(every(200, pair))
 
