@@ -33,8 +33,8 @@ from feeddrive.typing import BoolArray
 SLOWEST_CYCLE = 2e-3
 """Cycle of a servo loop at most [s]: those of machine tools take 0.03 to 2 ms."""
 
-ROUGH = 4.5
-"""Fourth difference over its rms, beyond which it is no noise; of white noise none of 10^5 is."""
+ROUGH = 6.0
+"""Fourth difference over its rms as read off the quietest tenth, beyond which it is no noise: 4.5 of what it may be."""
 
 VIBRATION = 2.0
 """Length of stretches [s] of which nothing is kept where the torque jumps at half of their rows."""

@@ -1,0 +1,67 @@
+"""Rows slower than a drive's cycle: where the motion between them is known."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from feeddrive.diagnose.band import comparison_band
+from feeddrive.diagnose.slow_rows import is_slow, known_motion, refuse_unknown_motion, sentence
+from feeddrive.errors import InputError
+from feeddrive.plant.plant import Plant
+from feeddrive.recording import Recording
+from tests.convergence.test_simulate import BENCH
+
+PLANT = Plant("axis", BENCH)
+STEP = 0.01
+
+
+def recording(angle: np.ndarray, torque: np.ndarray) -> Recording:
+    """Rows of 10 ms with sensor noise: 40 mN m, and an encoder of 22 bit."""
+    generator = np.random.default_rng(2)
+    encoder = 2 * np.pi / 2**22
+    channels = {
+        "motor_angle": encoder * np.round(angle / encoder),
+        "motor_torque": torque + 0.04 * generator.standard_normal(len(torque)),
+    }
+    return Recording("slow", STEP * np.arange(len(angle)), channels, STEP)
+
+
+def known(made: Recording) -> np.ndarray:
+    """Rows with known motion."""
+    return known_motion(made, PLANT, comparison_band(PLANT, 1 / made.sample_time))
+
+
+def test_a_cycle_of_two_milliseconds_is_not_slow() -> None:
+    made = recording(np.zeros(1000), np.zeros(1000))
+    assert is_slow(made)
+    assert not is_slow(replace(made, sample_time=2e-3))
+
+
+def test_constant_speed_is_known_and_the_jump_of_acceleration_is_not() -> None:
+    time = STEP * np.arange(2000)
+    angle = np.where(time < 10.0, 30.0 * time, 300.0 - 30.0 * (time - 10.0))  # it turns round within a row
+    rows = known(recording(angle, np.where(time < 10.0, 1.0, -1.0)))
+    reach = 10  # of a filter at a tenth of the rate
+    assert not rows[1000 - reach : 1000 + reach].any()
+    assert rows[: 1000 - 2 * reach].all() and rows[1000 + 2 * reach :].all()
+
+
+def test_vibration_between_rows_is_left_out_where_it_looks_slow_as_well() -> None:
+    time = STEP * np.arange(3000)
+    frequency = np.where(time > 15.0, 70.0 + 40.0 * (time - 15.0), 0.0)  # through 100 Hz, the rate of the rows
+    torque = 1.0 + np.where(time > 15.0, 2.0 * np.sin(2 * np.pi * np.cumsum(frequency) * STEP), 0.0)
+    rows = known(recording(30.0 * time, torque))
+    assert not rows[1520:2980].any()
+    assert rows[:1450].all()
+
+
+def test_recording_of_which_hardly_a_row_is_left_is_refused() -> None:
+    made = recording(np.zeros(300), np.zeros(300))
+    rows = np.arange(300) < 40
+    with pytest.raises(InputError, match="10 ms apart is known at 40 of them"):
+        refuse_unknown_motion(rows, np.ones(300, dtype=bool), made)
+    refuse_unknown_motion(~rows, np.ones(300, dtype=bool), made)
+    assert "87 % of the rows are left out" in sentence(rows, made)
