@@ -28,13 +28,14 @@ from feeddrive.diagnose.band import Band, white_noise
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
-from feeddrive.typing import BoolArray
+from feeddrive.typing import BoolArray, FloatArray
 
 SLOWEST_CYCLE = 2e-3
 """Cycle of a servo loop at most [s]: those of machine tools take 0.03 to 2 ms."""
 
-ROUGH = 6.0
-"""Fourth difference over its rms as read off the quietest tenth, beyond which it is no noise: 4.5 of what it may be."""
+ROUGH = 3.0
+"""Rms of fourth differences, as far as the filter reaches, over that of the quietest tenth, beyond which it is no noise:
+five independent ones exceed 2.4 once in 10^5, and the quietest tenth is a fifth below the mean."""
 
 VIBRATION = 2.0
 """Length of stretches [s] of which nothing is kept where the torque jumps at half of their rows."""
@@ -59,15 +60,20 @@ def known_motion(recording: Recording, plant: Plant, band: Band) -> BoolArray:
     missed = np.zeros(len(recording))
     missed[2:-2] = np.abs(np.diff(recording["motor_angle"], 4)) / (12 * recording.sample_time**2)
     unknown: BoolArray = missed > _least_acceleration(recording, plant)
-    if "motor_torque" in recording:
-        rough = np.abs(np.diff(recording["motor_torque"], 4)) / np.sqrt(70)  # of white noise, its rms
-        jumps = np.zeros(len(recording), dtype=bool)
-        jumps[2:-2] = rough > ROUGH * white_noise(recording["motor_torque"], band.sample_rate)
-        # a vibration passes a multiple of the rows' rate and looks slow for a moment
-        share = uniform_filter1d(jumps.astype(float), max(1, round(VIBRATION * band.sample_rate)), mode="nearest")
-        unknown |= jumps | (share > 0.5)
     reach = int(np.ceil(band.sample_rate / band.edge))
+    if "motor_torque" in recording:
+        unknown |= _vibrating(recording["motor_torque"], band.sample_rate, reach)
     return ~np.asarray(binary_dilation(unknown, iterations=reach))
+
+
+def _vibrating(torque: FloatArray, rate: float, reach: int) -> BoolArray:
+    """Rows between which the torque jumps, (n,)."""
+    squares = np.zeros(len(torque))
+    squares[2:-2] = np.diff(torque, 4) ** 2 / 70  # of white noise, its power
+    jumps: BoolArray = np.sqrt(uniform_filter1d(squares, reach)) > ROUGH * white_noise(torque, rate)
+    # a vibration passes a multiple of the rows' rate and looks slow for a moment
+    share = uniform_filter1d(jumps.astype(float), max(1, round(VIBRATION * rate)), mode="nearest")
+    return np.asarray(jumps | (share > 0.5))
 
 
 def _least_acceleration(recording: Recording, plant: Plant) -> float:
