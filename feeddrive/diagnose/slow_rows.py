@@ -34,8 +34,8 @@ SLOWEST_CYCLE = 2e-3
 """Cycle of a servo loop at most [s]: those of machine tools take 0.03 to 2 ms."""
 
 ROUGH = 3.0
-"""Rms of fourth differences, as far as the filter reaches, over that of the quietest tenth, beyond which it is no noise:
-five independent ones exceed 2.4 once in 10^5, and the quietest tenth is a fifth below the mean."""
+"""Rms of fourth differences, as far as the filter reaches, over that of the quietest tenth, beyond which it is no
+noise: five independent ones exceed 2.4 once in 10^5, and the quietest tenth is a fifth below the mean."""
 
 VIBRATION = 2.0
 """Length of stretches [s] of which nothing is kept where the torque jumps at half of their rows."""
