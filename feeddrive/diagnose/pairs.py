@@ -43,7 +43,7 @@ def masked_pair(attempts: Sequence[Attempt], found: Fit, winner: Attempt | None)
         alone = max(gains) if winner is None else SUPERADDITIVE * sum(gains)
         if most <= max(alone, least):
             continue
-        linear = _linear_pair(first, second, found)
+        linear = linear_pair(first, second, found)
         if linear.pays and linear.gain > max(alone, least):
             ranked.append((linear.gain, first, second))
     ranked.sort(key=lambda entry: -entry[0])
@@ -88,7 +88,7 @@ def _scaled(columns: FloatArray) -> FloatArray:
     return scaled
 
 
-def _linear_pair(first: Attempt, second: Attempt, found: Fit) -> Comparison:
+def linear_pair(first: Attempt, second: Attempt, found: Fit) -> Comparison:
     """Gain of both candidates together by one linear step."""
     columns = _own_columns(first), _own_columns(second)
     jacobian = np.hstack([found.jacobian, *columns])

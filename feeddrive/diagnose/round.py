@@ -9,6 +9,7 @@ from feeddrive.diagnose.attempt import PROMISE, Attempt, refined, started, toget
 from feeddrive.diagnose.coordinates import read_coordinates
 from feeddrive.diagnose.cross_validation import LEAST_GAIN, block_numbers, compare_left_out
 from feeddrive.diagnose.fit import Fit
+from feeddrive.diagnose.pairs import linear_pair
 from feeddrive.diagnose.scene import Scene
 from feeddrive.effects.base import Effect
 
@@ -26,20 +27,41 @@ WORKERS = 2
 """Candidates tried at the same time; the loop over samples runs outside Python's lock."""
 
 
-def simplest_of_the_best(attempts: Sequence[Attempt]) -> Attempt | None:
-    """The best attempt, or one with fewer parameters that cannot be told from it; None if the best does not pay."""
+def simplest_of_the_best(attempts: Sequence[Attempt], found: Fit) -> Attempt | None:
+    """The best attempt, or one with fewer parameters that cannot be told from it; None if the best does not pay.
+
+    What is too small to matter is not taken. Where it is the best, others must pay beside it: they may only imitate it.
+
+    Args:
+        attempts: of one round, the best first.
+        found: what the round began with.
+    """
     paying = [a for a in attempts if a.comparison.pays]  # a larger gain by chance does not hide a smaller sure one
-    attempts = [a for a in paying if a.problem.predictor.is_material(a.fit.effects[-1], a.problem.plant)]
-    if not attempts:
+    if not paying:
         return None
-    best = attempts[0]
+    able = [a for a in paying if _is_material(a) and (_is_material(paying[0]) or _adds(a, paying[0], found))]
+    if not able:
+        return None
+    best = able[0]
     tied = [best]
-    for other in attempts[1:]:
-        if other.comparison.pays and len(other.errors) == len(best.errors):
+    for other in able[1:]:
+        if len(other.errors) == len(best.errors):
             better = compare_left_out(other.errors, best.errors, block_numbers(best.problem), LEAST_GAIN)
             if better.gain < max(LEAST_GAIN, min(2 * better.standard_error, TIE)):
                 tied.append(other)
     return min(tied, key=lambda a: len(read_coordinates(a.fit.effects[-1:], a.problem.plant)))
+
+
+def _is_material(attempt: Attempt) -> bool:
+    return attempt.problem.predictor.is_material(attempt.fit.effects[-1], attempt.problem.plant)
+
+
+def _adds(attempt: Attempt, other: Attempt, found: Fit) -> bool:
+    """Whether an attempt pays beside another, both moved by one linear step."""
+    if not len(attempt.fit.residual) == len(other.fit.residual) == len(found.residual):
+        return True  # one of them cannot be predicted everywhere: not compared
+    both = linear_pair(other, attempt, found)
+    return both.gain - other.comparison.gain > both.least
 
 
 def one_round(scene: Scene, found: Fit, impossible: dict[str, str]) -> list[Attempt]:

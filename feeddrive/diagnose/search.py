@@ -148,7 +148,7 @@ def _greedy(problem: Problem, said: Callable[[str], None], turn: _Turn | None = 
         else:
             attempts = one_round(problem.predictor.scene(problem, found.effects), found, impossible)
             rounds.append(tuple(attempts))
-            winner = simplest_of_the_best(attempts)
+            winner = simplest_of_the_best(attempts, found)
             pair = masked_pair(attempts, found, winner)
         if pair is not None:
             winner, attempts = pair, [pair, *attempts]

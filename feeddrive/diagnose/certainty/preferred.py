@@ -44,7 +44,7 @@ def _preferred(problem: Problem, effect: Effect, alike: Sequence[Rival]) -> Riva
     if likeliest is not None and likeliest.odds < -AGAINST:
         return likeliest
     own = _simplicity(effect, problem.plant)
-    simpler = [rival for rival in alike if _simplicity(rival.effect, problem.plant) < own]
+    simpler = [rival for rival in material if _simplicity(rival.effect, problem.plant) < own]
     return min(simpler, key=lambda rival: _simplicity(rival.effect, problem.plant), default=None)
 
 

@@ -37,6 +37,9 @@ MODEL_ERROR = {"degC": 4e-3, "m": 1e-8}
 """What two careful models of one rig differ by beside a gain [K, m]: grids, rows, laws between their nodes. It is added
 to the sensor noise as its square, and an effect must explain more than it."""
 
+MODEL_SHARE = 4e-4
+"""The same as a share of the rms of a rise, where it rises high."""
+
 KINK = 4.5
 """Fourth differences beyond this multiple of their usual size are no noise; of white noise none of 10^5 is."""
 
@@ -75,8 +78,7 @@ class HeatEvidence(Evidence):
 
     def rise(self, name: str) -> FloatArray:
         """A channel over its cold start, (n,): a temperature over the first of the surroundings, a growth as it is."""
-        cold = 0.0 if name.startswith("table_growth") else float(self.ambient[0])
-        return self.measured[name] - cold
+        return _over_start(name, self.recording)
 
 
 def prepare_heat(recording: Recording, plant: ThermalPlant, share: float) -> HeatEvidence:
@@ -93,6 +95,7 @@ def prepare_heat(recording: Recording, plant: ThermalPlant, share: float) -> Hea
     _refuse_missing(recording)
     names = _predicted(recording, plant)
     n, step = len(recording), recording.sample_time
+    missed = {name: model_error_of(name, recording) for name in names}
     if n < FEWEST_ROWS:
         raise InputError(f"{n} rows are too few to compare", recording.name, f"record at least {FEWEST_ROWS}")
     first = 1 if abs(float(recording.time[0])) < 0.5 * step else 0
@@ -101,18 +104,30 @@ def prepare_heat(recording: Recording, plant: ThermalPlant, share: float) -> Hea
     return HeatEvidence(
         recording,
         {name: recording[name] for name in names},
-        {name: _with_model(noise.get(name, 0.0) or smooth_noise(recording[name]), name) for name in names},
+        {name: float(np.hypot(noise.get(name) or smooth_noise(recording[name]), missed[name])) for name in names},
         np.arange(n) >= first,
         _fitted(time, share),
         0.5 / step,
         max(HEAT_BLOCK, 10 * step),
         1,
         (),
-        {name: MODEL_ERROR[channel_unit(name, "")] for name in names},
+        missed,
         same_speeds(np.abs(recording[SPEED]))[first:],
         recording[AMBIENT][first:],
         first,
     )
+
+
+def model_error_of(name: str, recording: Recording) -> float:
+    """What the model itself may miss of a channel beside a gain, rms [K, m]."""
+    rise = _over_start(name, recording)
+    return float(np.hypot(MODEL_ERROR[channel_unit(name, "")], MODEL_SHARE * np.sqrt(np.mean(rise**2))))
+
+
+def _over_start(name: str, recording: Recording) -> FloatArray:
+    cold = 0.0 if name.startswith("table_growth") else float(recording[AMBIENT][0])
+    rise: FloatArray = recording[name] - cold
+    return rise
 
 
 def plant_noise(plant: ThermalPlant) -> dict[str, float]:
@@ -152,10 +167,6 @@ def within_range(plant: ThermalPlant, evidence: Sequence[HeatEvidence]) -> tuple
         return plant, ()
     told = f"the screw turns at {fastest * 30 / np.pi:.0f} rev/min, declared are {plant.highest_speed * 30 / np.pi:.0f}"
     return replace(plant, highest_speed=fastest), (f"{told} at most: films and friction are extrapolated",)
-
-
-def _with_model(noise: float, name: str) -> float:
-    return float(np.hypot(noise, MODEL_ERROR[channel_unit(name, "")]))
 
 
 def _fitted(time: FloatArray, share: float) -> BoolArray:

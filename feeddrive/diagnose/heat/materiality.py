@@ -23,7 +23,7 @@ LEAST_DRIFT = 0.03
 LEAST_COEFFICIENT = 3e-4
 """Of load or viscous torque [1/K]; over ten kelvin 0.3 % of the heat, as much as thermometers show."""
 
-LEAST_CAPACITY_SHARE = 1e-3
+LEAST_CAPACITY_SHARE, LEAST_FILM_SHARE = 1e-2, 1e-3
 """A mass over the nut's capacity, a conductance over the film's of the nut."""
 
 LEAST_GROWTH = 0.1e-6
@@ -55,9 +55,9 @@ def is_material_heat(effect: Effect, plant: ThermalPlant) -> bool:
         case "contact_conductance_deviation":
             return abs(v["factor"] - 1) >= LEAST_CONTACT_FACTOR
         case "cooling":
-            return v["conductance"] >= LEAST_CAPACITY_SHARE * _film_of_nut(plant)
+            return v["conductance"] >= LEAST_FILM_SHARE * _film_of_nut(plant)
         case "heat_sink":
-            return v["conductance"] >= LEAST_CAPACITY_SHARE * _film_of_nut(plant) and (
+            return v["conductance"] >= LEAST_FILM_SHARE * _film_of_nut(plant) and (
                 LEAST_CAPACITY_SHARE * _capacity_of_nut(plant) <= v["capacity"] <= LONGEST_SINK * v["conductance"]
             )
         case "structure_growth":
