@@ -130,8 +130,8 @@ def fit(
             jacobian, exact = problem.jacobian(at.effects, chosen, at.predicted), True
             continue
         before, at, straight = at, lower.state, jacobian @ lower.step
-        bent = at.predicted - before.predicted - straight
-        bend = float(np.linalg.norm(bent) / np.linalg.norm(straight))
+        bent, length = at.predicted - before.predicted - straight, float(np.linalg.norm(straight))
+        bend = float(np.linalg.norm(bent)) / length if length > 0 else np.inf
         exact = exact and bend < STRAIGHT
         if before.squared_error - at.squared_error < ENOUGH * before.squared_error:
             break

@@ -30,26 +30,29 @@ WORKERS = 2
 def simplest_of_the_best(attempts: Sequence[Attempt], found: Fit) -> Attempt | None:
     """The best attempt, or one with fewer parameters that cannot be told from it; None if the best does not pay.
 
-    What is too small to matter is not taken. Where it is the best, others must pay beside it: they may only imitate it.
+    What is too small to matter is not taken. Where it is clearly the best, others must pay beside it: they may only
+    imitate it.
 
     Args:
         attempts: of one round, the best first.
         found: what the round began with.
     """
     paying = [a for a in attempts if a.comparison.pays]  # a larger gain by chance does not hide a smaller sure one
-    if not paying:
-        return None
-    able = [a for a in paying if _is_material(a) and (_is_material(paying[0]) or _adds(a, paying[0], found))]
+    able = [a for a in paying if _is_material(a)]
+    if paying and not _is_material(paying[0]):
+        able = [a for a in able if _ties(a, paying[0]) or _adds(a, paying[0], found)]
     if not able:
         return None
-    best = able[0]
-    tied = [best]
-    for other in able[1:]:
-        if len(other.errors) == len(best.errors):
-            better = compare_left_out(other.errors, best.errors, block_numbers(best.problem), LEAST_GAIN)
-            if better.gain < max(LEAST_GAIN, min(2 * better.standard_error, TIE)):
-                tied.append(other)
+    tied = [a for a in able if a is able[0] or _ties(a, able[0])]
     return min(tied, key=lambda a: len(read_coordinates(a.fit.effects[-1:], a.problem.plant)))
+
+
+def _ties(other: Attempt, best: Attempt) -> bool:
+    """Whether the other cannot be told from the best."""
+    if len(other.errors) != len(best.errors):
+        return False
+    better = compare_left_out(other.errors, best.errors, block_numbers(best.problem), LEAST_GAIN)
+    return better.gain < max(LEAST_GAIN, min(2 * better.standard_error, TIE))
 
 
 def _is_material(attempt: Attempt) -> bool:
