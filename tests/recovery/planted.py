@@ -91,8 +91,8 @@ class Verdict:
         return [f"{name} error {ratio:.2f} x null's" for name, ratio in ratios.items() if ratio > WORSE_THAN_NULL]
 
     def error_ratios(self) -> dict[str, float]:
-        """Channel to its relative error after the effects over the error of the null."""
-        return {c.name: c.after.relative / self.null[c.name].after.relative for c in self.result.channels}
+        """Channel to its error after the effects (rms) over that of the null."""
+        return {c.name: c.after.rms / self.null[c.name].after.rms for c in self.result.channels}
 
     def line(self, case: str) -> str:
         """One row of the table of results."""

@@ -1,6 +1,6 @@
-"""One case of the recovery suite for every effect, at the size that is worth 10 % of the error: named, and error gone.
+"""One case of the recovery suite for every effect, at the size that is worth half of the error: named, and error gone.
 
-`make recovery-smoke` runs them; they are slow for the default run. The whole suite is `make recovery`.
+They run with the other tests, and by `make recovery-smoke` alone. The whole suite is `make recovery`.
 """
 
 from __future__ import annotations
@@ -15,8 +15,6 @@ from tests.recovery.suite.figures import ERROR
 from tests.recovery.suite.one import run
 from tests.recovery.suite.verdict import Verdict
 
-pytestmark = pytest.mark.slow
-
 CASES = {next(iter(case.planted)): case for case in smoke_cases()}
 
 KNOWN_MISSES: dict[str, str] = {}
@@ -30,7 +28,7 @@ def parameter(name: str) -> Any:
 
 
 @pytest.mark.parametrize("name", [parameter(name) for name in CASES])
-def test_effect_worth_ten_percent_is_named_and_its_error_goes(name: str) -> None:
+def test_effect_worth_half_of_the_error_is_named_and_its_error_goes(name: str) -> None:
     verdict = Verdict(run(CASES[name], with_rivals=False))
     assert "raised" not in verdict.record, verdict.record["raised"]
     assert verdict.right_in_sets, f"{verdict.record['label']}: found {verdict.names or 'nothing'}"
