@@ -36,9 +36,6 @@ CLEARLY_NEEDED = 0.1
 UNEXPLAINED = 1.3
 """Weighted squared error per sample beyond which much is left; noise alone gives one."""
 
-MANY_VALUES = 8
-"""Fitted values beyond which one of the effects may be a curve that takes the place of others."""
-
 NEARLY = 0.5
 """Gain over that of the candidate taken, from which another was nearly taken."""
 
@@ -98,7 +95,7 @@ def search(problem: Problem, said: Callable[[str], None] = lambda text: None) ->
 
 
 def _is_doubtful(found: Search) -> bool:
-    return _error(found.fit) > UNEXPLAINED or len(found.fit.coordinates) > MANY_VALUES
+    return _error(found.fit) > UNEXPLAINED or len(found.fit.coordinates) > found.problem.predictor.many
 
 
 def _error(fitted: Fit) -> float:

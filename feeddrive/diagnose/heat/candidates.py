@@ -132,10 +132,10 @@ def structure_growth(scene: Scene) -> list[list[Effect]]:
 
 
 def sensor_lag(scene: Scene) -> list[list[Effect]]:
-    """A minute and five at every channel that has none yet."""
+    """Ten seconds, a minute and five at every channel that has none yet."""
     taken = {effect.place for effect in scene.found if effect.name == SensorLag.name}
     free = [name for name in _channels(scene) if name not in taken]
-    return [[SensorLag.of(place=name, time_constant=τ) for τ in (60.0, 300.0)] for name in free]
+    return [[SensorLag.of(place=name, time_constant=τ) for τ in (10.0, 60.0, 300.0)] for name in free]
 
 
 HEAT_CANDIDATES: tuple[Candidate, ...] = (

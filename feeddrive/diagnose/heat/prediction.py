@@ -45,6 +45,7 @@ class HeatPredictor(Predictor[ThermalPlant, HeatEvidence]):
     """
 
     retries: ClassVar[int] = 4
+    many: ClassVar[int] = 4  # a second search is cheap, and heats do much alike
     chance: ClassVar[float] = 18.0  # as that of motion, of some hundred starts
 
     declared: ThermalPlant
