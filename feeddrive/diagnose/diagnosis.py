@@ -17,6 +17,8 @@ from feeddrive.diagnose.evidence import Evidence
 from feeddrive.diagnose.fit import Problem
 from feeddrive.diagnose.judge import Judged, channel_results, judged_recordings, prepared_for_judging, share_of
 from feeddrive.diagnose.ledger.entry import kept_of
+from feeddrive.diagnose.logged import hold_of, may_be_logged
+from feeddrive.diagnose.logged import sentence as held_for
 from feeddrive.diagnose.preparation import prepared
 from feeddrive.diagnose.recordings.compared import compared_recordings, last_state, machine_as_last, with_carrying
 from feeddrive.diagnose.recordings.recordings import without_shifts
@@ -72,8 +74,13 @@ def diagnose(
         raise InputError(f"--split is {split:g}", "", "use a share between 0.2 and 0.95, such as 0.75")
     if simulate and isinstance(plant, Plant):
         refuse_unfit_loop(plant, (*recordings, *validation))
-    problem, kept_for_judging, told = prepared(plant, recordings, validation, split)
-    settled = _settled(problem, kept_for_judging, simulate and isinstance(plant, Plant), said, start)
+    begun = _begun(plant, recordings, validation, split, None)
+    in_the_loop = simulate and isinstance(plant, Plant)
+    settled = _settled(begun.problem, begun.judged, in_the_loop, said, start)
+    if (hold := _logged_hold(settled.searched.search, (*recordings, *validation))) is not None:
+        said("the torque is logged more slowly than the drive holds it: again")
+        begun = _begun(plant, recordings, validation, split, hold)
+        settled = _settled(begun.problem, begun.judged, in_the_loop, said, start)
     searched, judged, refinement = settled.searched, settled.judged, settled.refinement
     found = searched.search
     said("looking at what is left")
@@ -104,14 +111,39 @@ def diagnose(
         next_experiments=next_experiments(found, settled.rivals, spans),
         correlation=correlation(found.problem, found.fit, known),
         notes=(
-            *told,
+            *begun.told,
             *other_places(found, judged),
             *last_state(searched),
-            *_notes(problem.evidence, kept_for_judging, found),
+            *_notes(begun.problem.evidence, begun.judged, found),
             *refinement.notes,
         ),
     )
     return result, (*effects, *rest.effects)
+
+
+def _logged_hold(found: Search, recordings: Sequence[Recording]) -> float | None:
+    if not may_be_logged(recordings):
+        return None
+    spans = intervals(found.problem, found.fit, certainty(found.problem, found.fit))
+    return hold_of(found.fit.effects, spans, recordings)
+
+
+@dataclass(frozen=True)
+class _Begun:
+    """The problem, the recordings judged on, and what is to be said of them."""
+
+    problem: Problem
+    judged: list[Evidence]
+    told: tuple[str, ...]
+
+
+def _begun(
+    plant: Plant | ThermalPlant, recordings: Sequence[Recording], validation: Sequence[Recording], split: float,
+    hold: float | None,
+) -> _Begun:  # fmt: skip
+    problem, judged, told = prepared(plant, recordings, validation, split, hold)
+    also = () if hold is None else (held_for(hold, recordings[0].sample_time),)
+    return _Begun(problem, judged, (*told, *also))
 
 
 @dataclass(frozen=True)

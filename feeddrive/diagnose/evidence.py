@@ -9,6 +9,7 @@ import numpy as np
 
 from feeddrive.diagnose.band import END_CUT, Band, comparison_band, held, sensor_noise
 from feeddrive.diagnose.slow_rows import is_slow, known_motion, refuse_unknown_motion, sentence
+from feeddrive.diagnose.timing import lagging
 from feeddrive.diagnose.torque_channel import with_torque
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
@@ -122,13 +123,14 @@ class AxisEvidence(Evidence):
         return replace(self, recording=replace(self.recording, channels=channels), measured=measured, noise=noise)
 
 
-def prepare(recording: Recording, plant: Plant, share: float) -> AxisEvidence:
+def prepare(recording: Recording, plant: Plant, share: float, hold: float | None = None) -> AxisEvidence:
     """Evidence of a recording, its first `share` fitted and the rest judged.
 
     Args:
         recording: with a torque, a current or the table position beside the motor angle.
         plant: whose lead and band apply.
         share: 1 to fit on all of it, 0 to judge on all of it.
+        hold: how long the drive holds a torque [s]; None for a whole row.
 
     Raises:
         InputError: too short, or channels that are needed are missing.
@@ -146,7 +148,11 @@ def prepare(recording: Recording, plant: Plant, share: float) -> AxisEvidence:
     time: FloatArray = np.arange(len(recording), dtype=np.float64) * recording.sample_time
     raw = {name: recording[name] for name in measured_names}
     slow = is_slow(recording)
-    acting = {name: held(series) if name == "motor_torque" and not slow else series for name, series in raw.items()}
+    acting = dict(raw)
+    if "motor_torque" in raw and not slow:
+        acting["motor_torque"] = (
+            held(raw["motor_torque"]) if hold is None else lagging(raw["motor_torque"], hold / 2, recording.sample_time)
+        )
     counted = (time >= END_CUT) & (time <= time[-1] - END_CUT)
     if slow:
         known = known_motion(recording, plant, band)

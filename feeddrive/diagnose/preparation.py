@@ -23,7 +23,11 @@ Prepared = tuple[Problem, list[Evidence], tuple[str, ...]]
 
 
 def prepared(
-    plant: Plant | ThermalPlant, recordings: Sequence[Recording], validation: Sequence[Recording], split: float
+    plant: Plant | ThermalPlant,
+    recordings: Sequence[Recording],
+    validation: Sequence[Recording],
+    split: float,
+    hold: float | None = None,
 ) -> Prepared:
     """The problem, and what it is judged on.
 
@@ -32,6 +36,7 @@ def prepared(
         recordings: fitted; without `validation` their last part is judged.
         validation: judged only.
         split: share that is fitted where there is no `validation`.
+        hold: how long the drive holds a torque [s]; None for a whole row.
 
     Raises:
         InputError: recordings that cannot be used with this plant.
@@ -41,8 +46,8 @@ def prepared(
     for recording in (*recordings, *validation):
         _refuse_heat(recording)
         check_against_lead(recording, 2 * np.pi * plant.chain.motor_radius, recording.name)
-    fitted = tuple(prepare(recording, plant, 1.0 if validation else split) for recording in recordings)
-    judged: list[Evidence] = [prepare(recording, plant, 0.0) for recording in validation] or list(fitted)
+    fitted = tuple(prepare(recording, plant, 1.0 if validation else split, hold) for recording in recordings)
+    judged: list[Evidence] = [prepare(recording, plant, 0.0, hold) for recording in validation] or list(fitted)
     return _scaled(plant, fitted, judged)
 
 

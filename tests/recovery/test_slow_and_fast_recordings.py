@@ -12,7 +12,7 @@ from feeddrive.diagnose.result import Diagnosis
 from feeddrive.errors import InputError
 from feeddrive.recording import Recording
 from tests.generator.axis import AXES
-from tests.generator.effects import Effect, FrictionDeviation, PlantedEffects
+from tests.generator.effects import ChannelDelay, Effect, FrictionDeviation, PlantedEffects
 from tests.generator.pair import Channels, recording_pair
 from tests.generator.profile import train_profile, validate_profile
 from tests.generator.recording import QUICK_STEP, simulate
@@ -85,6 +85,23 @@ def test_motion_that_is_unknown_between_the_rows_is_refused() -> None:
     pair = recording_pair(AXES["light"], (), (83, 84), (14.0, 12.0))  # 140 rows, most of them between strokes
     with pytest.raises(InputError, match="the motion between rows 100 ms apart is known at"):
         diagnosed(every(200, pair))
+
+
+@pytest.mark.parametrize("cycles", [2, 3])
+def test_torque_of_a_faster_loop_is_no_delay(cycles: int) -> None:
+    pair = every(cycles, recording_pair(AXES["light"], (), (87, 88), (6.8, 6.0)))
+    result = diagnosed(pair)
+    assert names(result) == []
+    logged = f"logged every {0.5 * cycles:.3g} ms, and comes as from a drive that holds it for 0.5 ms"
+    assert any(logged in note for note in result.notes)  # the generator's loop runs at 2 kHz
+
+
+def test_late_torque_of_a_loop_is_a_delay() -> None:
+    late = ChannelDelay(channel="motor_torque", delay=0.7e-3)
+    result = diagnosed(every(2, recording_pair(AXES["light"], (late,), (89, 90), (6.8, 6.0))))
+    assert names(result) == ["channel_delay"]
+    # a quarter of a row of the recorder's, and the planted 0.7 ms
+    assert result.effects[0].parameters["delay"].value == pytest.approx(0.95e-3, rel=0.03)
 
 
 @pytest.mark.slow
