@@ -11,6 +11,7 @@ import casadi as ca
 
 from feeddrive.effects.base import Effect
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.symbolic_turn import SYMBOLS
 from feeddrive.plant.symbols import Symbols
 
 Options = TypeVarTuple("Options")
@@ -45,7 +46,8 @@ def per_structure(build: Callable[[Plant, *Options], Machine]) -> Callable[[Plan
 
     @lru_cache(maxsize=256)
     def cached(key: tuple[object, ...], holder: _Holder, options: tuple[*Options]) -> Machine:
-        return build(holder.plant, *options)
+        with SYMBOLS.taken():
+            return build(holder.plant, *options)
 
     _CACHES.append(cached.cache_clear)
 

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from feeddrive.compiler import compiled_library
+from feeddrive.plant.symbolic_turn import SYMBOLS
 from feeddrive.simulate.driver_source import source_of
 from feeddrive.simulate.program import CELL, Position, Program, Run, Status, Stop, Task
 from feeddrive.typing import FloatArray
@@ -41,7 +42,9 @@ def processor() -> str:
 def compiled_run(program: Program) -> Run | None:
     """The driver of a program in C; None without a compiler, or where it fails or no folder can hold what it makes."""
     flags = (*FLAGS, "-march=native") if processor() else FLAGS
-    library = compiled_library(source_of(program), flags, processor())
+    source = source_of(program)
+    with SYMBOLS.laid_down():
+        library = compiled_library(source, flags, processor())
     return None if library is None else _bound(program, library)
 
 
