@@ -59,8 +59,9 @@ def test_what_is_square_to_the_rise_is_left_as_it_is() -> None:
 def test_model_error_counts_in_its_own_channel() -> None:
     made = evidence()
     rows = model_error_rows([made], [made.fit_rows])
-    nut = float(ROWS * (MODEL_ERROR["degC"] / made.noise["nut_temperature"]) ** 2)
-    growth = float(ROWS * (MODEL_ERROR["m"] / made.noise["table_growth_300mm"]) ** 2)
+    nut = float(ROWS * (made.model_error["nut_temperature"] / made.noise["nut_temperature"]) ** 2)
+    growth = float(ROWS * (made.model_error["table_growth_300mm"] / made.noise["table_growth_300mm"]) ** 2)
+    assert made.model_error["nut_temperature"] > MODEL_ERROR["degC"]  # and what grows with the rise
     first, second = np.split(rows, 2)
     assert first == pytest.approx(nut) and second == pytest.approx(growth)
     before, in_nut, in_both = np.full(2 * ROWS, 2.0), np.full(2 * ROWS, 2.0), np.full(2 * ROWS, 1.0)

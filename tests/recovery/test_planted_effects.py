@@ -1,7 +1,7 @@
 """Every planted effect is named, alone, with its size; where nothing is planted nothing is found.
 
 The recordings are those of `tests/generator`, which shares no code with the package. With `-s` each case prints a row:
-found and planted values, and the error left over the error of the axis with nothing planted.
+found and planted values, and the error left over that of the plant with what was planted.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ def test_what_was_planted_is_found_and_nothing_else(case: str) -> None:
 
 @pytest.mark.parametrize("axis", list(TRUTH))
 def test_declared_plant_leaves_the_sensor_noise_on_null(axis: str) -> None:
-    """What `error/null` refers to is itself near the noise, so that the ratio cannot hide a poor prediction."""
+    """The prediction itself is near the noise, so that no ratio can hide a poor one."""
     for channel in null_errors(axis).values():
         # 1.25: the motor motion that goes in is quantised and differentiated, and adds to the noise of the channel.
         assert channel.after.rms <= 1.25 * channel.noise_rms, channel.name
