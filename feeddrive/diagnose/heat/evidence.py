@@ -95,12 +95,12 @@ def prepare_heat(recording: Recording, plant: ThermalPlant, share: float) -> Hea
     _refuse_missing(recording)
     names = _predicted(recording, plant)
     n, step = len(recording), recording.sample_time
-    missed = {name: model_error_of(name, recording) for name in names}
     if n < FEWEST_ROWS:
         raise InputError(f"{n} rows are too few to compare", recording.name, f"record at least {FEWEST_ROWS}")
     first = 1 if abs(float(recording.time[0])) < 0.5 * step else 0
     time: FloatArray = np.arange(1, n + 1, dtype=np.float64) * step
     noise = plant_noise(plant)
+    missed = {name: model_error_of(name, recording) for name in names}
     return HeatEvidence(
         recording,
         {name: recording[name] for name in names},
