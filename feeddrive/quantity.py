@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import math
 import re
+import sys
 
-from feeddrive.errors import InputError
+from feeddrive.errors import InputError, quoted
 from feeddrive.unit_definitions import EXAMPLE_UNITS
 from feeddrive.unit_display import shown_unit
 from feeddrive.units import Conversion, UnitError, conversion_between
@@ -31,13 +32,18 @@ def parse(text: object, unit: str, where: str) -> float:
         InputError: bare number for a dimensional quantity, wrong dimension, unknown unit, not a number.
     """
     if isinstance(text, bool) or not isinstance(text, str | int | float):
-        raise InputError(f"{text!r} is not a quantity", where, _write_it(unit))
+        raise InputError(f"{quoted(text)} is not a quantity", where, _write_it(unit))
+    if isinstance(text, int) and abs(text) > sys.float_info.max:
+        raise InputError(f"{quoted(text)} is beyond what can be computed with", where, _write_it(unit))
     number, unit_text = _split(str(text), unit, where)
     if not math.isfinite(number):
-        raise InputError(f"{text} is not a finite number", where, _write_it(unit))
+        raise InputError(f"{quoted(text)} is not a finite number", where, _write_it(unit))
     if not unit_text and unit != "1":
-        raise InputError(f"{text} is a bare number", where, _write_it(unit, number))
-    return float(unit_conversion(unit_text or "1", unit, where).apply(number))
+        raise InputError(f"{quoted(text)} is a bare number", where, _write_it(unit, number))
+    value = float(unit_conversion(unit_text or "1", unit, where).apply(number))
+    if not math.isfinite(value):
+        raise InputError(f"{quoted(text)} is beyond what can be computed with", where, _write_it(unit))
+    return value
 
 
 def split_quantity(text: str, where: str) -> tuple[float, str]:
@@ -48,7 +54,7 @@ def split_quantity(text: str, where: str) -> tuple[float, str]:
     """
     number, unit_text = _split(text, "1", where)
     if not math.isfinite(number):
-        raise InputError(f"{text} is not a finite number", where)
+        raise InputError(f"{quoted(text)} is not a finite number", where)
     return number, unit_text or "1"
 
 

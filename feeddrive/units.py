@@ -13,10 +13,13 @@ from typing import Any, TypeVar
 
 from feeddrive.typing import FloatArray
 from feeddrive.unit_definitions import DEFINITIONS
+from feeddrive.unit_grammar import LONGEST, GrammarError, check_unit
 
 Number = TypeVar("Number", float, FloatArray)
 
-_LONGEST_UNIT = 80  # a longer text is a mistake, and pint's parser need not see it
+_SUPERSCRIPTS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺", "0123456789-+")
+
+_RANGE = 1e40  # a conversion beyond it is of no unit that anyone measures in
 
 # Spellings of the shop floor that pint would not read, or would read as something else.
 _SPELLINGS: tuple[tuple[str, str], ...] = (
@@ -29,6 +32,7 @@ _SPELLINGS: tuple[tuple[str, str], ...] = (
     (r"(?<![A-Za-zµμ])(k?)g(c|m?)m(?:\^?2|²)", r"\1g \2m^2"),
     (r"(?<=[A-Za-z])(-?[123])(?![\d.])", r"^\1"),
 )
+_SUPERSCRIPT = re.compile(r"[⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺]+")
 
 
 @dataclass(frozen=True)
@@ -73,6 +77,8 @@ def conversion_between(unit_text: str, si_unit: str) -> Conversion:
     if si_unit == "degC":
         return _temperature(str(given))
     factor = float(given._REGISTRY.convert(1.0, _per_radian(given, needed), needed))
+    if not 1.0 / _RANGE < factor < _RANGE:
+        raise UnitError(f'"{unit_text}" is {factor:.0e} {si_unit}, which nobody measures in', _needed(si_unit))
     short = float(f"{factor:.12g}")
     return Conversion(short if abs(short / factor - 1.0) < 1e-15 else factor)
 
@@ -90,14 +96,18 @@ def _registry() -> Any:
 @lru_cache(maxsize=1024)
 def _unit(unit_text: str) -> Any:
     """Return pint's unit of a written one."""
+    if not unit_text.strip() or len(unit_text) > LONGEST:
+        raise UnitError(f'"{unit_text}" is not a unit', "write a unit such as mm, rev/min, N m")
     spelled = unit_text
     for pattern, replacement in _SPELLINGS:
         spelled = re.sub(pattern, replacement, spelled)
-    spelled = spelled.strip()
+    spelled = _SUPERSCRIPT.sub(lambda match: f"^({match[0].translate(_SUPERSCRIPTS)})", spelled).strip()
     if spelled not in ("degC", "degF"):  # in a compound a temperature is a difference
         spelled = re.sub(r"\bdegC\b", "K", spelled)
-    if not spelled or len(spelled) > _LONGEST_UNIT:
-        raise UnitError(f'"{unit_text[:_LONGEST_UNIT]}" is not a unit', "write a unit such as mm, rev/min, N m")
+    try:
+        check_unit(spelled)
+    except GrammarError as error:
+        raise UnitError(f'unknown unit "{unit_text}": it {error}', _nearest_unit(unit_text)) from None
     try:
         registry = _registry()
     except Exception as error:  # a file of the folder that is started from, named like a module of Python
