@@ -8,6 +8,7 @@ from typing import Self
 import numpy as np
 
 from feeddrive.diagnose.band import END_CUT, Band, comparison_band, held, sensor_noise
+from feeddrive.diagnose.flawed_rows import refuse_little_left, sound_rows, without_copied_position
 from feeddrive.diagnose.slow_rows import is_slow, known_motion, refuse_unknown_motion, sentence
 from feeddrive.diagnose.timing import lagging
 from feeddrive.diagnose.torque_channel import with_torque
@@ -135,7 +136,8 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
     Raises:
         InputError: too short, or channels that are needed are missing.
     """
-    recording, scaled_from = with_torque(_with_motor_angle(recording, plant), plant)
+    recording = without_copied_position(_with_motor_angle(recording, plant), plant)
+    recording, scaled_from = with_torque(recording, plant)
     measured_names = [name for name in PREDICTED if name in recording]
     if not measured_names:
         mend = "record the motor torque or current, or the table position beside the motor angle"
@@ -159,6 +161,8 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
         refuse_unknown_motion(known, counted, recording)
         recording = replace(recording, notes=(*recording.notes, sentence(known, recording)))
         counted &= known
+    counted &= sound_rows(recording, plant.torque_limit, band)
+    refuse_little_left(counted, recording)
     return AxisEvidence(
         recording,
         {name: band.filter(series) for name, series in acting.items()},

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from feeddrive.errors import InputError
+from feeddrive.errors import InputError, printable
 from feeddrive.recording.channels import Heading, read_heading
-from feeddrive.recording.checks import check_alive, check_finite, check_length
+from feeddrive.recording.checks import check_alive, check_finite, check_length, check_sample_time, check_size
+from feeddrive.recording.copies import refuse_copied_setpoint
 from feeddrive.recording.csv_faults import is_number
 from feeddrive.recording.csv_file import Layout, TextTable, find_table
+from feeddrive.recording.find_flaws import find_flaws
 from feeddrive.recording.findings import sample_notes
+from feeddrive.recording.flaws import filled, sentence
 from feeddrive.recording.foreign import mapped_columns, table_variables
 from feeddrive.recording.mapping import FileMapping, read_mapping
 from feeddrive.recording.mat_file import read_variables
@@ -100,11 +103,22 @@ def _checked(content: FileContent, columns: dict[str, FloatArray], first_row: in
     check_length(columns["time"].size, where)
     for name, samples in columns.items():
         check_finite(samples, name, first_row, where)
+        check_size(samples, name, first_row, where)
     time = columns.pop("time")
     if not columns:
         raise InputError("there is no channel beside the time", where, 'add e.g. "motor_torque [N m]"')
     check_time(time, first_row, where)
-    check_alive(columns, where)
     sample_time = mean_sample_time(time)
-    found = (*notes, *clock_notes(time, sample_time), *sample_notes(columns))
-    return Recording(content.path.name, time, columns, sample_time, where, content.sha256, found)
+    check_sample_time(sample_time, where)
+    check_alive(columns, where)
+    refuse_copied_setpoint(columns, where)
+    flaws = find_flaws(columns, sample_time, first_row, where)
+    columns = filled(columns, flaws)
+    found = (
+        *notes,
+        *clock_notes(time, sample_time),
+        *sample_notes(columns),
+        *(sentence(one, first_row) for one in flaws),
+    )
+    name = printable(content.path.name)
+    return Recording(name, time, columns, sample_time, where, content.sha256, found, tuple(flaws))

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feeddrive.errors import InputError
+from feeddrive.recording.flaws import Flaw
 from feeddrive.typing import FloatArray
 
 
@@ -25,6 +26,7 @@ class Recording:
         source: where it was read from; empty if it was simulated.
         sha256: checksum of the file as it was read; empty if there is none.
         notes: what was found on reading and is said: quantisation, saturation, separator, clock drift.
+        flaws: samples that are not what the machine did; bad and held ones are filled, clipped ones are not.
 
     Raises:
         InputError: a channel that is not as long as the time, or a sample time that is not positive.
@@ -37,6 +39,7 @@ class Recording:
     source: str = ""
     sha256: str = ""
     notes: tuple[str, ...] = ()
+    flaws: tuple[Flaw, ...] = ()
 
     def __post_init__(self) -> None:
         for channel, samples in self.channels.items():
@@ -85,4 +88,5 @@ class Recording:
             span = f"{self.time[0]:g} s to {self.time[-1]:g} s" if len(self) else "no time at all"
             raise InputError(f"no sample from {start:g} s to {stop:g} s", self.name, f"it covers {span}")
         kept = {channel: samples[first:last] for channel, samples in self.channels.items()}
-        return replace(self, time=self.time[first:last], channels=kept)
+        flaws = tuple(part for part in (one.between(int(first), int(last)) for one in self.flaws) if part.rows.size)
+        return replace(self, time=self.time[first:last], channels=kept, flaws=flaws)

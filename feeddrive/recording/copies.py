@@ -1,0 +1,50 @@
+"""Channels that are one signal under two names.
+
+A copy changes in the same rows as its source and departs from it by no more than the last digits of both:
+
+    max |y - s x - c| <= 0.6 (|s| q_x + q_y)
+
+with the resolutions q. A servo always has an error, and a transmission gives: two sensors differ by more.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from feeddrive.errors import InputError
+from feeddrive.recording.flaws import resolution
+from feeddrive.typing import FloatArray
+
+ROUNDED = 0.6
+"""Of a resolution, by which a rounded value departs: half of it, and what the scale between the two loses."""
+
+WIDE = 1000.0
+"""Range over resolution from which a copy is told from two sensors that see next to nothing."""
+
+
+def refuse_copied_setpoint(channels: Mapping[str, FloatArray], where: str) -> None:
+    """Refuse a measured motion that is the set-point; channels are (n,) each.
+
+    Raises:
+        InputError: the set-point and a measured channel are one signal.
+    """
+    for name in ("table_position", "motor_angle"):
+        if "setpoint" in channels and name in channels and is_copy(channels["setpoint"], channels[name]):
+            what = f"setpoint and {name} are the same signal to the last digit, and a servo always has an error"
+            raise InputError(what, where, f"map the actual value to {name}, or leave out the column that is a copy")
+
+
+def is_copy(source: FloatArray, other: FloatArray) -> bool:
+    """Tell whether one channel is the other times a factor, (n,) each."""
+    changes, others = np.diff(source) != 0.0, np.diff(other) != 0.0
+    if float(np.mean(changes == others)) < 0.999 or not np.any(changes):
+        return False
+    x, y = source - source.mean(), other - other.mean()
+    factor = float(x @ y) / float(x @ x)
+    steps = resolution(source), resolution(other)
+    if np.ptp(source) < WIDE * steps[0] or np.ptp(other) < WIDE * steps[1]:
+        return False
+    rounding = 1e-12 * float(np.max(np.abs(other)))
+    return bool(np.max(np.abs(y - factor * x)) <= ROUNDED * (abs(factor) * steps[0] + steps[1]) + rounding)
