@@ -15,11 +15,14 @@ import typer
 from rich.console import Console, RenderableType
 from rich.table import Table
 
-from feeddrive.errors import ValidityWarning
+from feeddrive.errors import ValidityWarning, quoted
 from feeddrive.files import write_text_atomically
 
 JsonOption = Annotated[bool, typer.Option("--json", help="JSON in place of tables; SI units.")]
 OutOption = Annotated[Path | None, typer.Option("--out", help="File to write to, in place of the terminal.")]
+
+LONGEST_WARNING = 800
+"""Letters of a warning."""
 
 _WIDTH = 120
 """Of tables in a file or a pipe, in letters."""
@@ -67,7 +70,7 @@ def warnings_as_lines() -> Iterator[None]:
     for warning in caught:
         if issubclass(warning.category, ValidityWarning):
             if str(warning.message) not in told:  # a plant is made more than once on the way to its figures
-                typer.echo(f"warning: {warning.message}", err=True)
+                typer.echo(f"warning: {quoted(str(warning.message), LONGEST_WARNING)}", err=True)
             told.add(str(warning.message))
         else:
             warnings.warn_explicit(warning.message, warning.category, warning.filename, warning.lineno)
