@@ -1,0 +1,17 @@
+"""A few dozen cases of every fuzz module; `python -m tests.fuzz --cases 2000 --seed N` runs many."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.fuzz.harness import modules, run_cases, share_of
+
+SEED, CASES = 1, 50
+
+
+@pytest.mark.parametrize("name", [name for name in modules() if share_of(name) == 1.0])
+def test_input_of_any_kind_ends_with_status_0_or_2(name: str) -> None:
+    outcomes = list(run_cases(name, SEED, range(CASES)))
+    assert [(one.number, one.what, one.fault, one.line[:300]) for one in outcomes if one.fault] == []
+    # A module whose every input is refused at its first line, or taken whole, tries nothing.
+    assert {one.status for one in outcomes} == {0, 2}
