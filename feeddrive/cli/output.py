@@ -70,10 +70,15 @@ def warnings_as_lines() -> Iterator[None]:
     for warning in caught:
         if issubclass(warning.category, ValidityWarning):
             if str(warning.message) not in told:  # a plant is made more than once on the way to its figures
-                typer.echo(f"warning: {quoted(str(warning.message), LONGEST_WARNING)}", err=True)
+                tell(str(warning.message))
             told.add(str(warning.message))
         else:
             warnings.warn_explicit(warning.message, warning.category, warning.filename, warning.lineno)
+
+
+def tell(warning: str) -> None:
+    """Show a warning in one line on stderr."""
+    typer.echo(f"warning: {quoted(warning, LONGEST_WARNING)}", err=True)
 
 
 def _as_text(tables: Sequence[RenderableType]) -> str:

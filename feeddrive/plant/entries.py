@@ -15,6 +15,9 @@ from feeddrive.quantity import parse
 
 _TABLE_KEYS = ("value", "source", "tolerance")
 
+MOST_LEVELS = 12
+"""Tables inside tables in a file: three times what any of ours needs, and far below what Python can walk through."""
+
 
 @dataclass
 class Origins:
@@ -181,7 +184,7 @@ def read_toml(path: Path, kind: str) -> dict[str, Any]:
     """
     where = str(path)
     try:
-        return parse_toml(path.read_text(encoding="utf-8-sig"), where)
+        text = path.read_text(encoding="utf-8-sig")
     except (FileNotFoundError, NotADirectoryError):
         raise InputError(f"no such {kind}", where, "check the name and the folder") from None
     except IsADirectoryError:
@@ -190,19 +193,42 @@ def read_toml(path: Path, kind: str) -> dict[str, Any]:
         raise InputError(f"cannot be read ({error.strerror})", where, "check the permissions of the file") from None
     except UnicodeDecodeError:
         raise InputError("is not a text in UTF-8", where, "save it as UTF-8") from None
+    except ValueError:  # a name that no system knows, such as one with a zero byte
+        raise InputError(f"no such {kind}", where, "check the name and the folder") from None
+    return parse_toml(text, where)
 
 
 def parse_toml(text: str, where: str) -> dict[str, Any]:
     """Parse TOML text.
 
     Raises:
-        InputError: not TOML (with line and column).
+        InputError: not TOML (with line and column), or tables in more than `MOST_LEVELS` levels.
     """
     parse_text: Callable[[str], dict[str, Any]] = tomllib.loads
     try:
-        return parse_text(text)
+        entries = parse_text(text)
     except (ValueError, RecursionError) as error:  # a plain ValueError: an integer beyond Python's digit limit
         raise InputError(f"is not TOML: {error}", where, "correct that line") from None
+    refuse_deep(entries, where)
+    return entries
+
+
+def refuse_deep(entries: Mapping[str, Any], where: str) -> None:
+    """Refuse tables and lists in more than `MOST_LEVELS` levels, which no file of ours has.
+
+    Raises:
+        InputError: it is so; names the first key.
+    """
+    level = list(entries.items())
+    for _ in range(MOST_LEVELS):
+        level = [(first, inner) for first, value in level for inner in _inside(value)]
+    if level:
+        raise InputError(f"tables or lists in more than {MOST_LEVELS} levels", f"{where}, {level[0][0]}", "write it flat")
+
+
+def _inside(value: Any) -> Iterable[Any]:
+    """What a table or a list holds; nothing of a value."""
+    return value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
 
 
 def nearest(word: str, known: Iterable[str]) -> str:

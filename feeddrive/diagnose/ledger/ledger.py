@@ -82,12 +82,16 @@ def runs_of(folder: Path) -> list[dict[str, Any]]:
     mend = "move it away, or give another folder by --out"
     try:
         record = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, json.JSONDecodeError):
+    except (OSError, ValueError, RecursionError):
         raise InputError("the ledger cannot be read", str(path), mend) from None
-    if not isinstance(record, dict) or record.get("format") != FORMAT or not isinstance(record.get("runs"), list):
+    if not isinstance(record, dict) or record.get("format") != FORMAT or not _are_runs(record.get("runs")):
         raise InputError(f"not a ledger of format {FORMAT}", str(path), mend)
     runs: list[dict[str, Any]] = record["runs"]
     return runs
+
+
+def _are_runs(runs: Any) -> bool:
+    return isinstance(runs, list) and all(isinstance(run, dict) for run in runs)
 
 
 def write_ledger(folder: Path, runs: Sequence[dict[str, Any]], result: Diagnosis, effects: Sequence[Effect],
