@@ -29,7 +29,7 @@ COMPILE_TIME = 300.0
 """Seconds after which a compiler is taken to hang: some thirty times what the largest machine takes on a slow core."""
 
 
-class CompilerFailed(Exception):
+class CompilerError(Exception):
     """The compiler ended with an error, or hung; the text says which in a line."""
 
 
@@ -73,7 +73,7 @@ def compiled_library(source: str, flags: tuple[str, ...] = FLAGS, made_for: str 
             if not library.exists():
                 _compile(source, compiler, flags, library)
             return ctypes.CDLL(str(library))
-        except CompilerFailed as failure:
+        except CompilerError as failure:
             if compiler in _hung:
                 mend = "it is done without, which is slower; FEEDDRIVE_COMPILER=none does not wait"
                 warnings.warn(f"{compiler}: {failure}; {mend}", ValidityWarning, stacklevel=2)
@@ -91,7 +91,7 @@ def run_compiler(command: Sequence[str], folder: Path) -> None:
         folder: in which it runs.
 
     Raises:
-        CompilerFailed: it ended with an error or did not end.
+        CompilerError: it ended with an error or did not end.
         OSError: it cannot be started.
     """
     # A session of its own: what the compiler has started itself is ended with it.
@@ -106,9 +106,9 @@ def run_compiler(command: Sequence[str], folder: Path) -> None:
         if not isinstance(error, subprocess.TimeoutExpired):
             raise
         _hung.add(command[0])
-        raise CompilerFailed(f"the C compiler did not end within {COMPILE_TIME:g} s") from None
+        raise CompilerError(f"the C compiler did not end within {COMPILE_TIME:g} s") from None
     if started.returncode != 0:
-        raise CompilerFailed(next(iter(said.strip().splitlines()), f"status {started.returncode}"))
+        raise CompilerError(next(iter(said.strip().splitlines()), f"status {started.returncode}"))
 
 
 def _end(started: subprocess.Popen[str]) -> None:

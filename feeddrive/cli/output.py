@@ -21,8 +21,8 @@ from feeddrive.files import write_text_atomically
 JsonOption = Annotated[bool, typer.Option("--json", help="JSON in place of tables; SI units.")]
 OutOption = Annotated[Path | None, typer.Option("--out", help="File to write to, in place of the terminal.")]
 
-LONGEST_WARNING = 800
-"""Letters of a warning."""
+LONGEST_LINE = 800
+"""Letters of a warning, or of where the files are."""
 
 _WIDTH = 120
 """Of tables in a file or a pipe, in letters."""
@@ -53,11 +53,18 @@ def deliver(content: dict[str, Any], tables: Sequence[RenderableType], as_json: 
     text = json.dumps(content, indent=2, ensure_ascii=False) + "\n" if as_json else None
     if out is not None:
         write_text_atomically(out, text or _as_text(tables))
+        tell_written(out, as_json)
     elif text is not None:
         typer.echo(text, nl=False)
     else:
         width = None if sys.stdout.isatty() else _WIDTH
         _print(Console(markup=False, highlight=False, emoji=False, width=width), tables)
+
+
+def tell_written(out: Path | None, as_json: bool) -> None:
+    """Say after the tables where the files are; nothing where there are none, or where JSON is printed."""
+    if out is not None and not as_json:
+        typer.echo(f"written: {quoted(str(out.resolve()), LONGEST_LINE)}")
 
 
 @contextmanager
@@ -70,15 +77,15 @@ def warnings_as_lines() -> Iterator[None]:
     for warning in caught:
         if issubclass(warning.category, ValidityWarning):
             if str(warning.message) not in told:  # a plant is made more than once on the way to its figures
-                tell(str(warning.message))
+                tell(f"warning: {warning.message}")
             told.add(str(warning.message))
         else:
             warnings.warn_explicit(warning.message, warning.category, warning.filename, warning.lineno)
 
 
-def tell(warning: str) -> None:
-    """Show a warning in one line on stderr."""
-    typer.echo(f"warning: {quoted(warning, LONGEST_WARNING)}", err=True)
+def tell(line: str) -> None:
+    """Say something in one line on stderr."""
+    typer.echo(quoted(line, LONGEST_LINE), err=True)
 
 
 def _as_text(tables: Sequence[RenderableType]) -> str:

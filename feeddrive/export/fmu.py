@@ -20,7 +20,7 @@ import tempfile
 import zipfile
 from pathlib import Path
 
-from feeddrive.compiler import CompilerFailed, run_compiler
+from feeddrive.compiler import CompilerError, run_compiler
 from feeddrive.errors import InputError
 from feeddrive.export.c_source import header_text, numbers, source_text
 from feeddrive.export.fmu_description import description_text, fixed_parameters, nominals
@@ -93,7 +93,7 @@ def _compiled(sources: dict[str, str], units: tuple[str, ...], compiler: str) ->
                 (folder / file).write_text(text, encoding="utf-8")
             run_compiler([compiler, *_FLAGS, "-o", "model", *units, "-lm"], folder)
             return (folder / "model").read_bytes()
-    except CompilerFailed as failure:
+    except CompilerError as failure:
         raise InputError(f"the model was not compiled: {failure}", compiler, mend) from None
     except OSError as error:
         what = f"the model was not compiled: the temporary folder cannot be used ({error.strerror})"

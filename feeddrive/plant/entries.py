@@ -223,7 +223,9 @@ def refuse_deep(entries: Mapping[str, Any], where: str) -> None:
     for _ in range(MOST_LEVELS):
         level = [(first, inner) for first, value in level for inner in _inside(value)]
     if level:
-        raise InputError(f"tables or lists in more than {MOST_LEVELS} levels", f"{where}, {level[0][0]}", "write it flat")
+        raise InputError(
+            f"tables or lists in more than {MOST_LEVELS} levels", f"{where}, {level[0][0]}", "write it flat"
+        )
 
 
 def _inside(value: Any) -> Iterable[Any]:

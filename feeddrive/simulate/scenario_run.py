@@ -209,7 +209,7 @@ def _resumed(scenario: Scenario, path: Path | None) -> _Done | None:
 
 def _refuse_other_shapes(scenario: Scenario, found: Mapping[str, FloatArray], where: str, mend: str) -> None:
     """Refuse a checkpoint whose arrays are not those that a run of this scenario writes."""
-    start, divider = _start(scenario), scenario.recorder.divider
+    start = _start(scenario)
     late = LateChannels.at_rest(scenario.plant, scenario.cascade.sample_time, dict.fromkeys(SERIES, 0.0))
     shapes = {"state": start.state.vector.shape, "torque": start.torque.state.shape, "late": late.vector.shape,
               "rows": (len(found["rows"]), len(_columns(scenario)))}  # fmt: skip

@@ -15,6 +15,7 @@ from typing import Any
 
 from feeddrive.errors import InputError
 from feeddrive.files import write_text_atomically
+from feeddrive.output_folder import refuse_unusable
 from feeddrive.simulate.sweep_design import Design
 from feeddrive.simulate.sweep_unit import UNIT_FORMAT, is_list_of_runs
 
@@ -52,16 +53,6 @@ def unit_path(folder: Path, unit: int) -> Path:
     return folder / "units" / f"{unit:04d}.json"
 
 
-def refuse_file(folder: Path) -> None:
-    """Refuse a file where a folder is needed.
-
-    Raises:
-        InputError: it is a file.
-    """
-    if folder.exists() and not folder.is_dir():
-        raise InputError("is a file, not a folder", str(folder), "name another folder for --out")
-
-
 def write_cut(folder: Path, design: Design, cut: Cut) -> None:
     """Begin a sweep's folder.
 
@@ -80,7 +71,7 @@ def read_cut(folder: Path, design: Design) -> Cut | None:
         InputError: the folder is a file, or holds another sweep or something unreadable.
     """
     path = folder / _PLAN
-    refuse_file(folder)
+    refuse_unusable(folder)
     if not path.exists():
         return None
     content = _json(path)

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
 import matplotlib
 
-os.environ["FEEDDRIVE_COMPILER"] = "none"  # a changed machine would be compiled for seconds
 matplotlib.use("Agg")
 
-from feeddrive.cli import output, running, sweeping  # noqa: E402
-from feeddrive.cli.main import main  # noqa: E402
-from feeddrive.errors import InputError  # noqa: E402
+from feeddrive.cli import output, running, sweeping
+from feeddrive.cli.main import main
+from feeddrive.errors import InputError
+from feeddrive.simulate import compiled
 
 MOST_TICKS = 4000
 """Of a run; a longer one that is possible is cut, for interpreted it takes its time."""
@@ -37,6 +36,7 @@ def _few(design: Any, *others: Any) -> Any:
 
 def command(arguments: Sequence[str]) -> int:
     """Run a command line; runs and sweeps are cut short, and what is merely unusual is not told."""
+    compiled.compiled_library = lambda *_: None  # a changed machine would be compiled for seconds
     running.run_scenario, sweeping.run_sweep = _short, _few
-    output.tell = lambda warning: None
+    output.tell = lambda line: None
     return main(list(arguments))

@@ -61,15 +61,23 @@ def _set(generator: random.Random) -> list[str]:
     settings = [f"{_key(generator)}={_text(generator)}" for _ in range(generator.choice([1, 1, 2, 3]))]
     if generator.random() < 0.1:
         settings.append(_text(generator))
-    return ["run", "step_position", *generator.choice([SHORT, []]), *(word for one in settings for word in ("--set", one))]
+    return [
+        "run",
+        "step_position",
+        *generator.choice([SHORT, []]),
+        *(word for one in settings for word in ("--set", one)),
+    ]
 
 
 def _vary(generator: random.Random) -> list[str]:
-    shape = generator.choice(["{0}:{1}:2", "{0}:{1}:{2}", "{0},{1}", "{0}~{1}", "{0}", "{0}:{1}", "~", ":::", ",,,", "{0}~"])
+    shape = generator.choice(
+        ["{0}:{1}:2", "{0}:{1}:{2}", "{0},{1}", "{0}~{1}", "{0}", "{0}:{1}", "~", ":::", ",,,", "{0}~"]
+    )
     values = [generator.choice([quantity(generator), "3", "40", "80 1/s", "2"]) for _ in range(3)]
     key = generator.choice(["controller.position_gain", "plant.table.mass", _key(generator)])
     given = f"{key}={shape.format(*values)}"
-    more = generator.choice([[], ["--samples", generator.choice(["1", "2", "0", "-1", "1e3", "x"])], ["--metric", _text(generator)],
+    more = generator.choice([[], ["--samples", generator.choice(["1", "2", "0", "-1", "1e3",
+    "x"])], ["--metric", _text(generator)],
                              ["--seed", generator.choice(["0", "-1", "99999999999999999999", "x"])]])  # fmt: skip
     return ["sweep", "step_position", *SHORT, "--workers", "1", "--vary", given, *more]
 
@@ -84,10 +92,13 @@ def _some(generator: random.Random, usual: str) -> str:
 
 def _bode(generator: random.Random) -> list[str]:
     given = {
-        "--at": generator.choice([f"x={_some(generator, '200 mm')},v={_some(generator, '3 m/min')}", _several(generator)]),
-        "--positions": _several(generator), "--payload": _some(generator, "10 kg"), "--range": f"{_some(generator, '1 Hz')},{_some(generator, '2 kHz')}",
+        "--at": generator.choice([f"x={_some(generator, '200 mm')},v={_some(generator, '3 m/min')}",
+        _several(generator)]),
+        "--positions": _several(generator), "--payload": _some(generator, "10 kg"),
+        "--range": f"{_some(generator, '1 Hz')},{_some(generator, '2 kHz')}",
         "--from": generator.choice([*INPUTS, *TEXTS]), "--to": generator.choice([*OUTPUTS, *TEXTS]),
-        "--loop": generator.choice(["open", "closed", *TEXTS]), "--scenario": generator.choice(["step_position", *TEXTS]),
+        "--loop": generator.choice(["open", "closed", *TEXTS]),
+        "--scenario": generator.choice(["step_position", *TEXTS]),
     }  # fmt: skip
     chosen = generator.sample(list(given), generator.randint(1, 4))
     return ["bode", _machine(generator), *(word for name in chosen for word in (name, given[name]))]
@@ -95,16 +106,23 @@ def _bode(generator: random.Random) -> list[str]:
 
 def _thermal(generator: random.Random) -> list[str]:
     given = {
-        "--speed": _some(generator, "750 rev/min"), "--duration": _some(generator, "5 min"), "--within": _some(generator, "1 µm"),
-        "--stroke": generator.choice([f"{_some(generator, '150 mm')} to {_some(generator, '300 mm')}", _some(generator, "100 mm")]),
-        "--order": generator.choice(["2", "36", "200", "0", "x", "1e9"]), "--segments": generator.choice(["3", "100", "0", "x"]),
+        "--speed": _some(generator, "750 rev/min"), "--duration": _some(generator, "5 min"),
+        "--within": _some(generator, "1 µm"),
+        "--stroke": generator.choice([f"{_some(generator, '150 mm')} to {_some(generator, '300 mm')}",
+        _some(generator, "100 mm")]),
+        "--order": generator.choice(["2", "36", "200", "0", "x", "1e9"]), "--segments": generator.choice(["3",
+        "100", "0", "x"]),
     }  # fmt: skip
     chosen = generator.sample(list(given), generator.randint(1, 3))
     return ["thermal", "warm_axis", *(word for name in chosen for word in (name, given[name]))]
 
 
 def _modes(generator: random.Random) -> list[str]:
-    return ["modes", _machine(generator), *(word for _ in range(generator.randint(1, 3)) for word in ("--at", _some(generator, "100 mm")))]
+    return [
+        "modes",
+        _machine(generator),
+        *(word for _ in range(generator.randint(1, 3)) for word in ("--at", _some(generator, "100 mm"))),
+    ]
 
 
 def _show(generator: random.Random) -> list[str]:
@@ -114,8 +132,10 @@ def _show(generator: random.Random) -> list[str]:
 def _tune(generator: random.Random) -> list[str]:
     """A demand that is refused on reading, or the whole search, which is slow and therefore rare."""
     given = {
-        "--margin-phase": _some(generator, "45deg"), "--margin-gain": _some(generator, "8dB"), "--positions": _several(generator),
-        "--payload": _some(generator, "10 kg"), "--velocity": _some(generator, "3 m/min"), "--velocity-rate": _some(generator, "8 kHz"),
+        "--margin-phase": _some(generator, "45deg"), "--margin-gain": _some(generator, "8dB"),
+        "--positions": _several(generator),
+        "--payload": _some(generator, "10 kg"), "--velocity": _some(generator, "3 m/min"),
+        "--velocity-rate": _some(generator, "8 kHz"),
         "--position-rate": _some(generator, "2 kHz"), "--current-bandwidth": _some(generator, "1 kHz"),
         "--dead-time": _some(generator, "125 us"), "--feedback": generator.choice(["motor", "table", *TEXTS]),
     }  # fmt: skip
@@ -129,9 +149,23 @@ def _machine(generator: random.Random) -> str:
 
 def _words(generator: random.Random) -> list[str]:
     """Commands, options and texts in any order."""
-    words = ["show", "run", "bode", "--out", "--json", "--set", "--at", "--help", "-x", "--", "--nonsense", "bench_axis", *TEXTS]
-    return [generator.choice(["show", "run", "bode", "sweep", "export", "list", "modes", "check", "diagnose", "tune", *TEXTS]),
-            *generator.sample(words, generator.randint(0, 3))]  # fmt: skip
+    words = [
+        "show",
+        "run",
+        "bode",
+        "--out",
+        "--json",
+        "--set",
+        "--at",
+        "--help",
+        "-x",
+        "--",
+        "--nonsense",
+        "bench_axis",
+        *TEXTS,
+    ]
+    commands = ["show", "run", "bode", "sweep", "export", "list", "modes", "check", "diagnose", "tune", *TEXTS]
+    return [generator.choice(commands), *generator.sample(words, generator.randint(0, 3))]
 
 
 MAKERS: list[Callable[[random.Random], list[str]]] = [

@@ -15,23 +15,30 @@ from typing import Any
 NUMBERS = [
     "0", "-0", "1", "-1", "-5", "0.5", "1e3", "1e6", "1e9", "1e12", "1e20", "1e38", "1e150", "1e155", "1e300", "1e308",
     "1.8e308", "1e999", "-1e150", "-1e308", "1e-3", "1e-9", "1e-12", "1e-20", "1e-150", "1e-300", "5e-324", "1e-400",
-    "nan", "inf", "-inf", "NaN", "9" * 400, "0." + "0" * 400 + "1", "1_000", "1,5", "0x10", "١٢", "½", "1 2", "1..2", "",
+    "nan", "inf", "-inf", "NaN", "9" * 400, "0." + "0" * 400 + "1", "1_000", "1,5", "0x10", "١٢", "½", "1 2",
+    "1..2", "",
     "--1", "+1", "2.5", "360", "3000", "1e5", "100",
 ]  # fmt: skip
 
 UNITS = [
-    "", "m", "mm", "µm", "nm", "km", "inch", "kg", "g", "t", "kg m^2", "kg cm^2", "N", "kN", "N m", "N/m", "N/µm", "N m/rad",
-    "N s/m", "N m s/rad", "N m/A", "A", "s", "ms", "us", "min", "h", "Hz", "kHz", "rad/s", "rev/min", "rpm", "rad", "deg",
+    "", "m", "mm", "µm", "nm", "km", "inch", "kg", "g", "t", "kg m^2", "kg cm^2", "N", "kN", "N m", "N/m", "N/µm",
+    "N m/rad",
+    "N s/m", "N m s/rad", "N m/A", "A", "s", "ms", "us", "min", "h", "Hz", "kHz", "rad/s", "rev/min", "rpm", "rad",
+    "deg",
     "1/s", "(m/min)/mm", "m/s", "m/min", "m/s^2", "m/s^3", "%", "1", "dB", "degC", "K", "1/K", "W", "W/K", "W/(m K)",
-    "W/(m^2 K)", "J/(m^3 K)", "N/mm²", "Pa", "GPa", "parsec", "__class__", "m^999999999", "m**9**9**9", "1/0 m", "(((((m",
+    "W/(m^2 K)", "J/(m^3 K)", "N/mm²", "Pa", "GPa", "parsec", "__class__", "m^999999999", "m**9**9**9", "1/0 m",
+    "(((((m",
     "m" * 5000, "\x1b[31mm", "\u202em", "mm mm", "mm/mm", "kg*kg", "°", "degF", "bit", "N·m", "e", "pi",
 ]  # fmt: skip
 
 TEXTS = [
     "", " ", "x", "three_inertias", "rigid", "two_inertias", "distributed_screw", "motor", "table", "screw", "nut",
-    "\x00", "\x1b[31mred\x1b[0m", "\x1b]0;title\x07", "\u202egnp.exe", "\u2066x\u2069", "a\u200bb", "\ud7ff\ue000", "ß" * 200,
-    "x" * 300_000, "../../../etc/passwd", "/", ".", "..", "~", "con", "a/b", "'", '"', '"; system("x"); "', "*/", "//", "<x>&",
-    "</title><script>", "]]>", "%s%n", "{0}", "{x!r}", "\n", "\r\n", "a\nb", "\t", "nan", "None", "true", "\u2028", "\ufeff",
+    "\x00", "\x1b[31mred\x1b[0m", "\x1b]0;title\x07", "\u202egnp.exe", "\u2066x\u2069", "a\u200bb", "\ud7ff\ue000",
+    "ß" * 200,
+    "x" * 300_000, "../../../etc/passwd", "/", ".", "..", "~", "con", "a/b", "'", '"', '"; system("x"); "', "*/",
+    "//", "<x>&",
+    "</title><script>", "]]>", "%s%n", "{0}", "{x!r}", "\n", "\r\n", "a\nb", "\t", "nan", "None", "true", "\u2028",
+    "\ufeff",
     "bench_axis", "bench_axis.toml", "none", "no such file.csv", "é", "e\u0301", "日本", "🙂",
 ]  # fmt: skip
 
@@ -56,7 +63,10 @@ def anything(generator: random.Random, depth: int = 0) -> Any:
         makers += [
             lambda: [anything(generator, inner) for _ in range(generator.randint(1, 4))],
             lambda: {key(generator): anything(generator, inner) for _ in range(generator.randint(1, 4))},
-            lambda: {"value": quantity(generator), generator.choice(["source", "tolerance", "x"]): anything(generator, 4)},
+            lambda: {
+                "value": quantity(generator),
+                generator.choice(["source", "tolerance", "x"]): anything(generator, 4),
+            },
             lambda: [quantity(generator)] * generator.choice([1, 2, 500]),
         ]
     return generator.choice(makers)()
@@ -69,7 +79,9 @@ def key(generator: random.Random) -> str:
     return "".join(generator.choices(string.ascii_lowercase + "_-0123456789", k=generator.randint(1, 12)))
 
 
-def changed(generator: random.Random, entries: dict[str, Any], others: list[dict[str, Any]]) -> tuple[str, dict[str, Any]]:
+def changed(
+    generator: random.Random, entries: dict[str, Any], others: list[dict[str, Any]]
+) -> tuple[str, dict[str, Any]]:
     """A deep copy of the entries with one to four changes, and what they were.
 
     Args:
@@ -183,6 +195,7 @@ CHANGES: list[tuple[str, Callable[[random.Random, Any, Any, Any], None]]] = [
 
 def grown(generator: random.Random, keys: list[str]) -> dict[str, Any]:
     """Entries made by grammar, from known and unknown keys."""
+
     def name() -> str:
         return generator.choice(keys) if generator.random() < 0.7 else key(generator)
 
@@ -210,7 +223,9 @@ def spoiled(generator: random.Random, text: str) -> str:
             lines[at] = lines[at][: generator.randrange(len(lines[at]) + 1)]
         elif doing == "put":
             place = generator.randrange(len(lines[at]) + 1)
-            put = generator.choice(["=", '"', "[", "]", "{", "}", "#", ".", "\x00", "\x1b", "\u202e", "\\", "'", ",", "é", "\r"])
+            put = generator.choice(
+                ["=", '"', "[", "]", "{", "}", "#", ".", "\x00", "\x1b", "\u202e", "\\", "'", ",", "é", "\r"]
+            )
             lines[at] = lines[at][:place] + put + lines[at][place:]
         elif doing == "end":
             del lines[at:]

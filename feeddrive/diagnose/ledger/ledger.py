@@ -51,7 +51,7 @@ class FileUse:
 class RunFiles:
     """Files and options of one run."""
 
-    plant: Path
+    plant: FileUse
     fit: tuple[FileUse, ...]
     validate: tuple[FileUse, ...]
     split: float
@@ -116,7 +116,7 @@ def _run(number: int, result: Diagnosis, effects: Sequence[Effect], files: RunFi
         "run": number,
         "continues": files.continues,
         "version": __version__,
-        "plant": {"name": result.plant, "path": str(files.plant), "sha256": checksum(files.plant)},
+        "plant": {"name": result.plant, "path": str(files.plant.path), "sha256": files.plant.sha256},
         "fit": [_file(one) for one in files.fit],
         "validate": [_file(one) for one in files.validate],
         "split": files.split,
