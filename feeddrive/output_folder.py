@@ -39,6 +39,8 @@ def refuse_unusable(folder: Path | None) -> None:
     if folder is None:
         return
     try:
+        with suppress(FileNotFoundError, NotADirectoryError):
+            folder.lstat()  # `lexists` does not tell a name that is not there from one that cannot be
         there = next(path for path in (folder, *folder.absolute().parents) if os.path.lexists(path))
         usable, writable = there.is_dir(), os.access(there, os.W_OK | os.X_OK)
     except (OSError, ValueError, StopIteration):
