@@ -28,9 +28,6 @@ import numpy as np
 from feeddrive.errors import InputError
 from feeddrive.typing import FloatArray
 
-_MOST_SAMPLES = 10_000_000
-"""Of a period on which the largest value of a multisine is sought."""
-
 _LENGTHS = range(4, 21)
 """Orders of the binary sequence."""
 
@@ -88,10 +85,6 @@ class Multisine:
 
     def __post_init__(self) -> None:
         _refuse_band(self.low, self.high, "multisine")
-        if not 32 * self.high * self.period <= _MOST_SAMPLES:
-            what = f"a period of {self.period:g} s holds {self.high * self.period:g} waves of {self.high:g} Hz"
-            mend = f"{_MOST_SAMPLES // 32} are possible; make the period shorter, or the highest frequency lower"
-            raise InputError(what, "multisine", mend)
         if not len(self.frequencies):
             what = f"no harmonic of {1 / self.period:g} Hz lies between {self.low:g} and {self.high:g} Hz"
             raise InputError(what, "multisine", "make the period longer")
