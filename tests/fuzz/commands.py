@@ -11,7 +11,7 @@ import matplotlib
 matplotlib.use("Agg")
 
 from feeddrive.cli import output, running, sweeping
-from feeddrive.cli.main import main
+from feeddrive.cli.main import COMMANDS, load, main
 from feeddrive.errors import InputError
 from feeddrive.simulate import compiled
 
@@ -20,6 +20,10 @@ MOST_TICKS = 4000
 
 MOST_RUNS = 3
 """Of a sweep."""
+
+for _name in COMMANDS:
+    load(_name)  # so that no case is charged with the imports
+main(["tune", "bench_axis", "--velocity", "0 m/h"])
 
 _run_scenario, _run_sweep = running.run_scenario, sweeping.run_sweep
 
