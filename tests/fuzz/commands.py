@@ -7,6 +7,11 @@ from dataclasses import replace
 from typing import Any
 
 import matplotlib
+import scipy.integrate
+import scipy.io
+import scipy.optimize
+import scipy.signal
+import scipy.special  # noqa: F401
 
 matplotlib.use("Agg")
 
@@ -23,7 +28,6 @@ MOST_RUNS = 3
 
 for _name in COMMANDS:
     load(_name)  # so that no case is charged with the imports
-main(["tune", "bench_axis", "--velocity", "0 m/h"])
 
 _run_scenario, _run_sweep = running.run_scenario, sweeping.run_sweep
 
