@@ -7,17 +7,19 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import typer
 from rich.console import Console
 from rich.table import Table
 
 from feeddrive.cli.machine import read_machine
+from feeddrive.cli.output import escaped
 from feeddrive.diagnose.diagnosis import diagnose
 from feeddrive.diagnose.ledger.continued import Earlier, changed_since
 from feeddrive.diagnose.ledger.ledger import FileUse, RunFiles, runs_of, write_ledger
 from feeddrive.diagnose.outputs import diagnosis_json, write_outputs
 from feeddrive.diagnose.result import Diagnosis
 from feeddrive.effects.base import Effect
-from feeddrive.errors import InputError
+from feeddrive.errors import InputError, printable
 from feeddrive.output_folder import output_folder, refuse_unusable
 from feeddrive.recording import Recording, read_recording
 from feeddrive.report.certainty import experiment_sentences
@@ -97,7 +99,7 @@ def run_job(job: Job, as_json: bool = False) -> Diagnosis:
             before = runs_of(job.out) or (job.earlier.runs if job.earlier is not None else [])
             write_ledger(folder, before, result, effects, _files(job, declared, fitted, judged, before))
     if as_json:
-        print(diagnosis_json(result), end="")
+        typer.echo(escaped(diagnosis_json(result)), nl=False)
     else:
         _print_summary(result, job.out / "report.html")
     return result
@@ -139,9 +141,13 @@ def _uses(sources: Sequence[Source], recordings: Sequence[Recording]) -> tuple[F
 
 
 def _print_summary(result: Diagnosis, report: Path) -> None:
-    console = Console(soft_wrap=True, highlight=False)
+    console = Console(soft_wrap=True, highlight=False, markup=False, emoji=False)
+
+    def say(sentence: str) -> None:
+        console.print(printable(sentence))
+
     for sentence in verdict_sentences(result):
-        console.print(sentence, markup=False)
+        say(sentence)
     table = Table(
         "channel", "error before", "after", "relative before", "after", "sensor noise", title="on data not fitted"
     )
@@ -151,16 +157,16 @@ def _print_summary(result: Diagnosis, report: Path) -> None:
         table.add_row(channel.name, errors[0], errors[1], *shares, errors[2])
     console.print(table)
     for effect in result.effects:
-        console.print(f"{effect.name}: {effect.evidence} {effect.reading}", markup=False)
+        say(f"{effect.name}: {effect.evidence} {effect.reading}")
     for sentence in result.kept.since:
-        console.print(f"since the earlier diagnosis: {sentence}", markup=False)
+        say(f"since the earlier diagnosis: {sentence}")
     for one in result.alike:
-        console.print(f"cannot be told apart by these recordings: {', '.join(one.names)}: {one.reason}", markup=False)
+        say(f"cannot be told apart by these recordings: {', '.join(one.names)}: {one.reason}")
     for sentence in experiment_sentences(result):
-        console.print(sentence, markup=False)
+        say(sentence)
     for pair in result.correlation.told if result.correlation is not None else ():
-        console.print(pair, markup=False)
+        say(pair)
     if result.simulation is not None:
         for line in simulation_lines(result.simulation):
-            console.print(line, markup=False)
-    console.print(f"report: {report.resolve()}", markup=False)
+            say(line)
+    say(f"report: {report.resolve()}")

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-from feeddrive.cli.output import warnings_as_lines
+from feeddrive.cli.output import deliver, warnings_as_lines
 from feeddrive.compiler import find_compiler
+from feeddrive.errors import printable
 from feeddrive.export.notes import included, left_out, linear_notes
 from feeddrive.export.point import Point, export_point
 from feeddrive.export.writing import Form, write_export
@@ -60,10 +60,10 @@ def command(
         files = {form: tuple(out / path.name for path in paths) for form, paths in files.items()}
     content = _content(machine, point, files)
     if as_json:
-        typer.echo(json.dumps(content, indent=2, ensure_ascii=False))
+        deliver(content, [], as_json, None)
         return
     for line in _lines(machine, point, files):
-        typer.echo(line)
+        typer.echo(printable(line))
 
 
 def _content(plant: Plant, point: Point, files: dict[Form, tuple[Path, ...]]) -> dict[str, Any]:

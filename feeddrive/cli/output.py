@@ -15,7 +15,7 @@ import typer
 from rich.console import Console, RenderableType
 from rich.table import Table
 
-from feeddrive.errors import ValidityWarning, quoted
+from feeddrive.errors import ValidityWarning, printable, quoted
 from feeddrive.files import write_text_atomically
 
 JsonOption = Annotated[bool, typer.Option("--json", help="JSON in place of tables; SI units.")]
@@ -30,11 +30,11 @@ _WIDTH = 120
 
 def table(title: str, headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Table:
     """A table with a title; every cell is text."""
-    made = Table(title=title, title_justify="left", title_style="bold")
+    made = Table(title=printable(title), title_justify="left", title_style="bold")
     for heading in headings:
-        made.add_column(heading, overflow="fold")
+        made.add_column(printable(heading), overflow="fold")
     for row in rows:
-        made.add_row(*row)
+        made.add_row(*map(_printable_lines, row))
     return made
 
 
@@ -50,7 +50,7 @@ def deliver(content: dict[str, Any], tables: Sequence[RenderableType], as_json: 
     Raises:
         InputError: the file cannot be written.
     """
-    text = json.dumps(content, indent=2, ensure_ascii=False) + "\n" if as_json else None
+    text = escaped(json.dumps(content, indent=2, ensure_ascii=False)) + "\n" if as_json else None
     if out is not None:
         write_text_atomically(out, text or _as_text(tables))
         tell_written(out, as_json)
@@ -86,6 +86,16 @@ def warnings_as_lines() -> Iterator[None]:
 def tell(line: str) -> None:
     """Say something in one line on stderr."""
     typer.echo(quoted(line, LONGEST_LINE), err=True)
+
+
+def _printable_lines(cell: str) -> str:
+    return "\n".join(map(printable, cell.split("\n")))
+
+
+def escaped(text: str) -> str:
+    """JSON with all that a terminal obeys as escapes; it says the same."""
+    kept = text.isascii() and "\x7f" not in text
+    return text if kept else "".join(one if one.isprintable() or one == "\n" else json.dumps(one)[1:-1] for one in text)
 
 
 def _as_text(tables: Sequence[RenderableType]) -> str:

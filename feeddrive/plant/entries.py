@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import re
 import tomllib
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
@@ -10,10 +11,13 @@ from pathlib import Path
 from typing import Any
 
 from feeddrive.effects.base import Value
-from feeddrive.errors import InputError
+from feeddrive.errors import InputError, quoted
 from feeddrive.quantity import parse
 
 _TABLE_KEYS = ("value", "source", "tolerance")
+
+_OBEYED = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u2028\u2029\u202a-\u202e\u2066-\u2069]")
+"""Letters that a terminal, an editor or a browser obeys: controls but line ends and tabs, and turns of direction."""
 
 MOST_LEVELS = 12
 """Tables inside tables in a file: three times what any of ours needs, and far below what Python can walk through."""
@@ -102,13 +106,15 @@ class Table:
         """A text.
 
         Raises:
-            InputError: missing without a default, empty, or not a text.
+            InputError: missing without a default, empty, not a text, or with letters that a terminal obeys.
         """
         value = self.entries.get(key, default)
         if value is None:
             raise InputError("is missing", self.place(key), f'write {key} = "..."')
         if not isinstance(value, str) or (key in self.entries and not value.strip()):
             raise InputError(f"{value!r} is not a text", self.place(key), f'write {key} = "..."')
+        if found := _OBEYED.search(value):
+            raise InputError(f"holds {quoted(found[0])}, which is no letter", self.place(key), "take it out")
         return value
 
     def choice(self, key: str, allowed: Iterable[str], default: str | None = None) -> str:

@@ -194,7 +194,7 @@ def _resumed(scenario: Scenario, path: Path | None) -> _Done | None:
         return None
     mend = "remove it to start anew"
     try:
-        with np.load(path, allow_pickle=False) as file:
+        with path.open("rb") as opened, np.load(opened, allow_pickle=False) as file:
             digest, state, torque, rows, late = (file[name] for name in ("digest", "state", "torque", "rows", "late"))
     except _DAMAGE:
         raise InputError("is not a checkpoint", str(path), mend) from None
