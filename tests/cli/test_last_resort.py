@@ -9,7 +9,6 @@ import os
 import subprocess
 import sys
 import types
-import zipfile
 from collections.abc import Callable
 from pathlib import Path
 
@@ -52,9 +51,10 @@ def test_tables_in_tables(block: str, tmp_path: Path, capsys: pytest.CaptureFixt
     _refused(["show", _plant(tmp_path, f"{block}\n")], ["machine.toml", "more than 12 levels"], capsys)
 
 
-@pytest.mark.parametrize(
-    "setting", ["a" + ".a" * 3000 + "=1", "trajectory.at=" + "[" * 3000, "plant" + ".a" * 300 + "=1"]
-)
+DEEP = ["a" + ".a" * 3000 + "=1", "trajectory.at=" + "[" * 3000, "plant" + ".a" * 300 + "=1"]
+
+
+@pytest.mark.parametrize("setting", DEEP, ids=["scenario", "value", "plant"])
 def test_tables_in_tables_by_set(setting: str, capsys: pytest.CaptureFixture[str]) -> None:
     _refused(["run", "step_position", "--set", setting], [], capsys)
 
@@ -75,8 +75,8 @@ DAMAGES: dict[str, Callable[[bytes], bytes]] = {
     "empty": lambda data: b"",
     "no archive": lambda data: b"x" * 100,
     "an array": lambda data: b"\x93NUMPY" + data[6:],
-    "a bit": lambda data: data[:300] + bytes([data[300] ^ 1]) + data[301:],
-    "the middle": lambda data: data[:200] + b"\0" * 400 + data[600:],
+    "a bit": lambda data: data[: len(data) // 2] + bytes([data[len(data) // 2] ^ 1]) + data[len(data) // 2 + 1 :],
+    "the middle": lambda data: data[: len(data) // 2] + b"\0" * 400 + data[len(data) // 2 + 400 :],
 }
 
 
@@ -201,9 +201,7 @@ def hanging(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_compiler_that_hangs_is_done_without(hanging: Path) -> None:
-    with pytest.warns(
-        ValidityWarning, match=r"hanging-cc: the C compiler did not end within 0\.5 s; it is done without"
-    ):
+    with pytest.warns(ValidityWarning, match=r"the C compiler did not end within 0\.5 s; it is done"):
         assert compiled_library("int f(void) { return 1; }") is None
     assert compiled_library("int f(void) { return 2; }") is None  # without waiting, and without a word
     running = subprocess.run(["ps", "-eo", "args"], capture_output=True, text=True, check=True).stdout
@@ -227,7 +225,7 @@ def test_full_temporary_disk_at_an_export(
     def full(*_: object, **__: object) -> None:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
-    monkeypatch.setattr("tempfile.TemporaryDirectory.__enter__", full)
+    monkeypatch.setattr("tempfile.mkdtemp", full)
     _refused(
         ["export", "bench_axis", "--to", form, "--out", str(tmp_path / "out")], ["temporary folder", "TMPDIR"], capsys
     )
@@ -320,10 +318,3 @@ def test_warning_of_a_library_is_one_line_without_a_place(capfd: pytest.CaptureF
     environment = {**os.environ, "PYTHONPATH": str(Path(feeddrive.__file__).parents[1]), "PYTHONWARNINGS": "default"}
     run = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True, text=True, timeout=60)
     assert (run.returncode, run.stderr) == (0, "warning: overflow\n")
-
-
-def test_archive_of_a_checkpoint_is_what_the_damages_take_it_for(checkpoint: bytes, tmp_path: Path) -> None:
-    """Byte 300 and bytes 200 to 600 lie in the content, not behind it."""
-    (tmp_path / "a.zip").write_bytes(checkpoint)
-    with zipfile.ZipFile(tmp_path / "a.zip") as archive:
-        assert archive.start_dir > 600

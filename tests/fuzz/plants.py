@@ -11,6 +11,9 @@ from tests.fuzz.commands import command
 from tests.fuzz.harness import Attempt
 from tests.fuzz.toml_text import all_keys, changed, grown, quantity, spoiled, written
 
+LONGEST = 60.0
+"""Wall-clock time that a case may take [s]: a warm-up takes some, and a shared computer makes five times of it."""
+
 TEXTS = [path.read_text(encoding="utf-8") for path in shipped_plants()]
 FILES = [tomllib.loads(text) for text in TEXTS]
 KEYS = all_keys(FILES)

@@ -14,6 +14,9 @@ from tests.fuzz.harness import Attempt
 from tests.fuzz.plants import FILES as PLANTS
 from tests.fuzz.toml_text import all_keys, changed, grown, spoiled, written
 
+LONGEST = 60.0
+"""Wall-clock time that a case may take [s]: a warm-up takes some, and a shared computer makes five times of it."""
+
 CONTROLLER = "controllers/bench_axis.toml"
 CONTROLLERS = [tomllib.loads((scenarios_folder() / CONTROLLER).read_text(encoding="utf-8"))]
 FILES = [

@@ -14,6 +14,9 @@ from tests.fuzz.harness import Attempt
 from tests.fuzz.scenarios import KEYS
 from tests.fuzz.toml_text import TEXTS, _value, anything, quantity
 
+LONGEST = 60.0
+"""Wall-clock time that a case may take [s]: a warm-up takes some, and a shared computer makes five times of it."""
+
 SCENARIO = tomllib.loads((scenarios_folder() / "step_position.toml").read_text(encoding="utf-8"))
 CONTROLLER = tomllib.loads((scenarios_folder() / "controllers/bench_axis.toml").read_text(encoding="utf-8"))
 PLANT = tomllib.loads(find_plant("bench_axis").read_text(encoding="utf-8"))
