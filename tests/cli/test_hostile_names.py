@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 import subprocess
 import zipfile
 from dataclasses import replace
@@ -33,7 +34,17 @@ from tests.analytic import report_examples
 BENCH = (plants_folder() / "bench_axis.toml").read_text(encoding="utf-8")
 SCENARIO = (plants_folder().parent / "scenarios" / "step_position.toml").read_text(encoding="utf-8")
 
-OBEYED = ["\x1b[31mred", "\x1b]0;title\x07", "\u202egnp.exe", "\u2066x", "a\x00b", "\x9b31m", "\u2028", "a\rb", "\x7f"]
+OBEYED = [
+    "\x1b[31mred",
+    "\x1b]0;title\x07",
+    "\u202egnp.exe",
+    "\u2066x",
+    "a\x00b",
+    "\x9b31m",
+    "x\u2028y",
+    "a\rb",
+    "\x7f",
+]
 
 ALLOWED = [
     '*/ #include "x"', '"; system("x"); "', "<&>]]>", "??/", "a\\", "jac", "null", "x" * 300, "$\\frac{$", "%s%n{0}",
@@ -62,11 +73,12 @@ def test_name_that_a_terminal_obeys_is_refused(name: str, tmp_path: Path, capsys
 @pytest.mark.parametrize("key", ["source", "description"])
 def test_other_texts_likewise(key: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "machine.toml"
-    path.write_text(
-        BENCH.replace("structure =", f'{key} = "\\u202ex"\nstructure =', 1).replace('source = "decl', "#", 1)
-    )
+    kept = re.sub(rf"^{key} = .*\n", "", BENCH, flags=re.MULTILINE)
+    path.write_text(f'{key} = "\\u202ex"\n{kept}', encoding="utf-8")
     assert main(["show", str(path)]) == 2
-    assert capsys.readouterr().err.rstrip("\n").isprintable()
+    shown = capsys.readouterr().err
+    assert f"{key}: holds" in shown
+    assert shown.rstrip("\n").isprintable()
 
 
 @pytest.mark.parametrize("name", OBEYED, ids=ascii)
