@@ -1,12 +1,13 @@
 # A fresh machine needs Python 3.11 or newer and make; every target sets up what it uses.
 # Overridable: PYTHON (interpreter for .venv), WORKERS (test processes), TESTS (what `make test` runs), RECOVERY
-# (options of the recovery suite, such as RECOVERY=--half; --help lists them).
+# (options of the recovery suite, such as RECOVERY=--half; --help lists them), FUZZ (those of the fuzzing).
 
 VENV := .venv
 BIN := $(VENV)/bin
 WORKERS ?= 2
 TESTS ?= tests
 RECOVERY ?=
+FUZZ ?= --cases 2000 --seed 1
 
 # The first interpreter that is new enough; asked only when .venv has to be made.
 PYTHON ?= $(shell for name in python3.11 python3 python3.12 python3.13 python; do \
@@ -19,7 +20,7 @@ PIP_INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help demo test test-slow recovery recovery-smoke bench lint types format develop clean
+.PHONY: help demo test test-slow recovery recovery-smoke fuzz bench lint types format develop clean
 
 help: ## show this list
 	@echo "make TARGET, where TARGET is"
@@ -39,6 +40,9 @@ recovery: $(VENV)/.recovery ## plant every effect, diagnose it, write docs/recov
 
 recovery-smoke: $(VENV)/.developing ## one planted case for every effect
 	$(PYTEST) tests/recovery/test_suite_smoke.py
+
+fuzz: $(VENV)/.developing ## broken files and options of every kind: each is run or refused in one line
+	$(ONE_THREAD) $(BIN)/python -m tests.fuzz $(FUZZ)
 
 bench: $(VENV)/.developing ## timings beside those of other programs
 	@for script in benchmarks/[!_]*.py; do echo "== $$script"; $(ONE_THREAD) $(BIN)/python "$$script" || exit 1; done

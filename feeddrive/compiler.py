@@ -6,18 +6,35 @@ read-only a temporary folder of the same person serves. Nothing is compiled when
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import getpass
 import hashlib
 import os
 import shutil
+import signal
 import subprocess
 import tempfile
+import warnings
+from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
 
+from feeddrive.errors import ValidityWarning
+
 FLAGS = ("-O3", "-ffp-contract=off", "-fPIC", "-shared")
 """No fused or reordered arithmetic: the same numbers on every computer."""
+
+COMPILE_TIME = 300.0
+"""Seconds after which a compiler is taken to hang: some thirty times what the largest machine takes on a slow core."""
+
+
+class CompilerError(Exception):
+    """The compiler ended with an error, or hung; the text says which in a line."""
+
+
+_hung: set[str] = set()
+"""Compilers that did not end; they are not waited for again."""
 
 
 @lru_cache(maxsize=1)
@@ -41,9 +58,12 @@ def compiled_library(source: str, flags: tuple[str, ...] = FLAGS, made_for: str 
 
     Returns:
         None where there is no compiler, it fails, or no folder can hold what it makes; the caller then has its own way.
+
+    Warns:
+        ValidityWarning: the compiler hangs; what follows is slower.
     """
     compiler = find_compiler()
-    if compiler is None:
+    if compiler is None or compiler in _hung:
         return None
     key = hashlib.sha256("\0".join((source, compiler, *flags, made_for)).encode()).hexdigest()[:24]
     for folder in cache_folders():
@@ -53,15 +73,69 @@ def compiled_library(source: str, flags: tuple[str, ...] = FLAGS, made_for: str 
             if not library.exists():
                 _compile(source, compiler, flags, library)
             return ctypes.CDLL(str(library))
-        except (OSError, subprocess.CalledProcessError):
+        except CompilerError as failure:
+            if compiler in _hung:
+                mend = "it is done without, which is slower; FEEDDRIVE_COMPILER=none does not wait"
+                warnings.warn(f"{compiler}: {failure}; {mend}", ValidityWarning, stacklevel=2)
+                return None
+        except OSError:
             continue
     return None
 
 
+def run_compiler(command: Sequence[str], folder: Path) -> None:
+    """Run the compiler and wait for it, no longer than `COMPILE_TIME`.
+
+    Args:
+        command: the compiler and its arguments.
+        folder: in which it runs.
+
+    Raises:
+        CompilerError: it ended with an error or did not end.
+        OSError: it cannot be started.
+    """
+    # A session of its own: what the compiler has started itself is ended with it.
+    started = subprocess.Popen(
+        command, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+        errors="replace", start_new_session=True,
+    )  # fmt: skip
+    try:
+        _, said = started.communicate(timeout=COMPILE_TIME)
+    except BaseException as error:
+        _end(started)
+        if not isinstance(error, subprocess.TimeoutExpired):
+            raise
+        _hung.add(command[0])
+        raise CompilerError(f"the C compiler did not end within {COMPILE_TIME:g} s") from None
+    if started.returncode != 0:
+        raise CompilerError(next(iter(said.strip().splitlines()), f"status {started.returncode}"))
+
+
+def _end(started: subprocess.Popen[str]) -> None:
+    """End a program, and where sessions are known all that it has started."""
+    with contextlib.suppress(OSError):
+        if hasattr(os, "killpg"):
+            os.killpg(started.pid, signal.SIGKILL)
+    started.kill()
+    started.wait()
+    if started.stderr is not None:
+        started.stderr.close()
+
+
 def cache_folders() -> list[Path]:
     """Folders that may hold compiled libraries, the preferred one first."""
-    base = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
-    return [Path(base) / "feeddrive", Path(tempfile.gettempdir()) / f"feeddrive-{getpass.getuser()}"]
+    named = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
+    # Without a home, "~" stays as it is; a folder of that name in the working folder is not meant.
+    homes = [Path(named) / "feeddrive"] if os.path.isabs(named) else []
+    return [*homes, Path(tempfile.gettempdir()) / f"feeddrive-{_person()}"]
+
+
+def _person() -> str:
+    """The person's name, or number where the computer knows no name for it, as in many containers."""
+    try:
+        return getpass.getuser()
+    except (KeyError, OSError, ImportError):
+        return str(os.getuid()) if hasattr(os, "getuid") else "somebody"
 
 
 def _make_private(folder: Path) -> None:
@@ -79,5 +153,5 @@ def _compile(source: str, compiler: str, flags: tuple[str, ...], library: Path) 
     with tempfile.TemporaryDirectory(dir=library.parent) as folder:
         text, made = Path(folder) / "source.c", Path(folder) / "made.so"
         text.write_text(source, encoding="utf-8")
-        subprocess.run([compiler, *flags, "-o", str(made), str(text), "-lm"], check=True, capture_output=True)
+        run_compiler([compiler, *flags, "-o", str(made), str(text), "-lm"], library.parent)
         made.replace(library)

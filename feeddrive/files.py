@@ -94,7 +94,8 @@ def write_text_atomically(path: Path, text: str) -> None:
     Raises:
         InputError: the file cannot be written there.
     """
-    write_bytes_atomically(path, text.encode("utf-8"))
+    # A file name that is no UTF-8 comes as halves of letters, which UTF-8 cannot hold.
+    write_bytes_atomically(path, text.encode("utf-8", "backslashreplace"))
 
 
 def write_bytes_atomically(path: Path, data: bytes) -> None:

@@ -11,12 +11,13 @@ import numpy as np
 
 from feeddrive import __version__
 from feeddrive.cli.bode_tables import family_tables
-from feeddrive.cli.output import deliver, warnings_as_lines
+from feeddrive.cli.output import deliver, tell_written, warnings_as_lines
 from feeddrive.errors import InputError
 from feeddrive.export.point import export_point
 from feeddrive.files import find_plant, shipped_scenarios, write_bytes_atomically, write_text_atomically
 from feeddrive.metrology.recorded_response import recorded_response
 from feeddrive.metrology.response import Response as Measured
+from feeddrive.output_folder import output_folder, refuse_unusable
 from feeddrive.plant.entries import nearest
 from feeddrive.plant.files import read_plant
 from feeddrive.plant.linear import INPUTS, OUTPUTS
@@ -58,6 +59,7 @@ def run(request: Request, as_json: bool, out: Path | None) -> None:
     Raises:
         InputError: anything in the request that cannot be used.
     """
+    refuse_unusable(out)
     with warnings_as_lines():
         plant = read_plant(find_plant(request.plant))
         cases = read_cases(plant, request.at, request.positions, request.payload)
@@ -65,9 +67,11 @@ def run(request: Request, as_json: bool, out: Path | None) -> None:
         measured = _measured(request)
     content = _content(plant, families, measured)
     if out is not None:
-        _write(families, measured, content, out)
+        with output_folder(out) as folder:
+            _write(families, measured, content, folder)
     tables = [] if as_json else [table for family in families for table in family_tables(plant.name, family)]
     deliver(content, tables, as_json, None)
+    tell_written(out, as_json)
 
 
 def read_cases(plant: Plant, at: str, positions: str, payload: str) -> tuple[Case, ...]:
@@ -179,8 +183,6 @@ def _write(families: list[Family], measured: Measured | None, content: dict[str,
     from feeddrive.report.drawing import render
     from feeddrive.report.figure_bode import bode_figure
 
-    if out.exists() and not out.is_dir():
-        raise InputError("is a file, not a folder", str(out), "name another folder for --out")
     for family in families:
         drawn = render(bode_figure(family, measured))
         write_bytes_atomically(out / f"{drawn.stem}.png", drawn.png)

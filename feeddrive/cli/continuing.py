@@ -11,6 +11,7 @@ from feeddrive.diagnose.ledger.ledger import FileUse, checksum
 from feeddrive.effects.tabulated import Tabulated
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant
+from feeddrive.output_folder import finish_interrupted
 
 SPLIT = 0.75
 """Share that is fitted where nothing else is said."""
@@ -38,6 +39,8 @@ def continued_job(arguments: Sequence[str], folder: Path, options: Options) -> J
     Raises:
         InputError: an earlier diagnosis that cannot be taken up, another plant than its, or a recording it has already.
     """
+    if folder.is_dir():
+        finish_interrupted(folder)  # an earlier diagnosis that was killed at its very end
     earlier = earlier_run(folder)
     names = list(arguments)
     plant = _plant(names[0])

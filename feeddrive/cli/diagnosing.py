@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import typer
 from rich.console import Console
 from rich.table import Table
 
 from feeddrive.cli.machine import read_machine
+from feeddrive.cli.output import escaped
 from feeddrive.diagnose.diagnosis import diagnose
 from feeddrive.diagnose.ledger.continued import Earlier, changed_since
 from feeddrive.diagnose.ledger.ledger import FileUse, RunFiles, runs_of, write_ledger
 from feeddrive.diagnose.outputs import diagnosis_json, write_outputs
 from feeddrive.diagnose.result import Diagnosis
 from feeddrive.effects.base import Effect
-from feeddrive.errors import InputError
+from feeddrive.errors import InputError, printable
+from feeddrive.output_folder import output_folder, refuse_unusable
 from feeddrive.recording import Recording, read_recording
 from feeddrive.report.certainty import experiment_sentences
 from feeddrive.report.figures import render_figures, save_figures
@@ -72,29 +76,41 @@ def run_job(job: Job, as_json: bool = False) -> Diagnosis:
     for source in (*job.recordings, *job.validation):
         if source.decimal not in DECIMAL_SIGNS:
             raise InputError(f"--decimal is {source.decimal!r}", "", "use '.' or ','")
-    if job.out.exists() and not job.out.is_dir():
-        raise InputError("--out is a file", str(job.out), "give a folder")
-    runs = runs_of(job.out)
+    refuse_unusable(job.out)
+    runs_of(job.out)  # refused now if it cannot be read, and not when all is done
+    declared = _bytes(job.plant)
     plant = read_machine(job.plant)
     fitted, judged = ([_read(source) for source in sources] for sources in (job.recordings, job.validation))
     if any("screw_speed" in recording for recording in fitted):
         plant = read_machine(job.plant, fitted)  # a file may declare motion and heat
+    if _bytes(job.plant) != declared:
+        raise InputError("was changed while it was read", str(job.plant), "diagnose again")
     with Console(stderr=True).status("reading") as status:
         said = status.update
         result, effects = diagnose(plant, fitted, judged, job.split, job.simulate, said, job.start)
         result = _since(result, job)
         said("writing the report")
-        write_outputs(result, effects, job.plant.read_text(encoding="utf-8"), job.out)
         pictures = render_figures(result)
-        save_figures(result, job.out, pictures)
-        write_report(result, job.out / "report.html", pictures)
-        before = job.earlier.runs if job.earlier is not None and not runs else runs
-        write_ledger(job.out, before, result, effects, _files(job, fitted, judged, before))
+        with output_folder(job.out) as folder:
+            write_outputs(result, effects, declared.decode("utf-8").replace("\r\n", "\n"), folder)
+            save_figures(result, folder, pictures)
+            write_report(result, folder / "report.html", pictures)
+            # Read now: another diagnosis may have written here meanwhile.
+            before = runs_of(job.out) or (job.earlier.runs if job.earlier is not None else [])
+            write_ledger(folder, before, result, effects, _files(job, declared, fitted, judged, before))
     if as_json:
-        print(diagnosis_json(result), end="")
+        typer.echo(escaped(diagnosis_json(result)), nl=False)
     else:
         _print_summary(result, job.out / "report.html")
     return result
+
+
+def _bytes(plant: Path) -> bytes:
+    """The plant file as it is now; what is said and written of it at the end is of these bytes."""
+    try:
+        return plant.read_bytes()
+    except OSError as error:
+        raise InputError(f"cannot be read ({error.strerror})", str(plant), "put the plant file back") from None
 
 
 def _read(source: Source) -> Recording:
@@ -108,10 +124,13 @@ def _since(result: Diagnosis, job: Job) -> Diagnosis:
     return replace(result, kept=replace(result.kept, since=changed_since(job.earlier.told, result.effects)))
 
 
-def _files(job: Job, fitted: Sequence[Recording], judged: Sequence[Recording], before: Sequence[object]) -> RunFiles:
+def _files(
+    job: Job, declared: bytes, fitted: Sequence[Recording], judged: Sequence[Recording], before: Sequence[object]
+) -> RunFiles:
     continues = len(before) if job.earlier is not None else None
     uses = (_uses(job.recordings, fitted), _uses(job.validation, judged))
-    return RunFiles(job.plant.resolve(), uses[0], uses[1], job.split, continues)
+    plant = FileUse(job.plant.resolve(), hashlib.sha256(declared).hexdigest())
+    return RunFiles(plant, uses[0], uses[1], job.split, continues)
 
 
 def _uses(sources: Sequence[Source], recordings: Sequence[Recording]) -> tuple[FileUse, ...]:
@@ -122,9 +141,13 @@ def _uses(sources: Sequence[Source], recordings: Sequence[Recording]) -> tuple[F
 
 
 def _print_summary(result: Diagnosis, report: Path) -> None:
-    console = Console(soft_wrap=True, highlight=False)
+    console = Console(soft_wrap=True, highlight=False, markup=False, emoji=False)
+
+    def say(sentence: str) -> None:
+        console.print(printable(sentence))
+
     for sentence in verdict_sentences(result):
-        console.print(sentence, markup=False)
+        say(sentence)
     table = Table(
         "channel", "error before", "after", "relative before", "after", "sensor noise", title="on data not fitted"
     )
@@ -134,16 +157,16 @@ def _print_summary(result: Diagnosis, report: Path) -> None:
         table.add_row(channel.name, errors[0], errors[1], *shares, errors[2])
     console.print(table)
     for effect in result.effects:
-        console.print(f"{effect.name}: {effect.evidence} {effect.reading}", markup=False)
+        say(f"{effect.name}: {effect.evidence} {effect.reading}")
     for sentence in result.kept.since:
-        console.print(f"since the earlier diagnosis: {sentence}", markup=False)
+        say(f"since the earlier diagnosis: {sentence}")
     for one in result.alike:
-        console.print(f"cannot be told apart by these recordings: {', '.join(one.names)}: {one.reason}", markup=False)
+        say(f"cannot be told apart by these recordings: {', '.join(one.names)}: {one.reason}")
     for sentence in experiment_sentences(result):
-        console.print(sentence, markup=False)
+        say(sentence)
     for pair in result.correlation.told if result.correlation is not None else ():
-        console.print(pair, markup=False)
+        say(pair)
     if result.simulation is not None:
         for line in simulation_lines(result.simulation):
-            console.print(line, markup=False)
-    console.print(f"report: {report.resolve()}", markup=False)
+            say(line)
+    say(f"report: {report.resolve()}")

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-from feeddrive.cli.output import warnings_as_lines
+from feeddrive.cli.output import deliver, warnings_as_lines
 from feeddrive.compiler import find_compiler
+from feeddrive.errors import printable
 from feeddrive.export.notes import included, left_out, linear_notes
 from feeddrive.export.point import Point, export_point
 from feeddrive.export.writing import Form, write_export
 from feeddrive.files import find_plant
+from feeddrive.output_folder import output_folder, refuse_unusable
 from feeddrive.plant.files import read_plant
 from feeddrive.plant.plant import Plant
 from feeddrive.quantity import format_quantity
@@ -50,16 +51,19 @@ def command(
     All in SI units. CasADi loads files of its own version or an older one. The FMU is FMI 2.0 for model exchange, with
     sources; its binary is for this platform.
     """
+    refuse_unusable(out)
     with warnings_as_lines():
         machine = read_plant(find_plant(plant))
         point = export_point(machine, at)
-        files = {form: write_export(machine, form, point, out) for form in dict.fromkeys(to)}
+        with output_folder(out) as folder:
+            files = {form: write_export(machine, form, point, folder) for form in dict.fromkeys(to)}
+        files = {form: tuple(out / path.name for path in paths) for form, paths in files.items()}
     content = _content(machine, point, files)
     if as_json:
-        typer.echo(json.dumps(content, indent=2, ensure_ascii=False))
+        deliver(content, [], as_json, None)
         return
     for line in _lines(machine, point, files):
-        typer.echo(line)
+        typer.echo(printable(line))
 
 
 def _content(plant: Plant, point: Point, files: dict[Form, tuple[Path, ...]]) -> dict[str, Any]:

@@ -7,10 +7,13 @@ invoked, so that `feeddrive --help` answers at once.
 
 from __future__ import annotations
 
+import errno
 import os
 import sys
 import traceback
-from collections.abc import Sequence
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib import import_module
 from typing import Annotated, Any
@@ -20,10 +23,16 @@ from typer.core import TyperGroup
 from typer.main import get_command
 
 from feeddrive import __version__
-from feeddrive.errors import InputError
+from feeddrive.errors import InputError, quoted
 
 FINISHED, INTERNAL_ERROR, INPUT_ERROR, INTERRUPTED = 0, 1, 2, 130
 """Exit statuses; the last is the shell's own for Ctrl-C."""
+
+_UsageError: type[Exception] = typer.BadParameter.__bases__[0]
+"""What Typer raises where options or arguments do not fit; it has no public name of its own."""
+
+_LONGEST = 400
+"""Letters of what Typer or the system says."""
 
 
 @dataclass(frozen=True)
@@ -110,20 +119,33 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Returns:
         Exit status: 0 finished, 1 an error of feeddrive itself, 2 unusable input, 130 interrupted.
     """
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):  # letters that a terminal or a pipe cannot take are written as escapes
+            stream.reconfigure(errors="backslashreplace")
+    with _warnings_as_one_line():
+        status = _run(arguments)
+    return _flushed(status)
+
+
+def _run(arguments: Sequence[str] | None) -> int:
+    """Run, and turn every error into a line and a status."""
     try:
-        application().main(args=arguments, prog_name="feeddrive")
-    except SystemExit as ending:
-        return ending.code if isinstance(ending.code, int) else FINISHED
+        ended = application().main(args=arguments, prog_name="feeddrive", standalone_mode=False)
+    except SystemExit as ending:  # Rich and Typer end so where the reader of a pipe has left
+        return _pipe_left() if ending.code == 1 else int(ending.code or FINISHED)
     except KeyboardInterrupt:
         return INTERRUPTED
+    except _UsageError as error:
+        return _refuse_usage(error, sys.argv[1:] if arguments is None else arguments)
     except InputError as error:
         return _refuse(str(error))
     except OSError as error:
-        # A file of the person's that cannot be read or written; an error without a file name is one of feeddrive.
-        return _refuse(f"{error.filename}: {error.strerror}") if error.filename else _apologise(error)
+        return _refuse_system(error)
+    except (ArithmeticError, MemoryError, ValueError) as error:
+        return _refuse_numbers(error)
     except Exception as error:
         return _apologise(error)
-    return FINISHED
+    return ended if isinstance(ended, int) else FINISHED
 
 
 def _refuse(line: str) -> int:
@@ -131,12 +153,88 @@ def _refuse(line: str) -> int:
     return INPUT_ERROR
 
 
+def _refuse_usage(error: Any, arguments: Sequence[str]) -> int:
+    """Options or arguments that do not fit; where nothing at all was typed, the help is the answer."""
+    if type(error).__name__ == "NoArgsIsHelpError":
+        error.show()
+        return INPUT_ERROR
+    command = " ".join(["feeddrive", *(name for name in arguments[:1] if name in COMMANDS)])
+    what = quoted(error.format_message(), _LONGEST).rstrip(".")
+    return _refuse(f"{command}: {what[:1].lower()}{what[1:]}; {command} --help lists what is possible")
+
+
+def _refuse_system(error: OSError) -> int:
+    """A file that cannot be read or written, a full disk; an error that no system has told is one of feeddrive."""
+    if error.errno is None:
+        return _apologise(error)
+    if error.errno == errno.EPIPE:
+        return _pipe_left()
+    where = quoted(str(error.filename), _LONGEST) if error.filename else "this computer"
+    return _refuse(f"{where}: {error.strerror}; make room, or name another place")
+
+
+def _refuse_numbers(error: Exception) -> int:
+    """Values so large, small or many that nothing can be computed; any other error of arithmetic is one of feeddrive.
+
+    A division by zero is not among them: it has one cause, which should have been refused by its name.
+    """
+    from numpy.linalg import LinAlgError  # late: `feeddrive --help` does without
+
+    if isinstance(error, MemoryError):
+        return _refuse("more memory is needed than this computer gives; check units, or ask for less at a time")
+    if not isinstance(error, OverflowError | FloatingPointError | LinAlgError):
+        return _apologise(error)
+    _show_traceback(error)
+    what = quoted(f"{type(error).__name__}: {error}", _LONGEST)
+    mend = "check the units and the sizes of what is given; FEEDDRIVE_TRACEBACK=1 shows where"
+    return _refuse(f"the values given are beyond what can be computed ({what}); {mend}")
+
+
 def _apologise(error: Exception) -> int:
-    if os.environ.get("FEEDDRIVE_TRACEBACK") == "1":
-        traceback.print_exception(error, file=sys.stderr)
-    what = " ".join(f"{type(error).__name__}: {error}".split())
+    _show_traceback(error)
+    what = quoted(f"{type(error).__name__}: {error}", _LONGEST)
     typer.echo(f"internal error: {what}; please report it with what FEEDDRIVE_TRACEBACK=1 shows", err=True)
     return INTERNAL_ERROR
+
+
+def _show_traceback(error: Exception) -> None:
+    if os.environ.get("FEEDDRIVE_TRACEBACK") == "1":
+        traceback.print_exception(error, file=sys.stderr)
+
+
+def _pipe_left() -> int:
+    """End quietly where the reader of a pipe, such as `head`, has what it wants."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, 1)  # what is still to be written at the end
+    os.close(nowhere)
+    return FINISHED
+
+
+def _flushed(status: int) -> int:
+    """Write out what is printed, so that a full disk behind `>` is told."""
+    try:
+        sys.stdout.flush()
+    except BrokenPipeError:
+        return _pipe_left()
+    except OSError as error:
+        _pipe_left()
+        return _refuse(f"standard output: {error.strerror}; make room, or write to another place")
+    return status
+
+
+@contextmanager
+def _warnings_as_one_line() -> Iterator[None]:
+    """Warnings that reach nobody else in one line each, without the place in the code."""
+    usual = warnings.formatwarning
+
+    def one_line(message: Warning | str, *_: Any, **__: Any) -> str:
+        return f"warning: {quoted(str(message), _LONGEST)}\n"
+
+    warnings.formatwarning = one_line
+    try:
+        yield
+    finally:
+        warnings.formatwarning = usual
 
 
 def _show_version(asked: bool) -> None:

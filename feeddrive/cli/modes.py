@@ -11,8 +11,9 @@ import numpy as np
 import typer
 from rich.table import Table
 
-from feeddrive.cli.output import JsonOption, deliver, table, warnings_as_lines
+from feeddrive.cli.output import JsonOption, deliver, table, tell_written, warnings_as_lines
 from feeddrive.files import find_plant, write_bytes_atomically, write_text_atomically
+from feeddrive.output_folder import output_folder, refuse_unusable
 from feeddrive.plant.files import read_plant
 from feeddrive.plant.mode_map import ModeMap, mode_map
 from feeddrive.plant.plant import Plant
@@ -32,13 +33,16 @@ def command(
     out: Annotated[Path | None, typer.Option("--out", help="Folder for modes.json and the figure modes.png.")] = None,
 ) -> None:
     """Natural frequencies along the stroke, with the motor held by its brake or servo, and free."""
+    refuse_unusable(out)
     with warnings_as_lines():
         machine = read_plant(find_plant(plant))
         places = np.array([parse(text, "m", "--at") for text in at]) if at else None
         found = mode_map(machine, places)
         if out is not None:
-            _write(machine, found, out)
+            with output_folder(out) as folder:
+                _write(machine, found, folder)
     deliver(_content(machine, found), _tables(machine, found), as_json, None)
+    tell_written(out, as_json)
 
 
 def _write(plant: Plant, found: ModeMap, folder: Path) -> None:

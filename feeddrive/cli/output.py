@@ -15,11 +15,14 @@ import typer
 from rich.console import Console, RenderableType
 from rich.table import Table
 
-from feeddrive.errors import ValidityWarning
+from feeddrive.errors import ValidityWarning, printable, quoted
 from feeddrive.files import write_text_atomically
 
 JsonOption = Annotated[bool, typer.Option("--json", help="JSON in place of tables; SI units.")]
 OutOption = Annotated[Path | None, typer.Option("--out", help="File to write to, in place of the terminal.")]
+
+LONGEST_LINE = 800
+"""Letters of a warning, or of where the files are."""
 
 _WIDTH = 120
 """Of tables in a file or a pipe, in letters."""
@@ -27,11 +30,11 @@ _WIDTH = 120
 
 def table(title: str, headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Table:
     """A table with a title; every cell is text."""
-    made = Table(title=title, title_justify="left", title_style="bold")
+    made = Table(title=printable(title), title_justify="left", title_style="bold")
     for heading in headings:
-        made.add_column(heading, overflow="fold")
+        made.add_column(printable(heading), overflow="fold")
     for row in rows:
-        made.add_row(*row)
+        made.add_row(*map(_printable_lines, row))
     return made
 
 
@@ -47,14 +50,21 @@ def deliver(content: dict[str, Any], tables: Sequence[RenderableType], as_json: 
     Raises:
         InputError: the file cannot be written.
     """
-    text = json.dumps(content, indent=2, ensure_ascii=False) + "\n" if as_json else None
+    text = escaped(json.dumps(content, indent=2, ensure_ascii=False)) + "\n" if as_json else None
     if out is not None:
         write_text_atomically(out, text or _as_text(tables))
+        tell_written(out, as_json)
     elif text is not None:
         typer.echo(text, nl=False)
     else:
         width = None if sys.stdout.isatty() else _WIDTH
         _print(Console(markup=False, highlight=False, emoji=False, width=width), tables)
+
+
+def tell_written(out: Path | None, as_json: bool) -> None:
+    """Say after the tables where the files are; nothing where there are none, or where JSON is printed."""
+    if out is not None and not as_json:
+        typer.echo(f"written: {quoted(str(out.resolve()), LONGEST_LINE)}")
 
 
 @contextmanager
@@ -67,10 +77,25 @@ def warnings_as_lines() -> Iterator[None]:
     for warning in caught:
         if issubclass(warning.category, ValidityWarning):
             if str(warning.message) not in told:  # a plant is made more than once on the way to its figures
-                typer.echo(f"warning: {warning.message}", err=True)
+                tell(f"warning: {warning.message}")
             told.add(str(warning.message))
         else:
             warnings.warn_explicit(warning.message, warning.category, warning.filename, warning.lineno)
+
+
+def tell(line: str) -> None:
+    """Say something in one line on stderr."""
+    typer.echo(quoted(line, LONGEST_LINE), err=True)
+
+
+def _printable_lines(cell: str) -> str:
+    return "\n".join(map(printable, cell.split("\n")))
+
+
+def escaped(text: str) -> str:
+    """JSON with all that a terminal obeys as escapes; it says the same."""
+    kept = text.isascii() and "\x7f" not in text
+    return text if kept else "".join(one if one.isprintable() or one == "\n" else json.dumps(one)[1:-1] for one in text)
 
 
 def _as_text(tables: Sequence[RenderableType]) -> str:

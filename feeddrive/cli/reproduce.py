@@ -14,8 +14,9 @@ from rich.text import Text
 
 from feeddrive import __version__
 from feeddrive.cli.comparison import Comparison, summary_table
-from feeddrive.cli.output import JsonOption, deliver, warnings_as_lines
+from feeddrive.cli.output import JsonOption, deliver, tell_written, warnings_as_lines
 from feeddrive.files import write_text_atomically
+from feeddrive.output_folder import output_folder, refuse_unusable
 from feeddrive.reproduce.collection import as_csv, counts, find_papers, record, rows_of
 from feeddrive.reproduce.row import Paper, Row
 
@@ -31,14 +32,16 @@ def command(
 ) -> None:
     """Compare every number and checkable claim of the source papers with what the program computes."""
     papers = find_papers(paper)
+    refuse_unusable(out)
     with warnings_as_lines():
         rows = tuple(row for one in _announced(papers) for row in rows_of(one))
     content = _content(papers, rows)
-    written = _write(content, rows, out) if out is not None else []
+    if out is not None:
+        with output_folder(out) as folder:
+            _write(content, rows, folder)
     comparisons = [Comparison(one, [row for row in rows if row.paper is one]) for one in papers]
     deliver(content, [*comparisons, summary_table(rows, papers), Text(_LEGEND)], as_json, None)
-    for path in written:
-        typer.echo(f"written: {path}", err=True)
+    tell_written(out, as_json)
 
 
 def _announced(papers: tuple[Paper, ...]) -> Iterator[Paper]:
@@ -62,13 +65,7 @@ def _content(papers: tuple[Paper, ...], rows: tuple[Row, ...]) -> dict[str, Any]
     }
 
 
-def _write(content: dict[str, Any], rows: tuple[Row, ...], folder: Path) -> list[Path]:
+def _write(content: dict[str, Any], rows: tuple[Row, ...], folder: Path) -> None:
     """The files of `--out`."""
-    texts = {
-        "reproduce.csv": as_csv(rows),
-        "reproduce.json": json.dumps(content, indent=2, ensure_ascii=False) + "\n",
-    }
-    paths = [folder / name for name in texts]
-    for path, text in zip(paths, texts.values(), strict=True):
-        write_text_atomically(path, text)
-    return paths
+    write_text_atomically(folder / "reproduce.csv", as_csv(rows))
+    write_text_atomically(folder / "reproduce.json", json.dumps(content, indent=2, ensure_ascii=False) + "\n")

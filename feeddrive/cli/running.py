@@ -11,17 +11,17 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
 
 from feeddrive import __version__
-from feeddrive.cli.output import deliver, table, warnings_as_lines
+from feeddrive.cli.output import deliver, table, tell_written, warnings_as_lines
 from feeddrive.errors import InputError
 from feeddrive.files import shipped_scenarios, write_bytes_atomically, write_text_atomically
 from feeddrive.metrology.evaluate import Evaluated, as_json, evaluate
 from feeddrive.metrology.following import following
+from feeddrive.output_folder import output_folder, refuse_unusable
 from feeddrive.plant.entries import nearest
 from feeddrive.quantity import format_quantity
 from feeddrive.recording.writing import write_recording
@@ -51,18 +51,19 @@ def run_and_tell(name: str, settings: list[str], json_wanted: bool, out: Path | 
     Raises:
         InputError: an unusable scenario, or a folder that cannot be written.
     """
+    refuse_unusable(out)
     path = find_scenario(name)
     with warnings_as_lines():
         scenario = read_scenario(path, parse_overrides(settings))
-        if out is not None:
-            _refuse_file(out)
         with _progress(scenario.name) as told:
             result = run_scenario(scenario, out / CHECKPOINT if out is not None else None, told)
         evaluated = evaluate(result)
     content = metrics(result, evaluated, path)
     if out is not None:
-        _write(result, evaluated, content, out)
-    deliver(content, [] if json_wanted else _tables(content, out), json_wanted, None)
+        with output_folder(out) as folder:
+            _write(result, evaluated, content, folder)
+    deliver(content, [] if json_wanted else _tables(content), json_wanted, None)
+    tell_written(out, json_wanted)
 
 
 def find_scenario(name: str) -> Path:
@@ -128,11 +129,6 @@ def _write(result: ScenarioResult, evaluated: tuple[Evaluated, ...], content: di
     write_text_atomically(out / "metrics.json", text)
 
 
-def _refuse_file(out: Path) -> None:
-    if out.exists() and not out.is_dir():
-        raise InputError("is a file, not a folder", str(out), "name another folder for --out")
-
-
 @contextmanager
 def _progress(name: str) -> Iterator[Told | None]:
     """A bar on a terminal, nothing in a pipe."""
@@ -145,7 +141,7 @@ def _progress(name: str) -> Iterator[Told | None]:
         yield lambda share: bar.update(task, completed=share)
 
 
-def _tables(content: dict[str, Any], out: Path | None) -> list[Table]:
+def _tables(content: dict[str, Any]) -> list[Table]:
     gains, error = content["controller"], content["following_error"]
     rows = [
         ["duration", format_quantity(content["duration"], "s")],
@@ -157,8 +153,6 @@ def _tables(content: dict[str, Any], out: Path | None) -> list[Table]:
     ]
     found = [table(f"{content['name']}, {content['plant']}", ("figure", "quantity"), rows)]
     found += [_evaluation_table(one) for one in content["evaluations"]]
-    if out is not None:
-        typer.echo(f"recording.csv, metrics.json and figures are in {out}")
     return found
 
 

@@ -12,11 +12,12 @@ import typer
 from rich.table import Table
 
 from feeddrive.cli.machine import read_machine
-from feeddrive.cli.output import JsonOption, deliver, table, warnings_as_lines
+from feeddrive.cli.output import JsonOption, deliver, table, tell_written, warnings_as_lines
 from feeddrive.cli.show_folder import is_folder, write_folder
 from feeddrive.cli.show_heat import heat_content, heat_tables
 from feeddrive.cli.show_life import life_content, life_table
 from feeddrive.files import find_plant
+from feeddrive.output_folder import output_folder
 from feeddrive.plant.modes import Modes
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.rated_life import LifeRow, rated_life
@@ -48,8 +49,10 @@ def command(
         life = rated_life(machine)
         content = _content(machine, summary, life)
         if out is not None and is_folder(out):
-            write_folder(machine, summary.position, content, out)
+            with output_folder(out) as folder:
+                write_folder(machine, summary.position, content, folder)
     deliver(content, _tables(machine, summary, life), as_json, None if is_folder(out) else out)
+    tell_written(out if is_folder(out) else None, as_json)
 
 
 def _content(plant: Plant, summary: Summary, life: Sequence[LifeRow]) -> dict[str, Any]:

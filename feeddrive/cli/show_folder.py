@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from feeddrive.errors import InputError
 from feeddrive.files import write_bytes_atomically, write_text_atomically
 from feeddrive.plant.plant import Plant
 
@@ -33,8 +32,6 @@ def write_folder(plant: Plant, position: float, content: dict[str, Any], folder:
     Raises:
         InputError: the folder cannot be written, or a position off the screw.
     """
-    if folder.exists() and not folder.is_dir():
-        raise InputError("is a file", str(folder), "name a folder, or a file with an ending such as .json or .txt")
     write_text_atomically(folder / "show.json", json.dumps(content, indent=2, ensure_ascii=False) + "\n")
     if plant.drive is None or not plant.chain.varies:
         return

@@ -14,18 +14,18 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
 
-from feeddrive.cli.output import deliver, table
+from feeddrive.cli.output import deliver, table, tell_written
 from feeddrive.cli.running import find_scenario
 from feeddrive.errors import InputError
 from feeddrive.files import write_bytes_atomically, write_text_atomically
 from feeddrive.metrology.run_metrics import run_metrics
+from feeddrive.output_folder import output_folder, refuse_unusable
 from feeddrive.plant.entries import nearest
 from feeddrive.quantity import format_quantity
 from feeddrive.simulate.scenario_overrides import parse_overrides
 from feeddrive.simulate.sweep import Sweep, Told, run_sweep
 from feeddrive.simulate.sweep_dask import on_cluster
 from feeddrive.simulate.sweep_design import Design, make_design
-from feeddrive.simulate.sweep_store import refuse_file
 from feeddrive.simulate.sweep_table import SweepRow, SweepTable, as_csv, as_json, as_text, main_metrics
 from feeddrive.simulate.sweep_values import Parameter, Value, read_parameters
 from feeddrive.simulate.sweep_workers import Workers, in_this_process, processes, usable_processors
@@ -59,8 +59,7 @@ def sweep_and_tell(wanted: Wanted) -> None:
     if len(wanted.metrics) > MOST_METRICS:
         raise InputError(f"{len(wanted.metrics)} metrics", "--metric", f"choose up to {MOST_METRICS}")
     workers = _workers(wanted)
-    if wanted.out is not None:
-        refuse_file(wanted.out)
+    refuse_unusable(wanted.out)
     parameters = read_parameters(wanted.vary)
     path = find_scenario(wanted.scenario).resolve()
     design = make_design(path, parse_overrides(wanted.settings), parameters, wanted.samples, wanted.seed)
@@ -102,20 +101,20 @@ def _progress(name: str) -> Iterator[Told | None]:
 
 def _finish(sweep: Sweep, wanted: Wanted) -> None:
     found, out = sweep.table, wanted.out
+    shown = _metrics(found, wanted.metrics) if found.finished else []
     if out is not None:
-        write_text_atomically(out / "table.csv", as_csv(found))
-        write_text_atomically(out / "results.json", as_text(as_json(sweep.design, found)))
+        with output_folder(out) as folder:
+            write_text_atomically(folder / "table.csv", as_csv(found))
+            write_text_atomically(folder / "results.json", as_text(as_json(sweep.design, found)))
+            if found.finished:
+                _draw(sweep, shown, folder)
     if not found.finished:
         raise InputError(
             f"all {len(found.rows)} runs failed, the first: {found.rows[0].reason}", str(sweep.design.path)
         )
-    shown = _metrics(found, wanted.metrics)
-    if out is not None:
-        _draw(sweep, shown, out)
     tables = [] if wanted.as_json else _tables(sweep, shown)
-    if not wanted.as_json and out is not None:
-        typer.echo(f"table.csv, results.json and sweep.png are in {out}")
     deliver(as_json(sweep.design, found), tables, wanted.as_json, None)
+    tell_written(out, wanted.as_json)
 
 
 def _metrics(found: SweepTable, names: list[str]) -> list[str]:

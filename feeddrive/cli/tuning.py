@@ -12,9 +12,10 @@ from rich.table import Table
 
 from feeddrive import __version__
 from feeddrive.cli.boding import find_controller, quantities
-from feeddrive.cli.output import deliver, table, warnings_as_lines
+from feeddrive.cli.output import deliver, table, tell_written, warnings_as_lines
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant, write_bytes_atomically, write_text_atomically
+from feeddrive.output_folder import output_folder, refuse_unusable
 from feeddrive.plant.entries import nearest
 from feeddrive.plant.files import read_plant
 from feeddrive.plant.plant import Plant
@@ -62,8 +63,7 @@ def run(wanted: Wanted, as_json: bool, out: Path | None) -> None:
     Raises:
         InputError: anything in the request that cannot be used, or margins that cannot be met.
     """
-    if out is not None and out.exists() and not out.is_dir():
-        raise InputError("is a file, not a folder", str(out), "name another folder for --out")
+    refuse_unusable(out)
     with warnings_as_lines():
         plant = read_plant(find_plant(wanted.plant))
         phase = math.degrees(parse(wanted.margin_phase, "rad", "--margin-phase"))
@@ -75,8 +75,10 @@ def run(wanted: Wanted, as_json: bool, out: Path | None) -> None:
         found = recommend(plant, drive, cases, demand)
     content = _content(plant, found)
     if out is not None:
-        _write(plant, found, content, out)
+        with output_folder(out) as folder:
+            _write(plant, found, content, folder)
     deliver(content, [] if as_json else _tables(plant, found), as_json, None)
+    tell_written(out, as_json)
 
 
 def drive_of(plant: Plant, written: Drive) -> Cascade:

@@ -12,10 +12,11 @@ from typing import Any
 import numpy as np
 
 from feeddrive import __version__
-from feeddrive.cli.output import deliver, warnings_as_lines
+from feeddrive.cli.output import deliver, tell_written, warnings_as_lines
 from feeddrive.cli.warming_tables import thermal_tables
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant, write_bytes_atomically, write_text_atomically
+from feeddrive.output_folder import output_folder, refuse_unusable
 from feeddrive.quantity import parse
 from feeddrive.recording.recording import Recording
 from feeddrive.recording.writing import write_recording
@@ -55,16 +56,17 @@ def warm_and_tell(name: str, asked: Asked, as_json: bool, out: Path | None) -> N
     Raises:
         InputError: an unusable plant, duty or option, or a folder that cannot be written.
     """
-    if out is not None and out.exists() and not out.is_dir():
-        raise InputError("is a file, not a folder", str(out), "name another folder for --out")
+    refuse_unusable(out)
     with warnings_as_lines():
         plant = _plant(name, asked.stroke)
         found = study(plant, _duty(plant, asked), _band(asked.within), asked.order)
     lumps = network(plant.rig, found.conductances, asked.segments, (*plant.bodies, *plant.attached))
     content = thermal_content(found, lumps)
     if out is not None:
-        _write(found, content, out)
+        with output_folder(out) as folder:
+            _write(found, content, folder)
     deliver(content, [] if as_json else thermal_tables(found, lumps), as_json, None)
+    tell_written(out, as_json)
 
 
 def _plant(name: str, stroke: str | None) -> ThermalPlant:

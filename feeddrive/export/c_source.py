@@ -15,6 +15,7 @@ from collections.abc import Sequence
 
 import casadi as ca
 
+from feeddrive.errors import printable
 from feeddrive.export.model import Model, slopes_of
 from feeddrive.export.quantities import Quantity
 
@@ -64,12 +65,12 @@ def source_text(model: Model) -> str:
 
 
 def comment(lines: Sequence[str]) -> list[str]:
-    """A comment of C; what would end it early is taken apart."""
+    """A comment of C; what would end it early is taken apart, and what an editor obeys is shown."""
     return ["/*", *(f" * {_one_line(line)}" for line in lines), " */"]
 
 
 def _one_line(text: str) -> str:
-    return text.replace("\n", " ").replace("*/", "* /").rstrip()
+    return printable(text).replace("*/", "* /").replace("/*", "/ *").rstrip()
 
 
 def numbers(values: Sequence[float]) -> str:

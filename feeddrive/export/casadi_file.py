@@ -46,11 +46,21 @@ def casadi_function(model: Model) -> ca.Function:
 
 
 def casadi_bytes(model: Model) -> bytes:
-    """The content of the function file; raises as `casadi_function`."""
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "function.casadi"
-        casadi_function(model).save(str(path))
-        return path.read_bytes()
+    """The content of the function file.
+
+    Raises:
+        InputError: as `casadi_function`, and a temporary folder that cannot hold the file.
+    """
+    function = casadi_function(model)
+    try:
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "function.casadi"
+            function.save(str(path))
+            ca.Function.load(str(path))  # CasADi says nothing where the disk is full
+            return path.read_bytes()
+    except (OSError, RuntimeError):
+        mend = "make room there, or name another folder by TMPDIR"
+        raise InputError("the temporary folder cannot hold the function file", tempfile.gettempdir(), mend) from None
 
 
 def casadi_notes(model: Model) -> str:

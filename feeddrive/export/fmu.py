@@ -15,12 +15,12 @@ from __future__ import annotations
 import hashlib
 import io
 import platform
-import subprocess
 import sys
 import tempfile
 import zipfile
 from pathlib import Path
 
+from feeddrive.compiler import CompilerError, run_compiler
 from feeddrive.errors import InputError
 from feeddrive.export.c_source import header_text, numbers, source_text
 from feeddrive.export.fmu_description import description_text, fixed_parameters, nominals
@@ -85,17 +85,19 @@ def _sizes(model: Model, guid: str) -> str:
 
 def _compiled(sources: dict[str, str], units: tuple[str, ...], compiler: str) -> bytes:
     """The shared library."""
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        for file, text in sources.items():
-            (folder / file).write_text(text, encoding="utf-8")
-        command = [compiler, *_FLAGS, "-o", "model", *units, "-lm"]
-        done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
-        if done.returncode != 0:
-            said = done.stderr.strip().splitlines() or ["no message"]
-            mend = "set FEEDDRIVE_COMPILER=none for an FMU of sources"
-            raise InputError(f"the C compiler refused the model: {said[0]}", compiler, mend)
-        return (folder / "model").read_bytes()
+    mend = "set FEEDDRIVE_COMPILER=none for an FMU of sources"
+    try:
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            for file, text in sources.items():
+                (folder / file).write_text(text, encoding="utf-8")
+            run_compiler([compiler, *_FLAGS, "-o", "model", *units, "-lm"], folder)
+            return (folder / "model").read_bytes()
+    except CompilerError as failure:
+        raise InputError(f"the model was not compiled: {failure}", compiler, mend) from None
+    except OSError as error:
+        what = f"the model was not compiled: the temporary folder cannot be used ({error.strerror})"
+        raise InputError(what, tempfile.gettempdir(), f"name another one by TMPDIR, or {mend}") from None
 
 
 def _packed(files: dict[str, bytes]) -> bytes:

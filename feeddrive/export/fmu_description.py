@@ -13,6 +13,7 @@ import casadi as ca
 import numpy as np
 
 from feeddrive import __version__
+from feeddrive.errors import printable
 from feeddrive.export.fmu_units import exponents
 from feeddrive.export.model import Model
 from feeddrive.export.quantities import Quantity
@@ -34,8 +35,8 @@ def description_text(model: Model, guid: str, sources: tuple[str, ...]) -> str:
         sources: names of the C files in the folder `sources` that are compiled.
     """
     root = Tree.Element("fmiModelDescription", {
-        "fmiVersion": "2.0", "modelName": " ".join(model.plant.name.split()), "guid": guid,
-        "description": " | ".join(" ".join(line.split()) for line in model.heading),
+        "fmiVersion": "2.0", "modelName": _one_line(model.plant.name), "guid": guid,
+        "description": " | ".join(map(_one_line, model.heading)),
         "generationTool": f"feeddrive {__version__}", "variableNamingConvention": "structured",
         "numberOfEventIndicators": "0",
     })  # fmt: skip
@@ -103,7 +104,7 @@ def _add(parent: Tree.Element, name: str, row: Quantity, kind: tuple[str, str, s
     """One variable; its value reference is its place."""
     causality, variability, initial = kind
     attributes = {"name": name, "valueReference": str(len(parent))}
-    attributes |= {"description": " ".join(row.comment.split())} if row.comment else {}
+    attributes |= {"description": _one_line(row.comment)} if row.comment else {}
     attributes |= {"causality": causality, "variability": variability} | ({"initial": initial} if initial else {})
     variable = Tree.SubElement(parent, "ScalarVariable", attributes)
     Tree.SubElement(variable, "Real", ({"unit": row.unit} if row.unit != "1" else {}) | real)
@@ -132,6 +133,11 @@ def _dependencies(model: Model) -> list[list[list[int]]]:
     patterns = [ca.jacobian_sparsity(result, known) for result in model.function(*arguments)]
     return [[[c for c in range(pattern.size2()) if pattern.has_nz(r, c)] for r in range(pattern.size1())]
             for pattern in patterns]  # fmt: skip
+
+
+def _one_line(text: str) -> str:
+    """A text as an attribute may hold it: XML knows no control characters at all."""
+    return " ".join(printable(text).split())
 
 
 def _rate_unit(unit: str) -> str:

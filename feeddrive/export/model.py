@@ -19,6 +19,12 @@ from feeddrive.export.quantities import Quantity, inputs, outputs, parameters, s
 from feeddrive.plant.linear import steady_motion, timed_ode
 from feeddrive.plant.plant import Plant
 
+_LONGEST = 60
+"""Letters of an identifier: C99 tells 63 apart, and file names have ends of their own."""
+
+_TAKEN = ("null", "jac", "hess")
+"""Words that CasADi keeps for itself as names of functions."""
+
 
 @dataclass(frozen=True)
 class Model:
@@ -81,6 +87,6 @@ def slopes_of(model: Model, name: str) -> ca.Function:
 
 
 def identifier_of(name: str) -> str:
-    """The name in small letters of ASCII, digits and single underscores, beginning with a letter."""
-    plain = re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_")
-    return plain if plain[:1].isalpha() else f"plant_{plain}".rstrip("_")
+    """The name in small letters of ASCII, digits and single underscores, beginning with a letter; 60 at most."""
+    plain = re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_")[:_LONGEST].strip("_")
+    return plain if plain[:1].isalpha() and plain not in _TAKEN else f"plant_{plain}".rstrip("_")

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from feeddrive import __version__
+from feeddrive.errors import printable
 from feeddrive.export.linear_model import LinearModel
 from feeddrive.export.notes import included, left_out, linear_notes
 from feeddrive.export.quantities import Quantity
@@ -37,13 +38,14 @@ def python_text(model: LinearModel) -> str:
 
 
 def _heading(model: LinearModel) -> list[str]:
-    name = " ".join(model.plant.name.split())
-    return [
+    name = model.plant.name
+    lines = [
         f"{name}, linear about the table at {model.position!r} m moving at {model.velocity!r} m/s.",
         f"Made by feeddrive {__version__}. SI units: x' = A x + B u, y = C x + D u, deviations from the point.",
         *(f"Included: {line}" for line in included(model.plant)),
         *(f"Left out: {line}" for line in (*left_out(model.plant), *linear_notes(model.plant))),
     ]
+    return [" ".join(printable(line).split()) for line in lines]  # a comment ends with its line
 
 
 def _table(name: str, rows: Sequence[Quantity]) -> list[str]:

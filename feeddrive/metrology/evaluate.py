@@ -129,6 +129,8 @@ def _circular(result: ScenarioResult, _: Evaluation) -> Circular:
         raise InputError("the set-point is no circle", "evaluate circular", 'use kind = "circle"')
     angle = circle.angle(result.time)
     rate = np.gradient(angle, result.time)
+    if not rate.max() > 0:
+        raise InputError("the run ends before the circle begins", "evaluate circular", "make the run longer")
     steady = np.flatnonzero(np.abs(rate - rate.max()) < 1e-6 * rate.max())
     last = angle[steady[-1]]
     turns = math.floor((last - angle[steady[0]]) / (2 * math.pi) + 1e-9)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import re
 import tomllib
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
@@ -10,10 +11,16 @@ from pathlib import Path
 from typing import Any
 
 from feeddrive.effects.base import Value
-from feeddrive.errors import InputError
+from feeddrive.errors import InputError, quoted
 from feeddrive.quantity import parse
 
 _TABLE_KEYS = ("value", "source", "tolerance")
+
+_OBEYED = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u2028\u2029\u202a-\u202e\u2066-\u2069]")
+"""Letters that a terminal, an editor or a browser obeys: controls but line ends and tabs, and turns of direction."""
+
+MOST_LEVELS = 12
+"""Tables inside tables in a file: three times what any of ours needs, and far below what Python can walk through."""
 
 
 @dataclass
@@ -99,13 +106,15 @@ class Table:
         """A text.
 
         Raises:
-            InputError: missing without a default, empty, or not a text.
+            InputError: missing without a default, empty, not a text, or with letters that a terminal obeys.
         """
         value = self.entries.get(key, default)
         if value is None:
             raise InputError("is missing", self.place(key), f'write {key} = "..."')
         if not isinstance(value, str) or (key in self.entries and not value.strip()):
             raise InputError(f"{value!r} is not a text", self.place(key), f'write {key} = "..."')
+        if found := _OBEYED.search(value):
+            raise InputError(f"holds {quoted(found[0])}, which is no letter", self.place(key), "take it out")
         return value
 
     def choice(self, key: str, allowed: Iterable[str], default: str | None = None) -> str:
@@ -181,7 +190,7 @@ def read_toml(path: Path, kind: str) -> dict[str, Any]:
     """
     where = str(path)
     try:
-        return parse_toml(path.read_text(encoding="utf-8-sig"), where)
+        text = path.read_text(encoding="utf-8-sig")
     except (FileNotFoundError, NotADirectoryError):
         raise InputError(f"no such {kind}", where, "check the name and the folder") from None
     except IsADirectoryError:
@@ -190,19 +199,44 @@ def read_toml(path: Path, kind: str) -> dict[str, Any]:
         raise InputError(f"cannot be read ({error.strerror})", where, "check the permissions of the file") from None
     except UnicodeDecodeError:
         raise InputError("is not a text in UTF-8", where, "save it as UTF-8") from None
+    except ValueError:  # a name that no system knows, such as one with a zero byte
+        raise InputError(f"no such {kind}", where, "check the name and the folder") from None
+    return parse_toml(text, where)
 
 
 def parse_toml(text: str, where: str) -> dict[str, Any]:
     """Parse TOML text.
 
     Raises:
-        InputError: not TOML (with line and column).
+        InputError: not TOML (with line and column), or tables in more than `MOST_LEVELS` levels.
     """
     parse_text: Callable[[str], dict[str, Any]] = tomllib.loads
     try:
-        return parse_text(text)
+        entries = parse_text(text)
     except (ValueError, RecursionError) as error:  # a plain ValueError: an integer beyond Python's digit limit
         raise InputError(f"is not TOML: {error}", where, "correct that line") from None
+    refuse_deep(entries, where)
+    return entries
+
+
+def refuse_deep(entries: Mapping[str, Any], where: str) -> None:
+    """Refuse tables and lists in more than `MOST_LEVELS` levels, which no file of ours has.
+
+    Raises:
+        InputError: it is so; names the first key.
+    """
+    level = list(entries.items())
+    for _ in range(MOST_LEVELS):
+        level = [(first, inner) for first, value in level for inner in _inside(value)]
+    if level:
+        raise InputError(
+            f"tables or lists in more than {MOST_LEVELS} levels", f"{where}, {level[0][0]}", "write it flat"
+        )
+
+
+def _inside(value: Any) -> Iterable[Any]:
+    """What a table or a list holds; nothing of a value."""
+    return value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
 
 
 def nearest(word: str, known: Iterable[str]) -> str:

@@ -48,6 +48,12 @@ from feeddrive.simulate.scenario_values import optional, positive, quantities, w
 from feeddrive.simulate.trajectories import Circle, Sine, Wave, moves, position_step, staircase, velocity_steps
 from feeddrive.simulate.waveforms import Multisine, Prbs, Sweep, Waveform
 
+MOST_REPEATS = 10_000
+"""Of a motion; a day of moves of some seconds. Every piece of it is held in memory."""
+
+MOST_TEETH = 1000
+"""Of a cutter; the largest face mills have some hundred."""
+
 _LIMITS = ("velocity", "acceleration", "jerk")
 _WAVEFORM_KEYS = ("waveform", "low", "high", "duration", "period", "periods", "lines", "bit", "order")
 
@@ -108,11 +114,11 @@ def _moves(table: Table) -> Trajectory:
     each = speeds if len(speeds) > 1 else speeds * len(targets)
     pairs = [(target, _limits(table, speed)) for target, speed in zip(targets, each, strict=True)]
     dwell = optional(table, "dwell", "s", 0.0)
-    return moves(table.quantity("start", "m", ""), pairs * whole(table, "repeat", 1), dwell)
+    return moves(table.quantity("start", "m", ""), pairs * whole(table, "repeat", 1, MOST_REPEATS), dwell)
 
 
 def _staircase(table: Table) -> Trajectory:
-    targets, runs = quantities(table, "targets", "m"), whole(table, "runs")
+    targets, runs = quantities(table, "targets", "m"), whole(table, "runs", None, MOST_REPEATS)
     return staircase(targets, runs, positive(table, "overrun", "m"), _limits(table), positive(table, "dwell", "s"))
 
 
@@ -199,8 +205,8 @@ def _recorded_force(table: Table, folder: Path) -> Force:
 
 def _milling(table: Table, _: Path) -> Force:
     return Milling(
-        whole(table, "teeth"), positive(table, "spindle_speed", "rad/s"), positive(table, "depth", "m"),
-        positive(table, "feed_per_tooth", "m"), positive(table, "tangential", "Pa"),
+        whole(table, "teeth", None, MOST_TEETH), positive(table, "spindle_speed", "rad/s"),
+        positive(table, "depth", "m"), positive(table, "feed_per_tooth", "m"), positive(table, "tangential", "Pa"),
         optional(table, "radial", "Pa", 0.0), optional(table, "entry", "rad", 0.0),
         optional(table, "exit", "rad", math.pi), optional(table, "start", "s", 0.0), _end(table),
     )  # fmt: skip

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from feeddrive.errors import InputError
+from feeddrive.plant.entries import refuse_deep
 
 
 def parse_overrides(texts: list[str]) -> dict[str, str]:
@@ -45,6 +46,7 @@ def with_overrides(entries: Mapping[str, Any], overrides: Mapping[str, str]) -> 
             at[_place(at, last, key)] = _value(text)
         else:
             at[last] = _value(text)
+        refuse_deep(result, f"--set {key}")
     return result
 
 
@@ -73,5 +75,5 @@ def _value(text: str) -> Any:
     """A TOML value where the text is one, such as 5, true or ["1 mm", "2 mm"]; else the text itself."""
     try:
         return tomllib.loads(f"value = {text}")["value"]
-    except tomllib.TOMLDecodeError:
+    except (ValueError, RecursionError):  # no TOML, or a number of too many digits, or too deep
         return text

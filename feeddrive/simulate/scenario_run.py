@@ -8,9 +8,11 @@ from __future__ import annotations
 
 import io
 import time as clock
+import zlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from zipfile import BadZipFile
 
 import numpy as np
 
@@ -39,6 +41,12 @@ CHECKPOINT_EVERY = 5.0
 
 CHECKPOINT_SHARE = 0.05
 """Of the time that writing checkpoints may take: large ones are written more seldom."""
+
+_DAMAGE = (
+    ValueError, KeyError, OSError, EOFError, TypeError, AttributeError, MemoryError, NotImplementedError, SyntaxError,
+    BadZipFile, zlib.error,
+)  # fmt: skip
+"""What numpy and zipfile raise where bytes of an archive were lost or changed."""
 
 Progress = Callable[[float], None]
 """Told the share of the run that is done."""
@@ -184,14 +192,27 @@ def _resumed(scenario: Scenario, path: Path | None) -> _Done | None:
     """What a checkpoint of this scenario holds; None where there is none, or that of another scenario."""
     if path is None or not path.is_file():
         return None
+    mend = "remove it to start anew"
     try:
-        with np.load(path, allow_pickle=False) as file:
+        with path.open("rb") as opened, np.load(opened, allow_pickle=False) as file:
             digest, state, torque, rows, late = (file[name] for name in ("digest", "state", "torque", "rows", "late"))
-    except (ValueError, KeyError, OSError, EOFError):
-        raise InputError("is not a checkpoint", str(path), "remove it to start anew") from None
+    except _DAMAGE:
+        raise InputError("is not a checkpoint", str(path), mend) from None
     if bytes(digest).decode(errors="replace") != scenario.digest:
         return None
     if not len(rows):
         return None  # stopped before anything was done
+    _refuse_other_shapes(scenario, {"state": state, "torque": torque, "rows": rows, "late": late}, str(path), mend)
     held_on = LateChannels.at_rest(scenario.plant, scenario.cascade.sample_time, {}).resumed(late)
     return _Done(state_from(state), ActingTorque(torque), (rows,), held_on)
+
+
+def _refuse_other_shapes(scenario: Scenario, found: Mapping[str, FloatArray], where: str, mend: str) -> None:
+    """Refuse a checkpoint whose arrays are not those that a run of this scenario writes."""
+    start = _start(scenario)
+    late = LateChannels.at_rest(scenario.plant, scenario.cascade.sample_time, dict.fromkeys(SERIES, 0.0))
+    shapes = {"state": start.state.vector.shape, "torque": start.torque.state.shape, "late": late.vector.shape,
+              "rows": (len(found["rows"]), len(_columns(scenario)))}  # fmt: skip
+    same = all(found[name].dtype == np.float64 and found[name].shape == shape for name, shape in shapes.items())
+    if not same or not np.isfinite(found["state"]).all() or found["state"][3] != start.state.vector[3]:
+        raise InputError("is a checkpoint that was changed or damaged", where, mend)

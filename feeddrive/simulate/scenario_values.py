@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from feeddrive.errors import InputError
+from feeddrive.errors import InputError, quoted
 from feeddrive.plant.entries import Table
+
+MOST = 1_000_000_000
+"""Of a whole number that nothing else bounds: above any count of lines, periods or cycles, below what overflows."""
 
 
 def optional(table: Table, key: str, unit: str, default: float) -> float:
@@ -37,8 +40,8 @@ def quantities(table: Table, key: str, unit: str) -> tuple[float, ...]:
     return value if isinstance(value, tuple) else (value,)
 
 
-def whole(table: Table, key: str, default: int | None = None) -> int:
-    """A whole number of at least 0.
+def whole(table: Table, key: str, default: int | None = None, most: int = MOST) -> int:
+    """A whole number of at least 0 and at most `most`.
 
     Raises:
         InputError: missing without a default, or not such a number.
@@ -47,7 +50,9 @@ def whole(table: Table, key: str, default: int | None = None) -> int:
     if value is None:
         raise InputError("is missing", table.place(key), f"write {key} = 1")
     if isinstance(value, bool) or not isinstance(value, int) or value < 0:
-        raise InputError(f"{value!r} is not a whole number", table.place(key), f"write e.g. {key} = 5")
+        raise InputError(f"{quoted(value)} is not a whole number", table.place(key), f"write e.g. {key} = 5")
+    if value > most:
+        raise InputError(f"{quoted(value)} is more than {most}", table.place(key), f"write {most} at most")
     return value
 
 

@@ -15,8 +15,9 @@ from typing import Any
 
 from feeddrive.errors import InputError
 from feeddrive.files import write_text_atomically
+from feeddrive.output_folder import refuse_unusable
 from feeddrive.simulate.sweep_design import Design
-from feeddrive.simulate.sweep_unit import UNIT_FORMAT
+from feeddrive.simulate.sweep_unit import UNIT_FORMAT, is_list_of_runs
 
 SWEEP_FORMAT = "feeddrive-sweep/1"
 _PLAN = "sweep.json"
@@ -52,16 +53,6 @@ def unit_path(folder: Path, unit: int) -> Path:
     return folder / "units" / f"{unit:04d}.json"
 
 
-def refuse_file(folder: Path) -> None:
-    """Refuse a file where a folder is needed.
-
-    Raises:
-        InputError: it is a file.
-    """
-    if folder.exists() and not folder.is_dir():
-        raise InputError("is a file, not a folder", str(folder), "name another folder for --out")
-
-
 def write_cut(folder: Path, design: Design, cut: Cut) -> None:
     """Begin a sweep's folder.
 
@@ -80,17 +71,15 @@ def read_cut(folder: Path, design: Design) -> Cut | None:
         InputError: the folder is a file, or holds another sweep or something unreadable.
     """
     path = folder / _PLAN
-    refuse_file(folder)
+    refuse_unusable(folder)
     if not path.exists():
         return None
     content = _json(path)
-    try:
-        cut, digest = Cut(content["runs"], content["unit_size"]), content["digest"]
-        known = min(cut.runs, cut.size) > 0
-    except (KeyError, TypeError):
-        known = False
+    runs, size, digest = content.get("runs"), content.get("unit_size"), content.get("digest")
+    known = all(isinstance(count, int) and count > 0 for count in (runs, size))
     if not known or content.get("format") != SWEEP_FORMAT:
         raise InputError("is not the beginning of a sweep", str(path), "name another folder for --out")
+    cut = Cut(content["runs"], content["unit_size"])
     if digest != design.digest or cut.runs != len(design.rows):
         what = "holds another sweep: scenario, plant, values or program differ"
         raise InputError(what, str(folder), "name another folder for --out, or remove this one")
@@ -110,7 +99,7 @@ def read_units(folder: Path, design: Design, cut: Cut) -> dict[int, list[dict[st
             continue
         content, (first, end) = _json(path), cut.span(unit)
         runs = content.get("runs") if content.get("format") == UNIT_FORMAT else None
-        if content.get("digest") != design.digest or [run.get("run") for run in runs or ()] != [*range(first, end)]:
+        if content.get("digest") != design.digest or not is_list_of_runs(runs, range(first, end)):
             raise InputError("is not a unit of this sweep", str(path), "remove it; its runs are then done again")
         found[unit] = runs or []
     return found
@@ -119,7 +108,7 @@ def read_units(folder: Path, design: Design, cut: Cut) -> dict[int, list[dict[st
 def _json(path: Path) -> dict[str, Any]:
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
-    except (ValueError, OSError):
+    except (ValueError, OSError, RecursionError):
         content = None
     if not isinstance(content, dict):
         raise InputError("cannot be read", str(path), "remove it; its runs are then done again")

@@ -10,7 +10,7 @@ import json
 import math
 import threading
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -89,6 +89,30 @@ def run_unit(task: UnitTask) -> str:
 def write_unit(task: UnitTask, path: Path) -> None:
     """Run a unit and write what it gives, whole or not at all."""
     write_text_atomically(path, run_unit(task))
+
+
+def is_list_of_runs(content: Any, numbers: Sequence[int]) -> bool:
+    """Whether something read from a file is what `run_unit` writes of the runs of these numbers."""
+    if not isinstance(content, list) or not all(isinstance(run, dict) for run in content):
+        return False
+    return [run.get("run") for run in content] == [*numbers] and all(map(_is_run, content))
+
+
+def _is_run(run: Mapping[str, Any]) -> bool:
+    """Whether reason, warnings and metrics are what `_run` makes."""
+    told, metrics = run.get("warnings"), run.get("metrics")
+    return (
+        isinstance(run.get("reason"), str)
+        and isinstance(told, list) and all(isinstance(line, str) for line in told)
+        and isinstance(metrics, dict) and all(map(_is_metric, metrics.values()))
+        and bool(metrics) != bool(run["reason"])
+    )  # fmt: skip
+
+
+def _is_metric(pair: Any) -> bool:
+    if not isinstance(pair, list) or len(pair) != 2 or not isinstance(pair[1], str):
+        return False
+    return pair[0] is None or (isinstance(pair[0], float | int) and not isinstance(pair[0], bool))
 
 
 def finished_runs(text: str) -> int:

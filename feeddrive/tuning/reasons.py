@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import math
 from dataclasses import dataclass
 
+from feeddrive.errors import printable
 from feeddrive.plant.modes import braked_modes
 from feeddrive.plant.plant import Plant
 from feeddrive.quantity import format_quantity
@@ -78,7 +80,7 @@ def controller_text(found: Recommendation, name: str) -> str:
     worst = f"velocity loop {phase.velocity.phase:.0f}° and {min(one.velocity.gain for one in found.reached):.1f} dB"
     lines = [
         'format = "feeddrive-controller/1"',
-        f'name = "{name}"',
+        f"name = {json.dumps(printable(name), ensure_ascii=False)}",
         f"# least margins over {_cases(len(found.reached))}: {worst}, position loop {gain.position.gain:.1f} dB",
         f'velocity_rate = "{_exact(1 / cascade.sample_time)} Hz"',
         f'position_rate = "{_exact(1 / (cascade.sample_time * cascade.position_divider))} Hz"',

@@ -60,7 +60,7 @@ def test_unknown_form_names_the_known_ones(tmp_path: Path, capsys: pytest.Captur
 def test_place_that_cannot_be_written(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "taken").write_text("a file")
     assert main(["export", "bench_axis", "--to", "json", "--out", str(tmp_path / "taken")]) == 2
-    assert "cannot be written" in capsys.readouterr().err
+    assert "is a file, not a folder" in capsys.readouterr().err
 
 
 def test_name_that_would_break_a_comment(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -54,7 +54,9 @@ def earlier_run(folder: Path) -> Earlier:
         fit, validate = (tuple(_use(one) for one in last[key]) for key in ("fit", "validate"))
         effects = tuple(_effect(one) for one in last["values"])
         result = Earlier(runs, plant, fit, validate, float(last["split"]), effects, tuple(last["effects"]))
-    except (KeyError, TypeError, ValueError):
+    except (KeyError, TypeError, AttributeError, OverflowError, ValueError) as error:
+        if isinstance(error, InputError) and error.where != "":
+            raise
         raise InputError(f"run {len(runs)} lacks entries", str(folder / NAME), "diagnose anew") from None
     for one in (*result.fit, *result.validate):
         _unchanged(one)

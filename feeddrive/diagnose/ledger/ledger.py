@@ -51,7 +51,7 @@ class FileUse:
 class RunFiles:
     """Files and options of one run."""
 
-    plant: Path
+    plant: FileUse
     fit: tuple[FileUse, ...]
     validate: tuple[FileUse, ...]
     split: float
@@ -82,12 +82,16 @@ def runs_of(folder: Path) -> list[dict[str, Any]]:
     mend = "move it away, or give another folder by --out"
     try:
         record = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, json.JSONDecodeError):
+    except (OSError, ValueError, RecursionError):
         raise InputError("the ledger cannot be read", str(path), mend) from None
-    if not isinstance(record, dict) or record.get("format") != FORMAT or not isinstance(record.get("runs"), list):
+    if not isinstance(record, dict) or record.get("format") != FORMAT or not _are_runs(record.get("runs")):
         raise InputError(f"not a ledger of format {FORMAT}", str(path), mend)
     runs: list[dict[str, Any]] = record["runs"]
     return runs
+
+
+def _are_runs(runs: Any) -> bool:
+    return isinstance(runs, list) and all(isinstance(run, dict) for run in runs)
 
 
 def write_ledger(folder: Path, runs: Sequence[dict[str, Any]], result: Diagnosis, effects: Sequence[Effect],
@@ -112,7 +116,7 @@ def _run(number: int, result: Diagnosis, effects: Sequence[Effect], files: RunFi
         "run": number,
         "continues": files.continues,
         "version": __version__,
-        "plant": {"name": result.plant, "path": str(files.plant), "sha256": checksum(files.plant)},
+        "plant": {"name": result.plant, "path": str(files.plant.path), "sha256": files.plant.sha256},
         "fit": [_file(one) for one in files.fit],
         "validate": [_file(one) for one in files.validate],
         "split": files.split,
