@@ -14,9 +14,9 @@ from feeddrive.export.notes import included, left_out, linear_notes
 from feeddrive.export.point import Point, export_point
 from feeddrive.export.writing import Form, write_export
 from feeddrive.files import find_plant
-from feeddrive.plant.files import read_plant
 from feeddrive.plant.plant import Plant
 from feeddrive.quantity import format_quantity
+from feeddrive.thermal.whole_file import read_drive_plant
 
 
 def command(
@@ -51,7 +51,7 @@ def command(
     sources; its binary is for this platform.
     """
     with warnings_as_lines():
-        machine = read_plant(find_plant(plant))
+        machine = read_drive_plant(find_plant(plant))
         point = export_point(machine, at)
         files = {form: write_export(machine, form, point, out) for form in dict.fromkeys(to)}
     content = _content(machine, point, files)

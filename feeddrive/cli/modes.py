@@ -13,10 +13,10 @@ from rich.table import Table
 
 from feeddrive.cli.output import JsonOption, deliver, table, warnings_as_lines
 from feeddrive.files import find_plant, write_bytes_atomically, write_text_atomically
-from feeddrive.plant.files import read_plant
 from feeddrive.plant.mode_map import ModeMap, mode_map
 from feeddrive.plant.plant import Plant
 from feeddrive.quantity import parse
+from feeddrive.thermal.whole_file import read_drive_plant
 from feeddrive.typing import FloatArray
 
 SHOWN = 3
@@ -33,7 +33,7 @@ def command(
 ) -> None:
     """Natural frequencies along the stroke, with the motor held by its brake or servo, and free."""
     with warnings_as_lines():
-        machine = read_plant(find_plant(plant))
+        machine = read_drive_plant(find_plant(plant))
         places = np.array([parse(text, "m", "--at") for text in at]) if at else None
         found = mode_map(machine, places)
         if out is not None:
