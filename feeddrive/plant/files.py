@@ -74,6 +74,7 @@ from feeddrive.plant.effect_sections import read_effects
 from feeddrive.plant.effect_text import plant_text_with_effects
 from feeddrive.plant.entries import Origins, Table, read_toml
 from feeddrive.plant.equipment import read_controller, read_sensors
+from feeddrive.plant.passive_friction import refuse_active_friction
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.ratings import RATINGS, read_data
 from feeddrive.plant.stroke import read_stroke
@@ -161,6 +162,7 @@ def plant_from_entries(entries: Mapping[str, Any], path: Path) -> Plant:
         torque_constant=per_ampere,
     )
     _refuse_moving_mass(plant, str(path))
+    refuse_active_friction(plant, str(path))
     _refuse_stroke_off_screw(plant, str(path))
     _warn_of_unusual(chain, str(path))
     return plant

@@ -32,6 +32,7 @@ from feeddrive.errors import InputError
 from feeddrive.files import find_plant
 from feeddrive.plant.effect_sections import read_effects
 from feeddrive.plant.entries import Origins, Table, read_toml
+from feeddrive.plant.passive_friction import refuse_active_friction
 from feeddrive.plant.plant import Plant
 from feeddrive.recording.channels import channel_unit
 from feeddrive.servo.cascade import Cascade, divider
@@ -89,6 +90,7 @@ def read_scenario(path: Path, overrides: Mapping[str, str] | None = None) -> Sce
     top.refuse_unknown(_KEYS)
     plant_path = _plant_path(top, path.parent)
     plant = _plant(plant_path, of_plant).with_effects(*read_effects(top))
+    refuse_active_friction(plant, where)
     written = top.table("controller")
     cascade, unstable = read_cascade(Table(written.entries, controller_where, top.origins), plant)
     _require(top, "trajectory")

@@ -13,9 +13,9 @@
 The groove of the nut leaves its balls by u_r cos β - u_a sin β along the contact normal, u_r = α (d_m/2) D outward and
 u_a = ± α (s/2) D along the axis. The same leaving comes from an axial way u_r cot β - u_a of the nut, so ΔF is k times
 that. + with an oversize spacer, which pushes the nuts apart, - with an undersize one. The radial part unloads in either
-case: the groove in the nut grows away from the balls. Equal temperatures change nothing; balls hotter than both are left
-out. Valid for a nut whose body is stiff beside its contacts and D small enough that ΔF stays below F. The turn of the
-contact angle under the load is left out: with c the distance of the groove centres (some tenths of a millimetre) it
+case: the groove in the nut grows away from the balls. Equal temperatures change nothing; balls hotter than both are
+left out. Valid for a nut whose body is stiff beside its contacts and D small enough that ΔF stays below F. The turn of
+the contact angle under the load is left out: with c the distance of the groove centres (some tenths of a millimetre) it
 adds (F/c) (u_a cos²β / sin β + u_r cos β), 2 to 4 % of the radial part as nuts are built.
 """
 

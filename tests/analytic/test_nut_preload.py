@@ -28,7 +28,7 @@ def _contact_normals(angle: float, spacer: Spacer) -> list[tuple[np.ndarray, np.
 
 
 def _balls_change(degrees: float, spacer: Spacer, rise: float) -> float:
-    """Axial force of a row that a nut hotter by `rise` gains [N]: contacts in their groove, in equilibrium along the axis.
+    """Axial force of a row that a nut hotter by `rise` gains [N], in equilibrium along the axis.
 
     The nut is one body that grows as a similar one about a point of its axis and slides until its two rows balance.
     Each row obeys Hertz's law Q = K d^(3/2) along its normal, which does not turn.
