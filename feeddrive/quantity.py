@@ -14,22 +14,28 @@ from feeddrive.errors import InputError, quoted
 from feeddrive.unit_definitions import EXAMPLE_UNITS
 from feeddrive.unit_display import shown_unit
 from feeddrive.units import Conversion, UnitError, conversion_between
+from feeddrive.usual_ranges import ABSOLUTE_ZERO, beyond_usual
 
 __all__ = ["Conversion", "format_quantity", "parse", "split_quantity", "unit_conversion", "unit_factor"]
 
 _NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(.*)", re.DOTALL)
 
 
-def parse(text: object, unit: str, where: str) -> float:
+def parse(
+    text: object, unit: str, where: str, usual: tuple[float, float] | None = None, may_vanish: bool = False
+) -> float:
     """Return a written quantity in SI.
 
     Args:
         text: what stands in the file: "20 mm", or for unit "1" also a bare number.
         unit: SI unit that is needed, such as "m", "rad/s", "N m/rad", "degC" (a temperature), "K" (a difference), "1".
         where: file and key, for the message.
+        usual: range in which this very key is usual [unit]; that of its unit where it is None.
+        may_vanish: whether a value next to zero means the same as zero.
 
     Raises:
-        InputError: bare number for a dimensional quantity, wrong dimension, unknown unit, not a number.
+        InputError: bare number for a dimensional quantity, wrong dimension, unknown unit, not a number, more than a
+            million times outside of what is usual (`feeddrive.usual_ranges`), a temperature below the absolute zero.
     """
     if isinstance(text, bool) or not isinstance(text, str | int | float):
         raise InputError(f"{quoted(text)} is not a quantity", where, _write_it(unit))
@@ -43,6 +49,7 @@ def parse(text: object, unit: str, where: str) -> float:
     value = float(unit_conversion(unit_text or "1", unit, where).apply(number))
     if not math.isfinite(value):
         raise InputError(f"{quoted(text)} is beyond what can be computed with", where, _write_it(unit))
+    _refuse_what_nobody_means(value, unit, where, beyond_usual(value, unit, usual, may_vanish))
     return value
 
 
@@ -90,6 +97,18 @@ def format_quantity(value_si: float, unit: str) -> str:
     if "e+" in digits:
         digits = f"{float(digits):.0f}" if abs(shown) < 1e7 else digits
     return f"{digits} {label}".rstrip() if label != "°" else f"{digits}°"
+
+
+def _refuse_what_nobody_means(value: float, unit: str, where: str, usual: tuple[float, float] | None) -> None:
+    """Refuse a temperature that does not exist, and a value that is far outside a usual range."""
+    if unit == "degC" and value < ABSOLUTE_ZERO:
+        what = f"{format_quantity(value, unit)} is below the absolute zero"
+        raise InputError(what, where, "write a temperature above -273.15 degC")
+    if usual is not None:
+        side = "below" if abs(value) < usual[0] else "above"
+        ends = " to ".join(format_quantity(end, unit) for end in usual)
+        what = f"{format_quantity(value, unit)} is more than a million times {side} what is usual, {ends}"
+        raise InputError(what, where, "check the number and its unit")
 
 
 def _split(text: str, unit: str, where: str) -> tuple[float, str]:

@@ -19,7 +19,6 @@ from feeddrive.metrology.recorded_response import recorded_response
 from feeddrive.metrology.response import Response as Measured
 from feeddrive.output_folder import output_folder, refuse_unusable
 from feeddrive.plant.entries import nearest
-from feeddrive.plant.files import read_plant
 from feeddrive.plant.linear import INPUTS, OUTPUTS
 from feeddrive.plant.plant import Plant
 from feeddrive.quantity import parse
@@ -30,6 +29,7 @@ from feeddrive.servo.loop_response import loops_of, refuse_unstable_case
 from feeddrive.servo.response_family import Family, closed_family, controlled_family, mechanics_family, open_family
 from feeddrive.servo.response_json import family_content, measured_content
 from feeddrive.simulate.controller_file import read_controller
+from feeddrive.thermal.whole_file import read_drive_plant
 from feeddrive.tuning.demand import cases_of
 
 FORMAT = "feeddrive-bode/1"
@@ -61,7 +61,7 @@ def run(request: Request, as_json: bool, out: Path | None) -> None:
     """
     refuse_unusable(out)
     with warnings_as_lines():
-        plant = read_plant(find_plant(request.plant))
+        plant = read_drive_plant(find_plant(request.plant))
         cases = read_cases(plant, request.at, request.positions, request.payload)
         families = _families(plant, request, cases)
         measured = _measured(request)

@@ -15,9 +15,9 @@ from feeddrive.export.point import Point, export_point
 from feeddrive.export.writing import Form, write_export
 from feeddrive.files import find_plant
 from feeddrive.output_folder import output_folder, refuse_unusable
-from feeddrive.plant.files import read_plant
 from feeddrive.plant.plant import Plant
 from feeddrive.quantity import format_quantity
+from feeddrive.thermal.whole_file import read_drive_plant
 
 
 def command(
@@ -53,7 +53,7 @@ def command(
     """
     refuse_unusable(out)
     with warnings_as_lines():
-        machine = read_plant(find_plant(plant))
+        machine = read_drive_plant(find_plant(plant))
         point = export_point(machine, at)
         with output_folder(out) as folder:
             files = {form: write_export(machine, form, point, folder) for form in dict.fromkeys(to)}

@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from feeddrive.plant.entries import read_toml
-from feeddrive.plant.files import declares_heat_alone, read_plant
+from feeddrive.plant.files import declares_heat_alone
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
-from feeddrive.thermal.files import read_thermal_plant
 from feeddrive.thermal.plant import ThermalPlant
+from feeddrive.thermal.whole_file import read_drive_plant, read_heat_plant
 
 
 def read_machine(path: Path, recordings: Sequence[Recording] = ()) -> Plant | ThermalPlant:
@@ -21,10 +21,10 @@ def read_machine(path: Path, recordings: Sequence[Recording] = ()) -> Plant | Th
         recordings: of it; where a file declares motion and heat, temperatures without a motion mean the heat.
 
     Raises:
-        InputError: as `read_plant` and `read_thermal_plant`.
+        InputError: as `read_drive_plant` and `read_heat_plant`.
     """
     entries = read_toml(path, "plant file")
     slow = bool(recordings) and all("screw_speed" in one and "motor_torque" not in one for one in recordings)
     if declares_heat_alone(entries) or ("thermal" in entries and slow):
-        return read_thermal_plant(path)
-    return read_plant(path)
+        return read_heat_plant(path)
+    return read_drive_plant(path)

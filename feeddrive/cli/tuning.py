@@ -17,7 +17,6 @@ from feeddrive.errors import InputError
 from feeddrive.files import find_plant, write_bytes_atomically, write_text_atomically
 from feeddrive.output_folder import output_folder, refuse_unusable
 from feeddrive.plant.entries import nearest
-from feeddrive.plant.files import read_plant
 from feeddrive.plant.plant import Plant
 from feeddrive.quantity import format_quantity, parse
 from feeddrive.servo.cascade import KV_UNIT, Cascade, Feedback, divider
@@ -25,6 +24,7 @@ from feeddrive.servo.loop_response import loops_of
 from feeddrive.servo.response_family import open_family
 from feeddrive.servo.response_json import margins_content
 from feeddrive.simulate.controller_file import read_controller
+from feeddrive.thermal.whole_file import read_drive_plant
 from feeddrive.tuning.demand import Demand, cases_of
 from feeddrive.tuning.reasons import controller_text, describe, rules, settings
 from feeddrive.tuning.recommendation import Recommendation, recommend
@@ -65,7 +65,7 @@ def run(wanted: Wanted, as_json: bool, out: Path | None) -> None:
     """
     refuse_unusable(out)
     with warnings_as_lines():
-        plant = read_plant(find_plant(wanted.plant))
+        plant = read_drive_plant(find_plant(wanted.plant))
         phase = math.degrees(parse(wanted.margin_phase, "rad", "--margin-phase"))
         demand = Demand(phase=round(phase, 9), gain=parse(wanted.margin_gain, "dB", "--margin-gain"))
         drive = drive_of(plant, wanted.drive)

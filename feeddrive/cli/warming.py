@@ -21,11 +21,11 @@ from feeddrive.quantity import parse
 from feeddrive.recording.recording import Recording
 from feeddrive.recording.writing import write_recording
 from feeddrive.thermal.duty import AMBIENT_CHANNEL, SPEED, Duty, constant_duty, read_duty
-from feeddrive.thermal.files import read_thermal_plant
 from feeddrive.thermal.network import Network, network
 from feeddrive.thermal.plant import ThermalPlant
 from feeddrive.thermal.rig import Travel
 from feeddrive.thermal.study import ThermalStudy, study
+from feeddrive.thermal.whole_file import read_heat_plant
 
 FORMAT = "feeddrive-thermal/1"
 _USUAL_DURATION = "180 min"
@@ -70,7 +70,7 @@ def warm_and_tell(name: str, asked: Asked, as_json: bool, out: Path | None) -> N
 
 
 def _plant(name: str, stroke: str | None) -> ThermalPlant:
-    plant = read_thermal_plant(find_plant(name))
+    plant = read_heat_plant(find_plant(name))
     if stroke is None:
         return plant
     plant.rig.refuse_travel(travel := _travel(stroke, plant.rig.travel))

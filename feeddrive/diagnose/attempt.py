@@ -104,6 +104,8 @@ def refined(scene: Scene, attempt: Attempt) -> Attempt | None:
 def _usable(scene: Scene, problem: Problem, name: str, result: Fit) -> Attempt:
     if not (np.isfinite(result.squared_error) and np.all(np.isfinite(result.jacobian))):
         raise InputError(f"{name} could not be simulated", name)
+    if not problem.possible(result.effects):
+        raise InputError(f"{name} would have friction push the axis", name)
     if _jumps(result.effects[-1]):
         problem = with_predictable(scene.problem, result.effects)
     return compared(problem, name, result, scene.found)

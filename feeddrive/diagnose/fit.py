@@ -19,6 +19,8 @@ from feeddrive.diagnose.coordinates import read_coordinates, write_coordinates
 from feeddrive.diagnose.evidence import Evidence
 from feeddrive.diagnose.predictor import Machine, Predictor
 from feeddrive.effects.base import Effect
+from feeddrive.plant.passive_friction import is_passive
+from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray
 
 DIFFERENCE = 1e-4
@@ -74,6 +76,11 @@ class Problem:
         return np.concatenate(
             [e.weighted(self.predictor.predict(plant, e), e.thinned(e.fit_rows)) for e in self.evidence]
         )
+
+    def possible(self, effects: Sequence[Effect]) -> bool:
+        """Whether the plant with these effects is one that a file may hold: its friction takes power everywhere."""
+        plant = self.plant.with_effects(*effects)
+        return not isinstance(plant, Plant) or is_passive(plant)
 
     def measured(self) -> FloatArray:
         """Weighted measurement at the fitted samples of all recordings."""
@@ -181,6 +188,9 @@ def _lower(problem: Problem, at: _State, free: Sequence[bool], jacobian: FloatAr
         step = np.asarray(np.linalg.lstsq(damped, jacobian.T @ at.residual, rcond=1e-14)[0], dtype=np.float64)
         vector = read_coordinates(moved, problem.plant) + step
         effects = _placed(at.effects, free, write_coordinates(moved, problem.plant, vector))
+        if not problem.possible(effects) and problem.possible(at.effects):
+            damping = max(damping * 30, 1e-4)  # a shorter step stays where friction takes power
+            continue
         predicted = problem.predicted(effects)
         state = _State(effects, predicted, measured - predicted)
         if state.squared_error < at.squared_error:  # false where it is not a number

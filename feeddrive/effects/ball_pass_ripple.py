@@ -17,7 +17,7 @@ from collections.abc import Mapping
 
 import casadi as ca
 
-from feeddrive.effects.base import FrictionEffect, Motion, Parameter, Port, Signature
+from feeddrive.effects.base import FrictionEffect, Motion, Parameter, Port, Signature, number
 from feeddrive.typing import Expression
 
 
@@ -34,6 +34,10 @@ class BallPassRipple(FrictionEffect):
     signature = Signature(("motor_torque",), "screw angle and direction", ("torque_ripple",))
     repeatable = True
     additive = True
+
+    def least_level(self, radius: float) -> float:
+        """-A [N m]: a turn of the screw passes every phase."""
+        return -number(self.values["amplitude"])
 
     def level(self, motion: Motion, p: Mapping[str, Expression]) -> Expression:
         """Level beyond the declared drag [N m]."""

@@ -76,6 +76,16 @@ def _span(parameter: Parameter) -> str:
 Value = float | tuple[float, ...]
 
 
+def number(value: Value) -> float:
+    """A value that is one number."""
+    return value[0] if isinstance(value, tuple) else float(value)
+
+
+def listed(value: Value) -> tuple[float, ...]:
+    """A value as a list, of one where it is a number."""
+    return value if isinstance(value, tuple) else (value,)
+
+
 @dataclass(frozen=True)
 class Motion:
     """Position and velocity at a port, as CasADi expressions or arrays: [m] and [m/s], or [rad] and [rad/s] at a shaft.
@@ -283,6 +293,30 @@ class FrictionEffect(Effect):
     def viscous_factor(self, motion: Motion, p: Mapping[str, Expression]) -> Expression:
         """Factor on the declared speed-dependent force."""
         return 1.0
+
+    def turning_points(self) -> dict[str, tuple[float, ...]]:
+        """Where its level, coefficient or factor may turn, by what it reads; between and beyond them it is monotone.
+
+        Keys are "position" [m, or rad at a shaft], "speed" (size of the velocity) [m/s or rad/s] and "time" [s]; what
+        depends on the direction alone has none. From these points follows where the friction of a port is least
+        (`feeddrive.plant.passive_friction`).
+        """
+        return {}
+
+    def level_terms(self, motion: Motion, p: Mapping[str, Expression]) -> tuple[Expression, ...]:
+        """The level as terms, of which each is monotone between the turning points [N, or N m at a shaft]."""
+        return (self.level(motion, p),)
+
+    def least_level(self, radius: float) -> float | None:
+        """What it adds to the level at least, whatever the motion and the load; None where turning points tell it.
+
+        Args:
+            radius: travel of the nut per angle of the screw [m/rad].
+
+        Returns:
+            [N, or N m at a shaft].
+        """
+        return None
 
 
 class BristleEffect(FrictionEffect):

@@ -19,7 +19,7 @@ from collections.abc import Mapping
 
 import casadi as ca
 
-from feeddrive.effects.base import FrictionEffect, Motion, Parameter, Port, Signature
+from feeddrive.effects.base import FrictionEffect, Motion, Parameter, Port, Signature, listed, number
 from feeddrive.typing import Expression
 
 
@@ -37,11 +37,21 @@ class FrictionVsPosition(FrictionEffect):
     )
     signature = Signature(("motor_torque", "table_position"), "table_position", ("friction_deviation",))
 
+    def turning_points(self) -> dict[str, tuple[float, ...]]:
+        """The points of the table, the top of the bump, and where it has gone."""
+        centre, reach = number(self.values["centre"]), 6.0 * number(self.values["half_width"])
+        return {"position": (*listed(self.values["position"]), centre - reach, centre, centre + reach)}
+
     def level(self, motion: Motion, p: Mapping[str, Expression]) -> Expression:
         """Level that it adds [N]."""
+        bump, table = self.level_terms(motion, p)
+        return bump + table
+
+    def level_terms(self, motion: Motion, p: Mapping[str, Expression]) -> tuple[Expression, Expression]:
+        """Bump and table [N]."""
         x = motion.position
         bump = p["peak"] * ca.exp(-(((x - p["centre"]) / p["half_width"]) ** 2))
-        return bump + interpolate(x, p["position"], p["delta_force"])
+        return bump, interpolate(x, p["position"], p["delta_force"])
 
 
 def interpolate(x: Expression, nodes: Expression, levels: Expression) -> Expression:

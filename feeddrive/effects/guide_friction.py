@@ -28,7 +28,7 @@ from typing import TYPE_CHECKING
 import casadi as ca
 import numpy as np
 
-from feeddrive.effects.base import FrictionEffect, Motion, Parameter, Port, Signature, Value
+from feeddrive.effects.base import FrictionEffect, Motion, Parameter, Port, Signature, Value, listed
 from feeddrive.effects.smooth_table import smooth_curve
 from feeddrive.errors import InputError
 from feeddrive.typing import Expression
@@ -72,6 +72,10 @@ class GuideFriction(FrictionEffect):
         absent = {key for keys in _OPTIONAL if not any(key in values for key in keys) for key in keys}
         _refuse_bad_curve(filled["velocity"], filled["force"])
         return {key: value for key, value in filled.items() if key not in absent}
+
+    def turning_points(self) -> dict[str, tuple[float, ...]]:
+        """The speeds of the measured curve, which is monotone between them."""
+        return {"speed": (0.0, *listed(self.values["velocity"]))} if "velocity" in self.values else {}
 
     def shape(self, motion: Motion, p: Mapping[str, Expression]) -> Expression:
         """tanh(v / v0)."""

@@ -36,6 +36,10 @@ class LoadDependentFriction(FrictionEffect):
     )
     reads_force = True
 
+    def least_level(self, radius: float) -> float:
+        """0 N m, without load."""
+        return 0.0
+
     def level(self, motion: Motion, p: Mapping[str, Expression]) -> Expression:
         """Torque that it adds [N m]."""
         return p["coefficient"] * ca.fabs(motion.force) * motion.radius

@@ -31,7 +31,7 @@ import math
 from collections.abc import Mapping
 from typing import ClassVar
 
-from feeddrive.effects.base import Motion, Parameter, Signature
+from feeddrive.effects.base import Motion, Parameter, Signature, number
 from feeddrive.effects.direction import forward
 from feeddrive.effects.shaft_drag import ShaftDrag
 from feeddrive.parts.double_nut import friction_torque_backward, friction_torque_forward, rigid_sharing
@@ -57,6 +57,13 @@ class NutFriction(ShaftDrag):
         ("motor_torque", "table_position"), "transmitted force", ("load_dependent_friction", "friction_deviation")
     )
     reads_force = True
+
+    def least_level(self, radius: float) -> float:
+        """2 r F_0 l_b [N m]: l_b is the smaller loss, and F_A + F_B is least without load."""
+        angle = number(self.values["contact_angle"])
+        groove = Groove(2 * radius / number(self.values["pitch_diameter"]), math.sin(angle), math.cos(angle))
+        lost = back_driving_loss(groove, number(self.values["friction_coefficient"]))
+        return float(2 * radius * number(self.values["preload"]) * lost)
 
     def level(self, motion: Motion, p: Mapping[str, Expression]) -> Expression:
         """T_f [N m] of the present direction."""

@@ -17,7 +17,7 @@ from collections.abc import Mapping
 
 import casadi as ca
 
-from feeddrive.effects.base import FrictionEffect, Motion, Parameter, Port, Signature
+from feeddrive.effects.base import FrictionEffect, Motion, Parameter, Port, Signature, number
 from feeddrive.typing import Expression
 
 
@@ -31,6 +31,11 @@ class Stribeck(FrictionEffect):
         Parameter("velocity", "m/s", 1e-6, 10.0, size=0.02),
     )
     signature = Signature(("motor_torque", "table_position"), "table_velocity", ("friction_deviation", "presliding"))
+
+    def turning_points(self) -> dict[str, tuple[float, ...]]:
+        """At rest, and where the exponential has gone."""
+        velocity = number(self.values["velocity"])
+        return {"speed": (0.0, 6.0 * velocity)}
 
     def level(self, motion: Motion, p: Mapping[str, Expression]) -> Expression:
         """Level that it adds [N]."""

@@ -21,7 +21,7 @@ from typing import ClassVar, Self
 import casadi as ca
 import numpy as np
 
-from feeddrive.effects.base import Effect, Port, Value
+from feeddrive.effects.base import Effect, Port, Value, listed
 from feeddrive.effects.friction_vs_position import interpolate
 from feeddrive.errors import InputError
 from feeddrive.typing import Expression
@@ -61,7 +61,7 @@ class Tabulated(Effect):
                 mend = f"give {made.breakpoint_key} alone, or name another variable"
                 raise InputError(f"{key} is given, and the variable is {made.place}", cls.name, mend)
         given = [key for key in cls.value_keys if made.values[key] != 0.0] or [cls.value_keys[0]]
-        tables = {key: _listed(made.values[key]) for key in (made.breakpoint_key, *given)}
+        tables = {key: listed(made.values[key]) for key in (made.breakpoint_key, *given)}
         period = {"period": made.values["period"]} if made.periodic else {}
         made = replace(made, values={**tables, **period})
         made._refuse_what_is_no_table()
@@ -95,7 +95,7 @@ class Tabulated(Effect):
 
     def table(self, key: str) -> tuple[float, ...]:
         """The list under a key."""
-        return _listed(self.values[key])
+        return listed(self.values[key])
 
     @property
     def periodic(self) -> bool:
@@ -120,10 +120,6 @@ class Tabulated(Effect):
             # the first point again, a period later, so that the curve closes
             nodes, levels = ca.vertcat(nodes, nodes[0] + p["period"]), ca.vertcat(levels, levels[0])
         return interpolate(at, nodes, levels)
-
-
-def _listed(value: Value) -> tuple[float, ...]:
-    return value if isinstance(value, tuple) else (value,)
 
 
 def _column(numbers: Expression) -> Expression:

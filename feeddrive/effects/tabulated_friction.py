@@ -45,6 +45,16 @@ class TabulatedFriction(Tabulated, FrictionEffect):
     )
     signature = Signature(("motor_torque", "table_position"), "its own variable", ("friction_vs_position",))
 
+    def turning_points(self) -> dict[str, tuple[float, ...]]:
+        """The points of the table."""
+        return {self.breakpoint_key: self.breakpoints}
+
+    def least_level(self, radius: float) -> float | None:
+        """Least entry of a table that repeats along the way [N]."""
+        if not self.periodic:
+            return None
+        return min(self.table("force")) if "force" in self.tables else 0.0
+
     def level(self, motion: Motion, p: Mapping[str, Expression]) -> Expression:
         """Coulomb level that it adds [N]."""
         return self.read_off(self._variable(motion), p, "force")

@@ -16,7 +16,7 @@ from collections.abc import Mapping
 
 import casadi as ca
 
-from feeddrive.effects.base import FrictionEffect, Motion, Parameter, Port, Signature
+from feeddrive.effects.base import FrictionEffect, Motion, Parameter, Port, Signature, number
 from feeddrive.typing import Expression
 
 
@@ -30,6 +30,10 @@ class ViscousWarmup(FrictionEffect):
         Parameter("time_constant", "s", 0.1, 1e6, size=100.0),
     )
     signature = Signature(("motor_torque",), "velocity and time", ("friction_deviation",))
+
+    def turning_points(self) -> dict[str, tuple[float, ...]]:
+        """Cold, and when the exponential has gone."""
+        return {"time": (0.0, 40.0 * number(self.values["time_constant"]))}
 
     def viscous_factor(self, motion: Motion, p: Mapping[str, Expression]) -> Expression:
         """Factor on the declared viscous drag."""

@@ -44,13 +44,13 @@ def read_chain(top: Table) -> tuple[Chain, BallScrewDrive | None]:
     return _damped(top, chain, computed), drive
 
 
-def positive(table: Table, key: str, unit: str, origin: str) -> float:
+def positive(table: Table, key: str, unit: str, origin: str, usual: tuple[float, float] | None = None) -> float:
     """A value above zero.
 
     Raises:
         InputError: as `Table.quantity`, or zero or negative.
     """
-    number = table.quantity(key, unit, origin)
+    number = table.quantity(key, unit, origin, usual)
     if number <= 0:
         sign = "negative" if number < 0 else "zero"
         raise InputError(f"{format_quantity(number, unit)} is {sign}", table.place(key), "write a value above zero")
@@ -92,8 +92,8 @@ def _value(top: Table, value: ChainValue, structure: type[Chain], computed: dict
 
 def _written(table: Table, value: ChainValue) -> float:
     if not value.may_be_zero:
-        return positive(table, value.section_key, value.unit, value.key)
-    number = table.quantity(value.section_key, value.unit, value.key)
+        return positive(table, value.section_key, value.unit, value.key, value.usual)
+    number = table.quantity(value.section_key, value.unit, value.key, value.usual)
     if number < 0:
         shown = format_quantity(number, value.unit)
         raise InputError(f"{shown} is negative", table.place(value.section_key), "write it positive")

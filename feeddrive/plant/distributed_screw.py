@@ -82,26 +82,30 @@ class DistributedScrew(Chain):
     structure = "distributed_screw"
     varies = True
     required = (
-        ChainValue("lead", "ball_screw", "m"),
-        ChainValue("motor_inertia", "motor", "kg m^2"),
+        ChainValue("lead", "ball_screw", "m", usual=(5e-4, 0.2)),
+        ChainValue("motor_inertia", "motor", "kg m^2", usual=(1e-8, 10.0)),
         ChainValue("ratio", "transmission", "1"),
-        ChainValue("drive_stiffness", "transmission", "N m/rad"),
+        ChainValue("drive_stiffness", "transmission", "N m/rad", usual=(1.0, 1e8)),
         ChainValue("drive_damping", "transmission", "N m s/rad", may_be_zero=True),
         ChainValue("shared_inertia", "transmission", "kg m^2", may_be_zero=True),
         ChainValue("drive_end_inertia", "transmission", "kg m^2", may_be_zero=True),
         ChainValue("drive_length", "ball_screw", "m", may_be_zero=True, written="stub"),
         ChainValue("bearing_distance", "ball_screw", "m"),
-        ChainValue("screw_length", "ball_screw", "m"),
-        ChainValue("axial_rigidity", "ball_screw", "N"),
-        ChainValue("torsional_rigidity", "ball_screw", "N m^2"),
+        ChainValue("screw_length", "ball_screw", "m", usual=(0.02, 20.0)),
+        ChainValue("axial_rigidity", "ball_screw", "N", usual=(1e5, 1e11)),
+        ChainValue("torsional_rigidity", "ball_screw", "N m^2", usual=(1e-2, 1e8)),
         ChainValue("mass_per_length", "ball_screw", "kg/m"),
         ChainValue("inertia_per_length", "ball_screw", "kg m"),
         ChainValue("damping_time", "damping", "s", may_be_zero=True, written="time"),
-        ChainValue("bearing_stiffness", "support", "N/m", may_be_zero=True, written="near_stiffness"),
-        ChainValue("far_bearing_stiffness", "support", "N/m", may_be_zero=True, written="far_stiffness"),
-        ChainValue("nut_stiffness", "nut", "N/m", written="combined_stiffness"),
+        ChainValue(
+            "bearing_stiffness", "support", "N/m", may_be_zero=True, written="near_stiffness", usual=(1e6, 1e11)
+        ),
+        ChainValue(
+            "far_bearing_stiffness", "support", "N/m", may_be_zero=True, written="far_stiffness", usual=(1e6, 1e11)
+        ),
+        ChainValue("nut_stiffness", "nut", "N/m", written="combined_stiffness", usual=(1e6, 1e11)),
         ChainValue("nut_damping", "nut", "N s/m", may_be_zero=True, written="damping"),
-        ChainValue("table_mass", "table", "kg"),
+        ChainValue("table_mass", "table", "kg", usual=(0.2, 1e5)),
         ChainValue("first_nut_position", "table", "m", may_be_zero=True),
     )
 

@@ -48,8 +48,11 @@ _NUT_VALUES = (
     PartValue("preload", "N"),
     PartValue("accuracy_factor", "1"),
 )
-BEARING_VALUES = (*SupportBearing.values, PartValue("static_rating", "N", 0.0))
-"""Values of [bearing.near] and [bearing.far]; the rating is for plausibility rules."""
+BEARING_RATING = PartValue("static_rating", "N", 0.0, 1e8, usual=(500.0, 5e6))
+"""C0 of a bearing, for plausibility rules."""
+
+BEARING_VALUES = (*SupportBearing.values, BEARING_RATING)
+"""Values of [bearing.near] and [bearing.far]."""
 
 PART_VALUES: dict[str, tuple[PartValue, ...]] = {
     "motor": Motor.values,
@@ -126,7 +129,7 @@ def placed(where: str, make: Callable[[], Made]) -> Made:
 def _given(table: Table, section: str, known: Iterable[PartValue]) -> dict[str, float]:
     """Those of the known values that stand in the table, SI; values that must stand there are asked for by the part."""
     return {
-        value.key: table.quantity(value.key, value.unit, f"{section}.{value.key}")
+        value.key: table.quantity(value.key, value.unit, f"{section}.{value.key}", value.usual)
         for value in known
         if value.key in table.entries
     }
@@ -136,7 +139,7 @@ def _part(top: Table, section: str, make: Callable[..., Made], known: tuple[Part
     """A part from all of its values; those with a default may be left out."""
     table = top.table(section)
     values = {
-        value.key: table.quantity(value.key, value.unit, f"{name or section}.{value.key}")
+        value.key: table.quantity(value.key, value.unit, f"{name or section}.{value.key}", value.usual)
         for value in known
         if value.key in table.entries or value.default is None
     }
@@ -147,7 +150,7 @@ def _motor(top: Table) -> Motor:
     brake = _part(top, "brake", HoldingBrake, HoldingBrake.values) if "brake" in top.entries else None
     table = top.table("motor")
     values = {
-        value.key: table.quantity(value.key, value.unit, f"motor.{value.key}")
+        value.key: table.quantity(value.key, value.unit, f"motor.{value.key}", value.usual)
         for value in Motor.values
         if value.key in table.entries or value.key != "shaft_stiffness"
     }
@@ -159,7 +162,7 @@ def _screw(top: Table) -> ScrewShaft:
     material = {**asdict(STEEL), **_given(table, "ball_screw", ShaftMaterial.values)}
     steel = placed(table.where, lambda: ShaftMaterial(**material))
     values = {
-        value.key: table.quantity(value.key, value.unit, f"ball_screw.{value.key}")
+        value.key: table.quantity(value.key, value.unit, f"ball_screw.{value.key}", value.usual)
         for value in ScrewShaft.values
         if value.key in table.entries or value.key not in ("stub", "root_diameter")
     }

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
-from feeddrive.effects.base import Effect, Port, TransmissionEffect
+from feeddrive.effects.base import Effect, Parameter, Port, TransmissionEffect, Value
 from feeddrive.effects.catalogue import EFFECTS, THERMAL_EFFECTS
 from feeddrive.errors import InputError
 from feeddrive.plant.entries import Table, nearest
@@ -55,9 +55,7 @@ def _effect(table: Table, label: str, catalogue: Mapping[str, type[Effect]], top
     along = _along_stroke(effect, table, top)
     table.refuse_unknown(("name", "port", "source", *([effect.place_key] if effect.place_key else []), *keys))
     values = {
-        parameter.key: (table.quantities if parameter.table else table.quantity)(
-            parameter.key, parameter.unit, f"{label}.{parameter.key}"
-        )
+        parameter.key: _value(table, parameter, f"{label}.{parameter.key}")
         for parameter in effect.parameters
         if parameter.key in table.entries or (parameter.default is None and parameter.key not in along)
     }
@@ -70,6 +68,13 @@ def _effect(table: Table, label: str, catalogue: Mapping[str, type[Effect]], top
         raise InputError(error.what, table.where, error.mend) from None
     _refuse_bad_curve(made, table.where)
     return made
+
+
+def _value(table: Table, parameter: Parameter, origin: str) -> Value:
+    """A value or list; next to zero it is one of nothing, as a search may find it."""
+    if parameter.table:
+        return table.quantities(parameter.key, parameter.unit, origin)
+    return table.quantity(parameter.key, parameter.unit, origin, may_vanish=True)
 
 
 def _along_stroke(effect: type[Effect], table: Table, top: Table) -> dict[str, float]:

@@ -73,34 +73,40 @@ class Table:
                 mend = (elsewhere or {}).get(key) or nearest(key, known)
                 raise InputError(f'unknown key "{key}"', self.where, mend)
 
-    def quantity(self, key: str, unit: str, origin: str) -> float:
+    def quantity(
+        self, key: str, unit: str, origin: str, usual: tuple[float, float] | None = None, may_vanish: bool = False
+    ) -> float:
         """A value in SI.
 
         Args:
             key: in this table.
             unit: SI unit.
             origin: key under which its source is noted.
+            usual: range in which this very key is usual [unit]; that of its unit where it is None.
+            may_vanish: whether a value next to zero means the same as zero.
 
         Raises:
-            InputError: missing, without unit, of another dimension, or not a number.
+            InputError: missing, without unit, of another dimension, not a number, or a million times outside of what
+                is usual.
         """
         written = self._written(key, origin, unit)
         if isinstance(written, list):
             raise InputError("is a list, one value is needed", self.place(key), f'write e.g. {key} = "1 {unit}"')
-        return parse(written, unit, self.place(key))
+        return parse(written, unit, self.place(key), usual, may_vanish)
 
     def quantities(self, key: str, unit: str, origin: str) -> Value:
-        """A value in SI, or a list of them as a tuple.
+        """A value in SI, or a list of them as a tuple, which may pass through zero.
 
         Raises:
             InputError: as `quantity`, and an empty list.
         """
         written = self._written(key, origin, unit)
         if not isinstance(written, list):
-            return parse(written, unit, self.place(key))
+            return parse(written, unit, self.place(key), may_vanish=True)
         if not written:
             raise InputError("is an empty list", self.place(key), f'write e.g. {key} = ["1 {unit}"]')
-        return tuple(parse(item, unit, f"{self.place(key)}[{i}]") for i, item in enumerate(written))
+        places = (f"{self.place(key)}[{i}]" for i in range(len(written)))
+        return tuple(parse(item, unit, place, may_vanish=True) for item, place in zip(written, places, strict=True))
 
     def text(self, key: str, default: str | None = None) -> str:
         """A text.

@@ -74,6 +74,7 @@ from feeddrive.plant.effect_sections import read_effects
 from feeddrive.plant.effect_text import plant_text_with_effects
 from feeddrive.plant.entries import Origins, Table, read_toml
 from feeddrive.plant.equipment import read_controller, read_sensors
+from feeddrive.plant.passive_friction import refuse_active_friction
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.ratings import RATINGS, read_data
 from feeddrive.plant.stroke import read_stroke
@@ -107,22 +108,6 @@ _TOP_KEYS = (
     "format", "name", "structure", "source", "description", *_SECTIONS, *_NESTED, "effect", "sensor",
     "controller", "thermal",
 )  # fmt: skip
-_USUAL = {
-    "lead": (5e-4, 0.2),
-    "motor_inertia": (1e-8, 10.0),
-    "screw_inertia": (1e-8, 10.0),
-    "torsional_stiffness": (1.0, 1e8),
-    "axial_stiffness": (1e5, 1e11),
-    "table_mass": (0.2, 1e5),
-    "drive_stiffness": (1.0, 1e8),
-    "nut_stiffness": (1e6, 1e11),
-    "bearing_stiffness": (1e6, 1e11),
-    "far_bearing_stiffness": (1e6, 1e11),
-    "axial_rigidity": (1e5, 1e11),
-    "torsional_rigidity": (1e-2, 1e8),
-    "screw_length": (0.02, 20.0),
-}
-"""Range in which a value is usual [SI]; outside it a slip of the unit is likely."""
 
 
 def read_plant(path: Path) -> Plant:
@@ -177,6 +162,7 @@ def plant_from_entries(entries: Mapping[str, Any], path: Path) -> Plant:
         torque_constant=per_ampere,
     )
     _refuse_moving_mass(plant, str(path))
+    refuse_active_friction(plant, str(path))
     _refuse_stroke_off_screw(plant, str(path))
     _warn_of_unusual(chain, str(path))
     return plant
@@ -256,7 +242,9 @@ def _refuse_stroke_off_screw(plant: Plant, where: str) -> None:
 
 def _warn_of_unusual(chain: Chain, where: str) -> None:
     for value in chain.required:
-        low, high = _USUAL.get(value.key, (0.0, float("inf")))
+        if value.usual is None:
+            continue
+        low, high = value.usual
         number = chain.values[value.key]
         if number != 0 and not low <= number <= high:
             place = f"{where}, {value.section}.{value.section_key}"

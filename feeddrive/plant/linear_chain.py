@@ -53,6 +53,8 @@ class ChainValue:
         unit: SI unit.
         may_be_zero: whether it may be.
         written: key in that section, where it is not the key without the section's name before it.
+        usual: range in which it is usual [unit], outside of which a slip of the unit is likely; None for that of its
+            unit.
     """
 
     key: str
@@ -60,6 +62,7 @@ class ChainValue:
     unit: str
     may_be_zero: bool = False
     written: str = ""
+    usual: tuple[float, float] | None = None
 
     @property
     def section_key(self) -> str:

@@ -36,10 +36,10 @@ class Rigid(Chain):
 
     structure = "rigid"
     required = (
-        ChainValue("lead", "ball_screw", "m"),
-        ChainValue("motor_inertia", "motor", "kg m^2", may_be_zero=True),
-        ChainValue("screw_inertia", "ball_screw", "kg m^2", may_be_zero=True),
-        ChainValue("table_mass", "table", "kg"),
+        ChainValue("lead", "ball_screw", "m", usual=(5e-4, 0.2)),
+        ChainValue("motor_inertia", "motor", "kg m^2", may_be_zero=True, usual=(1e-8, 10.0)),
+        ChainValue("screw_inertia", "ball_screw", "kg m^2", may_be_zero=True, usual=(1e-8, 10.0)),
+        ChainValue("table_mass", "table", "kg", usual=(0.2, 1e5)),
     )
 
     @property
@@ -69,14 +69,14 @@ class ThreeInertias(Chain):
 
     structure = "three_inertias"
     required = (
-        ChainValue("lead", "ball_screw", "m"),
-        ChainValue("motor_inertia", "motor", "kg m^2"),
-        ChainValue("screw_inertia", "ball_screw", "kg m^2"),
-        ChainValue("torsional_stiffness", "transmission", "N m/rad"),
+        ChainValue("lead", "ball_screw", "m", usual=(5e-4, 0.2)),
+        ChainValue("motor_inertia", "motor", "kg m^2", usual=(1e-8, 10.0)),
+        ChainValue("screw_inertia", "ball_screw", "kg m^2", usual=(1e-8, 10.0)),
+        ChainValue("torsional_stiffness", "transmission", "N m/rad", usual=(1.0, 1e8)),
         ChainValue("torsional_damping", "transmission", "N m s/rad", may_be_zero=True),
-        ChainValue("axial_stiffness", "transmission", "N/m"),
+        ChainValue("axial_stiffness", "transmission", "N/m", usual=(1e5, 1e11)),
         ChainValue("axial_damping", "transmission", "N s/m", may_be_zero=True),
-        ChainValue("table_mass", "table", "kg"),
+        ChainValue("table_mass", "table", "kg", usual=(0.2, 1e5)),
     )
 
     @property

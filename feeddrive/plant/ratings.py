@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from feeddrive.parts.values import PartValue, check_values
-from feeddrive.plant.drive_sections import BEARING_VALUES, PART_VALUES
+from feeddrive.plant.drive_sections import BEARING_RATING, BEARING_VALUES, PART_VALUES
 from feeddrive.plant.entries import Table
 from feeddrive.plant.plant import Datum
 
@@ -37,19 +37,28 @@ def read_data(top: Table) -> dict[str, Datum]:
     for section, known in PART_VALUES.items():
         found |= _given(top.table(section), section, known)
     for end in ("near", "far"):
-        found |= _given(top.table("bearing").table(end), f"bearing.{end}", BEARING_VALUES)
+        table = top.table("bearing").table(end)
+        found |= _checked(table, f"bearing.{end}", BEARING_VALUES, (BEARING_RATING,))
     for section, known in RATINGS.items():
-        table = top.table(section)
-        ratings = _given(table, section, known)
-        given = tuple(value for value in known if f"{section}.{value.key}" in ratings)
-        check_values(table.where, given, {value.key: ratings[f"{section}.{value.key}"].value for value in given})
-        found |= ratings
+        found |= _checked(top.table(section), section, known, known)
+    return found
+
+
+def _checked(
+    table: Table, section: str, known: tuple[PartValue, ...], ratings: tuple[PartValue, ...]
+) -> dict[str, Datum]:
+    """The values that a section gives; those that are ratings are checked here, others where the part is made."""
+    found = _given(table, section, known)
+    given = tuple(value for value in ratings if f"{section}.{value.key}" in found)
+    check_values(table.where, given, {value.key: found[f"{section}.{value.key}"].value for value in given})
     return found
 
 
 def _given(table: Table, section: str, known: tuple[PartValue, ...]) -> dict[str, Datum]:
     return {
-        f"{section}.{value.key}": Datum(table.quantity(value.key, value.unit, f"{section}.{value.key}"), value.unit)
+        f"{section}.{value.key}": Datum(
+            table.quantity(value.key, value.unit, f"{section}.{value.key}", value.usual), value.unit
+        )
         for value in known
         if value.key in table.entries
     }

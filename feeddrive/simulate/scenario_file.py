@@ -32,7 +32,7 @@ from feeddrive.errors import InputError
 from feeddrive.files import find_plant
 from feeddrive.plant.effect_sections import read_effects
 from feeddrive.plant.entries import Origins, Table, read_toml
-from feeddrive.plant.files import plant_from_entries
+from feeddrive.plant.passive_friction import refuse_active_friction
 from feeddrive.plant.plant import Plant
 from feeddrive.recording.channels import channel_unit
 from feeddrive.servo.cascade import Cascade, divider
@@ -46,6 +46,7 @@ from feeddrive.simulate.scenario_motion import read_excitation, read_forces, rea
 from feeddrive.simulate.scenario_overrides import with_overrides
 from feeddrive.simulate.scenario_values import boolean, positive, quantities, texts, whole
 from feeddrive.simulate.trajectories import refuse_beyond_travel
+from feeddrive.thermal.whole_file import drive_plant
 
 FORMAT = "feeddrive-scenario/1"
 _KEYS = (
@@ -89,6 +90,7 @@ def read_scenario(path: Path, overrides: Mapping[str, str] | None = None) -> Sce
     top.refuse_unknown(_KEYS)
     plant_path = _plant_path(top, path.parent)
     plant = _plant(plant_path, of_plant).with_effects(*read_effects(top))
+    refuse_active_friction(plant, where)
     written = top.table("controller")
     cascade, unstable = read_cascade(Table(written.entries, controller_where, top.origins), plant)
     _require(top, "trajectory")
@@ -128,7 +130,7 @@ def _plant_path(top: Table, folder: Path) -> Path:
 
 
 def _plant(path: Path, overrides: Mapping[str, str]) -> Plant:
-    return plant_from_entries(with_overrides(read_toml(path, "plant file"), overrides), path)
+    return drive_plant(with_overrides(read_toml(path, "plant file"), overrides), path)
 
 
 def _ticks(top: Table, cascade: Cascade, trajectory: float) -> int:

@@ -31,6 +31,9 @@ from feeddrive.typing import FloatArray
 _LENGTHS = range(4, 21)
 """Orders of the binary sequence."""
 
+_MOST_HARMONICS = 1e5
+"""Of a multisine: 100 s up to 1 kHz. Its crest is looked for at 32 times as many places, 26 MB a series."""
+
 
 class Waveform(Protocol):
     """A signal of amplitude 1 over time [s], its integral from 0 and its first two derivatives."""
@@ -85,6 +88,9 @@ class Multisine:
 
     def __post_init__(self) -> None:
         _refuse_band(self.low, self.high, "multisine")
+        if self.high * self.period > _MOST_HARMONICS:
+            what = f"{self.period:g} s hold {self.high * self.period:.3g} periods of {self.high:g} Hz"
+            raise InputError(what, "multisine", f"at most {_MOST_HARMONICS:g} are possible; make the period shorter")
         if not len(self.frequencies):
             what = f"no harmonic of {1 / self.period:g} Hz lies between {self.low:g} and {self.high:g} Hz"
             raise InputError(what, "multisine", "make the period longer")

@@ -41,11 +41,22 @@ def read_coupling(path: Path) -> Coupling:
     Raises:
         InputError: no such file or section, unknown key, a value that is missing, without unit or impossible.
     """
-    top = Table(read_toml(path, "plant file"), str(path), Origins())
+    return coupling(Table(read_toml(path, "plant file"), str(path), Origins()))
+
+
+def coupling(top: Table) -> Coupling:
+    """The coupling that a whole plant file declares.
+
+    Args:
+        top: the whole file.
+
+    Raises:
+        InputError: as `read_coupling`.
+    """
     thermal = top.table("thermal")
     if "coupling" not in thermal.entries:
         mend = "declare in [thermal.coupling] how its heat and its drive are joined"
-        raise InputError("has no [thermal.coupling] section", str(path), mend)
+        raise InputError("has no [thermal.coupling] section", top.where, mend)
     table = thermal.table("coupling")
     table.refuse_unknown(_KEYS)
     oil = _oil(table, "nut_oil")
@@ -58,8 +69,8 @@ def read_coupling(path: Path) -> Coupling:
             **_numbers(table),
         )
     except InputError as error:
-        inside = error.where.startswith(str(path))
-        raise error if inside else InputError(error.what, f"{path}, {error.where}", error.mend) from None
+        inside = error.where.startswith(top.where)
+        raise error if inside else InputError(error.what, f"{top.where}, {error.where}", error.mend) from None
 
 
 def _numbers(table: Table) -> dict[str, Any]:

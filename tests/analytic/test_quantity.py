@@ -9,8 +9,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from feeddrive.effects.catalogue import EFFECTS, THERMAL_EFFECTS
 from feeddrive.errors import InputError
+from feeddrive.plant.chain import CHAINS
+from feeddrive.plant.drive_sections import BEARING_VALUES, PART_VALUES
+from feeddrive.plant.ratings import RATINGS
 from feeddrive.quantity import format_quantity, parse, split_quantity, unit_conversion, unit_factor
+from feeddrive.usual_ranges import USUAL
 
 WRITTEN = [
     ("20 mm", "m", 0.020),
@@ -119,8 +124,9 @@ def test_whole_numbers_of_decimal_multiples_are_the_nearest_double(number: int) 
     assert parse(f"{number} µm", "m", "") == float(f"{number}e-6")
 
 
-@given(st.floats(allow_nan=False, allow_infinity=False, min_value=-1e12, max_value=1e12))
+@given(st.floats(min_value=-200.0, max_value=1e7).filter(lambda value: value == 0 or abs(value) > 1e-8))
 def test_any_number_survives_its_own_unit(value: float) -> None:
+    # Sizes that are possible in each of the units: a temperature is above the absolute zero.
     for unit in ("m", "N m/rad", "degC", "1"):
         assert parse(f"{value!r} {unit}" if unit != "1" else value, unit, "") == value
 
@@ -189,7 +195,50 @@ def test_shown_to_people(value: float, unit: str, shown: str) -> None:
     assert format_quantity(value, unit) == shown
 
 
-@given(st.floats(min_value=1e-9, max_value=1e9), st.sampled_from(["m", "N/m", "N m", "m/s", "Hz", "rad/s", "N", "s"]))
+@given(st.floats(min_value=1e-9, max_value=1e7), st.sampled_from(["m", "N/m", "N m", "m/s", "Hz", "rad/s", "N", "s"]))
 def test_shown_quantity_reads_back_to_four_digits(value: float, unit: str) -> None:
     # Half a unit of the fourth digit is at most 5e-4 of the value.
     assert parse(format_quantity(value, unit), unit, "") == pytest.approx(value, rel=5.01e-4)
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "told"),
+    [
+        ("1e150 kg", "kg", ["above what is usual", "0.001 kg to 1000000 kg", "check the number and its unit"]),
+        ("-1e150 N", "N", ["above what is usual"]),
+        ("1e-300 N/µm", "N/m", ["below what is usual"]),
+        ("1e300 N", "N", ["above what is usual"]),
+        ("-275 degC", "degC", ["below the absolute zero", "-273.15 degC"]),
+        ("-1 K", "degC", ["below the absolute zero"]),
+        (1e14, "1", ["above what is usual"]),
+    ],
+)
+def test_what_nobody_means_is_refused(text: object, unit: str, told: list[str]) -> None:
+    with pytest.raises(InputError) as refused:
+        parse(text, unit, "machine.toml, table.mass")
+    line = str(refused.value)
+    assert line.startswith("machine.toml, table.mass: ")
+    assert not [part for part in told if part not in line]
+
+
+def test_range_of_a_key_stands_before_that_of_its_unit() -> None:
+    assert parse("1e6 m", "m", "") == 1e6
+    with pytest.raises(InputError, match=r"0.5 mm to 200 mm"):
+        parse("1e6 m", "m", "ball_screw.lead", usual=(5e-4, 0.2))
+
+
+def test_zero_and_what_is_next_to_it() -> None:
+    assert parse("0 N", "N", "") == 0.0
+    assert parse("1e-300 N", "N", "", may_vanish=True) == 1e-300
+    with pytest.raises(InputError, match="below what is usual"):
+        parse("1e-300 N", "N", "")
+
+
+def test_units_of_everything_declared_have_a_usual_range() -> None:
+    declared = {parameter.unit for effect in [*EFFECTS.values(), *THERMAL_EFFECTS.values()]
+                for parameter in effect.parameters}  # fmt: skip
+    declared |= {value.unit for chain in CHAINS.values() for value in chain.required}
+    parts = [*PART_VALUES.values(), *RATINGS.values(), BEARING_VALUES]
+    declared |= {value.unit for values in parts for value in values}
+    assert declared <= set(USUAL)
+    assert all(0 < low < high for low, high in USUAL.values())
