@@ -135,7 +135,7 @@ WORK: dict[str, Callable[[Plant], object]] = {
     ),
     "scenario": scenario,
     "declared controller": lambda plant: position_velocity_controller(
-        replace(plant, controller=PositionVelocityController(160.0, 243.0, 10.0, 0.1)), 1e-3
+        plant, PositionVelocityController(160.0, 243.0, 10.0, 0.1), 1e-3
     ),
     "state feedback": feedback_design,
     "schedule": lambda plant: scheduled(np.array([0.0, 0.1]), [cascade_controller(cascade(Feedback.TABLE))] * 2),
