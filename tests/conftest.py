@@ -10,11 +10,15 @@ for _variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
 os.environ["MPLBACKEND"] = "Agg"
 
 import random
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
 from hypothesis import settings
+
+from feeddrive.compiler import find_compiler
+from feeddrive.plant.structure import forget_machines
 
 SEED = 20240131
 """Any number will do; it is fixed so that a failure comes again."""
@@ -47,3 +51,18 @@ def shared_data() -> Path:
         place = f"FEEDDRIVE_DATA ({named})" if named else "../shared/data beside the checkout, nor FEEDDRIVE_DATA set"
         pytest.skip(f"no development data: no folder at {place}")
     return folder
+
+
+@pytest.fixture
+def without_compiler(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[], None]]:
+    """A function from whose call on runs are interpreted; they are compiled again after the test."""
+
+    def switch() -> None:
+        monkeypatch.setenv("FEEDDRIVE_COMPILER", "none")
+        find_compiler.cache_clear()
+        forget_machines()
+
+    yield switch
+    monkeypatch.undo()
+    find_compiler.cache_clear()
+    forget_machines()

@@ -18,6 +18,7 @@ import casadi as ca
 from feeddrive.errors import printable
 from feeddrive.export.model import Model, slopes_of
 from feeddrive.export.quantities import Quantity
+from feeddrive.plant.symbolic_turn import SYMBOLS
 
 
 def header_text(model: Model) -> str:
@@ -146,6 +147,7 @@ def _call(function: ca.Function, name: str, results: Sequence[str]) -> list[str]
     return [*lines, ""]
 
 
+@SYMBOLS.taken()
 def _dense(function: ca.Function, name: str) -> ca.Function:
     """The function with dense results: generated code hands out no structural zeros."""
     arguments = [ca.SX.sym(of, function.size1_in(of)) for of in function.name_in()]

@@ -25,8 +25,10 @@ from feeddrive.export.json_file import rows
 from feeddrive.export.model import Model
 from feeddrive.export.notes import included, left_out
 from feeddrive.export.quantities import Quantity
+from feeddrive.plant.symbolic_turn import SYMBOLS
 
 
+@SYMBOLS.taken()
 def casadi_function(model: Model) -> ca.Function:
     """The equations with one input for each input and parameter of the plant; every input has its default.
 

@@ -17,6 +17,7 @@ from feeddrive.errors import printable
 from feeddrive.export.fmu_units import exponents
 from feeddrive.export.model import Model
 from feeddrive.export.quantities import Quantity
+from feeddrive.plant.symbolic_turn import SYMBOLS
 from feeddrive.typing import FloatArray
 
 TOLERANCE = 1e-8
@@ -126,6 +127,7 @@ def _add_structure(parent: Tree.Element, model: Model) -> None:
         Tree.SubElement(initial, "Unknown", {"index": str(index)})
 
 
+@SYMBOLS.taken()
 def _dependencies(model: Model) -> list[list[list[int]]]:
     """For the rates and for the outputs: columns of (x, u) on which each row depends."""
     arguments = [ca.SX.sym(of, model.function.size1_in(of)) for of in model.function.name_in()]

@@ -18,6 +18,7 @@ from feeddrive.export.point import Point, refuse_outside
 from feeddrive.export.quantities import Quantity, inputs, outputs, parameters, states
 from feeddrive.plant.linear import steady_motion, timed_ode
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.symbolic_turn import SYMBOLS
 
 _LONGEST = 60
 """Letters of an identifier: C99 tells 63 apart, and file names have ends of their own."""
@@ -74,6 +75,7 @@ def model_of(plant: Plant, point: Point) -> Model:
     return Model(plant, identifier_of(plant.name), point, *rows, timed_ode(plant))
 
 
+@SYMBOLS.taken()
 def slopes_of(model: Model, name: str) -> ca.Function:
     """(time, x, u, p) -> (A, B, C, D) of the equations, dense, each transposed: C reads the columns as rows.
 

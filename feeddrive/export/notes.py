@@ -10,6 +10,7 @@ from feeddrive.effects.base import BristleEffect, Kind, TimingEffect, Transmissi
 from feeddrive.effects.channel_delay import ChannelDelay
 from feeddrive.plant.linear import timed_ode
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.symbolic_turn import SYMBOLS
 from feeddrive.quantity import format_quantity
 
 
@@ -59,6 +60,7 @@ def linear_notes(plant: Plant) -> tuple[str, ...]:
     return tuple(lines)
 
 
+@SYMBOLS.taken()
 def changes_with_time(plant: Plant) -> bool:
     """Whether the equations of motion depend on time."""
     function = timed_ode(plant)

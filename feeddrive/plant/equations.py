@@ -26,7 +26,7 @@ import casadi as ca
 from feeddrive.effects.base import BristleEffect, Motion, Port
 from feeddrive.plant.friction_law import friction_force, friction_level, resisting_force
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.symbols import Symbols, chain_symbols, parameter_symbols, parameter_values
+from feeddrive.plant.symbols import Symbols, chain_symbols, parameter_names, parameter_symbols, parameter_values
 from feeddrive.plant.transmission_law import nut_force, travel_deviation
 from feeddrive.plant.varying_chain import force_beyond_reference
 from feeddrive.typing import Expression
@@ -39,6 +39,7 @@ __all__ = [
     "effect_forces",
     "friction_force",
     "friction_level",
+    "parameter_names",
     "parameter_symbols",
     "parameter_values",
     "transmitted_force",

@@ -17,6 +17,7 @@ from feeddrive.plant.equations import (
     bristle_count,
     chain_symbols,
     effect_forces,
+    parameter_names,
     parameter_symbols,
     parameter_values,
     travel_deviation,
@@ -101,4 +102,4 @@ def _rigid_deviation(plant: Plant, symbols: Symbols, x: Expression, time: Expres
 
 def ode_parameters(plant: Plant) -> dict[str, float]:
     """Name to SI value of every row of p in `ode`, in their order."""
-    return dict(zip(parameter_symbols(plant).names, parameter_values(plant), strict=True))
+    return dict(zip(parameter_names(plant), parameter_values(plant), strict=True))

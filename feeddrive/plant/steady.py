@@ -16,6 +16,7 @@ from feeddrive.plant.chain import symbolic
 from feeddrive.plant.equations import bristle_count, friction_level, parameter_symbols, parameter_values
 from feeddrive.plant.ode import ode
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.symbolic_turn import SYMBOLS
 from feeddrive.typing import Expression, FloatArray
 
 MOVING = 0.05
@@ -67,6 +68,7 @@ def steady_motions(plant: Plant, velocities: Sequence[float], position: float = 
     return tuple(_steady(plant, function, velocity, position) for velocity in velocities)
 
 
+@SYMBOLS.taken()
 def _steady(plant: Plant, function: ca.Function, velocity: float, position: float) -> SteadyMotion:
     side = -1.0 if velocity < 0 else 1.0
     for flank in (side, -side):

@@ -18,11 +18,15 @@ class SymbolicTurn:
         self._holder = 0
         self._depth = 0
 
+    @property
+    def mine(self) -> bool:
+        """Whether this thread has the turn."""
+        return self._holder == threading.get_ident()
+
     @contextmanager
     def taken(self) -> Iterator[None]:
         """Alone with the symbols."""
-        mine = self._holder == threading.get_ident()
-        if not mine:
+        if not self.mine:
             self._take(1)
         else:
             self._depth += 1
@@ -36,7 +40,7 @@ class SymbolicTurn:
     @contextmanager
     def laid_down(self) -> Iterator[None]:
         """Another may have its turn meanwhile, such as while a compiler runs; nothing where it is not held."""
-        if self._holder != threading.get_ident():
+        if not self.mine:
             yield
             return
         depth, self._depth = self._depth, 0

@@ -31,17 +31,27 @@ class Symbols:
 def parameter_symbols(plant: Plant) -> Symbols:
     """Symbols for every parameter of the plant."""
     chain = {key: ca.SX.sym(key) for key in plant.chain.values}
-    names = list(chain)
     effects: dict[str, dict[str, Expression]] = {}
     for effect in plant.effects:
         effects[effect.label] = {}
         for key, value in effect.values.items():
-            length = len(value) if isinstance(value, tuple) else 1
-            name = f"{effect.label}.{key}"
-            effects[effect.label][key] = ca.SX.sym(name, length)
-            names += [name] if length == 1 else [f"{name}[{i}]" for i in range(length)]
+            effects[effect.label][key] = ca.SX.sym(f"{effect.label}.{key}", _length(value))
     columns = [*chain.values(), *(symbol for group in effects.values() for symbol in group.values())]
-    return Symbols(chain, effects, ca.vertcat(*columns), tuple(names))
+    return Symbols(chain, effects, ca.vertcat(*columns), parameter_names(plant))
+
+
+def parameter_names(plant: Plant) -> tuple[str, ...]:
+    """Names in the order of `Symbols.vector`, for who needs no symbols."""
+    names = list(plant.chain.values)
+    for effect in plant.effects:
+        for key, value in effect.values.items():
+            name, length = f"{effect.label}.{key}", _length(value)
+            names += [name] if length == 1 else [f"{name}[{i}]" for i in range(length)]
+    return tuple(names)
+
+
+def _length(value: float | tuple[float, ...]) -> int:
+    return len(value) if isinstance(value, tuple) else 1
 
 
 def parameter_values(plant: Plant) -> list[float]:

@@ -9,6 +9,7 @@ from functools import lru_cache
 import casadi as ca
 import numpy as np
 
+from feeddrive.plant.symbolic_turn import SYMBOLS
 from feeddrive.servo.cascade import Cascade, Feedback
 from feeddrive.servo.filters import Filter
 from feeddrive.servo.sampled import SampledController
@@ -75,6 +76,7 @@ def _values(cascade: Cascade) -> FloatArray:
 
 
 @lru_cache(maxsize=64)
+@SYMBOLS.taken()
 def _function(position_divider: int, feedback: Feedback, torque_filters: int, speed_filters: int) -> ca.Function:
     count = torque_filters + speed_filters
     state = ca.SX.sym("state", len(_HELD) + 2 * count)

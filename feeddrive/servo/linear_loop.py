@@ -25,6 +25,7 @@ import numpy as np
 from feeddrive.errors import InputError
 from feeddrive.plant.linear import INPUTS, MOVING, OUTPUTS
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.symbolic_turn import SYMBOLS
 from feeddrive.servo.cascade import Cascade, FeedForward
 from feeddrive.servo.cascade_function import cascade_controller, velocity_loop_of
 from feeddrive.servo.margins import GROWTH
@@ -177,6 +178,7 @@ class _Linear:
     signal_by_reading: FloatArray
 
     @classmethod
+    @SYMBOLS.taken()
     def of(cls, controller: SampledController, tick: int) -> _Linear:
         function = controller.function
         arguments = [ca.SX.sym(function.name_in(i), function.size1_in(i)) for i in range(5)]

@@ -11,12 +11,14 @@ import casadi as ca
 import numpy as np
 
 from feeddrive.errors import InputError
+from feeddrive.plant.symbolic_turn import SYMBOLS
 from feeddrive.servo.sampled import SampledController
 from feeddrive.typing import FloatArray
 
 _PLACE = "table_position"
 
 
+@SYMBOLS.taken()
 def scheduled(positions: FloatArray, designs: Sequence[SampledController]) -> SampledController:
     """One controller out of designs of the same equations.
 

@@ -29,6 +29,7 @@ import numpy as np
 
 from feeddrive.errors import InputError
 from feeddrive.plant.linear import OUTPUTS
+from feeddrive.plant.symbolic_turn import SYMBOLS
 from feeddrive.servo.sampled import SampledController
 from feeddrive.servo.sampled_plant import Matrices
 from feeddrive.typing import FloatArray
@@ -156,6 +157,7 @@ def state_feedback(
     return SampledController(function, initial, np.zeros(0), tick, REFERENCES, MEASURED, SIGNALS)
 
 
+@SYMBOLS.taken()
 def _function(machine: Matrices, K: FloatArray, L: FloatArray, steady: Steady, limit: float) -> ca.Function:
     n = len(machine.a)
     state, reference = ca.SX.sym("state", n + 1), ca.SX.sym("reference", len(REFERENCES))

@@ -13,6 +13,7 @@ from feeddrive.plant.equations import parameter_symbols
 from feeddrive.plant.motor_torque import acting_torque
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.structure import per_structure
+from feeddrive.plant.symbolic_turn import SYMBOLS
 from feeddrive.servo.sampled import MEASUREMENTS, SampledController
 from feeddrive.simulate.engine import Machine, machine_of
 from feeddrive.simulate.held_torque import readings_of
@@ -53,6 +54,7 @@ def machine_for(
 
 
 @lru_cache(maxsize=64)
+@SYMBOLS.taken()
 def _written(function: ca.Function) -> str:
     """The function as text, once per function: runs of one controller follow one another."""
     return function.serialize()

@@ -12,7 +12,6 @@ from typing import Protocol
 
 import numpy as np
 
-from feeddrive.errors import InputError
 from feeddrive.plant.chain import DistributedScrew
 from feeddrive.plant.equations import parameter_values
 from feeddrive.plant.plant import Plant
@@ -87,14 +86,8 @@ class Outcome:
 
 
 def machine_of(program: Program) -> Machine:
-    """The fastest that this computer offers.
-
-    Raises:
-        InputError: tangents without a compiler.
-    """
+    """The fastest that this computer offers."""
     made = compiled_run(program)
-    if made is None and program.tangents:
-        raise InputError("sensitivities need a C compiler", "", "install cc, gcc or clang, or name one in CC")
     return Machine(program, made if made is not None else interpreted_run(program))
 
 

@@ -11,6 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from feeddrive.plant.symbolic_turn import SYMBOLS
+from feeddrive.simulate.interpreted_tangents import CarriedTangents, SampleTangents
 from feeddrive.simulate.program import CELL, DEEPEST, Position, Program, Run, Status, Stop, Task
 from feeddrive.simulate.stretch import Stretch
 from feeddrive.simulate.virtual_machine import Called
@@ -59,18 +61,19 @@ class _Interpreter:
             Called(function) for function in (step.watch, step.begin, step.iterate, step.finish)
         )
         self.stretches: dict[tuple[int, int], Stretch] = {}
+        self.tangents = CarriedTangents(program)
 
     def run(self, task: Task, position: Position, first: int, seen: FloatArray, report: FloatArray) -> Stop:
         place, pace = _Place(position.memory, position.own, position.level, position.cell), _Pace()
-        at = first
+        at, along = first, self.tangents.along(task)
         while at < len(task.fed):
-            if self._may_stretch(task, place):
+            if along is None and self._may_stretch(task, place):
                 done, refused = self._stretch(task, at, place, seen, report, pace)
                 at += done
                 if not refused:
                     continue
             before, reported = place.position, report.copy()
-            status = self._sample(task, at, place, seen, report)
+            status = self._sample(task, at, place, seen, report, along)
             if status != Status.DONE:
                 report[:] = reported
                 cell = self._cell(task, place.memory)
@@ -115,26 +118,37 @@ class _Interpreter:
         """The stretch of a pace, made when it is first asked for."""
         key = (pace.sweeps, pace.blocks)
         if key not in self.stretches:
-            self.stretches[key] = Stretch(self.program, *key)
+            with SYMBOLS.taken():
+                if key not in self.stretches:
+                    self.stretches[key] = Stretch(self.program, *key)
         return self.stretches[key]
 
-    def _sample(self, task: Task, at: int, place: _Place, seen: FloatArray, report: FloatArray) -> Status:
+    def _sample(
+        self, task: Task, at: int, place: _Place, seen: FloatArray, report: FloatArray, along: SampleTangents | None
+    ) -> Status:
         program, row = self.program, task.fed[at]
         own_after, held, shown = self.before(place.memory, place.own, row, task.settings, task.values)
         start, inputs = row[-1], held.reshape(program.parts, -1)
+        if along is not None:
+            along.begin(at, place.memory, place.own)
         for part in range(program.parts):
-            status = self._advance(task, part, place, inputs[part], start, report)
+            status = self._advance(task, part, place, inputs[part], start, report, along)
             if status != Status.DONE:
+                if along is not None:
+                    along.take_back()
                 return status
             start += task.spans[part]
         (after,) = self.after(place.memory, own_after, row, task.settings, task.values)
+        if along is not None:
+            along.finish()
         place.own, seen[at] = own_after, np.concatenate([shown, after])
         report[8] += seen[at].sum()
         return Status.DONE
 
     def _advance(
-        self, task: Task, part: int, place: _Place, held: FloatArray, start: float, report: FloatArray
-    ) -> Status:
+        self, task: Task, part: int, place: _Place, held: FloatArray, start: float, report: FloatArray,
+        along: SampleTangents | None,
+    ) -> Status:  # fmt: skip
         whole, at = 1 << DEEPEST, 0
         while at < whole:
             length, share = whole >> place.level, at / whole
@@ -148,7 +162,7 @@ class _Interpreter:
             if place.cell != cell:
                 (place.memory,) = self.watch(place.memory, held, share, time, fixed, task.values)
                 place.cell = cell
-            after, error = self._attempt(place.memory, held, share, time, fixed, task.values, report)
+            after, error, guess = self._attempt(place.memory, held, share, time, fixed, task.values, report)
             if not 0.0 <= error <= 1.0 and place.level < DEEPEST:
                 place.level += 1
                 report[1] += 1
@@ -160,6 +174,8 @@ class _Interpreter:
                 report[5] += error
             report[4], report[6] = max(report[4], error), max(report[6], place.level)
             report[0] += 1
+            if along is not None:
+                along.move(part, index, place.level, place.memory, held, share, time, guess)
             place.memory, at = after, at + length
             if place.level > 0 and error < COARSER and at % (2 * length) == 0:
                 place.level -= 1
@@ -168,7 +184,8 @@ class _Interpreter:
     def _attempt(
         self, memory: FloatArray, held: FloatArray, place: float, time: float, fixed: FloatArray, values: FloatArray,
         report: FloatArray,
-    ) -> tuple[FloatArray, float]:  # fmt: skip
+    ) -> tuple[FloatArray, float, FloatArray]:  # fmt: skip
+        """Memory after the step, its error over the tolerance or -1, and what it was solved by."""
         base, guess = self.begin(memory, held, place, time, fixed)
         before = 1e300
         for sweep in range(SWEEPS):
@@ -179,10 +196,10 @@ class _Interpreter:
                 break
             before = change
         if not change < 1.0:
-            return memory, -1.0
+            return memory, -1.0, guess
         report[7] = max(report[7], change)
         after, error = self.finish(memory, held, place, guess, fixed)
-        return after, float(error[0]) if error[0] < 1e290 else -1.0
+        return after, float(error[0]) if error[0] < 1e290 else -1.0, guess
 
 
 def _refused(pace: _Pace, good: int, first: FloatArray, last: FloatArray) -> bool:

@@ -20,6 +20,7 @@ import casadi as ca
 import numpy as np
 
 from feeddrive.plant.plant import Plant, PositionVelocityController
+from feeddrive.plant.symbolic_turn import SYMBOLS
 from feeddrive.servo.sampled import SampledController
 from feeddrive.typing import Expression
 
@@ -51,6 +52,7 @@ def position_velocity_controller(
 
 
 @lru_cache(maxsize=16)
+@SYMBOLS.taken()
 def _function(samples: int, at_motor: bool) -> ca.Function:
     state, wanted, tick = ca.SX.sym("state", samples), ca.SX.sym("wanted"), ca.SX.sym("tick")
     measured = ca.SX.sym("measured", 1 if samples else 2)

@@ -18,7 +18,7 @@ import numpy as np
 from feeddrive.effects.base import ChainEffect, TimingEffect
 from feeddrive.effects.channel_delay import ChannelDelay
 from feeddrive.errors import InputError
-from feeddrive.plant.equations import parameter_symbols
+from feeddrive.plant.equations import parameter_names
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.sampled import SampledController
 from feeddrive.simulate.controlled import (
@@ -81,7 +81,7 @@ def simulate_sensitivity(
         The run and its derivatives.
 
     Raises:
-        InputError: unknown parameter, a delay, a lag of 0, no C compiler.
+        InputError: unknown parameter, a delay, a lag of 0.
         SimulationError: as `simulate_controlled`.
     """
     loop = torque_loop or TorqueLoop()
@@ -111,7 +111,7 @@ class _Directions:
     ) -> None:
         self.plant, self.loop, self.names, self.program = plant, loop, names, program
         self.count = len(controller.parameters)
-        self.keys = parameter_symbols(plant).names
+        self.keys = parameter_names(plant)
         for name in names:
             self._refuse_unknown(name)
 

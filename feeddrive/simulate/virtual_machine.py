@@ -9,7 +9,29 @@ from feeddrive.typing import Expression, FloatArray
 
 
 class Called:
-    """A function whose arguments and results are columns, or matrices told as one row per column."""
+    """A function whose arguments and results are columns, or matrices told as one row per column.
+
+    May be called by several threads at once: every call has buffers to itself, which later calls use again.
+    """
+
+    def __init__(self, function: ca.Function) -> None:
+        self._function = function
+        self._idle = [_Buffers(function)]
+
+    def __call__(self, *arguments: Expression) -> list[FloatArray]:
+        """Results, one row per column; a single column is told as shape (n,)."""
+        try:
+            buffers = self._idle.pop()  # no other thread gets the same: a list gives an item to one alone
+        except IndexError:
+            buffers = _Buffers(self._function)
+        try:
+            return buffers.results(arguments)
+        finally:
+            self._idle.append(buffers)
+
+
+class _Buffers:
+    """Room for the arguments and results of one call, and for what CasADi needs in between."""
 
     def __init__(self, function: ca.Function) -> None:
         self._buffer, self._evaluate = function.buffer()
@@ -20,8 +42,7 @@ class Called:
         for i, result in enumerate(self._results):
             self._buffer.set_res(i, result.data)  # type: ignore[call-arg]
 
-    def __call__(self, *arguments: Expression) -> list[FloatArray]:
-        """Results, one row per column; a single column is told as shape (n,)."""
+    def results(self, arguments: tuple[Expression, ...]) -> list[FloatArray]:
         for array, argument in zip(self._given, arguments, strict=True):
             array[:] = argument if np.ndim(argument) < 2 else np.ravel(argument)
         self._evaluate()

@@ -6,6 +6,7 @@ import casadi as ca
 import control
 import numpy as np
 
+from feeddrive.plant.symbolic_turn import SYMBOLS
 from feeddrive.thermal.model import AMBIENT, HeatModel, Path
 from feeddrive.thermal.rig import refuse_unless
 from feeddrive.thermal.system import HeatSystem
@@ -22,6 +23,7 @@ def state_space(system: HeatSystem) -> control.StateSpace:
     return control.ss(A, B, system.rows, 0, inputs=list(system.input_names), outputs=list(system.output_names))
 
 
+@SYMBOLS.taken()
 def casadi_system(system: HeatSystem, name: str = "thermal") -> ca.Function:
     """Function (x, u) -> (dx/dt, y) at one operating point.
 
@@ -35,6 +37,7 @@ def casadi_system(system: HeatSystem, name: str = "thermal") -> ca.Function:
     return ca.Function(name, [x, u], [rate, shown], ["x", "u"], ["rate", "y"])
 
 
+@SYMBOLS.taken()
 def casadi_model(model: HeatModel, name: str = "thermal") -> ca.Function:
     """Function (x, g, u) -> (dx/dt, y) with the conductances g in the order of `model.ways` as inputs.
 

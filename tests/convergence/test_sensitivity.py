@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import casadi as ca
@@ -31,7 +32,14 @@ NAMES = (
     "torque_loop.lag",
 )  # fmt: skip
 
-pytestmark = pytest.mark.skipif(find_compiler() is None, reason="no C compiler here")
+
+@pytest.fixture(params=["compiled", "interpreted"])
+def both_ways(request: pytest.FixtureRequest, without_compiler: Callable[[], None]) -> None:
+    """The test is run twice: compiled, and in CasADi's virtual machine."""
+    if request.param == "interpreted":
+        without_compiler()
+    elif find_compiler() is None:
+        pytest.skip("no C compiler here")
 
 
 def plant() -> Plant:
@@ -107,6 +115,7 @@ def size_of(name: str) -> float:
     return float(sizes[name] if name in sizes else list(GAINS.values())[int(name[-2])])
 
 
+@pytest.mark.usefixtures("both_ways")
 def test_against_complex_steps_through_the_same_scheme() -> None:
     count, loop = 250, TorqueLoop(lag=LAG)
     found = simulate_sensitivity(
@@ -122,6 +131,7 @@ def test_against_complex_steps_through_the_same_scheme() -> None:
         assert error <= max(1e-8 * np.abs(exact).max(), 1e-13 / size_of(name)), name
 
 
+@pytest.mark.usefixtures("both_ways")
 def test_derivatives_with_step_control_and_bristle() -> None:
     """Steps of the run's own choice: differences agree as far as the choice does not change with the value."""
     bristle = Presliding.of(stiffness=5e6, damping=2e3, break_away=0.7)
@@ -147,3 +157,21 @@ def test_derivatives_with_step_control_and_bristle() -> None:
 def test_unknown_parameters_are_refused(name: str, words: str) -> None:
     with pytest.raises(InputError, match=words):
         simulate_sensitivity(plant(), controller(), wanted(10)[:, None], [name])
+
+
+def test_compiled_and_interpreted_derivatives_agree(without_compiler: Callable[[], None]) -> None:
+    """With a bristle, steps that are halved, and a torque that acts late: everything that a sample may hold."""
+    if find_compiler() is None:
+        pytest.skip("no C compiler here")
+    bristle = Presliding.of(stiffness=5e8, damping=2e3, break_away=0.7)
+    axis = Plant("bench", BENCH, (GuideFriction.of(**GUIDE), bristle, Payload.of(mass=5.0)))
+    drive, reference, loop = controller(), wanted(150)[:, None], TorqueLoop(lag=LAG, dead_time=2e-4)
+    names = (*(name for name in NAMES if name != "nut_drag.coulomb"), "presliding.stiffness")
+    fast = simulate_sensitivity(axis, drive, reference, names, torque_loop=loop)
+    without_compiler()
+    slow = simulate_sensitivity(axis, drive, reference, names, torque_loop=loop)
+    assert fast.run.report.refused > 0 and fast.run.report.steps == slow.run.report.steps
+    for name in names:
+        for series, change in fast.changes[name].items():
+            # 8e-15 apart are the runs; a derivative with a stiff spring is the difference of terms 1e5 times as large
+            assert np.abs(change - slow.changes[name][series]).max() <= 1e-9 * np.abs(change).max(), (name, series)

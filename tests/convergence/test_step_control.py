@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -19,7 +20,6 @@ from feeddrive.effects.stiffness_vs_position import StiffnessVsPosition
 from feeddrive.effects.stribeck import Stribeck
 from feeddrive.effects.structural_mode import StructuralMode
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.structure import forget_machines
 from feeddrive.simulate.driven import motor_motion, simulate_driven
 from feeddrive.simulate.held_torque import simulate_torque
 from feeddrive.simulate.step_constants import SimulationError
@@ -42,21 +42,6 @@ CASES: dict[str, tuple[Effect, ...]] = {
     "table_mode": (StructuralMode.of(mass=16.0, frequency=70.0, damping=0.03),),
     "delay_and_bump": (DriveDelay.of(delay=1.3e-3), FrictionVsPosition.of(peak=40.0, centre=0.0, half_width=0.01)),
 }
-
-
-@pytest.fixture
-def without_compiler(monkeypatch: pytest.MonkeyPatch) -> object:
-    """Runs in CasADi's virtual machine from here on, and compiled again afterwards."""
-
-    def switch() -> None:
-        monkeypatch.setenv("FEEDDRIVE_COMPILER", "none")
-        find_compiler.cache_clear()
-        forget_machines()
-
-    yield switch
-    monkeypatch.undo()
-    find_compiler.cache_clear()
-    forget_machines()
 
 
 @pytest.mark.parametrize("case", [case for case in CASES if "play" not in case])
@@ -85,13 +70,13 @@ def test_free_play_does_not_depend_on_the_steps() -> None:
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_compiled_and_virtual_machine_agree(case: str, without_compiler: object) -> None:
+def test_compiled_and_virtual_machine_agree(case: str, without_compiler: Callable[[], None]) -> None:
     if find_compiler() is None:
         pytest.skip("no C compiler here")
     plant = bench(*CASES[case])
     time, torque = torque_curve(60)
     fast = simulate_torque(plant, time, torque)
-    without_compiler()  # type: ignore[operator]
+    without_compiler()
     slow = simulate_torque(plant, time, torque)
     # free play multiplies rounding as it does everything: there the range is that of the axis, 0.5 m and 0.5 m/s
     ranges = {"position": 0.5, "velocity": 0.5, "motor_angle": 0.5 / plant.chain.radius}
@@ -103,12 +88,12 @@ def test_compiled_and_virtual_machine_agree(case: str, without_compiler: object)
         assert getattr(fast.report, key) == getattr(slow.report, key)
 
 
-def test_driven_runs_agree_too(without_compiler: object) -> None:
+def test_driven_runs_agree_too(without_compiler: Callable[[], None]) -> None:
     plant = bench(STIFF)
     time = np.arange(200) * SAMPLE
     motion = motor_motion(time, 0.3 * np.sin(2 * math.pi * 9 * time))
     fast = simulate_driven(plant, motion)
-    without_compiler()  # type: ignore[operator]
+    without_compiler()
     slow = simulate_driven(plant, motion)
     assert np.abs(fast.table_position - slow.table_position).max() <= 1e-12 * np.abs(fast.table_position).max()
     assert np.abs(fast.torque - slow.torque).max() <= 1e-12 * np.abs(fast.torque).max()
