@@ -16,7 +16,7 @@ from feeddrive.diagnose.predictor import Machine
 from feeddrive.effects.base import Effect, Value
 from feeddrive.effects.tabulated import Tabulated
 from feeddrive.plant.plant import Plant
-from feeddrive.typing import FloatArray
+from feeddrive.typing import FloatArray, IntegerArray
 
 ORDER_SIZE = 0.01
 """Change of an order that shows over a stroke of some revolutions."""
@@ -145,6 +145,12 @@ FIXED = {
 }
 """Parameters that choose the form of a law; they are tried, not fitted."""
 
+FORM = {"centre", "order", "zero", "damping", "start"}
+"""Linear parameters that choose the form of a law, not its size."""
+
+FACTORS = {"factor", "coulomb_factor", "viscous_factor", "ratio"}
+"""Parameters that are 1 where the effect is absent; other sizes are 0."""
+
 LEAST = {("drive_delay", "delay"): 0.0}
 """Ends of a search inside the physical range: a torque that acts before it is recorded is one recorded late, and that
 is `channel_delay`."""
@@ -187,6 +193,31 @@ def read_coordinates(effects: Sequence[Effect], plant: Machine) -> FloatArray:
     """All coordinates of the effects in one vector."""
     values = [c for effect in effects for coordinate in coordinates_of(effect, plant) for c in coordinate.read(effect)]
     return np.array(values, dtype=float)
+
+
+def absent_coordinates(effects: Sequence[Effect], plant: Machine) -> tuple[FloatArray, IntegerArray]:
+    """Coordinates at which the effects are absent, and which belong together.
+
+    Returns:
+        The coordinates, NaN for those that choose the form of a law, and the number of the group of each; (k,) each.
+    """
+    absent: list[float] = []
+    groups: list[int] = []
+    for effect in effects:
+        for coordinate in coordinates_of(effect, plant):
+            count = len(coordinate.read(effect))
+            groups += [groups[-1] + 1 if groups else 0] * count
+            absent += [_absent(coordinate)] * count
+    return np.array(absent, dtype=float), np.array(groups, dtype=np.int64)
+
+
+def _absent(coordinate: Coordinate) -> float:
+    """Where the effect is absent in one coordinate; NaN where the coordinate chooses a form."""
+    if isinstance(coordinate, Logarithmic):
+        return 0.0 if coordinate.key in FACTORS else math.nan
+    if isinstance(coordinate, Linear):
+        return math.nan if coordinate.key in FORM else float(coordinate.key in FACTORS) / coordinate.size
+    return 0.0
 
 
 def write_coordinates(effects: Sequence[Effect], plant: Machine, vector: FloatArray) -> list[Effect]:

@@ -45,13 +45,20 @@ class Fit:
         effects: with fitted values, in the order given.
         residual: weighted, at the thinned fitted samples of all channels and recordings, shape (m,).
         jacobian: of the prediction in fit coordinates, weighted alike, shape (m, k).
-        coordinates: shape (k,).
+        coordinates: of the free effects, shape (k,).
+        held: number of effects that were not free; they come first.
     """
 
     effects: tuple[Effect, ...]
     residual: FloatArray
     jacobian: FloatArray
     coordinates: FloatArray
+    held: int = 0
+
+    @property
+    def free(self) -> tuple[Effect, ...]:
+        """The effects that the coordinates are of."""
+        return self.effects[self.held :]
 
     @property
     def squared_error(self) -> float:
@@ -104,8 +111,8 @@ def fit(
 
     Args:
         problem: what is fitted to what.
-        effects: beyond the declared ones; the others keep their values.
-        free: which are fitted; all if None.
+        effects: beyond the declared ones.
+        free: which are fitted, those that are not first; all if None.
         iterations: at most.
         error_only: leave out the Jacobian, where only the error of the values as they are is asked for.
 
@@ -116,7 +123,7 @@ def fit(
     measured, predicted = problem.measured(), problem.predicted(effects)
     at = _State(list(effects), predicted, measured - predicted)
     if error_only:
-        return Fit(tuple(effects), at.residual, np.zeros((len(predicted), 0)), np.zeros(0))
+        return Fit(tuple(effects), at.residual, np.zeros((len(predicted), 0)), np.zeros(0), len(effects))
     jacobian, exact = problem.jacobian(at.effects, chosen, at.predicted), True
     damping = FREE
     for _ in range(iterations):
@@ -144,7 +151,8 @@ def fit(
     if not exact:
         jacobian = problem.jacobian(at.effects, chosen, at.predicted)
     moved = [effect for effect, is_free in zip(at.effects, chosen, strict=True) if is_free]
-    return Fit(tuple(at.effects), at.residual, jacobian, read_coordinates(moved, problem.plant))
+    held = chosen.index(True) if any(chosen) else len(chosen)
+    return Fit(tuple(at.effects), at.residual, jacobian, read_coordinates(moved, problem.plant), held)
 
 
 @dataclass(frozen=True)

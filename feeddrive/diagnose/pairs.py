@@ -7,15 +7,15 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from feeddrive.diagnose.attempt import Attempt, compared
-from feeddrive.diagnose.coordinates import read_coordinates
+from feeddrive.diagnose.coordinates import absent_coordinates, read_coordinates
 from feeddrive.diagnose.cross_validation import (
     Comparison,
-    block_numbers,
     compare_left_out,
     least_gain,
     left_out_residual,
 )
 from feeddrive.diagnose.fit import Fit, fit
+from feeddrive.diagnose.folds import block_numbers
 from feeddrive.errors import InputError
 from feeddrive.typing import FloatArray
 
@@ -69,7 +69,7 @@ def _most_together(usable: Sequence[Attempt], found: Fit) -> Iterator[tuple[Atte
     columns = np.hstack([_scaled(found.jacobian), *own])
     normal = columns.T @ columns
     shared = np.arange(ends[0])
-    left_out = left_out_residual(found.residual, found.jacobian, block_numbers(usable[0].problem))
+    left_out = left_out_residual(usable[0].problem, found, block_numbers(usable[0].problem))
     before = float(left_out @ left_out)
     for i, first in enumerate(usable):
         residual = first.fit.residual
@@ -94,8 +94,17 @@ def linear_pair(first: Attempt, second: Attempt, found: Fit) -> Comparison:
     jacobian = np.hstack([found.jacobian, *columns])
     blocks = block_numbers(first.problem)
     step = np.linalg.lstsq(jacobian, first.fit.residual, rcond=1e-10)[0]
-    together = left_out_residual(first.fit.residual - jacobian @ step, jacobian, blocks)
-    before = left_out_residual(found.residual, found.jacobian, blocks)
+    effects = (*found.effects, first.fit.effects[-1], second.fit.effects[-1])
+    # the second is not in the residual: its step is all that it does, counted from where it is absent
+    plant = first.problem.plant
+    own = read_coordinates(effects[-1:], plant)
+    absent, _ = absent_coordinates(effects[-1:], plant)
+    start = np.concatenate(
+        [found.coordinates, read_coordinates(effects[-2:-1], plant), np.where(np.isnan(absent), own, absent)]
+    )
+    both = Fit(effects, first.fit.residual - jacobian @ step, jacobian, start + step)
+    together = left_out_residual(first.problem, both, blocks)
+    before = left_out_residual(first.problem, found, blocks)
     return compare_left_out(before, together, blocks, least_gain(first.problem, before, together))
 
 

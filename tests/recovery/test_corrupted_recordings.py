@@ -1,4 +1,4 @@
-"""Forty spoilt copies of a recording in which nothing is lacking: refused, or nothing named, and never an absurd machine.
+"""Forty spoilt copies of a recording in which nothing lacks: refused, or nothing named, and never an absurd machine.
 
 The recording is the committed null of `tests/generator`, which shares no code with the package; both files of it are
 spoilt alike, as one wrong mapping spoils all that is read with it. Each is diagnosed as a user would, by the command
