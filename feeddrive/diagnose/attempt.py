@@ -14,7 +14,7 @@ from feeddrive.diagnose.cross_validation import (
     least_gain,
     left_out_residual,
 )
-from feeddrive.diagnose.fit import Fit, Problem, fit
+from feeddrive.diagnose.fit import Fit, Problem, fit, linear_step
 from feeddrive.diagnose.folds import block_numbers
 from feeddrive.diagnose.scene import Candidate, Scene
 from feeddrive.effects.base import Effect, TransmissionEffect
@@ -115,9 +115,7 @@ def _jumps(effect: Effect) -> bool:
 
 def _one_linear_step(fitted: Fit) -> Fit:
     """The fit as one linear step would leave it, the values as they were; ranks starts at no simulation."""
-    if not np.all(np.isfinite(fitted.jacobian)):
-        return fitted
-    step = np.linalg.lstsq(fitted.jacobian, fitted.residual, rcond=1e-10)[0]
+    step = linear_step(fitted.jacobian, fitted.residual)
     return replace(fitted, residual=fitted.residual - fitted.jacobian @ step, coordinates=fitted.coordinates + step)
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from feeddrive.diagnose.declared_friction import declared_level, declared_viscous
 from feeddrive.diagnose.predictor import Machine
 from feeddrive.effects.base import Effect, Value
+from feeddrive.effects.inertia_deviation import InertiaDeviation, declared_inertia
 from feeddrive.effects.tabulated import Tabulated
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray, IntegerArray
@@ -37,8 +38,7 @@ class Linear:
     def write(self, effect: Effect, coordinates: Sequence[float]) -> dict[str, Value]:
         """Values of the coordinates."""
         parameter = effect.parameter(self.key)
-        least = LEAST.get((effect.name, self.key), parameter.minimum)
-        numbers = [min(max(c * self.size, least), parameter.maximum) for c in coordinates]
+        numbers = [min(max(c * self.size, parameter.minimum), parameter.maximum) for c in coordinates]
         if not isinstance(effect.values[self.key], tuple):
             return {self.key: numbers[0]}
         if self.key != "delta_force":
@@ -155,6 +155,9 @@ LEAST = {("drive_delay", "delay"): 0.0}
 """Ends of a search inside the physical range: a torque that acts before it is recorded is one recorded late, and that
 is `channel_delay`."""
 
+LEFT = 0.05
+"""Least share of a declared mass or inertia that an effect may leave, as of a stiffness (`stiffness_deviation`)."""
+
 
 def coordinates_of(effect: Effect, plant: Machine) -> list[Coordinate]:
     """The coordinates in which the effect is fitted, for the form that its values choose."""
@@ -211,6 +214,42 @@ def absent_coordinates(effects: Sequence[Effect], plant: Machine) -> tuple[Float
     return np.array(absent, dtype=float), np.array(groups, dtype=np.int64)
 
 
+def coordinate_ends(effects: Sequence[Effect], plant: Machine) -> tuple[FloatArray, FloatArray]:
+    """Ends of what is physical on this plant, lower and upper, of every coordinate; (k,) each."""
+    low: list[float] = []
+    high: list[float] = []
+    for effect in effects:
+        for coordinate in coordinates_of(effect, plant):
+            ends = _ends(effect, coordinate, plant)
+            count = len(coordinate.read(effect))
+            low += [ends[0]] * count
+            high += [ends[1]] * count
+    return np.array(low, dtype=float), np.array(high, dtype=float)
+
+
+def _ends(effect: Effect, coordinate: Coordinate, plant: Machine) -> tuple[float, float]:
+    if isinstance(coordinate, Sine):
+        return -math.inf, math.inf
+    if isinstance(coordinate, TwoHeats):
+        return 0.0, math.inf
+    parameter = effect.parameter(coordinate.key)
+    least = max(LEAST.get((effect.name, coordinate.key), parameter.minimum), _least_left(effect, plant))
+    if isinstance(coordinate, Logarithmic):
+        return math.log(least) if least > 0 else -math.inf, math.log(parameter.maximum)
+    return least / coordinate.size, parameter.maximum / coordinate.size
+
+
+def _least_left(effect: Effect, plant: Machine) -> float:
+    """Least value of an effect that takes from a declared mass or inertia."""
+    if not isinstance(plant, Plant):
+        return -math.inf
+    if effect.name == "payload":
+        return -(1 - LEFT) * plant.chain_values()["table_mass"]
+    if isinstance(effect, InertiaDeviation):
+        return -(1 - LEFT) * declared_inertia(plant.chain_values(), effect.place)
+    return -math.inf
+
+
 def _absent(coordinate: Coordinate) -> float:
     """Where the effect is absent in one coordinate; NaN where the coordinate chooses a form."""
     if isinstance(coordinate, Logarithmic):
@@ -221,13 +260,15 @@ def _absent(coordinate: Coordinate) -> float:
 
 
 def write_coordinates(effects: Sequence[Effect], plant: Machine, vector: FloatArray) -> list[Effect]:
-    """The effects with the values of the vector."""
+    """The effects with the values of the vector, each inside what is physical on the plant."""
     result, at = [], 0
     for effect in effects:
         changed: Effect = effect
         for coordinate in coordinates_of(effect, plant):
             count = len(coordinate.read(effect))
-            changed = changed.with_values(**coordinate.write(effect, [float(c) for c in vector[at : at + count]]))
+            low, high = _ends(effect, coordinate, plant)
+            inside = [min(max(float(c), low), high) for c in vector[at : at + count]]
+            changed = changed.with_values(**coordinate.write(effect, inside))
             at += count
         result.append(changed)
     return result

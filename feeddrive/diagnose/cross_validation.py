@@ -22,7 +22,7 @@ import numpy as np
 
 from feeddrive.diagnose.coordinates import absent_coordinates
 from feeddrive.diagnose.evidence import Evidence
-from feeddrive.diagnose.fit import DIFFERENCE, Fit, Problem
+from feeddrive.diagnose.fit import DIFFERENCE, Fit, Problem, unit_columns
 from feeddrive.diagnose.folds import FOLDS
 from feeddrive.diagnose.predictor import Machine
 from feeddrive.effects.base import Effect
@@ -105,11 +105,10 @@ def left_out(residual: FloatArray, jacobian: FloatArray, blocks: IntegerArray, p
     """
     result = residual.copy()
     square = float(np.mean(residual**2)) if len(residual) else 0.0
-    if not jacobian.shape[1] or square <= 0:
+    if not jacobian.shape[1] or not 0 < square < np.inf:
         return result
-    length = np.linalg.norm(jacobian, axis=0)
+    scaled, length = unit_columns(jacobian)
     scale = np.where(length > 0, length, 1.0)
-    scaled = jacobian / scale
     normal = scaled.T @ scaled
     known = prior_information(prior.width * scale, square)
     pull = known * prior.beyond * scale

@@ -20,7 +20,7 @@ from feeddrive.diagnose.cross_validation import (
     least_gain,
     left_out_residual,
 )
-from feeddrive.diagnose.fit import Fit, Problem, fit
+from feeddrive.diagnose.fit import Fit, Problem, fit, linear_step
 from feeddrive.diagnose.folds import block_numbers
 from feeddrive.diagnose.pairs import masked_pair
 from feeddrive.diagnose.result import Trial
@@ -204,7 +204,7 @@ def _cost_of_dropping(problem: Problem, found: Fit, index: int, blocks: IntegerA
     columns = slice(start, start + counts[index])
     jacobian = np.delete(found.jacobian, columns, axis=1)
     residual = problem.residual(rest)
-    step = np.linalg.lstsq(jacobian, residual, rcond=1e-10)[0]
+    step = linear_step(jacobian, residual)
     moved = Fit(rest, residual - jacobian @ step, jacobian, np.delete(found.coordinates, columns) + step)
     without = left_out_residual(problem, moved, blocks)
     return compare_left_out(without, errors, blocks, LEAST_GAIN).gain

@@ -16,7 +16,7 @@ from feeddrive.diagnose.cross_validation import (
     least_gain,
     left_out_residual,
 )
-from feeddrive.diagnose.fit import Fit, Problem
+from feeddrive.diagnose.fit import Fit, Problem, linear_step
 from feeddrive.diagnose.folds import block_numbers
 from feeddrive.diagnose.recordings.change_candidates import Movable
 from feeddrive.diagnose.recordings.recordings import RecordingPredictor
@@ -68,7 +68,7 @@ def recording_of_rows(problem: Problem) -> IntegerArray:
 def _left_out(problem: Problem, fitted: Fit, blocks: IntegerArray) -> FloatArray:
     """Residual on blocks left out, after one linear step."""
     jacobian, residual = fitted.jacobian, fitted.residual
-    step = np.linalg.lstsq(jacobian, residual, rcond=1e-10)[0] if jacobian.shape[1] else np.zeros(0)
+    step = linear_step(jacobian, residual)
     moved = replace(fitted, residual=residual - jacobian @ step, coordinates=fitted.coordinates + step)
     return left_out_residual(problem, moved, blocks)
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from feeddrive.diagnose.coordinates import read_coordinates
 from feeddrive.diagnose.cross_validation import compare_left_out, least_gain, left_out_residual
-from feeddrive.diagnose.fit import Fit, Problem, fit
+from feeddrive.diagnose.fit import Fit, Problem, fit, linear_step
 from feeddrive.diagnose.folds import block_numbers
 from feeddrive.diagnose.recordings.recordings import RecordingShift, is_shift
 from feeddrive.effects.base import Effect
@@ -58,5 +58,5 @@ def _dropped(found: Fit, problem: Problem, index: int) -> Fit:
     columns = slice(start, start + counts[index])
     jacobian: FloatArray = np.delete(found.jacobian, columns, axis=1)
     residual = problem.residual(rest)
-    step = np.linalg.lstsq(jacobian, residual, rcond=1e-10)[0] if jacobian.shape[1] else np.zeros(0)
+    step = linear_step(jacobian, residual)
     return Fit(rest, residual - jacobian @ step, jacobian, np.delete(found.coordinates, columns) + step)
