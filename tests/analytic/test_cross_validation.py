@@ -53,7 +53,7 @@ def refitted_gain(columns: list[FloatArray], signal: FloatArray) -> float:
     for chosen in (columns[1:], columns):
         left = signal.copy()
         for fold in range(FOLDS):
-            out = BLOCK % FOLDS == fold
+            out = fold == BLOCK % FOLDS
             jacobian = np.column_stack(chosen) if chosen else np.zeros((len(signal), 0))
             # a column of which the rest sees less than noise is left at none
             seen = [np.linalg.norm(column[~out]) > 1.0 for column in chosen]
