@@ -177,7 +177,10 @@ def _settled(
     if (fewer := without_stand_ins(found, judged)) is not found:
         found = fewer
         judged, rehomed = _judged(found, evidence)
-    judge = lambda other: _judged(other, evidence)[0]  # noqa: E731
+
+    def judge(other: Search) -> list[Judged]:
+        return _judged(other, evidence)[0]
+
     found, judged = without_denied(found, judged, judge)
     preferred, rivals = with_the_preferred(found, rivals_of(found, judged))
     if preferred is not found:

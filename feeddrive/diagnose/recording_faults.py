@@ -29,6 +29,7 @@ from scipy.optimize import lsq_linear
 
 from feeddrive.diagnose.evidence import AxisEvidence, Evidence, prepare
 from feeddrive.diagnose.fit import Problem
+from feeddrive.diagnose.prediction import AxisPredictor
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray
@@ -150,6 +151,7 @@ def torque_parts(problem: Problem, plant: Plant, evidence: AxisEvidence) -> Torq
     """The torque and its parts at the samples that count; None where the plant cannot be followed, or nothing acts."""
     rows = evidence.thinned(evidence.counted)
     predicted = problem.predictor.predict(plant, evidence)["motor_torque"][rows]
+    assert isinstance(problem.predictor, AxisPredictor)
     scale = problem.predictor.scale(plant) if evidence.scaled_from else 1.0
     inertial = scale * inertia_at_motor(plant) * evidence.band.filter(evidence.motion.acceleration)[rows]
     series = [one - np.mean(one) for one in (evidence.measured["motor_torque"][rows], inertial, predicted - inertial)]
