@@ -10,12 +10,12 @@ import numpy as np
 from feeddrive.diagnose.cross_validation import (
     LEAST_GAIN,
     Comparison,
-    block_numbers,
     compare_left_out,
     least_gain,
     left_out_residual,
 )
-from feeddrive.diagnose.fit import Fit, Problem, fit
+from feeddrive.diagnose.fit import Fit, Problem, fit, linear_step
+from feeddrive.diagnose.folds import block_numbers
 from feeddrive.diagnose.scene import Candidate, Scene
 from feeddrive.effects.base import Effect, TransmissionEffect
 from feeddrive.errors import InputError
@@ -117,10 +117,8 @@ def _jumps(effect: Effect) -> bool:
 
 def _one_linear_step(fitted: Fit) -> Fit:
     """The fit as one linear step would leave it, the values as they were; ranks starts at no simulation."""
-    if not np.all(np.isfinite(fitted.jacobian)):
-        return fitted
-    step = np.linalg.lstsq(fitted.jacobian, fitted.residual, rcond=1e-10)[0]
-    return replace(fitted, residual=fitted.residual - fitted.jacobian @ step)
+    step = linear_step(fitted.jacobian, fitted.residual)
+    return replace(fitted, residual=fitted.residual - fitted.jacobian @ step, coordinates=fitted.coordinates + step)
 
 
 def together(attempt: Attempt, found: Fit) -> Attempt:
@@ -135,8 +133,8 @@ def compared(problem: Problem, name: str, result: Fit, before: Sequence[Effect])
     if len(blocks) != len(result.residual):
         result = fit(problem, result.effects, _free(result, before), iterations=0)
     reference = _reference(problem, before, result)
-    without = left_out_residual(reference.residual, reference.jacobian, blocks)
-    errors = left_out_residual(result.residual, result.jacobian, blocks)
+    without = left_out_residual(problem, reference, blocks)
+    errors = left_out_residual(problem, result, blocks)
     comparison = compare_left_out(without, errors, blocks, least_gain(problem, without, errors))
     return Attempt(name, result, comparison, problem, errors)
 

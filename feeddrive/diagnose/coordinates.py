@@ -14,9 +14,10 @@ import numpy as np
 from feeddrive.diagnose.declared_friction import declared_level, declared_viscous
 from feeddrive.diagnose.predictor import Machine
 from feeddrive.effects.base import Effect, Value
+from feeddrive.effects.inertia_deviation import InertiaDeviation, declared_inertia
 from feeddrive.effects.tabulated import Tabulated
 from feeddrive.plant.plant import Plant
-from feeddrive.typing import FloatArray
+from feeddrive.typing import FloatArray, IntegerArray
 
 ORDER_SIZE = 0.01
 """Change of an order that shows over a stroke of some revolutions."""
@@ -37,8 +38,7 @@ class Linear:
     def write(self, effect: Effect, coordinates: Sequence[float]) -> dict[str, Value]:
         """Values of the coordinates."""
         parameter = effect.parameter(self.key)
-        least = LEAST.get((effect.name, self.key), parameter.minimum)
-        numbers = [min(max(c * self.size, least), parameter.maximum) for c in coordinates]
+        numbers = [min(max(c * self.size, parameter.minimum), parameter.maximum) for c in coordinates]
         if not isinstance(effect.values[self.key], tuple):
             return {self.key: numbers[0]}
         if self.key != "delta_force":
@@ -145,9 +145,18 @@ FIXED = {
 }
 """Parameters that choose the form of a law; they are tried, not fitted."""
 
+FORM = {"centre", "order", "zero", "damping", "start"}
+"""Linear parameters that choose the form of a law, not its size."""
+
+FACTORS = {"factor", "coulomb_factor", "viscous_factor", "ratio"}
+"""Parameters that are 1 where the effect is absent; other sizes are 0."""
+
 LEAST = {("drive_delay", "delay"): 0.0}
 """Ends of a search inside the physical range: a torque that acts before it is recorded is one recorded late, and that
 is `channel_delay`."""
+
+LEFT = 0.05
+"""Least share of a declared mass or inertia that an effect may leave, as of a stiffness (`stiffness_deviation`)."""
 
 
 def coordinates_of(effect: Effect, plant: Machine) -> list[Coordinate]:
@@ -189,14 +198,77 @@ def read_coordinates(effects: Sequence[Effect], plant: Machine) -> FloatArray:
     return np.array(values, dtype=float)
 
 
+def absent_coordinates(effects: Sequence[Effect], plant: Machine) -> tuple[FloatArray, IntegerArray]:
+    """Coordinates at which the effects are absent, and which belong together.
+
+    Returns:
+        The coordinates, NaN for those that choose the form of a law, and the number of the group of each; (k,) each.
+    """
+    absent: list[float] = []
+    groups: list[int] = []
+    for effect in effects:
+        for coordinate in coordinates_of(effect, plant):
+            count = len(coordinate.read(effect))
+            groups += [groups[-1] + 1 if groups else 0] * count
+            absent += [_absent(coordinate)] * count
+    return np.array(absent, dtype=float), np.array(groups, dtype=np.int64)
+
+
+def coordinate_ends(effects: Sequence[Effect], plant: Machine) -> tuple[FloatArray, FloatArray]:
+    """Ends of what is physical on this plant, lower and upper, of every coordinate; (k,) each."""
+    low: list[float] = []
+    high: list[float] = []
+    for effect in effects:
+        for coordinate in coordinates_of(effect, plant):
+            ends = _ends(effect, coordinate, plant)
+            count = len(coordinate.read(effect))
+            low += [ends[0]] * count
+            high += [ends[1]] * count
+    return np.array(low, dtype=float), np.array(high, dtype=float)
+
+
+def _ends(effect: Effect, coordinate: Coordinate, plant: Machine) -> tuple[float, float]:
+    if isinstance(coordinate, Sine):
+        return -math.inf, math.inf
+    if isinstance(coordinate, TwoHeats):
+        return 0.0, math.inf
+    parameter = effect.parameter(coordinate.key)
+    least = max(LEAST.get((effect.name, coordinate.key), parameter.minimum), _least_left(effect, plant))
+    if isinstance(coordinate, Logarithmic):
+        return math.log(least) if least > 0 else -math.inf, math.log(parameter.maximum)
+    return least / coordinate.size, parameter.maximum / coordinate.size
+
+
+def _least_left(effect: Effect, plant: Machine) -> float:
+    """Least value of an effect that takes from a declared mass or inertia."""
+    if not isinstance(plant, Plant):
+        return -math.inf
+    if effect.name == "payload":
+        return -(1 - LEFT) * plant.chain_values()["table_mass"]
+    if isinstance(effect, InertiaDeviation):
+        return -(1 - LEFT) * declared_inertia(plant.chain_values(), effect.place)
+    return -math.inf
+
+
+def _absent(coordinate: Coordinate) -> float:
+    """Where the effect is absent in one coordinate; NaN where the coordinate chooses a form."""
+    if isinstance(coordinate, Logarithmic):
+        return 0.0 if coordinate.key in FACTORS else math.nan
+    if isinstance(coordinate, Linear):
+        return math.nan if coordinate.key in FORM else float(coordinate.key in FACTORS) / coordinate.size
+    return 0.0
+
+
 def write_coordinates(effects: Sequence[Effect], plant: Machine, vector: FloatArray) -> list[Effect]:
-    """The effects with the values of the vector."""
+    """The effects with the values of the vector, each inside what is physical on the plant."""
     result, at = [], 0
     for effect in effects:
         changed: Effect = effect
         for coordinate in coordinates_of(effect, plant):
             count = len(coordinate.read(effect))
-            changed = changed.with_values(**coordinate.write(effect, [float(c) for c in vector[at : at + count]]))
+            low, high = _ends(effect, coordinate, plant)
+            inside = [min(max(float(c), low), high) for c in vector[at : at + count]]
+            changed = changed.with_values(**coordinate.write(effect, inside))
             at += count
         result.append(changed)
     return result

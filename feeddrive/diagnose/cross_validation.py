@@ -1,9 +1,16 @@
 """Error on blocks of time that were not fitted, without refitting for every block.
 
-The blocks are dealt to folds in turn, so that every fold sees strokes, reversals and chirps. Leaving fold k out moves
-the coordinates by d = -(H - H_k)^-1 g_k, with H = J'J, H_k and g_k = J_k' r_k from the fold alone; the error on the
-fold is that of r_k - J_k d. Exact for linear coordinates, and to second order otherwise.
-Source: Stone, J. Roy. Statist. Soc. B 36 (1974) 111; Roberts et al., Ecography 40 (2017) 913 (blocks).
+Leaving fold k out (see `folds`) moves the coordinates by
+
+    d = -(H - H_k + P)^-1 (J_k' r_k + P b)        H = J'J,  H_k = J_k'J_k,  P = s^2 / w^2
+
+from the fit to what the other folds and the prior say; the error on the fold is that of r_k - J_k d. The prior is that
+the effect is absent: b is how far its coordinates stand from that, w its width. Taken as wide as the effect is large,
+w = |b|, it decides only where the other folds do not tell the effect from none, (H - H_k) b^2 < s^2 with s^2 the mean
+square of the residual: there the error on the fold is that without the effect, and the effect gains nothing. Where they
+tell it by n standard deviations, the value is drawn towards none by a share of 1 / (1 + n^2), 1 % at ten. Exact for
+linear coordinates, and to second order otherwise.
+Source: Stone, J. Roy. Statist. Soc. B 36 (1974) 111; Hoerl and Kennard, Technometrics 12 (1970) 55, for P.
 """
 
 from __future__ import annotations
@@ -13,12 +20,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from feeddrive.diagnose.coordinates import absent_coordinates
 from feeddrive.diagnose.evidence import Evidence
-from feeddrive.diagnose.fit import Problem
+from feeddrive.diagnose.fit import DIFFERENCE, Fit, Problem, unit_columns
+from feeddrive.diagnose.folds import FOLDS
+from feeddrive.diagnose.predictor import Machine
+from feeddrive.effects.base import Effect
 from feeddrive.typing import BoolArray, FloatArray, IntegerArray
-
-FOLDS = 6
-"""Folds to which the blocks are dealt."""
 
 
 @dataclass(frozen=True)
@@ -49,41 +57,83 @@ SIGNIFICANCE = 1.5
 3.4.3) and a half more, because a dozen candidates are tried a round."""
 
 
-def block_numbers(problem: Problem) -> IntegerArray:
-    """Block of every row of the residual, counted over all recordings; channels share their blocks. Shape (m,)."""
-    numbers, first = [], 0
-    for evidence in problem.evidence:
-        rows = np.flatnonzero(evidence.thinned(evidence.fit_rows))
-        blocks = (rows * evidence.recording.sample_time / evidence.block).astype(int)
-        numbers += [first + blocks] * len(evidence.channels)
-        first += int(blocks.max(initial=0)) + 1
-    return np.concatenate(numbers).astype(np.int64)
+@dataclass(frozen=True)
+class Prior:
+    """What is known of fitted coordinates without the recording: the effect is absent, give or take its own size.
+
+    Attributes:
+        beyond: distance of each coordinate from where the effect is absent; 0 where it chooses the form of a law,
+            which is then kept, shape (k,).
+        width: standard deviation about that, shape (k,).
+    """
+
+    beyond: FloatArray
+    width: FloatArray
 
 
-def left_out_residual(residual: FloatArray, jacobian: FloatArray, blocks: IntegerArray) -> FloatArray:
+def prior_of(effects: Sequence[Effect], plant: Machine, coordinates: FloatArray) -> Prior:
+    """The prior of effects whose coordinates are as given, shape (k,).
+
+    Components and nodes that belong together share one width, the root of their mean square. A form is known to its
+    unit: a factor of e where it is logarithmic, its size of interest elsewhere.
+    """
+    absent, groups = absent_coordinates(effects, plant)
+    beyond = np.where(np.isnan(absent), 0.0, coordinates - absent)
+    count = np.bincount(groups)
+    width = np.sqrt(np.bincount(groups, weights=beyond**2) / np.maximum(count, 1))[groups]
+    # a coordinate is not resolved below the step of the slopes
+    return Prior(beyond, np.where(np.isnan(absent), 1.0, np.maximum(width, DIFFERENCE)))
+
+
+def left_out_residual(problem: Problem, fitted: Fit, blocks: IntegerArray) -> FloatArray:
+    """Weighted residual of each block when its fold is not fitted, shape (m,); see `left_out`."""
+    prior = prior_of(fitted.free, problem.plant, fitted.coordinates)
+    return left_out(fitted.residual, fitted.jacobian, blocks, prior)
+
+
+def left_out(residual: FloatArray, jacobian: FloatArray, blocks: IntegerArray, prior: Prior) -> FloatArray:
     """Residual of each block when its fold is not fitted.
 
     Args:
         residual: weighted, shape (m,).
         jacobian: of the fitted coordinates, shape (m, k); k may be 0.
-        blocks: block of every row, shape (m,).
+        blocks: block of every row, shape (m,); its remainder by `FOLDS` is its fold.
+        prior: of the coordinates.
 
     Returns:
         Weighted residual, shape (m,).
     """
-    left_out = residual.copy()
-    if jacobian.shape[1]:
-        scale = np.linalg.norm(jacobian, axis=0)
-        scaled = jacobian / np.where(scale > 0, scale, 1.0)
-        normal = scaled.T @ scaled
-        for fold in range(FOLDS):
-            rows = blocks % FOLDS == fold
-            part = scaled[rows]
-            rest = normal - part.T @ part
-            # at the fit J'r = 0; a fit that stopped early is taken as it is, not as it might have become
-            move = -np.linalg.lstsq(rest, part.T @ residual[rows], rcond=1e-12)[0]
-            left_out[rows] = residual[rows] - part @ move
-    return left_out
+    result = residual.copy()
+    square = float(np.mean(residual**2)) if len(residual) else 0.0
+    if not jacobian.shape[1] or not 0 < square < np.inf:
+        return result
+    scaled, length = unit_columns(jacobian)
+    scale = np.where(length > 0, length, 1.0)
+    normal = scaled.T @ scaled
+    known = prior_information(prior.width * scale, square)
+    pull = known * prior.beyond * scale
+    for fold in range(FOLDS):
+        rows = blocks % FOLDS == fold
+        part = scaled[rows]
+        rest = normal - part.T @ part + np.diag(known)
+        # at the fit J'r = 0; a fit that stopped early is taken as it is, not as it might have become
+        result[rows] = residual[rows] + part @ np.linalg.solve(rest, part.T @ residual[rows] + pull)
+    return result
+
+
+def prior_information(width: FloatArray, square: float) -> FloatArray:
+    """Information of the prior on columns of length one, shape (k,): what one residual square leaves of its width.
+
+    Never less than rounding makes of the information of a column: that much is none.
+
+    Args:
+        width: standard deviation of each coefficient, shape (k,).
+        square: mean square of the residual.
+    """
+    least = 4 * max(len(width), 1) * float(np.finfo(float).eps)
+    with np.errstate(over="ignore"):
+        known: FloatArray = np.clip(square / np.square(width), least, 1 / least)
+    return known
 
 
 def compare_left_out(

@@ -20,6 +20,7 @@ from feeddrive.diagnose.ledger.entry import kept_of
 from feeddrive.diagnose.logged import hold_of, may_be_logged
 from feeddrive.diagnose.logged import sentence as held_for
 from feeddrive.diagnose.preparation import prepared
+from feeddrive.diagnose.recording_faults import refuse_faulty
 from feeddrive.diagnose.recordings.compared import compared_recordings, last_state, machine_as_last, with_carrying
 from feeddrive.diagnose.recordings.recordings import without_shifts
 from feeddrive.diagnose.recordings.rehoming import rehomed_plant
@@ -35,6 +36,7 @@ from feeddrive.diagnose.starts.needs import WITHOUT_TORQUE
 from feeddrive.diagnose.torque_channel import without_torque_sentence
 from feeddrive.diagnose.unexplained.instead import without_stand_ins
 from feeddrive.diagnose.unexplained.unexplained import explain_rest
+from feeddrive.diagnose.veto import without_denied
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
@@ -142,6 +144,7 @@ def _begun(
     hold: float | None,
 ) -> _Begun:  # fmt: skip
     problem, judged, told = prepared(plant, recordings, validation, split, hold)
+    refuse_faulty(problem, (*problem.evidence, *judged))
     also = () if hold is None else (held_for(hold, recordings[0].sample_time),)
     return _Begun(problem, judged, (*told, *also))
 
@@ -174,10 +177,17 @@ def _settled(
     if (fewer := without_stand_ins(found, judged)) is not found:
         found = fewer
         judged, rehomed = _judged(found, evidence)
+
+    def judge(other: Search) -> list[Judged]:
+        return _judged(other, evidence)[0]
+
+    found, judged = without_denied(found, judged, judge)
     preferred, rivals = with_the_preferred(found, rivals_of(found, judged))
     if preferred is not found:
-        found = preferred
-        judged, rehomed = _judged(found, evidence)
+        kept, judged = without_denied(preferred, judge(preferred), judge)
+        rivals = rivals if kept is preferred else rivals_of(kept, judged)
+        found = kept
+    judged, rehomed = _judged(found, evidence)
     refinement = Refinement(found, (judged, rehomed))
     if simulate:
         said("simulating the closed loop, and refining in simulation")

@@ -63,6 +63,11 @@ class Evidence:
         return tuple(self.measured)
 
     @property
+    def motion_speed(self) -> FloatArray:
+        """Speed that tells kinds of motion apart, (n,); 0 where no motion is known."""
+        return np.zeros(len(self.counted))
+
+    @property
     def fit_rows(self) -> BoolArray:
         """Samples that count and are fitted."""
         return self.counted & self.fitted
@@ -114,6 +119,11 @@ class AxisEvidence(Evidence):
     motion: MotorMotion
     band: Band
     scaled_from: str = ""
+
+    @property
+    def motion_speed(self) -> FloatArray:
+        """Speed of the motor [rad/s], (n,)."""
+        return self.motion.speed[self.motion.samples]
 
     def with_scale(self, scale: float) -> AxisEvidence:
         """The evidence with its motor torque times `scale`."""

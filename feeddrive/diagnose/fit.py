@@ -3,7 +3,8 @@
     r_c = (measured_c - predicted_c) / noise_c      in the band, table position less its mean per recording
 
 The Jacobian comes from simulations at slightly changed coordinates; the loop over samples is compiled and exact, so the
-differences are smooth. Levenberg-Marquardt; the Jacobian is kept where the prediction is straight, and corrected where
+differences are smooth. Levenberg-Marquardt inside the physical range of every value: a step that would leave it ends
+there, and the others are solved for again. The Jacobian is kept where the prediction is straight, and corrected where
 it bends a little, as simulations are what costs time.
 """
 
@@ -15,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from feeddrive.diagnose.coordinates import read_coordinates, write_coordinates
+from feeddrive.diagnose.coordinates import coordinate_ends, read_coordinates, write_coordinates
 from feeddrive.diagnose.evidence import Evidence
 from feeddrive.diagnose.predictor import Machine, Predictor
 from feeddrive.effects.base import Effect
@@ -47,18 +48,26 @@ class Fit:
         effects: with fitted values, in the order given.
         residual: weighted, at the thinned fitted samples of all channels and recordings, shape (m,).
         jacobian: of the prediction in fit coordinates, weighted alike, shape (m, k).
-        coordinates: shape (k,).
+        coordinates: of the free effects, shape (k,).
+        held: number of effects that were not free; they come first.
     """
 
     effects: tuple[Effect, ...]
     residual: FloatArray
     jacobian: FloatArray
     coordinates: FloatArray
+    held: int = 0
+
+    @property
+    def free(self) -> tuple[Effect, ...]:
+        """The effects that the coordinates are of."""
+        return self.effects[self.held :]
 
     @property
     def squared_error(self) -> float:
         """Sum of the weighted squared residuals; infinite where the plant could not be simulated."""
-        total = float(self.residual @ self.residual)
+        with np.errstate(over="ignore", invalid="ignore"):
+            total = float(self.residual @ self.residual)
         return total if np.isfinite(total) else float("inf")
 
 
@@ -94,12 +103,13 @@ class Problem:
         """Slope of the prediction with the coordinates of the free effects."""
         moved = [effect for effect, is_free in zip(effects, free, strict=True) if is_free]
         vector = read_coordinates(moved, self.plant)
+        _, high = coordinate_ends(moved, self.plant)
         columns = []
         for i in range(len(vector)):
             step = np.zeros(len(vector))
-            step[i] = DIFFERENCE
+            step[i] = DIFFERENCE if vector[i] + DIFFERENCE <= high[i] else -DIFFERENCE
             changed = _placed(effects, free, write_coordinates(moved, self.plant, vector + step))
-            columns.append((self.predicted(changed) - base) / DIFFERENCE)
+            columns.append((self.predicted(changed) - base) / step[i])
         return np.column_stack(columns) if columns else np.zeros((len(base), 0))
 
 
@@ -111,8 +121,8 @@ def fit(
 
     Args:
         problem: what is fitted to what.
-        effects: beyond the declared ones; the others keep their values.
-        free: which are fitted; all if None.
+        effects: beyond the declared ones.
+        free: which are fitted, those that are not first; all if None.
         iterations: at most.
         error_only: leave out the Jacobian, where only the error of the values as they are is asked for.
 
@@ -123,11 +133,11 @@ def fit(
     measured, predicted = problem.measured(), problem.predicted(effects)
     at = _State(list(effects), predicted, measured - predicted)
     if error_only:
-        return Fit(tuple(effects), at.residual, np.zeros((len(predicted), 0)), np.zeros(0))
+        return Fit(tuple(effects), at.residual, np.zeros((len(predicted), 0)), np.zeros(0), len(effects))
     jacobian, exact = problem.jacobian(at.effects, chosen, at.predicted), True
     damping = FREE
     for _ in range(iterations):
-        if jacobian.shape[1] == 0 or not np.all(np.isfinite(jacobian)):
+        if jacobian.shape[1] == 0 or not np.all(np.isfinite(jacobian)) or not np.isfinite(at.squared_error):
             break
         lower = _lower(problem, at, chosen, jacobian, damping)
         damping = lower.damping
@@ -151,7 +161,8 @@ def fit(
     if not exact:
         jacobian = problem.jacobian(at.effects, chosen, at.predicted)
     moved = [effect for effect, is_free in zip(at.effects, chosen, strict=True) if is_free]
-    return Fit(tuple(at.effects), at.residual, jacobian, read_coordinates(moved, problem.plant))
+    held = chosen.index(True) if any(chosen) else len(chosen)
+    return Fit(tuple(at.effects), at.residual, jacobian, read_coordinates(moved, problem.plant), held)
 
 
 @dataclass(frozen=True)
@@ -164,7 +175,8 @@ class _State:
 
     @property
     def squared_error(self) -> float:
-        return float(self.residual @ self.residual)
+        with np.errstate(over="ignore", invalid="ignore"):
+            return float(self.residual @ self.residual)
 
 
 @dataclass(frozen=True)
@@ -177,16 +189,14 @@ class _Lower:
 
 
 def _lower(problem: Problem, at: _State, free: Sequence[bool], jacobian: FloatArray, damping: float) -> _Lower:
-    """A damped Gauss-Newton step, damped more until it lowers the squared error."""
+    """A damped step inside the physical range, damped more until it lowers the squared error."""
     measured = at.predicted + at.residual
     moved = [effect for effect, is_free in zip(at.effects, free, strict=True) if is_free]
-    normal = jacobian.T @ jacobian
-    scale = np.diag(normal).copy()
-    scale[scale <= 0] = 1.0
+    start = read_coordinates(moved, problem.plant)
+    low, high = coordinate_ends(moved, problem.plant)
     for _ in range(5):
-        damped = normal + damping * np.diag(scale)
-        step = np.asarray(np.linalg.lstsq(damped, jacobian.T @ at.residual, rcond=1e-14)[0], dtype=np.float64)
-        vector = read_coordinates(moved, problem.plant) + step
+        step = inside_step(jacobian, at.residual, damping, low - start, high - start)
+        vector = start + step
         effects = _placed(at.effects, free, write_coordinates(moved, problem.plant, vector))
         if not problem.possible(effects) and problem.possible(at.effects):
             damping = max(damping * 30, 1e-4)  # a shorter step stays where friction takes power
@@ -197,6 +207,57 @@ def _lower(problem: Problem, at: _State, free: Sequence[bool], jacobian: FloatAr
             return _Lower(state, step, max(damping * 0.1, 1e-9))
         damping = max(damping * 30, 1e-4)
     return _Lower(None, step, damping)
+
+
+def inside_step(
+    jacobian: FloatArray, residual: FloatArray, damping: float, low: FloatArray, high: FloatArray
+) -> FloatArray:
+    """Damped Gauss-Newton step that stays inside its ends, each column damped by a share of its own square.
+
+    A coordinate that would leave its range is set to the end of it, and the others are solved for again.
+
+    Args:
+        jacobian: shape (m, k).
+        residual: shape (m,).
+        damping: share of each column's square.
+        low, high: ends of the step, shape (k,).
+
+    Returns:
+        The step, shape (k,); 0 along columns of zeros, or that no number can hold.
+    """
+    columns, length = unit_columns(jacobian)
+    step = np.zeros(len(length))
+    free = length > 0
+    known = columns.T @ columns + damping * np.eye(len(length))
+    wanted = columns.T @ residual
+    while free.any():
+        held = known[np.ix_(free, ~free)] @ (step * length)[~free]
+        solved = np.linalg.lstsq(known[np.ix_(free, free)], wanted[free] - held, rcond=1e-14)[0]
+        step[free] = solved / length[free]
+        outside = free & ((step < low) | (step > high))
+        if not outside.any():
+            break
+        step[outside] = np.clip(step, low, high)[outside]
+        free &= ~outside
+    return step
+
+
+def linear_step(jacobian: FloatArray, residual: FloatArray) -> FloatArray:
+    """Step (k,) that one linear fit of a residual (m,) makes; 0 along columns of zeros, or that no number can hold."""
+    columns, length = unit_columns(jacobian)
+    if not len(length) or not np.all(np.isfinite(residual)):
+        return np.zeros(len(length))
+    step: FloatArray = np.linalg.lstsq(columns, residual, rcond=1e-10)[0] / np.where(length > 0, length, 1.0)
+    return np.where(length > 0, step, 0.0)
+
+
+def unit_columns(jacobian: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Columns of length one and their lengths, (m, k) and (k,); both are 0 for a column of zeros, or not finite."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        length = np.linalg.norm(jacobian, axis=0)
+    usable = np.isfinite(length) & (length > 0)
+    columns = np.where(usable, jacobian, 0.0) / np.where(usable, length, 1.0)
+    return columns, np.where(usable, length, 0.0)
 
 
 def _placed(effects: Sequence[Effect], free: Sequence[bool], moved: Sequence[Effect]) -> list[Effect]:

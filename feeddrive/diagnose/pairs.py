@@ -7,15 +7,15 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from feeddrive.diagnose.attempt import Attempt, compared
-from feeddrive.diagnose.coordinates import read_coordinates
+from feeddrive.diagnose.coordinates import absent_coordinates, read_coordinates
 from feeddrive.diagnose.cross_validation import (
     Comparison,
-    block_numbers,
     compare_left_out,
     least_gain,
     left_out_residual,
 )
-from feeddrive.diagnose.fit import Fit, fit
+from feeddrive.diagnose.fit import Fit, fit, linear_step, unit_columns
+from feeddrive.diagnose.folds import block_numbers
 from feeddrive.errors import InputError
 from feeddrive.typing import FloatArray
 
@@ -64,12 +64,12 @@ def _most_together(usable: Sequence[Attempt], found: Fit) -> Iterator[tuple[Atte
     """Every pair and a bound of its gain: what one linear step takes away of the samples that it is fitted to."""
     if len(usable) < 2:
         return
-    own = [_scaled(_own_columns(attempt)) for attempt in usable]
+    own = [unit_columns(_own_columns(attempt))[0] for attempt in usable]
     ends = np.cumsum([found.jacobian.shape[1], *(part.shape[1] for part in own)])
-    columns = np.hstack([_scaled(found.jacobian), *own])
+    columns = np.hstack([unit_columns(found.jacobian)[0], *own])
     normal = columns.T @ columns
     shared = np.arange(ends[0])
-    left_out = left_out_residual(found.residual, found.jacobian, block_numbers(usable[0].problem))
+    left_out = left_out_residual(usable[0].problem, found, block_numbers(usable[0].problem))
     before = float(left_out @ left_out)
     for i, first in enumerate(usable):
         residual = first.fit.residual
@@ -81,21 +81,23 @@ def _most_together(usable: Sequence[Attempt], found: Fit) -> Iterator[tuple[Atte
             yield first, usable[j], 1 - (energy - taken) / before
 
 
-def _scaled(columns: FloatArray) -> FloatArray:
-    """Columns of length one."""
-    length = np.linalg.norm(columns, axis=0)
-    scaled: FloatArray = columns / np.where(length > 0, length, 1.0)
-    return scaled
-
-
 def linear_pair(first: Attempt, second: Attempt, found: Fit) -> Comparison:
     """Gain of both candidates together by one linear step."""
     columns = _own_columns(first), _own_columns(second)
     jacobian = np.hstack([found.jacobian, *columns])
     blocks = block_numbers(first.problem)
-    step = np.linalg.lstsq(jacobian, first.fit.residual, rcond=1e-10)[0]
-    together = left_out_residual(first.fit.residual - jacobian @ step, jacobian, blocks)
-    before = left_out_residual(found.residual, found.jacobian, blocks)
+    step = linear_step(jacobian, first.fit.residual)
+    effects = (*found.effects, first.fit.effects[-1], second.fit.effects[-1])
+    # the second is not in the residual: its step is all that it does, counted from where it is absent
+    plant = first.problem.plant
+    own = read_coordinates(effects[-1:], plant)
+    absent, _ = absent_coordinates(effects[-1:], plant)
+    start = np.concatenate(
+        [found.coordinates, read_coordinates(effects[-2:-1], plant), np.where(np.isnan(absent), own, absent)]
+    )
+    both = Fit(effects, first.fit.residual - jacobian @ step, jacobian, start + step)
+    together = left_out_residual(first.problem, both, blocks)
+    before = left_out_residual(first.problem, found, blocks)
     return compare_left_out(before, together, blocks, least_gain(first.problem, before, together))
 
 

@@ -7,8 +7,9 @@ from concurrent.futures import ThreadPoolExecutor
 
 from feeddrive.diagnose.attempt import PROMISE, Attempt, refined, started, together
 from feeddrive.diagnose.coordinates import read_coordinates
-from feeddrive.diagnose.cross_validation import LEAST_GAIN, block_numbers, compare_left_out
+from feeddrive.diagnose.cross_validation import LEAST_GAIN, compare_left_out
 from feeddrive.diagnose.fit import Fit
+from feeddrive.diagnose.folds import block_numbers
 from feeddrive.diagnose.pairs import linear_pair
 from feeddrive.diagnose.scene import Scene
 from feeddrive.effects.base import Effect

@@ -16,12 +16,12 @@ from feeddrive.diagnose.attempt import JOINT_ITERATIONS, Attempt, together
 from feeddrive.diagnose.coordinates import read_coordinates
 from feeddrive.diagnose.cross_validation import (
     LEAST_GAIN,
-    block_numbers,
     compare_left_out,
     least_gain,
     left_out_residual,
 )
-from feeddrive.diagnose.fit import Fit, Problem, fit
+from feeddrive.diagnose.fit import Fit, Problem, fit, linear_step
+from feeddrive.diagnose.folds import block_numbers
 from feeddrive.diagnose.pairs import masked_pair
 from feeddrive.diagnose.result import Trial
 from feeddrive.diagnose.round import TIE, one_round, simplest_of_the_best
@@ -184,12 +184,12 @@ def _without_idle(problem: Problem, found: Fit, proved: int) -> Fit:
     if len(found.effects) < 2:
         return found
     blocks = block_numbers(problem)
-    errors = left_out_residual(found.residual, found.jacobian, blocks)
+    errors = left_out_residual(problem, found, blocks)
     for i in range(len(found.effects) - proved):
         if _cost_of_dropping(problem, found, i, blocks, errors) > CLEARLY_NEEDED:
             continue
         rest = fit(problem, found.effects[:i] + found.effects[i + 1 :], iterations=JOINT_ITERATIONS)
-        without = left_out_residual(rest.residual, rest.jacobian, blocks)
+        without = left_out_residual(problem, rest, blocks)
         gain = compare_left_out(without, errors, blocks, least_gain(problem, without, errors))
         if not gain.pays:
             return _without_idle(problem, fit(problem, rest.effects, iterations=JOINT_ITERATIONS), proved)
@@ -201,8 +201,10 @@ def _cost_of_dropping(problem: Problem, found: Fit, index: int, blocks: IntegerA
     rest = found.effects[:index] + found.effects[index + 1 :]
     counts = [len(read_coordinates([effect], problem.plant)) for effect in found.effects]
     start = sum(counts[:index])
-    jacobian = np.delete(found.jacobian, slice(start, start + counts[index]), axis=1)
+    columns = slice(start, start + counts[index])
+    jacobian = np.delete(found.jacobian, columns, axis=1)
     residual = problem.residual(rest)
-    step = np.linalg.lstsq(jacobian, residual, rcond=1e-10)[0]
-    without = left_out_residual(residual - jacobian @ step, jacobian, blocks)
+    step = linear_step(jacobian, residual)
+    moved = Fit(rest, residual - jacobian @ step, jacobian, np.delete(found.coordinates, columns) + step)
+    without = left_out_residual(problem, moved, blocks)
     return compare_left_out(without, errors, blocks, LEAST_GAIN).gain

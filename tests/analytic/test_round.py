@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 
 from feeddrive.diagnose.attempt import Attempt
-from feeddrive.diagnose.cross_validation import block_numbers, compare_left_out, least_gain, left_out_residual
+from feeddrive.diagnose.cross_validation import compare_left_out, least_gain, left_out_residual
 from feeddrive.diagnose.fit import Fit
+from feeddrive.diagnose.folds import block_numbers
 from feeddrive.diagnose.round import simplest_of_the_best
 from feeddrive.effects.base import Effect
 from feeddrive.effects.constant_force import ConstantForce
@@ -30,7 +31,8 @@ def problem() -> Any:
     """What a round asks of a problem: samples in blocks, and which effect is too small."""
     evidence = SimpleNamespace(
         channels=("a",), fit_rows=np.ones(ROWS, dtype=bool), recording=SimpleNamespace(sample_time=1.0),
-        block=20.0, edge=0.5, model_error={}, noise={}, thinned=lambda rows: rows,
+        block=20.0, edge=0.5, model_error={}, noise={}, thinned=lambda rows: rows, counted=np.ones(ROWS, dtype=bool),
+        motion_speed=np.zeros(ROWS),
     )  # fmt: skip
     predictor = SimpleNamespace(chance=30.0, is_material=lambda effect, plant: effect.name != TOO_SMALL.name)
     return SimpleNamespace(evidence=(evidence,), predictor=predictor, plant=Plant("axis", BENCH))
@@ -44,11 +46,12 @@ def found(signal: np.ndarray) -> Fit:
 def attempt(effect: Effect, column: np.ndarray, signal: np.ndarray) -> Attempt:
     """An effect that predicts a column, fitted."""
     made, jacobian = problem(), column[:, None]
-    residual = signal - jacobian @ np.linalg.lstsq(jacobian, signal, rcond=None)[0]
+    coordinates = np.linalg.lstsq(jacobian, signal, rcond=None)[0]
+    fitted = Fit((effect,), signal - jacobian @ coordinates, jacobian, coordinates)
     blocks = block_numbers(made)
-    errors = left_out_residual(residual, jacobian, blocks)
+    errors = left_out_residual(made, fitted, blocks)
     comparison = compare_left_out(signal, errors, blocks, least_gain(made, signal, errors))
-    return Attempt(effect.name, Fit((effect,), residual, jacobian, np.zeros(1)), comparison, made, errors)
+    return Attempt(effect.name, fitted, comparison, made, errors)
 
 
 def taken(signal: np.ndarray, *columns: tuple[Effect, np.ndarray]) -> str:

@@ -29,8 +29,9 @@ from scipy.stats import t as student
 from feeddrive.diagnose.certainty.information import inverse_information
 from feeddrive.diagnose.certainty.noise_colour import fitted_away, score_covariance, spectral_freedom
 from feeddrive.diagnose.coordinates import LOGARITHMIC, spread_to_values, write_coordinates
-from feeddrive.diagnose.cross_validation import block_numbers, model_error_rows
+from feeddrive.diagnose.cross_validation import model_error_rows
 from feeddrive.diagnose.fit import DIFFERENCE, Fit, Problem
+from feeddrive.diagnose.folds import blocks_in_time
 from feeddrive.effects.base import Effect
 from feeddrive.typing import FloatArray, IntegerArray
 
@@ -75,7 +76,7 @@ def certainty(problem: Problem, fitted: Fit) -> Certainty:
     missed = np.diag(inverse @ fitted_away(problem.evidence, rows, jacobian, inverse) @ inverse)
     widened = np.sqrt(_where_it_matters(problem, fitted.residual, influence) / _left(missed, np.diag(inverse)))
     covariance = covariance * np.outer(widened, widened)
-    blocks, freedom = _by_blocks(fitted.residual, influence, block_numbers(problem))
+    blocks, freedom = _by_blocks(fitted.residual, influence, blocks_in_time(problem))
     spread = np.diag(covariance)
     believed = blocks > spread * chi2.ppf(BEYOND_CHANCE, freedom) / freedom
     more = np.sqrt(np.where(believed & (spread > 0), blocks / np.where(spread > 0, spread, 1.0), 1.0))

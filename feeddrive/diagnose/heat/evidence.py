@@ -61,6 +61,11 @@ class HeatEvidence(Evidence):
     ambient: FloatArray
     start_rows: int
 
+    @property
+    def motion_speed(self) -> FloatArray:
+        """Speed of the screw [rad/s], (n,)."""
+        return np.asarray(self.recording[SPEED], dtype=np.float64)
+
     def without_open(self, name: str, part: FloatArray, rows: BoolArray) -> FloatArray:
         """One channel over its noise, (k,), what lies along its own rise u discounted by the gain that is not known.
 

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 
 from feeddrive.diagnose.cross_validation import (
     Comparison,
-    block_numbers,
     compare_left_out,
     least_gain,
     left_out_residual,
 )
 from feeddrive.diagnose.fit import Fit, Problem, fit
+from feeddrive.diagnose.folds import block_numbers
 from feeddrive.diagnose.recordings.change_candidates import Movable
 from feeddrive.diagnose.recordings.recordings import RecordingShift, Target, is_shift
 from feeddrive.effects.base import Effect
@@ -59,6 +59,6 @@ def in_common(problem: Problem, common: Fit, current: Fit, targets: Sequence[Tar
 def compared_fits(problem: Problem, without: Fit, having: Fit) -> Comparison:
     """What one fit brings over another on blocks left out."""
     blocks = block_numbers(problem)
-    before = left_out_residual(without.residual, without.jacobian, blocks)
-    after = left_out_residual(having.residual, having.jacobian, blocks)
+    before = left_out_residual(problem, without, blocks)
+    after = left_out_residual(problem, having, blocks)
     return compare_left_out(before, after, blocks, least_gain(problem, before, after))

@@ -6,19 +6,21 @@ A shift is a column of the Jacobian cut to the rows of its recording, so that al
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from feeddrive.diagnose.cross_validation import (
     Comparison,
-    block_numbers,
     compare_left_out,
     least_gain,
     left_out_residual,
 )
-from feeddrive.diagnose.fit import Fit, Problem
+from feeddrive.diagnose.fit import Fit, Problem, linear_step
+from feeddrive.diagnose.folds import block_numbers
 from feeddrive.diagnose.recordings.change_candidates import Movable
 from feeddrive.diagnose.recordings.recordings import RecordingPredictor
+from feeddrive.thermal.plant import ThermalPlant
 from feeddrive.typing import FloatArray, IntegerArray
 
 Offer = tuple[Movable, Comparison]
@@ -37,11 +39,10 @@ def offers(problem: Problem, current: Fit, free: Sequence[Movable], recordings: 
         The best first; before it a friction level that cannot be told from it, since that is what changes first.
     """
     blocks, rows = block_numbers(problem), recording_of_rows(problem)
-    without = _left_out(current.residual, current.jacobian, blocks)
+    without = _left_out(problem, current, blocks)
     found: list[tuple[Movable, Comparison, FloatArray]] = []
     for one in free:
-        wider = np.hstack([current.jacobian, _columns(current, one, rows, recordings)])
-        errors = _left_out(current.residual, wider, blocks)
+        errors = _left_out(problem, _with_shifts(problem, current, one, rows, recordings), blocks)
         found.append((one, compare_left_out(without, errors, blocks, least_gain(problem, without, errors)), errors))
     found.sort(key=lambda offer: -offer[1].gain)
     for other in found:
@@ -64,10 +65,24 @@ def recording_of_rows(problem: Problem) -> IntegerArray:
     return np.concatenate(parts).astype(np.int64)
 
 
-def _left_out(residual: FloatArray, jacobian: FloatArray, blocks: IntegerArray) -> FloatArray:
+def _left_out(problem: Problem, fitted: Fit, blocks: IntegerArray) -> FloatArray:
     """Residual on blocks left out, after one linear step."""
-    step = np.linalg.lstsq(jacobian, residual, rcond=1e-10)[0] if jacobian.shape[1] else np.zeros(0)
-    return left_out_residual(residual - jacobian @ step, jacobian, blocks)
+    jacobian, residual = fitted.jacobian, fitted.residual
+    step = linear_step(jacobian, residual)
+    moved = replace(fitted, residual=residual - jacobian @ step, coordinates=fitted.coordinates + step)
+    return left_out_residual(problem, moved, blocks)
+
+
+def _with_shifts(problem: Problem, current: Fit, one: Movable, rows: IntegerArray, recordings: Sequence[int]) -> Fit:
+    """The fit with shifts of nothing yet."""
+    columns = _columns(current, one, rows, recordings)
+    shifts = one.shifts(recordings, isinstance(problem.plant, ThermalPlant))
+    return replace(
+        current,
+        effects=(*current.effects, *shifts),
+        jacobian=np.hstack([current.jacobian, columns]),
+        coordinates=np.concatenate([current.coordinates, np.zeros(columns.shape[1])]),
+    )
 
 
 def _columns(current: Fit, one: Movable, rows: IntegerArray, recordings: Sequence[int]) -> FloatArray:

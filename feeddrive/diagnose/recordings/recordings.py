@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from feeddrive.diagnose.coordinates import Coordinate, coordinates_of
+from feeddrive.diagnose.coordinates import coordinates_of, read_coordinates, write_coordinates
 from feeddrive.diagnose.evidence import Evidence
 from feeddrive.diagnose.fit import Problem
 from feeddrive.diagnose.predictor import Predictor
@@ -114,11 +114,13 @@ def in_recording(effects: Sequence[Effect], plant: Any, number: int | None) -> t
 
 
 def _moved(effect: Effect, plant: Any, shift: RecordingShift) -> Effect:
-    coordinate: Coordinate = coordinates_of(effect, plant)[shift.target.coordinate]
+    coordinates = coordinates_of(effect, plant)
     by = shift.values["shift"]
     steps = by if isinstance(by, tuple) else (by,)
-    moved = [c + step for c, step in zip(coordinate.read(effect), steps, strict=True)]
-    return effect.with_values(**coordinate.write(effect, moved))
+    start = sum(len(coordinate.read(effect)) for coordinate in coordinates[: shift.target.coordinate])
+    vector = read_coordinates([effect], plant)
+    vector[start : start + len(steps)] += steps
+    return write_coordinates([effect], plant, vector)[0]
 
 
 @dataclass

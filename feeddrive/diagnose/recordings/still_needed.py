@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from feeddrive.diagnose.coordinates import read_coordinates
-from feeddrive.diagnose.cross_validation import block_numbers, compare_left_out, least_gain, left_out_residual
-from feeddrive.diagnose.fit import Fit, Problem, fit
+from feeddrive.diagnose.cross_validation import compare_left_out, least_gain, left_out_residual
+from feeddrive.diagnose.fit import Fit, Problem, fit, linear_step
+from feeddrive.diagnose.folds import block_numbers
 from feeddrive.diagnose.recordings.recordings import RecordingShift, is_shift
 from feeddrive.effects.base import Effect
 from feeddrive.typing import FloatArray
@@ -26,17 +27,17 @@ def still_needed(problem: Problem, found: Fit) -> Fit:
         found: effects of the machine with shifts.
     """
     blocks = block_numbers(problem)
-    errors = left_out_residual(found.residual, found.jacobian, blocks)
+    errors = left_out_residual(problem, found, blocks)
     offers = []
     for index, effect in enumerate(found.effects):
         if is_shift(effect) or _differs(found, effect):
             continue
         bound = _dropped(found, problem, index)
-        without = left_out_residual(bound.residual, bound.jacobian, blocks)
+        without = left_out_residual(problem, bound, blocks)
         if compare_left_out(without, errors, blocks, 0.0).gain > CLEARLY_NEEDED:
             continue
         rest = fit(problem, bound.effects, iterations=STEPS)
-        without = left_out_residual(rest.residual, rest.jacobian, blocks)
+        without = left_out_residual(problem, rest, blocks)
         comparison = compare_left_out(without, errors, blocks, least_gain(problem, without, errors))
         if not comparison.pays:
             offers.append((comparison.gain, rest))
@@ -57,5 +58,5 @@ def _dropped(found: Fit, problem: Problem, index: int) -> Fit:
     columns = slice(start, start + counts[index])
     jacobian: FloatArray = np.delete(found.jacobian, columns, axis=1)
     residual = problem.residual(rest)
-    step = np.linalg.lstsq(jacobian, residual, rcond=1e-10)[0] if jacobian.shape[1] else np.zeros(0)
-    return Fit(rest, residual - jacobian @ step, jacobian, np.delete(found.coordinates, columns))
+    step = linear_step(jacobian, residual)
+    return Fit(rest, residual - jacobian @ step, jacobian, np.delete(found.coordinates, columns) + step)

@@ -1,4 +1,9 @@
-"""The sums behind a functional analysis of variance: normal equations of all columns, fold by fold."""
+"""The sums behind a functional analysis of variance: normal equations of all columns, fold by fold.
+
+What a fold's own blocks alone tell of a term is drawn to the prior as in `diagnose.cross_validation`: the term is
+absent, give or take its size. For linear columns both are one: with y = r + J c the fit without the fold is
+(H - H_k + P)^-1 (J'y - J_k'y_k).
+"""
 
 from __future__ import annotations
 
@@ -7,7 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feeddrive.diagnose.cross_validation import FOLDS, Comparison, compare_left_out
+from feeddrive.diagnose.cross_validation import Comparison, compare_left_out, prior_information
+from feeddrive.diagnose.folds import FOLDS
 from feeddrive.diagnose.unexplained.term import Term
 from feeddrive.typing import FloatArray, IntegerArray
 
@@ -85,17 +91,30 @@ class Sums:
     def _solved(self, gram: FloatArray, moment: FloatArray) -> FloatArray:
         return np.asarray(np.linalg.solve(gram + RIDGE * np.eye(len(moment)), moment), dtype=np.float64)
 
-    def _fold_values(self, at: IntegerArray) -> list[FloatArray]:
+    def _fold_values(self, terms: Sequence[Term]) -> list[FloatArray]:
         """Values fitted without each fold."""
+        at = self._columns(terms)
         pick = np.ix_(at, at)
         gram, moment = np.sum(self._gram, axis=0)[pick], np.sum(self._moment, axis=0)[at]
-        return [self._solved(gram - self._gram[k][pick], moment - self._moment[k][at]) for k in range(FOLDS)]
+        known = np.diag(self._known(terms, gram, moment))
+        return [self._solved(gram - self._gram[k][pick] + known, moment - self._moment[k][at]) for k in range(FOLDS)]
+
+    def _known(self, terms: Sequence[Term], gram: FloatArray, moment: FloatArray) -> FloatArray:
+        """Information of the prior on each column: a term has one width, the offsets are not known beforehand."""
+        values = self._solved(gram, moment)
+        square = float(self._squares.sum() - moment @ values) / max(len(self._sample.residual), 1)
+        count = len(self._fixed)
+        groups = np.repeat(np.arange(len(terms)), [len(self._at[term]) for term in terms])
+        squares = np.bincount(groups, weights=values[count:] ** 2) / np.maximum(np.bincount(groups), 1)
+        known = np.zeros(len(values))
+        known[count:] = prior_information(np.sqrt(squares)[groups], max(square, 0.0))
+        return known
 
     def squared_error(self, terms: Sequence[Term]) -> float:
         """Squared error on blocks not fitted."""
         at = self._columns(terms)
         total = float(self._squares.sum())
-        for k, values in enumerate(self._fold_values(at)):
+        for k, values in enumerate(self._fold_values(terms)):
             total += float(values @ self._gram[k][np.ix_(at, at)] @ values - 2 * values @ self._moment[k][at])
         return total
 
@@ -105,7 +124,7 @@ class Sums:
         if key not in self._left:
             at = self._columns(terms)
             left = self._sample.residual.copy()
-            for fold, values in zip(self._folds, self._fold_values(at), strict=True):
+            for fold, values in zip(self._folds, self._fold_values(terms), strict=True):
                 left[fold] -= self._matrix[np.ix_(fold, at)] @ values
             self._left[key] = left
         return self._left[key]

@@ -13,12 +13,12 @@ from dataclasses import dataclass, replace
 
 from feeddrive.diagnose.cross_validation import (
     LEAST_GAIN,
-    block_numbers,
     compare_left_out,
     least_gain,
     left_out_residual,
 )
 from feeddrive.diagnose.fit import Problem, fit
+from feeddrive.diagnose.folds import block_numbers
 from feeddrive.diagnose.judge import Judged, channel_results, judged_residual
 from feeddrive.diagnose.result import ChannelResult
 from feeddrive.diagnose.search import Search
@@ -152,8 +152,8 @@ def _needed_beside(problem: Problem, effects: Sequence[Effect], table: Tabulated
     blocks, place = block_numbers(problem), 0
     while place < len(kept.effects) - 1:
         rest = fit(problem, kept.effects[:place] + kept.effects[place + 1 :], iterations=ITERATIONS)
-        without = left_out_residual(rest.residual, rest.jacobian, blocks)
-        having = left_out_residual(kept.residual, kept.jacobian, blocks)
+        without = left_out_residual(problem, rest, blocks)
+        having = left_out_residual(problem, kept, blocks)
         if compare_left_out(without, having, blocks, least_gain(problem, without, having)).pays:
             place += 1
         else:

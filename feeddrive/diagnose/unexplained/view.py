@@ -13,6 +13,7 @@ import numpy as np
 
 from feeddrive.diagnose.evidence import AxisEvidence, Evidence
 from feeddrive.diagnose.fit import Problem
+from feeddrive.diagnose.folds import FOLDS, block_of_rows, dealt_blocks
 from feeddrive.diagnose.predictor import Machine
 from feeddrive.diagnose.unexplained.floor import Floor, noise_floor
 from feeddrive.diagnose.unexplained.functional_sums import Sample
@@ -66,8 +67,12 @@ class View:
     @property
     def blocks(self) -> IntegerArray:
         """Block of time of every row that counts, (m,)."""
-        at = np.flatnonzero(self.rows) * self.evidence.recording.sample_time / self.evidence.block
-        return at.astype(np.int64)
+        return block_of_rows(self.evidence, np.flatnonzero(self.rows))
+
+    @property
+    def dealt(self) -> IntegerArray:
+        """The same blocks under numbers whose remainder by `FOLDS` is their fold, (m,)."""
+        return dealt_blocks(self.evidence)[self.blocks]
 
 
 def views_of(
@@ -145,8 +150,8 @@ def sample_of(views: Sequence[View], least: float) -> Sample:
     owner = np.repeat(np.arange(len(views)), counts)
     blocks, first = [], 0
     for view in views:
-        blocks.append(first + view.blocks)
-        first += int(view.blocks.max(initial=0)) + 1
+        blocks.append(first + view.dealt)
+        first += FOLDS * (int(view.dealt.max(initial=0)) // FOLDS + 1)
     floors = np.array([view.floor.rms**2 for view in views])
     return Sample(
         residual,

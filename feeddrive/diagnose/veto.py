@@ -1,0 +1,198 @@
+"""Names are taken away again that their own evidence denies; what remains is refitted and judged anew.
+
+An effect that the search took is not reported as found where
+
+- a value of it ran to the end of what is physical: the end is no estimate;
+- it does not lower the error on the judged data, or by less than its scatter where they could show it;
+- the intervals of all its sizes hold the absent effect (no amplitude, a factor of one);
+- a channel is predicted worse with what was found than as declared, by more than the scatter of its rms, and this
+  effect worsens it most.
+
+One name goes at a time, that with the least gain of those that are denied: of two that say the same the other may then
+stand. Effects that differ between recordings are left to those who compare the recordings.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.stats import chi2
+
+from feeddrive.diagnose.certainty.uncertainty import certainty
+from feeddrive.diagnose.coordinates import absent_coordinates, coordinate_ends, read_coordinates
+from feeddrive.diagnose.cross_validation import compare_left_out
+from feeddrive.diagnose.fit import Fit, Problem, fit
+from feeddrive.diagnose.judge import Judged, Share, error_series, judged_channels, share_of
+from feeddrive.diagnose.recordings.recordings import RecordingShift, is_shift, without_shifts
+from feeddrive.diagnose.search import Search
+from feeddrive.effects.base import Effect
+from feeddrive.quantity import format_quantity
+from feeddrive.typing import FloatArray, IntegerArray
+
+SCATTER = 2.0
+"""Standard deviations by which a channel must be worse: one of forty by chance."""
+
+
+@dataclass(frozen=True)
+class Denied:
+    """An effect that is not reported, and why."""
+
+    place: int
+    gain: float
+    reason: str
+
+
+def without_denied(
+    found: Search, judged: list[Judged], judge: Callable[[Search], list[Judged]]
+) -> tuple[Search, list[Judged]]:
+    """The search without the names that their own evidence denies, and its judged recordings.
+
+    Args:
+        found: what the search took.
+        judged: recordings with the found effects in.
+        judge: judges other effects.
+    """
+    while (denied := _first_denied(found, judged)) is not None:
+        effects = found.fit.effects
+        gone = effects[denied.place]
+        rest = tuple(effect for i, effect in enumerate(effects) if i != denied.place)
+        still_named = any(effect.name == gone.name for effect in rest)
+        reasons = found.impossible if still_named else {**found.impossible, gone.name: denied.reason}
+        found = replace(found, fit=fit(found.problem, rest), impossible=reasons)
+        judged = judge(found)
+    return found, judged
+
+
+def _first_denied(found: Search, judged: Sequence[Judged]) -> Denied | None:
+    """The denied effect with the least gain on data not fitted; None where there is none."""
+    effects = found.fit.effects
+    named = [i for i in range(len(without_shifts(effects))) if not _differs(effects, i)]
+    if not named:
+        return None
+    shares = {i: share_of(found.problem, judged, effects, i) for i in named}
+    at_end, around_none = ends_reached(found.problem, found.fit), sizes_around_none(found.problem, found.fit)
+    denied = []
+    for i in named:
+        reason = at_end[i] or _no_gain(shares[i]) or around_none[i]
+        if reason:
+            denied.append(Denied(i, shares[i].comparison.gain, reason))
+    if not denied:
+        denied = _worsening(found.problem, judged, shares)
+    return min(denied, key=lambda one: one.gain, default=None)
+
+
+def _differs(effects: Sequence[Effect], place: int) -> bool:
+    return any(isinstance(one, RecordingShift) and one.target.meets(effects[place]) for one in effects)
+
+
+def _no_gain(share: Share) -> str:
+    gain = share.comparison.gain
+    if gain <= max(share.comparison.least, 0.0):
+        return f"it was taken on the fitted data, but does not lower the error on data not fitted ({-gain:+.2%})"
+    if not share.carries and share.shows:
+        return f"on data not fitted it lowers the squared error by {gain:.2%}, less than its scatter"
+    return ""
+
+
+def ends_reached(problem: Problem, fitted: Fit) -> list[str]:
+    """Per effect, a sentence on the first value at an end of what is physical; empty where there is none.
+
+    Where the end is the absent effect, or a default, it is a value as any other: a damper of nothing, a share of none.
+    """
+    result = []
+    for effect in fitted.effects:
+        vector = read_coordinates([effect], problem.plant)
+        low, high = coordinate_ends([effect], problem.plant)
+        absent, _ = absent_coordinates([effect], problem.plant)
+        defaults = read_coordinates([effect.with_values(**_defaults(effect))], problem.plant)
+        # a coordinate is not resolved below the step of the slopes
+        near = np.minimum(np.abs(vector - low), np.abs(high - vector)) < 1e-4 * np.maximum(1.0, np.abs(vector))
+        plain = np.isclose(vector, absent) | (np.isclose(vector, defaults) & np.isnan(absent))
+        result.append(_end_sentence(effect) if np.any(near & ~plain) and not is_shift(effect) else "")
+    return result
+
+
+def _defaults(effect: Effect) -> dict[str, float]:
+    return {
+        p.key: p.default
+        for p in effect.parameters
+        if p.default is not None and isinstance(effect.values.get(p.key), float) and (p.minimum <= p.default)
+    }
+
+
+def _end_sentence(effect: Effect) -> str:
+    values = ", ".join(
+        f"{key.replace('_', ' ')} {format_quantity(value, effect.parameter(key).unit)}"
+        for key, value in effect.values.items()
+        if isinstance(value, float)
+    )
+    return f"a value of it ran to the end of what is physical ({values}), which is no estimate"
+
+
+def sizes_around_none(problem: Problem, fitted: Fit) -> list[str]:
+    """Per effect, a sentence where the 95 % intervals of all its sizes hold the absent effect; else empty.
+
+    Of components and nodes that belong together the whole is asked: their squares over their variances, against the
+    same quantile.
+    """
+    if not fitted.effects:
+        return []
+    known = certainty(problem, fitted)
+    absent, groups = absent_coordinates(fitted.effects, problem.plant)
+    beyond = fitted.coordinates - absent
+    half = np.sqrt(np.diag(known.half_covariance))
+    result, at = [], 0
+    for effect in fitted.effects:
+        count = len(read_coordinates([effect], problem.plant))
+        places = range(at, at + count)
+        sizes = sorted({int(groups[i]) for i in places if not math.isnan(absent[i])})
+        told = [_is_told(known.half_covariance, beyond, half, np.flatnonzero(groups == group)) for group in sizes]
+        result.append("" if any(told) or not sizes or is_shift(effect) else "its interval holds no effect at all")
+        at += count
+    return result
+
+
+def _is_told(covariance: FloatArray, beyond: FloatArray, half: FloatArray, group: IntegerArray) -> bool:
+    """Whether a group of coordinates is told from none."""
+    if len(group) == 1:
+        return bool(abs(beyond[group[0]]) > half[group[0]])
+    part = covariance[np.ix_(group, group)]
+    # half widths are 1.96 standard deviations
+    square = float(beyond[group] @ np.linalg.pinv(part, hermitian=True) @ beyond[group]) * 1.96**2
+    return square > float(chi2.ppf(0.95, len(group)))
+
+
+def _worsening(problem: Problem, judged: Sequence[Judged], shares: dict[int, Share]) -> list[Denied]:
+    """For the channel that is worse than declared by the most, the effect that worsens it most."""
+    worst = max(judged_channels(judged), key=lambda name: worse_by(problem, judged, name))
+    by = worse_by(problem, judged, worst)
+    if by <= 0:
+        return []
+    place = min(shares, key=lambda i: shares[i].explains[worst])
+    reason = f"with it {worst} is predicted worse than as declared on data not fitted, by more than its scatter"
+    return [Denied(place, shares[place].comparison.gain, reason)]
+
+
+def worse_by(problem: Problem, judged: Sequence[Judged], name: str) -> float:
+    """Share by which a channel's squared error is larger than as declared, beyond its scatter; negative where not.
+
+    Both scatters count: that of the gain between blocks, and that of a mean square of 2 B T independent values.
+    """
+    before, after, blocks, first, values = [], [], [], 0, 0.0
+    for one in judged:
+        if name not in one.evidence.channels:
+            continue
+        rows = one.evidence.judged_rows
+        step = one.evidence.recording.sample_time
+        numbers = (np.flatnonzero(rows) * step / one.evidence.block).astype(np.int64)
+        before.append(error_series(problem, one.before, one.evidence)[name][rows])
+        after.append(error_series(problem, one.after, one.evidence)[name][rows])
+        blocks.append(first + numbers)
+        first += int(numbers.max(initial=-1)) + 1
+        values += 2 * one.evidence.edge * float(rows.sum()) * step
+    gain = compare_left_out(np.concatenate(before), np.concatenate(after), np.concatenate(blocks), 0.0)
+    scatter = max(gain.standard_error, math.sqrt(2 / max(values, 1.0)))
+    return -gain.gain - SCATTER * scatter

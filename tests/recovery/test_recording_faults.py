@@ -1,0 +1,126 @@
+"""Recordings of a wrong sign, factor or clock are refused; machines that are other than declared are not."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+from feeddrive.diagnose.preparation import prepared
+from feeddrive.diagnose.recording_faults import refuse_faulty
+from feeddrive.effects.base import Effect, Port
+from feeddrive.effects.catalogue import find_effect
+from feeddrive.effects.constant_force import ConstantForce
+from feeddrive.effects.friction_deviation import FrictionDeviation
+from feeddrive.effects.inertia_deviation import InertiaDeviation
+from feeddrive.effects.payload import Payload
+from feeddrive.errors import InputError
+from feeddrive.plant.plant import Plant
+from feeddrive.recording import Recording
+from tests.recovery.planted import axis_plant, pair
+
+AXES = ("bench", "light")
+
+
+@cache
+def null(axis: str) -> Recording:
+    """A recording in which nothing is lacking."""
+    return pair(axis, "null")[0]
+
+
+def refuse(plant: Plant, recording: Recording) -> None:
+    """What a diagnosis does before its search."""
+    problem, judged, _ = prepared(plant, [recording], [], 0.75)
+    refuse_faulty(problem, judged)
+
+
+def times(recording: Recording, factor: float, offset: float = 0.0) -> Recording:
+    """The recording with its torque times a factor."""
+    torque = factor * recording["motor_torque"] + offset
+    return replace(recording, channels={**recording.channels, "motor_torque": torque})
+
+
+def slower(recording: Recording, factor: float) -> Recording:
+    """The recording with its time stamps times a factor."""
+    return replace(recording, time=factor * recording.time, sample_time=factor * recording.sample_time)
+
+
+@pytest.mark.parametrize("axis", AXES)
+@pytest.mark.parametrize(
+    ("factor", "said"),
+    [
+        (-1.0, "negative"),
+        (100 / 30, "3.33 times"),
+        (1 / 17, "0.0588 times"),
+        (-0.4, "-0.4 times"),
+        (math.sqrt(0.5), "rms value"),
+        (math.sqrt(2.0), "peak value"),
+    ],
+)
+def test_factor_is_refused_with_its_mend(axis: str, factor: float, said: str) -> None:
+    with pytest.raises(InputError) as refused:
+        refuse(axis_plant(axis), times(null(axis), factor, 0.3))
+    line = str(refused.value)
+    # the factor is read to three digits: noise of one percent over thousands of samples moves it by less than 0.1 %
+    line = re.sub(r"-?\d+\.\d+ times", lambda found: f"{float(found[0].split()[0]):.3g} times", line)
+    assert said in line and "\n" not in line
+
+
+@pytest.mark.parametrize("axis", AXES)
+@pytest.mark.parametrize("clock", [2.0, 0.5])
+def test_clock_is_refused_with_the_true_rate(axis: str, clock: float) -> None:
+    with pytest.raises(InputError, match=r"0\.0005 s"):
+        refuse(axis_plant(axis), slower(null(axis), clock))
+
+
+@pytest.mark.parametrize("axis", AXES)
+def test_torque_without_its_sign_is_refused(axis: str) -> None:
+    recording = null(axis)
+    size = {**recording.channels, "motor_torque": np.abs(recording["motor_torque"])}
+    with pytest.raises(InputError, match="lost its sign"):
+        refuse(axis_plant(axis), replace(recording, channels=size))
+
+
+def test_what_is_no_torque_is_refused() -> None:
+    recording = null("bench")
+    other = {**recording.channels, "motor_torque": 10 * recording["table_position"]}
+    with pytest.raises(InputError, match="does not follow the motion"):
+        refuse(axis_plant("bench"), replace(recording, channels=other))
+
+
+# The machine is as it is, and the plant declares it otherwise: what is found would be the opposite deviation.
+DEVIATIONS: dict[str, tuple[Effect, ...]] = {
+    "table twice as heavy": (Payload.of(mass=134.0),),
+    "table ten times as heavy": (Payload.of(mass=1200.0),),
+    "table half as heavy": (Payload.of(mass=-67.0),),
+    "rotor three times its inertia": (InertiaDeviation.of(None, "motor", inertia=5.2e-3),),
+    "rotor a third of its inertia": (InertiaDeviation.of(None, "motor", inertia=-1.7e-3),),
+    "guide friction half as large again": (FrictionDeviation.of(Port.TABLE, coulomb_factor=1.5, viscous_factor=1.5),),
+    "all friction four times": tuple(
+        FrictionDeviation.of(port, coulomb_factor=4.0, viscous_factor=4.0) for port in (Port.TABLE, Port.SCREW)
+    ),
+    "all friction a third": tuple(
+        FrictionDeviation.of(port, coulomb_factor=0.33, viscous_factor=0.33) for port in (Port.TABLE, Port.SCREW)
+    ),
+    "heavier, and friction up by half": (
+        Payload.of(mass=100.0),
+        FrictionDeviation.of(Port.TABLE, coulomb_factor=1.5, viscous_factor=1.5),
+    ),
+    "vertical": (ConstantForce.of(force=1300.0),),
+    "iron that saturates": (find_effect("torque_constant_droop").of(share=0.3, at_torque=5.0),),
+    "stiffness a third": (find_effect("stiffness_deviation").of(factor=0.33),),
+}
+
+
+@pytest.mark.parametrize("name", DEVIATIONS)
+def test_machine_other_than_declared_is_not_refused(name: str) -> None:
+    refuse(axis_plant("bench").with_effects(*DEVIATIONS[name]), null("bench"))
+
+
+@pytest.mark.parametrize("factor", [0.9, 1.1])
+def test_torque_constant_within_its_tolerance_is_not_refused(factor: float) -> None:
+    refuse(axis_plant("bench"), times(null("bench"), factor))
