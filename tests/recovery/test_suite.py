@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
+from tests import state
 from tests.generator.effects import EFFECT_CLASSES
 from tests.recovery.suite import store
 from tests.recovery.suite.bound import fisher
@@ -182,7 +183,7 @@ def test_state_changes_with_all_that_can_change_a_record(tmp_path: Path, monkeyp
         assert store.code_state() != before, name
         (kept / name).write_bytes(text)
     assert store.code_state() == before
-    monkeypatch.setattr(store, "version", lambda library: "0")
+    monkeypatch.setattr(state, "version", lambda library: "0")
     assert store.code_state() != before
 
 

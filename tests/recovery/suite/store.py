@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import multiprocessing
 import re
-import sys
 from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from feeddrive.files import write_text_atomically
 from tests.recovery.suite.cases import Case
 from tests.recovery.suite.one import Record, run
-
-ROOT = Path(__file__).resolve().parents[3]
+from tests.state import ROOT, digest_of
 
 NOT_USED = ("cli", "export", "report", "reproduce")
 """Folders of the package that no diagnosis imports (a test sees to it); all the rest counts, C included."""
@@ -33,12 +29,7 @@ def code_state() -> str:
     The package but `NOT_USED`, the simulator that plants, the suite itself, the plant files, and the versions of Python
     and of `LIBRARIES`.
     """
-    digest = hashlib.sha256(f"Python {sys.version_info.major}.{sys.version_info.minor}\n".encode())
-    for library in LIBRARIES:
-        digest.update(f"{library} {_version(library)}\n".encode())
-    for path in state_files():
-        digest.update(path.relative_to(ROOT).as_posix().encode() + b"\0" + path.read_bytes())
-    return digest.hexdigest()[:12]
+    return digest_of(state_files(), LIBRARIES, ROOT)
 
 
 def state_files() -> list[Path]:
@@ -54,13 +45,6 @@ def state_files() -> list[Path]:
 
 
 SOURCES = (".py", ".c", ".h", ".toml", ".json")
-
-
-def _version(library: str) -> str:
-    try:
-        return version(library)
-    except PackageNotFoundError:
-        return "is not there"
 
 
 def file_of(folder: Path, case: Case) -> Path:
