@@ -20,7 +20,7 @@ PIP_INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help demo test test-slow recovery recovery-smoke fuzz bench lint types format develop clean
+.PHONY: help demo test test-slow check recovery recovery-smoke fuzz bench lint types format develop clean
 
 help: ## show this list
 	@echo "make TARGET, where TARGET is"
@@ -34,6 +34,9 @@ test: $(VENV)/.developing ## the tests, without the slow ones
 
 test-slow: $(VENV)/.developing ## the slow tests alone
 	$(PYTEST) -m slow $(TESTS)
+
+check: $(VENV)/.developing ## every claim beside its bound and what is measured; goes on where it was stopped
+	$(ONE_THREAD) $(BIN)/python -m tests.claims --workers $(WORKERS)
 
 recovery: $(VENV)/.recovery ## plant every effect, diagnose it, write docs/recovery.md; goes on where it was stopped
 	$(ONE_THREAD) $(BIN)/python -m tests.recovery.suite --workers $(WORKERS) $(RECOVERY)

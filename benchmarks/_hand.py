@@ -99,10 +99,12 @@ class RungeKutta:
         )  # fmt: skip
         return table
 
-    def slopes(self, state: FloatArray, command: float) -> FloatArray:
-        out = np.empty(12)
-        state = np.ascontiguousarray(state)
-        self.binary.drive_slopes(
-            self.machine, ctypes.c_void_p(state.ctypes.data), ctypes.c_double(command), ctypes.c_void_p(out.ctypes.data)
-        )
+    def slopes(self, states: FloatArray, command: float) -> FloatArray:
+        """Rates of change of states, shape (12,) or in columns (12, k)."""
+        states = np.ascontiguousarray(states)
+        out = np.empty_like(states)
+        self.binary.drive_slopes_columns(
+            self.machine, ctypes.c_longlong(states.size // 12), ctypes.c_void_p(states.ctypes.data),
+            ctypes.c_double(command), ctypes.c_void_p(out.ctypes.data),
+        )  # fmt: skip
         return out

@@ -29,6 +29,16 @@ void drive_slopes(const machine *m, const double *y, double command, double *slo
   slope[BRISTLE] = bristle;
 }
 
+/* The same of several states that stand in columns, as solvers ask for a Jacobian. */
+void drive_slopes_columns(const machine *m, long long columns, const double *y, double command, double *slope) {
+  double one[STATES], rates[STATES];
+  for (long long k = 0; k < columns; ++k) {
+    for (int i = 0; i < STATES; ++i) one[i] = y[i * columns + k];
+    drive_slopes(m, one, command, rates);
+    for (int i = 0; i < STATES; ++i) slope[i * columns + k] = rates[i];
+  }
+}
+
 void runge_kutta_run(long long samples, long long substeps, double sample, const machine *m, const gains *c,
                      const double *wanted, double *table) {
   double y[STATES] = {0}, at[STATES], k[4][STATES], integral = 0, speed_wanted = 0;

@@ -16,10 +16,12 @@ HEADINGS = ("place", "quantity", "printed", "computed", "deviation", "status")
 SHORT = {
     Status.REPRODUCED: "reproduced",
     Status.ASSUMPTION: "assumed",
+    Status.FITTED: "fitted",
+    Status.PAPER_ONLY: "paper only",
     Status.CONTRADICTED: "contradicted",
     Status.NOT_POSSIBLE: "not possible",
 }
-"""Status in a column; `assumed` is reproduced with the assumption that stands under the row."""
+"""Status in a column; what was assumed or fitted stands under the row."""
 
 _WIDE = 100
 """Letters in a line from which on all columns stand side by side."""

@@ -20,7 +20,10 @@ from feeddrive.output_folder import output_folder, refuse_unusable
 from feeddrive.reproduce.collection import as_csv, counts, find_papers, record, rows_of
 from feeddrive.reproduce.row import Paper, Row
 
-_LEGEND = "assumed: reproduced with the assumption under the row. deviation: (computed - printed) / printed."
+_LEGEND = """\
+reproduced: a law of the package gives the printed value from printed ones. assumed: with the assumption under the row.
+fitted: a value was chosen so that it comes out. paper only: printed numbers and equations among themselves, no law of
+the package. contradicted: the law gives another value. deviation: (computed - printed) / printed."""
 
 
 def command(
@@ -57,7 +60,7 @@ def _announced(papers: tuple[Paper, ...]) -> Iterator[Paper]:
 
 def _content(papers: tuple[Paper, ...], rows: tuple[Row, ...]) -> dict[str, Any]:
     return {
-        "format": "feeddrive-reproduce/1",
+        "format": "feeddrive-reproduce/2",
         "version": __version__,
         "papers": {paper.number: paper.citation for paper in papers},
         "summary": {str(status): number for status, number in counts(rows).items()},

@@ -17,7 +17,7 @@ from feeddrive.diagnose.evidence import Evidence
 from feeddrive.diagnose.fit import Problem
 from feeddrive.diagnose.judge import Judged, channel_results, judged_recordings, prepared_for_judging, share_of
 from feeddrive.diagnose.ledger.entry import kept_of
-from feeddrive.diagnose.logged import hold_of, may_be_logged
+from feeddrive.diagnose.logged import declared_hold, declared_sentence, hold_of, may_be_logged, open_lag
 from feeddrive.diagnose.logged import sentence as held_for
 from feeddrive.diagnose.preparation import prepared
 from feeddrive.diagnose.recording_faults import refuse_faulty
@@ -76,12 +76,15 @@ def diagnose(
         raise InputError(f"--split is {split:g}", "", "use a share between 0.2 and 0.95, such as 0.75")
     if simulate and isinstance(plant, Plant):
         refuse_unfit_loop(plant, (*recordings, *validation))
-    begun = _begun(plant, recordings, validation, split, None)
+    every = (*recordings, *validation)
+    declared = declared_hold(plant, every)
+    begun = _begun(plant, recordings, validation, split, declared, declared_sentence)
     in_the_loop = simulate and isinstance(plant, Plant)
     settled = _settled(begun.problem, begun.judged, in_the_loop, said, start)
-    if (hold := _logged_hold(settled.searched.search, (*recordings, *validation))) is not None:
+    hold = _logged_hold(settled.searched.search, every) if declared is None else declared
+    if hold is not None and declared is None:
         said("the torque is logged more slowly than the drive holds it: again")
-        begun = _begun(plant, recordings, validation, split, hold)
+        begun = _begun(plant, recordings, validation, split, hold, held_for)
         settled = _settled(begun.problem, begun.judged, in_the_loop, said, start)
     searched, judged, refinement = settled.searched, settled.judged, settled.refinement
     found = searched.search
@@ -114,6 +117,7 @@ def diagnose(
         correlation=correlation(found.problem, found.fit, known),
         notes=(
             *begun.told,
+            *(open_lag(found.fit.effects, every) if hold is None else ()),
             *other_places(found, judged),
             *last_state(searched),
             *_notes(begun.problem.evidence, begun.judged, found),
@@ -141,11 +145,11 @@ class _Begun:
 
 def _begun(
     plant: Plant | ThermalPlant, recordings: Sequence[Recording], validation: Sequence[Recording], split: float,
-    hold: float | None,
+    hold: float | None, sentence: Callable[[float, float], str],
 ) -> _Begun:  # fmt: skip
     problem, judged, told = prepared(plant, recordings, validation, split, hold)
     refuse_faulty(problem, (*problem.evidence, *judged))
-    also = () if hold is None else (held_for(hold, recordings[0].sample_time),)
+    also = () if hold is None else (sentence(hold, recordings[0].sample_time),)
     return _Begun(problem, judged, (*told, *also))
 
 

@@ -13,7 +13,7 @@ from typing import Any
 from feeddrive.errors import InputError
 from feeddrive.reproduce.row import Paper, Row, Status
 
-FIELDS = ("paper", "place", "quantity", "unit", "printed", "computed", "deviation", "status", "reason")
+FIELDS = ("paper", "place", "quantity", "unit", "printed", "computed", "deviation", "status", "reason", "law")
 """Of a row in JSON and CSV."""
 
 
@@ -53,7 +53,7 @@ def record(row: Row) -> dict[str, Any]:
     """A row as plain values under `FIELDS`; deviation None where there is none."""
     fields = (
         row.paper.number, row.place, row.quantity, row.unit, row.printed, row.computed, row.deviation,
-        str(row.status), row.reason,
+        str(row.status), row.reason, row.law,
     )  # fmt: skip
     return dict(zip(FIELDS, fields, strict=True))
 

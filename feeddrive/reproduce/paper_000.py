@@ -17,6 +17,7 @@ from feeddrive.parts.contact_angle_optimum import (
     highest_efficiency,
     largest_lead_angle,
 )
+from feeddrive.parts.lubricant import ISO_GRADES
 from feeddrive.parts.preload_torque import ideal_torque, preload_torque, relative_preload_torque
 from feeddrive.parts.screw_efficiency import driving_efficiency
 from feeddrive.parts.screw_friction import ScrewFriction, ScrewGeometry
@@ -38,9 +39,6 @@ SPRINGS, SPRING_STIFFNESS, LARGEST_PRELOAD = 10, 56.9e3, 6e3
 
 ASSUMED_ANGLE = "contact angle 45 deg, which is not printed"
 NO_VALUES = "the figure has no printed values"
-
-VISCOSITY_GRADES = (22, 32, 46, 68, 100)
-"""Grades of ISO 3448 around the printed one."""
 
 
 def rows() -> tuple[Row, ...]:
@@ -68,21 +66,22 @@ def _rig() -> tuple[Row, ...]:
     for name, lead, printed, circle in (("A", LEAD_A, "4.44", 0.0410), ("B", LEAD_B, "5.26", 0.0415)):
         needed = 1e3 * _ball_circle(lead, math.radians(float(printed)))
         wrong = f"the nominal diameter is not that of the ball centres, which the printed angle puts at {needed:.2f} mm"
-        assumed = f"circle of ball centres {1e3 * circle:.1f} mm, which is not printed"
+        assumed = f"circle of ball centres {1e3 * circle:.1f} mm, not printed and chosen to give the angle"
         quantity = f"lead angle of screw {name}"
         nominal = number(PAPER, "section 4.2", f"{quantity}, on the diameter of 40 mm", "deg", printed,
-                         _lead_angle(lead, DIAMETER), otherwise=wrong)  # fmt: skip
+                         _lead_angle(lead, DIAMETER), law=None, otherwise=wrong)  # fmt: skip
         at_balls = number(PAPER, "section 4.2", f"{quantity}, on the ball centres", "deg", printed,
-                          _lead_angle(lead, circle), assumption=assumed)  # fmt: skip
+                          _lead_angle(lead, circle), law=None, fitted=assumed)  # fmt: skip
         result += [nominal, at_balls]
     travel = LARGEST_PRELOAD / (SPRINGS * SPRING_STIFFNESS)
     shown = f"{1e3 * travel:.2f} mm of travel, {LARGEST_PRELOAD / SPRINGS:.0f} N per spring"
     springs = claim(PAPER, "section 3", "10 springs of 56.9 kN/m give the largest preload", "6 kN", shown,
-                    travel < 0.02, assumption="56.9 kN/m is one spring; as a sum it takes ten times the travel",
+                    travel < 0.02,
+                    law=None, assumption="56.9 kN/m is one spring; as a sum it takes ten times the travel",
                     )  # fmt: skip
-    nearest = " and ".join(str(grade) for grade in sorted(VISCOSITY_GRADES, key=lambda g: abs(g - 56))[:2])
+    nearest = " and ".join(f"{grade:g}" for grade in sorted(ISO_GRADES, key=lambda g: abs(g - 56))[:2])
     oil = claim(PAPER, "section 3", "viscosity grade of the oil DTE24", "ISO VG56", f"nearest grades {nearest}",
-                56 in VISCOSITY_GRADES,
+                56 in ISO_GRADES, law=None,
                 otherwise="no grade of ISO 3448; paper 001 gives the same oil as VG32")  # fmt: skip
     return (*result, springs, oil)
 
@@ -94,19 +93,20 @@ def _torque() -> tuple[Row, ...]:
     spread = float(np.ptp(torques / preloads) * 1e3)
     shown = f"{1e3 * torques[0] / preloads[0]:.4f} N m/kN at every preload"
     dry = claim(PAPER, "figure 5", "dry torque is proportional to the preload, whatever the speed", "proportional",
-                shown, spread < 1e-12, assumption=ASSUMED_ANGLE)  # fmt: skip
+                shown, spread < 1e-12, law=preload_torque, assumption=ASSUMED_ANGLE)  # fmt: skip
     viscous = 0.05
     share = 100 * viscous / (viscous + torques[[0, -1]])
     grease = claim(PAPER, "figure 7", "speed shows where the viscous effect is not small against the preload",
                    "at small preload", f"{share[0]:.0f} % of the torque at 500 N, {share[1]:.0f} % at 6 kN",
-                   share[0] > 3 * share[1], assumption=f"a load-free torque of {viscous:g} N m")  # fmt: skip
+                   share[0] > 3 * share[1], law=preload_torque,
+                   assumption=f"a load-free torque of {viscous:g} N m; {ASSUMED_ANGLE}")  # fmt: skip
     ratio = float(preload_torque(_groove(LEAD_ANGLE_B), FRICTION, 1.0, LEAD_B) * preloads[0] / torques[0])
     alike = claim(PAPER, "figure 5", "torque of screw B is less than that of A, with one f for both", "T_B < T_A",
-                  f"T_B = {ratio:.4f} T_A", ratio < 1,
+                  f"T_B = {ratio:.4f} T_A", ratio < 1, law=preload_torque,
                   otherwise="with one friction coefficient the torque follows the lead, 12 mm over 10 mm")  # fmt: skip
     bound = _friction_of_equal_torque()
     higher = claim(PAPER, "figure 5", "torque of screw B is less than that of A, with f of their own", "T_B < T_A",
-                   f"f_A > {bound:.5f}, f_B < {2 * FRICTION - bound:.5f}", bound > FRICTION,
+                   f"f_A > {bound:.5f}, f_B < {2 * FRICTION - bound:.5f}", bound > FRICTION, law=preload_torque,
                    assumption="the two coefficients differ about their mean 0.034; contact angle 45 deg")  # fmt: skip
     missing = "neither viscosity nor film thickness is printed, and the model has no lubricant"
     slow = "neither viscosity of the grease nor any coefficient of the speed is printed"
@@ -140,15 +140,16 @@ def _friction() -> tuple[Row, ...]:
                          "the measured torques are figures without values; "
                          f"0.034 means {torque:.3f} N m on screw A at 6 kN and 45 deg")  # fmt: skip
     ratio = number(PAPER, "section 4.2", "friction coefficient over that of pure rolling, 0.0022", "", "10",
-                   FRICTION / ROLLING_FRICTION, otherwise="the same order of magnitude only")  # fmt: skip
+                   FRICTION / ROLLING_FRICTION, law=None, otherwise="the same order of magnitude only")  # fmt: skip
     psi = [float(slip_angle(_groove(angle))) for angle in (LEAD_ANGLE_A, LEAD_ANGLE_B)]
     along = [FRICTION * math.sin(angle) for angle in psi]
     slip = claim(PAPER, "conclusion 2", "slip, not rolling, makes the coefficient that large", "10 times",
                  f"along the ball path f sin(psi) is {along[0] / ROLLING_FRICTION:.1f} and "
                  f"{along[1] / ROLLING_FRICTION:.1f} times the rolling one", max(along) < 3 * ROLLING_FRICTION,
-                 assumption=ASSUMED_ANGLE)  # fmt: skip
+                 law=slip_angle, assumption=ASSUMED_ANGLE)  # fmt: skip
     lead = claim(PAPER, "section 4.2", "the coefficient depends on the lead angle, by the slip angle",
                  "f_A and f_B differ", f"f_B = {math.sin(psi[0]) / math.sin(psi[1]):.3f} f_A", psi[1] > psi[0],
+                 law=slip_angle,
                  assumption="f sin(psi) is the same in both screws; contact angle 45 deg")  # fmt: skip
     return (found, ratio, slip, lead, _lubricated(geometry))
 
@@ -162,6 +163,7 @@ def _lubricated(geometry: ScrewGeometry) -> Row:
     found = geometry.friction_of(split_torque(preloads, torques))[0]
     return claim(PAPER, "conclusion 1", "a lubricated torque is unfit to estimate the coefficient", "unfit",
                  f"{ends[0]:.4f} at 500 N, {ends[1]:.4f} at 6 kN; by regression {found:.4f}", ends[0] > 1.2 * ends[1],
+                 law=split_torque,
                  assumption="a load-free torque of 0.05 N m on screw A; contact angle 45 deg")  # fmt: skip
 
 
@@ -169,16 +171,19 @@ def _efficiency() -> tuple[Row, ...]:
     """Efficiencies and the best contact angle."""
     eta = tuple(float(driving_efficiency(_groove(angle), FRICTION)) for angle in (LEAD_ANGLE_A, LEAD_ANGLE_B))
     within = span(PAPER, "conclusion 3", "efficiency of screws A and B at f = 0.034", "", 0.90, 0.95, eta,
+                  law=driving_efficiency,
                   assumption=ASSUMED_ANGLE)  # fmt: skip
     cap = float(highest_efficiency(FRICTION))
     top = number(PAPER, "conclusion 3", "upper end of the efficiency, at f = 0.034", "", "0.95", cap,
+                 law=highest_efficiency,
                  otherwise="no lead or contact angle gives more at 0.034; the range is that of single f")  # fmt: skip
     ends = [float(friction_of_highest_efficiency(value)) for value in (0.90, 0.95)]
     spread = claim(PAPER, "conclusion 3", "efficiencies from 0.90 to 0.95 come from f about 0.034", "0.90 to 0.95",
                    f"f from {ends[0]:.4f} to {ends[1]:.4f}", ends[1] < FRICTION < ends[0],
+                   law=friction_of_highest_efficiency,
                    assumption="f of each screw and preload, not their mean; best contact angle")  # fmt: skip
     rise = claim(PAPER, "section 4.1", "the screw of larger lead angle is the more efficient one", "eta_B > eta_A",
-                 f"eta_A = {eta[0]:.6f}, eta_B = {eta[1]:.6f}", eta[1] > eta[0],
+                 f"eta_A = {eta[0]:.6f}, eta_B = {eta[1]:.6f}", eta[1] > eta[0], law=driving_efficiency,
                  otherwise="at one f and 45 deg contact angle it falls slightly with the lead angle")  # fmt: skip
     best = [_best(name, angle) for name, angle in (("A", LEAD_ANGLE_A), ("B", LEAD_ANGLE_B))]
     angles = np.radians([5.0, 10.0, 20.0, 30.0, 40.0])
@@ -186,14 +191,14 @@ def _efficiency() -> tuple[Row, ...]:
     last = math.degrees(float(largest_lead_angle(FRICTION)))
     large = claim(PAPER, "section 4.2", "the best contact angle matters for screws of large lead angle", "grows",
                   f"{optimum[0]:.1f} deg at 5 deg, {optimum[3]:.1f} deg at 30 deg; 90 deg from {last:.1f} deg on",
-                  bool(np.all(np.diff(optimum) > 0)))  # fmt: skip
+                  bool(np.all(np.diff(optimum) > 0)), law=best_contact_angle)  # fmt: skip
     return (within, top, spread, rise, *best, large)
 
 
 def _best(name: str, lead_angle: float) -> Row:
     angle = math.degrees(float(best_contact_angle(lead_angle, FRICTION)))
     return claim(PAPER, "figure 11b", f"best contact angle of screw {name}", "a little above 45", f"{angle:.2f}",
-                 45 < angle < 48, unit="deg")  # fmt: skip
+                 45 < angle < 48, law=best_contact_angle, unit="deg")  # fmt: skip
 
 
 def _figures() -> tuple[Row, ...]:

@@ -51,7 +51,8 @@ def _slip_angles(grooves: Groove) -> Row:
     screw, nut = slip_angles_screw_drives(grooves), slip_angles_nut_drives(grooves)
     turned = max(float(np.max(np.abs(np.abs(a - b) - math.pi))) for a, b in zip(screw, nut, strict=True))
     return claim(PAPER, "eqs. 1, 2", "slip angles of screw drive and nut drive", "differ by pi at A and B",
-                 f"differ by pi to {turned:.0e} rad", turned < SAME)  # fmt: skip
+                 f"differ by pi to {turned:.0e} rad", turned < SAME,
+                 law=slip_angles_screw_drives)  # fmt: skip
 
 
 def _efficiencies(grooves: Groove) -> tuple[Row, Row]:
@@ -59,9 +60,11 @@ def _efficiencies(grooves: Groove) -> tuple[Row, Row]:
     shown, same = _difference(_from_forces(back=False), _printed_driving(FRICTION))
     agrees = same and _difference(np.asarray(driving_efficiency(grooves, FRICTION)), _printed_driving(FRICTION))[1]
     driving = claim(PAPER, "eq. 5", "efficiency, screw drives, from eqs. 3 and 4", "identical", shown, agrees,
+                    law=driving_efficiency,
                     assumption="(cos b - r_a) in eq. 3, where the available text has (-r_a cos b)")  # fmt: skip
     shown, same = _difference(_from_forces(back=True), np.asarray(back_driving_efficiency(grooves, FRICTION)))
     back = claim(PAPER, "eq. 6", "efficiency, nut drives, from eqs. 3 and 4", "identical", shown, same,
+                 law=back_driving_efficiency,
                  assumption="(cos b - r_a) in eq. 3, where the available text has (-r_a cos b)")  # fmt: skip
     return driving, back
 
@@ -93,15 +96,16 @@ def _printed_moment() -> Row:
     found = float(axial_force(1.0, a, b, psi_a, FRICTION)) * math.tan(a) / moment
     expected = float(driving_efficiency(groove, FRICTION))
     return claim(PAPER, "eq. 3", "bracket (-r_a cos b), as in the available text, leads to eq. 5",
-                 f"{expected:.3f} (screw A, by eq. 5)", f"{found:.3f}", abs(found - expected) < 5e-4,
+                 f"{expected:.3f} (screw A, by eq. 5)", f"{found:.3f}", abs(found - expected) < 5e-4, law=None,
                  otherwise="a sign was lost in the text: (cos b - r_a) leads to eqs. 5 and 6 exactly")  # fmt: skip
 
 
 def _no_friction(grooves: Groove) -> Row:
     torque = float(np.max(relative_preload_torque(grooves, 0.0)))
     return claim(
-        PAPER, "figure 3a", "without friction no torque is needed to turn or to hold", "0", f"{torque:g}", torque == 0
-    )
+        PAPER, "figure 3a", "without friction no torque is needed to turn or to hold", "0", f"{torque:g}", torque == 0,
+        law=relative_preload_torque,
+    )  # fmt: skip
 
 
 def _preload_torque(grooves: Groove) -> tuple[Row, Row]:
@@ -109,12 +113,13 @@ def _preload_torque(grooves: Groove) -> tuple[Row, Row]:
     direct = 1 / driving_efficiency(grooves, FRICTION) - back_driving_efficiency(grooves, FRICTION)
     shown, same = _difference(np.asarray(relative_preload_torque(grooves, FRICTION)), np.asarray(direct))
     corrected = claim(PAPER, "eq. 7", "relative preload torque is 1/eta_a - eta_b", "identical", shown, same,
+                      law=relative_preload_torque,
                       assumption='"- f_a" in the first denominator; the available text has it beside')  # fmt: skip
     groove = groove_at(math.radians(4.44), math.pi / 4)
     right, wrong = float(relative_preload_torque(groove, FRICTION)), _printed_torque(groove)
     back = float(friction_from_torque(wrong, groove))
     printed = claim(PAPER, "eq. 7", '"- f_a" beside the fraction, as in the available text', f"{right:.4f} (screw A)",
-                    f"{wrong:.4f}, from which eq. 8 gives f = {back:.4f}", abs(wrong - right) < 5e-5,
+                    f"{wrong:.4f}, from which eq. 8 gives f = {back:.4f}", abs(wrong - right) < 5e-5, law=None,
                     otherwise="a misprint of the text: only in the denominator does f = 0.034 come back")  # fmt: skip
     return corrected, printed
 
@@ -132,8 +137,17 @@ def _inverse(grooves: Groove) -> tuple[Row, Row]:
     found = np.asarray(friction_from_torque(relative, grooves))
     shown, same = _difference(found, np.full_like(found, FRICTION))
     exact = claim(PAPER, "eq. 8", "gives back any f put into eq. 7", "inverse of eq. 7", shown, same,
+                  law=friction_from_torque,
                   assumption='"- f_a" of eq. 7 in the first denominator')  # fmt: skip
     t, a, b = relative, grooves.a_n, grooves.b_n
     shown, same = _difference(found, np.asarray(a * (np.sqrt(1 + t**2 * b**2) - 1) / (t * b**2)))
-    form = claim(PAPER, "eq. 8", "as printed against the form without cancellation", "identical", shown, same)
+    form = claim(
+        PAPER,
+        "eq. 8",
+        "as printed against the form without cancellation",
+        "identical",
+        shown,
+        same,
+        law=friction_from_torque,
+    )
     return exact, form

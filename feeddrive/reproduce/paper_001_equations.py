@@ -8,7 +8,7 @@ import numpy as np
 
 from feeddrive.parts.contact import PointContact
 from feeddrive.parts.life import survival
-from feeddrive.parts.life_exponents import BALL_SCREW
+from feeddrive.parts.life_exponents import BALL_SCREW, load_exponent
 from feeddrive.parts.rating import double_nut_share
 from feeddrive.parts.screw_contact import BallTrack, nut_contact, screw_contact
 from feeddrive.parts.stress_cycles import ball_travel_share
@@ -48,7 +48,7 @@ def _basic_law() -> Row:
     by_3 = _eq_3(np.array([T, mu, nu, E0, total, D_a, Q, u, L, l_0]), c, e)
     spread = float(np.ptp(by_3 / by_1) / np.mean(by_3 / by_1))
     return claim(_LIFE, "eq. (3)", "life law from eqs. (1), (2)", "follows",
-                 f"in proportion to {spread:.0e} at random values", spread < 1e-10)  # fmt: skip
+                 f"in proportion to {spread:.0e} at random values", spread < 1e-10, law=None)  # fmt: skip
 
 
 def _eq_3(values: FloatArray, c: float, e: float) -> FloatArray:
@@ -62,15 +62,15 @@ def _material_constant() -> Row:
     c = BALL_SCREW.stress
     needed, printed = -3 * c / (c + 1), -3 / (c + 1)
     return claim(_LIFE, "eq. (6)", "power of T_1 in the material constant", f"{printed:.3f}", f"{needed:.3f}",
-                 math.isclose(needed, printed, rel_tol=1e-3),
+                 math.isclose(needed, printed, rel_tol=1e-3), law=None,
                  otherwise="the exponent c of T_1 is missing: T_1 must cancel in eqs. (4), (5)")  # fmt: skip
 
 
 def _exponent_of_life() -> Row:
-    exponent = (BALL_SCREW.stress + 1) / (3 * BALL_SCREW.slope)
+    exponent = load_exponent(BALL_SCREW.stress, BALL_SCREW.slope)
     return claim(_LIFE, "eqs. (7), (9)", "exponent of the load, named b", "b",
                  f"eq. (4) solved for L gives {exponent:.3f}, p of eq. (8)",
-                 math.isclose(exponent, BALL_SCREW.load, rel_tol=1e-9),
+                 math.isclose(exponent, BALL_SCREW.load, rel_tol=1e-9), law=load_exponent,
                  assumption="the letter b of the available text is p of eq. (8)")  # fmt: skip
 
 
@@ -80,7 +80,7 @@ def _curvature(track: BallTrack) -> Row:
     direct = [contact.curvatures.difference for contact in contacts]
     return claim(_LIFE, "eq. (14)", "F(b/a) is the difference of curvatures, screw and nut", "identical",
                  f"{found[0]:.5f}, {found[1]:.5f} and {direct[0]:.5f}, {direct[1]:.5f}",
-                 np.allclose(found, direct, rtol=1e-12), assumption=CIRCLE)  # fmt: skip
+                 np.allclose(found, direct, rtol=1e-12), law=screw_contact, assumption=CIRCLE)  # fmt: skip
 
 
 def _eq_14(track: BallTrack, sign: float) -> float:
@@ -95,9 +95,10 @@ def _angle(track: BallTrack) -> Row:
     at_screw, at_balls = track.lead_angle(track.screw_diameter), track.lead_angle(track.pitch_diameter)
     share = ball_travel_share(track)
     with_sum = share * math.cos(at_screw + at_balls) / math.cos(at_screw - at_balls)
-    return claim(_LIFE, "eqs. (20), (22)", "angle between the screw's groove and the path of the balls",
-                 "no formula", f"difference of the lead angles: share of the nut {share:.4f}; sum: {with_sum:.4f}",
-                 True, assumption=f"the difference, from the kinematics; {CIRCLE}")  # fmt: skip
+    reason = f"no formula is printed; by kinematics it is the difference of the lead angles, which gives the nut " \
+        f"{share:.4f} of the travel, and the sum would give {with_sum:.4f}; {CIRCLE}"  # fmt: skip
+    return not_possible(_LIFE, "eqs. (20), (22)", "angle between the screw's groove and the path of the balls", "",
+                        "no formula", reason)  # fmt: skip
 
 
 def _double_nut() -> tuple[Row]:
@@ -105,5 +106,5 @@ def _double_nut() -> tuple[Row]:
     one = survival(double_nut_share() ** BALL_SCREW.load, 1.0)
     return (
         claim(_LIFE, "eqs. (23) to (25)", "two nuts loaded with C_d both survive 10^6 revolutions", "0.9",
-              f"{one**2:.6f}", math.isclose(one**2, 0.9, rel_tol=1e-9)),
+              f"{one**2:.6f}", math.isclose(one**2, 0.9, rel_tol=1e-9), law=double_nut_share),
     )  # fmt: skip

@@ -38,10 +38,10 @@ def _conditions() -> tuple[Row, ...]:
     steps = [(life - FIRST_OPENED) / OPENED_EVERY for life in (FIRST_FAILURE, LAST_FAILURE)]
     return (
         number(_LIFE, "conclusion 5, table 1", "test load of 1350 kgf", "kN", "13.5", force,
-               otherwise="1350 kgf and the 13.5 kN of table 1 differ by 2 %"),
+               law=None, otherwise="1350 kgf and the 13.5 kN of table 1 differ by 2 %"),
         claim(_LIFE, "sec. 2.1", "first and last failure lie on the grid of inspections",
               "opened at 200 000, then every 30 000 rev", f"steps {steps[0]:g} and {steps[1]:g}",
-              all(step == round(step) for step in steps)),
+              all(step == round(step) for step in steps), law=None),
     )  # fmt: skip
 
 
@@ -56,12 +56,14 @@ def _weibull() -> tuple[Row, ...]:
                      f"{ends.slope:.1f}"),
         claim(_LIFE, "sec. 2.2", "slope of ball screws above the 10/9 of ball bearings", "3.6 against 1.11",
               f"90 % interval {interval.low:.2f} to {interval.high:.2f}", interval.low > BALL_BEARING.slope,
-              assumption="all ten failed, and the slope is that of maximum likelihood"),
+              law=complete_slope_interval, assumption="all ten failed, and the slope is that of maximum likelihood"),
         claim(_LIFE, "sec. 2.2", "lives of screws scatter less than those of bearings", "smaller",
-              f"standard deviation over mean {scatter[0]:.2f} against {scatter[1]:.2f}", scatter[0] < scatter[1]),
+              f"standard deviation over mean {scatter[0]:.2f} against {scatter[1]:.2f}", scatter[0] < scatter[1],
+              law=None, assumption="Weibull's law with the two printed slopes"),
         claim(_LIFE, "eq. (1), sec. 2.2", "F in per cent", "F (%)",
               f"ln ln(1/(1 - F)) of one half is {fraction:.3f}, of 50 {_or_none(per_cent)}",
-              math.isfinite(per_cent), otherwise="F must be a fraction: in per cent the logarithm does not exist"),
+              math.isfinite(per_cent),
+              law=None, otherwise="F must be a fraction: in per cent the logarithm does not exist"),
     )  # fmt: skip
 
 
@@ -72,11 +74,11 @@ def _consistency() -> tuple[Row, ...]:
     twenty = WeibullLaw.through(FIRST_FAILURE, float(beta.ppf(0.5, 1, 2 * SPECIMENS)), BALL_SCREW.slope).life()
     return (
         number(_LIFE, "conclusion 5", "rated life L10, greatest of ten lives from 230 000 to 500 000 with slope 3.6",
-               "thousand rev", "300", greatest_rated_life() / _THOUSAND, within=0.01,
+               "thousand rev", "300", greatest_rated_life() / _THOUSAND, law=None, within=0.01,
                otherwise="no ten such lives give 300; with the first failure as the first of twenty single nuts it "
                f"would be {twenty / _THOUSAND:.0f}"),
         claim(_LIFE, "sec. 2.2, conclusion 5", "L10 of 300 000, slope 3.6 and all ten failed by 500 000 rev",
-              "all three", f"chance of it {all_failed:.1e}", all_failed > 0.05,
+              "all three", f"chance of it {all_failed:.1e}", all_failed > 0.05, law=WeibullLaw.failure,
               otherwise=f"with them the last of ten fails at {_median_last(law) / _THOUSAND:.0f} 000 rev; it agrees if "
               "half of the nuts were suspended, or if twenty single nuts are counted"),
     )  # fmt: skip

@@ -6,6 +6,8 @@ from itertools import pairwise
 
 from feeddrive.reproduce.paper_002_sets import PRELOADS, SPEEDS, Assumptions, WarmUp, nut_friction, torque, warm_up
 from feeddrive.reproduce.row import Paper, Row, claim, number
+from feeddrive.thermal.friction import nut_load_torque
+from feeddrive.thermal.moving import moving_system
 
 _HEAT = Paper.HEAT
 _RISES = {670: ("3.14", "5.18", "6.93"), 1300: ("6.97", "11.03", "14.32")}
@@ -26,14 +28,16 @@ def result_rows() -> tuple[Row, ...]:
 def _figure_7(kind: Assumptions, runs: Runs) -> list[Row]:
     within = _WITHIN[kind]
     rows = [
-        number(_HEAT, "fig. 7", f"nut rise at {F} N, {N} rev/min", "K", text, runs[F, N].rise, within=within,
-               assumption=kind.value)
+        number(_HEAT, "fig. 7", f"nut rise at {F} N, {N} rev/min", "K", text, runs[F, N].rise,
+               law=moving_system, within=within,
+               fitted=kind.value)
         for F in PRELOADS
         for N, text in zip(SPEEDS, _RISES[F], strict=True)
     ]  # fmt: skip
     rows += [
         number(_HEAT, "fig. 7", f"time constant at {F} N, {N} rev/min", "min", text, runs[F, N].time_constant,
-               within=within, assumption=kind.value, otherwise=f"{kind.value}; its contact grows with the preload")
+               law=moving_system, within=within,
+               fitted=kind.value, otherwise=f"{kind.value}; its contact grows with the preload")
         for F in PRELOADS
         for N, text in zip(SPEEDS, _CONSTANTS, strict=True)
     ]  # fmt: skip
@@ -50,15 +54,16 @@ def _claims(printed: Runs, fitted: Runs) -> tuple[Row, ...]:
     p, f = Assumptions.PRINTED.value, Assumptions.FITTED.value
     return (
         claim(_HEAT, "concl. (1)", "nut rise grows with preload and speed", "grows", _shown(rises), _grows(rises),
-              unit="K", assumption=p),
+              law=moving_system, unit="K", assumption=p),
         claim(_HEAT, "fig. 6", "shaft cooler than nut, gap grows with preload and speed", "grows", _shown(gaps),
-              _grows(gaps) and min(gaps[0]) > 0, unit="K", assumption=p),
+              _grows(gaps) and min(gaps[0]) > 0, law=moving_system, unit="K", assumption=p),
         claim(_HEAT, "concl. (2)", "friction torque grows with preload and speed", "grows", _shown(torques),
-              _grows(torques), unit="N m", assumption="constants through table 4; any positive ones make it grow"),
+              _grows(torques),
+              law=nut_load_torque, unit="N m", assumption="constants through table 4; any positive ones make it grow"),
         claim(_HEAT, "concl. (3)", "time constant falls with speed", "falls", _shown(constants),
-              all(a > b for row in constants for a, b in pairwise(row)), unit="min", assumption=f),
+              all(a > b for row in constants for a, b in pairwise(row)), law=moving_system, unit="min", fitted=f),
         claim(_HEAT, "concl. (3)", "time constant does not depend on the preload", "equal", f"{spread:.2f} apart",
-              spread < 0.5, unit="min", assumption=f),
+              spread < 0.5, law=moving_system, unit="min", fitted=f),
         _settling(printed),
     )  # fmt: skip
 
@@ -68,7 +73,8 @@ def _settling(runs: Runs) -> Row:
     shares = [_rise_at(runs[670, N], 3 * float(text)) for N, text in zip(SPEEDS, _CONSTANTS, strict=True)]
     shown = ", ".join(f"{100 * share:.1f}" for share in shares)
     return claim(_HEAT, "concl. (4)", "settled to 5 % after 135, 99, 81 min", "95 to the whole percent", shown,
-                 all(share >= 0.945 for share in shares), unit="%", assumption=Assumptions.PRINTED.value)  # fmt: skip
+                 all(share >= 0.945 for share in shares), law=moving_system, unit="%",
+                 assumption=Assumptions.PRINTED.value)  # fmt: skip
 
 
 def _rise_at(run: WarmUp, minutes: float) -> float:
@@ -80,7 +86,7 @@ def _contact_claim(runs: dict[Assumptions, Runs]) -> Row:
     kind = Assumptions.PRINTED
     more = [runs[kind][F, 750].rise - warm_up(kind, F, 750, with_contact=False).rise for F in PRELOADS]
     return claim(_HEAT, "fig. 5", "contact resistance warms the nut, more so at 1300 N", "larger at 1300 N",
-                 f"{more[0]:.2f} and {more[1]:.2f}", 0 < more[0] < more[1], unit="K",
+                 f"{more[0]:.2f} and {more[1]:.2f}", 0 < more[0] < more[1], law=moving_system, unit="K",
                  assumption=f"{kind.value}; the reason is the larger heat, not the contact")  # fmt: skip
 
 

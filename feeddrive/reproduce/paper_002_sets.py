@@ -4,7 +4,8 @@ Both: shaft radius 8 mm (16 mm screw), nut outer radius 20 mm (40 radial cells),
 100 mm at mid shaft, λ 50 W/(m K), no air on the nut's end faces nor on the shaft under the nut, adiabatic shaft ends.
 
 P, "as printed": half of ω T in all (π N T/60), half on each side, contact of table 5, ρc 3.8e6, nut 80 mm, front
-   bearing on a 10 mm seat with h_b and its full heat.
+   bearing on a 10 mm seat with h_b and its full heat. Read literally, (25) to (29) heat two to four times as much: this
+   reading and the nut's length were chosen because figure 7 then comes out.
 F, "fitted": 0.609 ω T all on the nut's side, ten times the contact, ρc 3.926e6, nut 100 mm, no bearing heat.
 """
 
@@ -52,7 +53,7 @@ GRID = Cells(100, 4, 20, 6)
 class Assumptions(Enum):
     """The two sets."""
 
-    PRINTED = "set P: everything printed, total heat 0.5 ωT"
+    PRINTED = "set P: all that is printed; heat 0.5 ωT and a nut of 80 mm chosen so that figure 7 comes out"
     FITTED = "set F: heat 0.609 ωT on the nut's side, contact x10, ρc and nut length fitted"
 
 

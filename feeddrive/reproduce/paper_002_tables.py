@@ -19,7 +19,7 @@ from feeddrive.reproduce.paper_002_sets import (
 )
 from feeddrive.reproduce.row import Paper, Row, claim, not_possible, number
 from feeddrive.thermal.contact_conductance import conductance_at_preload
-from feeddrive.thermal.films import rotating_cylinder_film
+from feeddrive.thermal.films import Films, rotating_cylinder_film
 from feeddrive.thermal.friction import Friction, nut_load_torque
 
 _HEAT = Paper.HEAT
@@ -55,12 +55,13 @@ def _film_rows() -> tuple[Row, ...]:
     for speed, h_n, h_s in zip(SPEEDS, ("5.88", "7.46", "8.91"), ("11.52", "18.29", "23.97"), strict=True):
         turning = np.array([speed * math.pi / 30])
         rows.append(number(_HEAT, "table 3", f"h_s at {speed} rev/min", _FILM, h_s,
-                           float(FILMS.on_screw(turning)[0]), assumption=law))  # fmt: skip
+                           float(FILMS.on_screw(turning)[0]), law=Films.on_screw, fitted=law))  # fmt: skip
         rows.append(number(_HEAT, "table 3", f"h_n at {speed} rev/min", _FILM, h_n,
-                           float(FILMS.on_nut(turning)[0]), within=1e-3, assumption=blend))  # fmt: skip
+                           float(FILMS.on_nut(turning)[0]), law=Films.on_nut, within=1e-3, fitted=blend))  # fmt: skip
         film = rotating_cylinder_film(float(turning[0]), MEAN_DIAMETER)
         rows.append(number(_HEAT, "eq. (30)", f"h_s at {speed} rev/min, from air at 25 °C", _FILM, h_s, film,
-                           within=0.05, assumption="Re = ω d²/ν; properties of air, 5 %"))  # fmt: skip
+                           law=rotating_cylinder_film, within=0.05,
+                           assumption="Re = ω d²/ν; d_m 16.75 mm from table 4; properties of air, 5 %"))  # fmt: skip
     return tuple(rows)
 
 
@@ -69,7 +70,7 @@ def _nut_torque_rows() -> tuple[Row, ...]:
     printed = {670: (".0457", ".0490", ".0518"), 1300: (".1021", ".1055", ".1083")}
     return tuple(
         number(_HEAT, "table 4", f"T_bs at {preload} N, {speed} rev/min", "N m", f"0{text}",
-               torque(nut_friction(preload), speed), assumption=fitted)
+               torque(nut_friction(preload), speed), law=nut_load_torque, fitted=fitted)
         for preload in PRELOADS
         for speed, text in zip(SPEEDS, printed[preload], strict=True)
     )  # fmt: skip
@@ -83,7 +84,7 @@ def _literal_torque_rows() -> tuple[Row, ...]:
         load = nut_load_torque(1.93e-4 * 2, preload, MEAN_DIAMETER, LEAD_ANGLE)
         literal = torque(Friction(load, 10, 170e-6, MEAN_DIAMETER), 250)
         name = f"T_bs at {preload} N, 250 rev/min, literally"
-        rows.append(number(_HEAT, "eq. (22), (24)", name, "N m", text, literal, otherwise=why))
+        rows.append(number(_HEAT, "eq. (22), (24)", name, "N m", text, literal, law=nut_load_torque, otherwise=why))
     return tuple(rows)
 
 
@@ -92,12 +93,13 @@ def _bearing_torque_rows() -> tuple[Row, ...]:
     texts = zip(SPEEDS, ("0.0022", "0.0032", "0.0040"), strict=True)
     rows = [
         number(_HEAT, "table 4", f"T_b at {speed} rev/min", "N m", text, torque(bearing_friction(), speed),
-               assumption=fitted)
+               law=Friction.viscous_torques, fitted=fitted)
         for speed, text in texts
     ]  # fmt: skip
     rises = [torque(Friction(0.0, 3.3, 32e-6, 0.022), speed) for speed in (250, 750)]
     name, short = "T_b(750) - T_b(250) with f0 of an oil bath", "f0 3.3 at d_m 22 mm is 14 % short; d_m 23 mm would do"
-    oil = number(_HEAT, "table 2, eq. (23)", name, "N m", "0.0018", rises[1] - rises[0], otherwise=short)
+    oil = number(_HEAT, "table 2, eq. (23)", name, "N m", "0.0018", rises[1] - rises[0], law=Friction.viscous_torques,
+                 otherwise=short)  # fmt: skip
     return (*rows, oil)
 
 
@@ -108,7 +110,8 @@ def _contact_rows() -> tuple[Row, ...]:
         why = "number of balls, groove and area are not given; an area of 72 mm length fits"
         rows.append(not_possible(_HEAT, "table 5", f"{side} at 670 N", _FILM, low, why))
         computed = conductance_at_preload(float(low), 1300, 670)
-        rows.append(number(_HEAT, "table 5", f"{side} at 1300 N", _FILM, high, computed, within=1e-3, assumption=law))
+        rows.append(number(_HEAT, "table 5", f"{side} at 1300 N", _FILM, high, computed,
+                           law=conductance_at_preload, within=1e-3, assumption=law))  # fmt: skip
     return tuple(rows)
 
 
@@ -118,11 +121,16 @@ def _contradictions() -> tuple[Row, ...]:
     n = 2
     # Cells of radius n are as large as n; k1 = 1 - 0.5/n outwards, k2 = 1 + 0.5/n inwards, as (7) prints them.
     defect = ((n + 1) * (1 + 0.5 / (n + 1)) - n * (1 - 0.5 / n)) / n
+    shift, speed = nut_friction(PRELOADS[0]), SPEEDS[0]
+    # (24) with mm²/s, rev/min and mm, as they stand beside it, is then in N mm times Harris's 1e7.
+    literal = shift.viscous_factor * (1e6 * shift.viscosity * speed) ** (2 / 3) * (1e3 * shift.mean_diameter) ** 3
+    excess = literal / float(shift.viscous_torques(np.array([speed * math.pi / 30]))[0])
     return (
         claim(_HEAT, "eq. (25) to (29)", "heat put in over friction power ωT", "1", f"{sides * rings * rate:.1f}",
-              math.isclose(sides * rings * rate, 1.0), otherwise=half),
+              math.isclose(sides * rings * rate, 1.0), law=None, otherwise=half),
         claim(_HEAT, "eq. (7)", "heat that node n = 2 loses and its neighbour does not get, over the exchange", "0",
-              f"{defect:.1f}", math.isclose(defect, 0.0), otherwise="k1, k2 swapped; (13)-2 conserves heat"),
-        claim(_HEAT, "eq. (23), (24)", "T_v in N m", "f0 (νN)^(2/3) d_m³", "1e10 times too large", False,
+              f"{defect:.1f}", math.isclose(defect, 0.0), law=None, otherwise="k1, k2 swapped; (13)-2 conserves heat"),
+        claim(_HEAT, "eq. (23), (24)", "T_v in N m", "f0 (νN)^(2/3) d_m³", f"{excess:.0e} times too large",
+              math.isclose(excess, 1.0), law=None,
               otherwise="Harris's factor 1e-7 and N mm, mm²/s, mm are missing"),
     )  # fmt: skip

@@ -11,6 +11,7 @@ import numpy as np
 from scipy.integrate import dblquad
 from scipy.optimize import fsolve
 
+from feeddrive.parts.contact import PointContact
 from feeddrive.parts.guide_carriage import carriage_friction, mean_slip_radius
 from feeddrive.parts.guide_coefficients import SET_A
 from feeddrive.parts.guide_equilibrium import guide_equilibrium
@@ -40,14 +41,14 @@ def _hertz_constant() -> Row:
     printed = 0.5 * numbers.approach * total * (1.5 / total * contact.compliance) ** (2 / 3)
     error = abs(contact.approach(8.0) / (printed * 4.0) - 1.0)
     return claim(_PAPER, "eqs. 1, 2", "Hertz's constant as printed gives the approach", "delta = C Q^(2/3)",
-                 f"equal to {max(error, 1e-15):.0e}", error < _SAME)  # fmt: skip
+                 f"equal to {max(error, 1e-15):.0e}", error < _SAME, law=PointContact.approach)  # fmt: skip
 
 
 def _table_1() -> Row:
     sine, cosine = math.sin(HSR_20R.contact_angle), math.cos(HSR_20R.contact_angle)
     return claim(
         _PAPER, "table 1", "V_y of the rows without load", "A_0 sin a_0", f"A_0 cos a_0 is {cosine / sine:.6f} of it",
-        abs(sine / cosine - 1.0) < _SAME, assumption="it stands for A_0 cos a_0, equal at 45 deg alone",
+        abs(sine / cosine - 1.0) < _SAME, law=None, assumption="it stands for A_0 cos a_0, equal at 45 deg alone",
     )  # fmt: skip
 
 
@@ -73,7 +74,7 @@ def _printed_balance() -> Row:
     dx, dy = (1e6 * shift for shift in printed_balance(_LOAD))
     return claim(
         _PAPER, "eq. 7", "HSR-20R, 1 kN vertical: no lateral displacement", "balance of parts A and B in both lines",
-        f"{dx:+.0f} µm vertical, {dy:+.0f} µm lateral", abs(dy) < 0.1,
+        f"{dx:+.0f} µm vertical, {dy:+.0f} µm lateral", abs(dy) < 0.1, law=None,
         otherwise="the lateral line must pair rows by side, not by part, and both lines sum over four rows",
     )  # fmt: skip
 
@@ -82,7 +83,8 @@ def _balance() -> Row:
     dx, dy = 1e6 * guide_equilibrium(HSR_20R, _LOAD).displacement
     return claim(
         _PAPER, "eq. 7", "HSR-20R, 1 kN vertical, four rows paired by side", "no lateral displacement",
-        f"{dx:+.2f} µm vertical, {dy:+.2f} µm lateral", abs(dy) < 1e-6, assumption="(7) summed over four rows, by side",
+        f"{dx:+.2f} µm vertical, {dy:+.2f} µm lateral", abs(dy) < 1e-6, law=guide_equilibrium,
+        assumption="(7) summed over four rows, by side",
     )  # fmt: skip
 
 
@@ -91,7 +93,8 @@ def _two_rows() -> Row:
     share = float(balls[[0, 2]].sum() / balls.sum())
     return claim(
         _PAPER, "eqs. 8-10", "force of one carriage", "z (Q_A + Q_B)", f"{share:.2f} of its four rows",
-        abs(share - 1.0) < 0.01, otherwise="parts A and B have two rows each; shares are the same either way",
+        abs(share - 1.0) < 0.01,
+        law=guide_equilibrium, otherwise="parts A and B have two rows each; shares are the same either way",
     )  # fmt: skip
 
 
@@ -101,7 +104,7 @@ def _film_area() -> Row:
                       lambda u: b * math.sqrt(1 - u**2 / a**2))  # fmt: skip
     ratio = area / (math.pi * a * b)
     return claim(_PAPER, "eq. 9", "area in the viscous force", "double integral", f"{ratio:.6f} pi a b",
-                 abs(ratio - 1.0) < 1e-6)  # fmt: skip
+                 abs(ratio - 1.0) < 1e-6, law=None)  # fmt: skip
 
 
 def _film_power() -> Row:
@@ -111,7 +114,8 @@ def _film_power() -> Row:
     spread = f"{powers.min():.4f} to {powers.max():.4f}"
     return claim(
         _PAPER, "sec. 5.2", "viscous force rises exponentially with speed", "exponentially", f"as v to the {spread}",
-        bool(powers.max() > 1.0), otherwise="a power of speed below 1: 1 less the film's exponent of 0.67 to 0.68",
+        bool(powers.max() > 1.0),
+        law=carriage_friction, otherwise="a power of speed below 1: 1 less the film's exponent of 0.67 to 0.68",
     )  # fmt: skip
 
 
@@ -126,7 +130,7 @@ def _printed_slip() -> Row:
     ratio = printed_slip(1.0) / printed_slip(MILLIMETRE)
     return claim(
         _PAPER, "eqs. 10-12", "slip integral the same in mm and m", "limits from -j to j, integrand k",
-        f"{ratio:.4g} times as large in m", abs(ratio - 1.0) < _SAME,
+        f"{ratio:.4g} times as large in m", abs(ratio - 1.0) < _SAME, law=None,
         otherwise="j has no unit, k is a length: limit and integrand are exchanged, and pi is lost in the pressure",
     )  # fmt: skip
 
@@ -135,7 +139,7 @@ def _slip_independent_of_speed() -> Row:
     slip = carriage_friction(HSR_20R, SET_A, np.array([0.06, 100.0]) / 60.0, _LOAD).slip
     return claim(
         _PAPER, "eq. 10", "slip force does not depend on speed", "omega_b / v_c = 1 / d_b",
-        f"{slip[0]:.4g} and {slip[1]:.4g} N", bool(slip[0] == slip[1]),
+        f"{slip[0]:.4g} and {slip[1]:.4g} N", bool(slip[0] == slip[1]), law=carriage_friction,
         assumption="limit and integrand of (10) exchanged, with pi, sign of (13)",
     )  # fmt: skip
 
@@ -148,7 +152,7 @@ def _printed_radius() -> Row:
     right = mean_slip_radius(d * MILLIMETRE, 0.52, a * MILLIMETRE) / MILLIMETRE
     return claim(
         _PAPER, "eq. 13", "differential radius of an ellipse of 0.1 mm", "d_b/2 times the bracket",
-        f"{printed:.3g} mm², corrected {right:.2e} mm", printed < a, unit="mm",
+        f"{printed:.3g} mm², corrected {right:.2e} mm", printed < a, law=None, unit="mm",
         otherwise="the sign is minus, d_b/2 less the bracket, and the coordinate is the one along a",
     )  # fmt: skip
 
@@ -158,7 +162,7 @@ def _deformed_radius() -> Row:
     printed, harmonic = 2 * 0.52 / (2 * 0.52 + 1), 2.0 / (1.0 / ball + 1.0 / groove)
     return claim(
         _PAPER, "eq. 14", "radius of the deformed surface is the harmonic mean of ball and groove", "2 f d_b/(2 f + 1)",
-        f"{harmonic:.5f} d_b, printed {printed:.5f} d_b", abs(harmonic - printed) < _SAME,
+        f"{harmonic:.5f} d_b, printed {printed:.5f} d_b", abs(harmonic - printed) < _SAME, law=None,
     )  # fmt: skip
 
 
@@ -172,6 +176,6 @@ def _signed_accuracy() -> Row:
     found = accuracy(measured, np.array([5.0, 15.0]))
     return claim(
         _PAPER, "eqs. 16, 17", "the accuracy tells how near prediction is", "100 % is exact",
-        f"{found:.0f} % where every prediction is 50 % off", found < 60.0,
+        f"{found:.0f} % where every prediction is 50 % off", found < 60.0, law=None,
         otherwise="errors keep their sign and cancel; the mean of their sizes would tell",
     )  # fmt: skip

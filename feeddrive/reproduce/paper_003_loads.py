@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from feeddrive.parts.contact import PointContact
 from feeddrive.parts.guide_carriage import carriage_friction
 from feeddrive.parts.guide_coefficients import SET_A
 from feeddrive.parts.guide_equilibrium import guide_equilibrium
@@ -42,7 +43,7 @@ def _parts(name: str) -> Row:
     return claim(
         _PAPER, "sec. 2.2", f"{name}: load of part A rises, of part B falls", "A rises, B falls",
         f"A {balls[0, 0]:.1f} to {balls[-1, 0]:.0f} N, B {balls[0, 1]:.1f} to {balls[-1, 1]:.0f} N at 24 kN",
-        rises and falls, assumption=FOUR_ROWS,
+        rises and falls, law=guide_equilibrium, assumption=FOUR_ROWS,
     )  # fmt: skip
 
 
@@ -51,6 +52,7 @@ def _unloading(name: str) -> Row:
     ratio = unloading_force(guide) / preload_force(guide)
     return number(
         _PAPER, "sec. 4.2", f"{name}: load that takes the preload away, over the preload", "1", "2.83", ratio,
+        law=unloading_force,
         assumption=FOUR_ROWS, otherwise="the contact angle moves under load; 2.83 holds with a fixed angle",
     )  # fmt: skip
 
@@ -60,7 +62,7 @@ def _frozen_angle() -> Row:
     contact = HSR_20R.contacts[0]
     ratio = contact.load(2.0 * HSR_20R.preload_oversize) / contact.load(HSR_20R.preload_oversize)
     return number(_PAPER, "sec. 4.2", "the same with the contact angle fixed", "1", "2.83", ratio,
-                  assumption="contact angle fixed at 45 deg")  # fmt: skip
+                  law=PointContact.load, assumption="contact angle fixed at 45 deg")  # fmt: skip
 
 
 def _friction(guide: BallGuide, load: float, speed: float) -> float:
@@ -73,10 +75,10 @@ def _friction_over_load(name: str) -> tuple[Row, Row]:
     remaining = _balls(guide, 6e3)[1]
     return (
         claim(_PAPER, "sec. 4.2", f"{name}: friction at 1 kN hardly above that at 0 kN, 3 m/min", "slight rise",
-              f"factor {light:.3f}", 1.0 <= light < 1.1, assumption=f"{FOUR_ROWS}; {SET}"),
+              f"factor {light:.3f}", 1.0 <= light < 1.1, law=carriage_friction, assumption=f"{FOUR_ROWS}; {SET}"),
         claim(_PAPER, "sec. 4.2", f"{name}: at 6 kN the preload is lost and friction rises much, 3 m/min", "large rise",
               f"part B carries {remaining:.0f} N, factor {heavy:.2f}", remaining == 0.0 and heavy > 1.5,
-              assumption=f"{FOUR_ROWS}; {SET}"),
+              law=carriage_friction, assumption=f"{FOUR_ROWS}; {SET}"),
     )  # fmt: skip
 
 
@@ -84,7 +86,7 @@ def _initial_load() -> Row:
     first = [_balls(replace(HSR_30R, preload_oversize=1e-6 * size), 0.0)[0] for size in (0, 4, 7)]
     shown = ", ".join(f"{ball:.1f}" for ball in first)
     return claim(_PAPER, "sec. 2.2", "ball load without load rises with preload: 0, 4, 7 µm, HSR-30R", "rises", shown,
-                 first == sorted(first), unit="N")  # fmt: skip
+                 first == sorted(first), law=guide_equilibrium, unit="N")  # fmt: skip
 
 
 def preload_rate(size: float) -> float:
@@ -97,7 +99,7 @@ def _preload_rate() -> Row:
     at_4, at_7 = (1e3 * preload_rate(1e-6 * size) for size in (4, 7))
     return claim(
         _PAPER, "sec. 2.2", "ball load rises slower with load at preload 7 than at 4, HSR-30R", "slower",
-        f"{at_7:.1f} N/kN against {at_4:.1f} N/kN", at_7 < at_4, assumption=FOUR_ROWS,
+        f"{at_7:.1f} N/kN against {at_4:.1f} N/kN", at_7 < at_4, law=guide_equilibrium, assumption=FOUR_ROWS,
     )  # fmt: skip
 
 
@@ -105,7 +107,8 @@ def _joins() -> Row:
     none, most = (_balls(replace(HSR_30R, preload_oversize=1e-6 * size), 12e3)[0] for size in (0, 7))
     gap = 100.0 * (most / none - 1.0)
     return claim(_PAPER, "sec. 2.2", "beyond some load as without preload: preload 7 against 0 at 12 kN, HSR-30R",
-                 "no preload left", f"{gap:.1f} % apart", gap < 5.0, assumption=FOUR_ROWS)  # fmt: skip
+                 "no preload left", f"{gap:.1f} % apart", gap < 5.0, law=guide_equilibrium,
+                 assumption=FOUR_ROWS)  # fmt: skip
 
 
 class OneContact(BallGuide):
@@ -122,7 +125,7 @@ def _one_contact() -> Row:
     force = 1e-3 * unloading_force(guide)
     return claim(
         _PAPER, "eqs. 1, 3", "HSR-30R loses its preload before 6 kN, with C of one contact in (1)", "lost at 6 kN",
-        f"lost at {force:.1f} kN", force < 6.0,
+        f"lost at {force:.1f} kN", force < 6.0, law=unloading_force,
         otherwise="the approach of (3) is that of both contacts: C = C_br + C_bc",
     )  # fmt: skip
 
@@ -135,4 +138,4 @@ def _growth() -> Row:
         steps += [float(np.min(np.diff(force, axis=axis))) for axis in (0, 1)]
     return claim(_PAPER, "sec. 4.2", "friction rises with load and speed over table 3", "rises",
                  f"every step adds at least {max(min(steps), -math.inf):.3f} N", min(steps) > 0.0,
-                 assumption=f"{FOUR_ROWS}; {SET}")  # fmt: skip
+                 law=carriage_friction, assumption=f"{FOUR_ROWS}; {SET}")  # fmt: skip

@@ -12,6 +12,7 @@ from itertools import combinations
 import numpy as np
 from scipy.optimize import brentq
 
+from feeddrive.parts.contact import ball_in_groove
 from feeddrive.parts.guide_carriage import carriage_friction
 from feeddrive.parts.guide_coefficients import SET_A, SET_B, GuideCoefficients
 from feeddrive.parts.guide_film import Oil
@@ -32,6 +33,7 @@ SETS = {"A": SET_A, "B": SET_B}
 _UNIT = 0.01
 _UNIT_SET = GuideCoefficients(_UNIT, _UNIT, Oil(0.1, 2e-8))
 _FITTED = f"{FOUR_ROWS}; coefficients fitted to these shares, u = v/2, R = d_b/2 in the film"
+_BY_SHARES = f"{FOUR_ROWS}; coefficients fitted to the printed shares, u = v/2, R = d_b/2 in the film"
 _MISSED = "no coefficients meet every printed range"
 
 
@@ -72,17 +74,19 @@ def _ranges(name: str) -> tuple[Row, ...]:
     unloaded = (*_of_both(c, SLOW, 0.0, 2), *_of_both(c, FAST, 0.0, 2))
     return (
         span(_PAPER, "sec. 5.2", f"rolling at 0.06 m/min, no load, set {name}", "%", 63, 71, _of_both(c, SLOW, 0.0, 0),
-             slack=_DIGIT, assumption=_FITTED, otherwise=_MISSED),
+             slack=_DIGIT, law=carriage_friction, fitted=_FITTED, otherwise=_MISSED),
         span(_PAPER, "sec. 5.2", f"viscous at 100 m/min, no load, set {name}", "%", 81, 85, _of_both(c, FAST, 0.0, 1),
-             slack=_DIGIT, assumption=_FITTED, otherwise=_MISSED),
+             slack=_DIGIT, law=carriage_friction, fitted=_FITTED, otherwise=_MISSED),
         span(_PAPER, "sec. 5.2", f"slip without load, 0.06 m/min, set {name}", "%", 2, 4, _of_both(c, SLOW, 0.0, 2),
-             slack=_DIGIT, assumption=_FITTED, otherwise=_MISSED),
+             slack=_DIGIT, law=carriage_friction, fitted=_FITTED, otherwise=_MISSED),
         claim(_PAPER, "sec. 5.2", f"slip reaches 4 % at most without load, set {name}", "2 to 4 %",
-              f"{min(unloaded):.1f} to {max(unloaded):.1f} %", max(unloaded) < 4.0 + _DIGIT, assumption=_FITTED,
+              f"{min(unloaded):.1f} to {max(unloaded):.1f} %", max(unloaded) < 4.0 + _DIGIT,
+              law=carriage_friction, fitted=_FITTED,
               otherwise=_MISSED),
         claim(_PAPER, "sec. 5.2", f"slip at 24 kN over sizes and speeds, set {name}", "11 to 45 %",
               f"{min(slip):.0f} to {max(slip):.0f} %", abs(min(slip) - 11) < 3 and abs(max(slip) - 45) < 3,
-              assumption=_FITTED, otherwise=f"{_MISSED}: 45 % asks for more slip than 4 % without load allows"),
+              law=carriage_friction,
+              fitted=_FITTED, otherwise=f"{_MISSED}: 45 % asks for more slip than 4 % without load allows"),
     )  # fmt: skip
 
 
@@ -126,7 +130,8 @@ def _together() -> Row:
     shown = "none" if not corners.size else f"X {corners[:, 0].min():.0f} to {corners[:, 0].max():.0f}, " \
         f"Y {corners[:, 1].min():.1f} to {corners[:, 1].max():.1f}"  # fmt: skip
     return claim(_PAPER, "sec. 5.2", "coefficients that meet all three ranges without load, both sizes", "exist", shown,
-                 corners.size > 0, assumption=f"{FOUR_ROWS}; all ranges read as without load")  # fmt: skip
+                 corners.size > 0,
+                 law=carriage_friction, assumption=f"{FOUR_ROWS}; all ranges read as without load")  # fmt: skip
 
 
 def largest_slip() -> float:
@@ -138,7 +143,7 @@ def _all_together() -> Row:
     slip = largest_slip()
     return claim(
         _PAPER, "sec. 5.2", "slip of 45 % at 24 kN together with the ranges without load", "45 %",
-        f"{slip:.0f} % at most", slip >= 44.5,
+        f"{slip:.0f} % at most", slip >= 44.5, law=carriage_friction,
         otherwise="45 % needs about 6 % of slip without load, printed are 2 to 4 %",
     )  # fmt: skip
 
@@ -146,7 +151,8 @@ def _all_together() -> Row:
 def _rolling_at_every_load() -> Row:
     found = [share for load in (0.0, 6e3, 12e3, HEAVY) for share in _of_both(SET_A, SLOW, load, 0)]
     return span(
-        _PAPER, "sec. 5.2", "rolling at 0.06 m/min over all loads, set A", "%", 63, 71, tuple(found), slack=_DIGIT,
+        _PAPER, "sec. 5.2", "rolling at 0.06 m/min over all loads, set A", "%", 63, 71, tuple(found),
+        law=carriage_friction, slack=_DIGIT,
         otherwise="slip takes its share at high load; the range holds without",
     )  # fmt: skip
 
@@ -154,7 +160,8 @@ def _rolling_at_every_load() -> Row:
 def _viscous_at_every_load() -> Row:
     found = [share for load in (0.0, 6e3, 12e3, HEAVY) for share in _of_both(SET_A, FAST, load, 1)]
     return span(
-        _PAPER, "sec. 5.2", "viscous at 100 m/min over all loads, set A", "%", 81, 85, tuple(found), slack=_DIGIT,
+        _PAPER, "sec. 5.2", "viscous at 100 m/min over all loads, set A", "%", 81, 85, tuple(found),
+        law=carriage_friction, slack=_DIGIT,
         otherwise="rolling rises with load, viscous with its power 0.74; the range holds without load",
     )  # fmt: skip
 
@@ -180,7 +187,8 @@ def _dominates(name: str, load: float) -> Row:
     from_load = 1e-3 * dominance_load(guide, SET_A)
     return claim(
         _PAPER, "sec. 6 (5)", f"{name}, {1e-3 * load:g} kN: rolling dominates below 2 m/min", "2 m/min",
-        f"below {speed:.2f} m/min", speed >= 2.0, assumption=f"{_FITTED}; true above {from_load:.1f} kN only",
+        f"below {speed:.2f} m/min", speed >= 2.0,
+        law=carriage_friction, assumption=f"{_BY_SHARES}; true above {from_load:.1f} kN only",
         otherwise=f"81 % viscous at 100 m/min and v^0.326 put the limit lower; true above {from_load:.1f} kN",
     )  # fmt: skip
 
@@ -189,7 +197,8 @@ def _fastest() -> Row:
     found = [shares(guide, SET_A, FAST, load) for guide in SIZES.values() for load in (0.0, 6e3, HEAVY)]
     least = min(float(one[1]) for one in found)
     return claim(_PAPER, "sec. 6 (5)", "at 100 m/min the viscous part is the largest, 0 to 24 kN", "largest",
-                 f"at least {least:.0f} %", all(np.argmax(one) == 1 for one in found), assumption=_FITTED)  # fmt: skip
+                 f"at least {least:.0f} %", all(np.argmax(one) == 1 for one in found),
+                 law=carriage_friction, fitted=_FITTED)  # fmt: skip
 
 
 def _all_rise() -> Row:
@@ -198,20 +207,22 @@ def _all_rise() -> Row:
         before, after = (carriage_friction(guide, SET_A, SLOW, load) for load in (1e3, HEAVY))
         rises += [float(getattr(after, part) / getattr(before, part)) for part in ("rolling", "viscous", "slip")]
     return claim(_PAPER, "sec. 5.2", "rolling, viscous and slip force all rise with load, 1 to 24 kN", "rise",
-                 f"factors {min(rises):.1f} to {max(rises):.0f}", min(rises) > 1.0, assumption=FOUR_ROWS)  # fmt: skip
+                 f"factors {min(rises):.1f} to {max(rises):.0f}", min(rises) > 1.0, law=carriage_friction,
+                 assumption=FOUR_ROWS)  # fmt: skip
 
 
 def _larger_slip() -> Row:
     small, large = _of_both(SET_A, SLOW, HEAVY, 2)
     return claim(_PAPER, "sec. 5.2", "under load slip has a larger share in HSR-20R than in HSR-30R, 24 kN", "larger",
-                 f"{small:.0f} % against {large:.0f} %", small > large, assumption=_FITTED)  # fmt: skip
+                 f"{small:.0f} % against {large:.0f} %", small > large,
+                 law=carriage_friction, fitted=_FITTED)  # fmt: skip
 
 
 def _hertz_constant() -> Row:
     small, large = (guide.hertz_constant for guide in SIZES.values())
     return claim(
         _PAPER, "sec. 5.2", "cause: HSR-20R has the smaller Hertz constant", "smaller",
-        f"{100 * (small / large - 1):+.0f} % against HSR-30R", small < large,
+        f"{100 * (small / large - 1):+.0f} % against HSR-30R", small < large, law=ball_in_groove,
         otherwise="C goes as d_b^(-1/3); the cause is the ellipse, larger beside the ball: (a/d_b)^2",
     )  # fmt: skip
 
@@ -219,4 +230,4 @@ def _hertz_constant() -> Row:
 def _overload() -> Row:
     least = min(_of_both(SET_A, SLOW, HEAVY, 2))
     return claim(_PAPER, "sec. 6 (6)", "slip counts at excessive load, 0.06 m/min, 24 kN", "to be considered",
-                 f"at least {least:.0f} %", least > 10.0, assumption=_FITTED)  # fmt: skip
+                 f"at least {least:.0f} %", least > 10.0, law=carriage_friction, fitted=_FITTED)  # fmt: skip

@@ -8,11 +8,12 @@ from feeddrive.parts.combined_stiffness import (
     CombinedStiffness,
     Deformation,
     axial_from_torsional,
+    combined_stiffness,
     torsional_from_axial,
 )
 from feeddrive.parts.screw_drive import BallScrewDrive
 from feeddrive.parts.wedge import self_locking, self_locking_lead, wedge_back_driving_efficiency, wedge_efficiency
-from feeddrive.reproduce.paper_004_drive import MODULI
+from feeddrive.reproduce.paper_004_drive import MODULI, printed_chains, printed_parts
 from feeddrive.reproduce.row import Paper, Row, claim, not_possible, number, span
 
 _BALLS = (0.002, 0.004)
@@ -28,10 +29,11 @@ def efficiency_rows(drive: BallScrewDrive, found: CombinedStiffness) -> tuple[Ro
     paired = _SLIDING[0] / _BALLS[0]
     return (
         number(_PAPER, "sec. 2", "friction of lead screw over ball screw", "", "50", paired,
-               assumption="least with least, most with most; unpaired it is 25 to 100"),
-        span(_PAPER, "sec. 2", "efficiency of this screw, lead 20 mm", "%", 95.0, 98.0, own, slack=0.5,
+               law=None, assumption="least with least, most with most; unpaired it is 25 to 100"),
+        span(_PAPER, "sec. 2", "efficiency of this screw, lead 20 mm", "%", 95.0, 98.0, own,
+             law=wedge_efficiency, slack=0.5,
              otherwise="its lead angle of 9 degrees loses less than printed at the printed friction"),
-        span(_PAPER, "sec. 2", "efficiency at half this lead", "%", 95.0, 98.0, finer, slack=0.5,
+        span(_PAPER, "sec. 2", "efficiency at half this lead", "%", 95.0, 98.0, finer, law=wedge_efficiency, slack=0.5,
              assumption="a lead of 10 mm on 40 mm, as a wedge; the lead is not printed with the claim"),
         _locking_row(lead, diameter),
         _lossless_row(drive, found),
@@ -41,22 +43,24 @@ def efficiency_rows(drive: BallScrewDrive, found: CombinedStiffness) -> tuple[Ro
 
 def part_rows(found: CombinedStiffness) -> tuple[Row, ...]:
     """Which part is the weakest (section 3, Figs. 2 and 3, conclusions)."""
-    axial, twist = (found.shares_within(chain) for chain in (Deformation.AXIAL, Deformation.TORSIONAL))
+    axial, twist = printed_parts().shares_within(Deformation.AXIAL), found.shares_within(Deformation.TORSIONAL)
     order = sorted(axial, key=lambda part: -axial[part])
-    too_stiff = 100.0 * (found.axial / found.total - 1.0)
+    chains = printed_chains()
+    too_stiff = 100.0 * (chains.axial / chains.total - 1.0)
     rest = 1.0 / (1.0 / found.torsional - twist["screw"] / found.torsional)
-    split = "only the sum of coupling and motor is printed; assumed 27 000 and 69 930 N m/rad"
+    split = "only the sum of coupling and motor is printed; 27 000 and 69 930 N m/rad are chosen for this order"
     return (
         claim(_PAPER, "Fig. 2, conclusion 2", "weakest axial part", "screw, over half", _percent(axial),
-              order[0] == "screw" and axial["screw"] > 0.5, assumption=MODULI),
+              order[0] == "screw" and axial["screw"] > 0.5, law=CombinedStiffness),
         claim(_PAPER, "sec. 3", "second weakest axial part", "bearing", order[1], order[1] == "bearing",
-              assumption=MODULI),
+              law=CombinedStiffness),
         claim(_PAPER, "Fig. 3, conclusion 2", "weakest in torsion", "coupling, screw close, motor small",
-              _percent(twist), twist["coupling"] > twist["screw"] > twist["motor shaft"], assumption=split),
+              _percent(twist), twist["coupling"] > twist["screw"] > twist["motor shaft"], law=combined_stiffness,
+              fitted=split),
         not_possible(_PAPER, "eq. (7)", "coupling and motor each", "N m/rad", "in Fig. 3 only",
                      f"text and tables give only both in series, {rest:.0f} N m/rad"),
         claim(_PAPER, "sec. 1, 3", "torsion must not be left out", "not to be overlooked",
-              f"axial chain alone is {too_stiff:.0f} % too stiff", too_stiff > 10.0, assumption=MODULI),
+              f"axial chain alone is {too_stiff:.0f} % too stiff", too_stiff > 10.0, law=CombinedStiffness),
     )  # fmt: skip
 
 
@@ -67,7 +71,7 @@ def _locking_row(lead: float, diameter: float) -> Row:
     otherwise = f"at 0.1 a screw of 40 mm locks up to a lead of {finest:.1f} mm only"
     return claim(
         _PAPER, "sec. 2", "lead screw of friction 0.1 to 0.2 locks itself", "locks", ", ".join(texts),
-        all(states), otherwise=otherwise,
+        all(states), law=self_locking, otherwise=otherwise,
     )  # fmt: skip
 
 
@@ -78,7 +82,8 @@ def _lossless_row(drive: BallScrewDrive, found: CombinedStiffness) -> Row:
     gain = 100.0 * (stiffer / found.total - 1.0)
     return claim(
         _PAPER, "sec. 2", "twist and displacement turn into each other almost without loss", "almost no loss",
-        f"back-driving {100.0 * eta:.1f} %, stiffness +{gain:.2f} %", gain < 1.0, assumption=MODULI,
+        f"back-driving {100.0 * eta:.1f} %, stiffness +{gain:.2f} %", gain < 1.0, law=wedge_back_driving_efficiency,
+        assumption=MODULI,
     )  # fmt: skip
 
 
@@ -89,7 +94,7 @@ def _conversion_row(drive: BallScrewDrive) -> Row:
     error = abs(twist * r / (force / stiffness) - 1.0)
     return claim(
         _PAPER, "eqs. (1)-(5)", "the conversion follows from equal power", "both ways",
-        f"eqs. (2)-(4) close to {max(error, 1e-15):.0e}", error < 1e-12,
+        f"eqs. (2)-(4) close to {max(error, 1e-15):.0e}", error < 1e-12, law=torsional_from_axial,
     )  # fmt: skip
 
 

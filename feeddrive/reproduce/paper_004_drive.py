@@ -4,6 +4,12 @@ from __future__ import annotations
 
 from feeddrive.parts.ball_screw import ScrewShaft
 from feeddrive.parts.bearing import SupportBearing
+from feeddrive.parts.combined_stiffness import (
+    CombinedStiffness,
+    Contribution,
+    Deformation,
+    axial_from_torsional,
+)
 from feeddrive.parts.coupling import Coupling
 from feeddrive.parts.material import STEEL, ShaftMaterial
 from feeddrive.parts.motor import Motor
@@ -20,12 +26,42 @@ TORQUE_LENGTH = 0.670
 MODULI = "E = 210 GPa, G = 83.0 GPa and a solid shaft of 40 mm, none of them printed"
 """The assumption behind every stiffness of the screw."""
 
+LEAD = 0.020
+"""[m] (Table 1)."""
+
+TABLE_MASS = 134.0
+"""[kg] (Table 1)."""
+
+NUT, BEARING = 1499e6, 780e6
+"""Axial stiffness of nut and support bearing [N/m] (Table 1)."""
+
+SCREW, AXIAL_CHAIN, TORSIONAL_CHAIN = 468e6, 244.7e6, 11982.4
+"""Printed results: k_BS, k_XS [N/m] and k_TS [N m/rad] (section 3)."""
+
 CUT_OFF = "its printed digits are cut off, not rounded"
 """Why a computed value may lie up to a whole unit of the last digit above a printed one."""
 
 _MATERIAL = ShaftMaterial(young=210e9, shear=83.0e9, density=STEEL.density, expansion=STEEL.expansion)
 _COUPLING = 27_000.0
 _SHAFT = 69_930.0
+
+
+def printed_parts() -> CombinedStiffness:
+    """The drive as (6) and (7) have it, from the printed stiffness of its parts alone."""
+    axial = (("nut", NUT), ("screw", SCREW), ("bearing", BEARING))
+    parts = [Contribution(name, Deformation.AXIAL, 1.0 / stiffness) for name, stiffness in axial]
+    return CombinedStiffness(LEAD, (*parts, _torsional_chain()))
+
+
+def printed_chains() -> CombinedStiffness:
+    """The drive as (8) has it, from the printed stiffness of its two chains alone."""
+    return CombinedStiffness(
+        LEAD, (Contribution("axial chain", Deformation.AXIAL, 1.0 / AXIAL_CHAIN), _torsional_chain())
+    )
+
+
+def _torsional_chain() -> Contribution:
+    return Contribution("torsional chain", Deformation.TORSIONAL, 1.0 / axial_from_torsional(TORSIONAL_CHAIN, LEAD))
 
 
 def paper_drive(screw_length: float = 0.9) -> BallScrewDrive:
@@ -39,13 +75,13 @@ def paper_drive(screw_length: float = 0.9) -> BallScrewDrive:
         screw_length: fixed bearing to the far end [m]; it matters to its mass alone.
     """
     screw = ScrewShaft(
-        lead=0.020, diameter=0.040, length=screw_length, stub=TORQUE_LENGTH - FORCE_LENGTH, material=_MATERIAL
+        lead=LEAD, diameter=0.040, length=screw_length, stub=TORQUE_LENGTH - FORCE_LENGTH, material=_MATERIAL
     )
     return BallScrewDrive(
         screw=screw,
-        nut=Nut(1499e6),
-        supports=ScrewSupports(Support.FIXED_SUPPORTED, SupportBearing(780e6)),
-        table_mass=134.0,
+        nut=Nut(NUT),
+        supports=ScrewSupports(Support.FIXED_SUPPORTED, SupportBearing(BEARING)),
+        table_mass=TABLE_MASS,
         motor=Motor(rotor_inertia=6e-3, torque_limit=50.0, shaft_stiffness=_SHAFT),
         coupling=Coupling(_COUPLING),
     )

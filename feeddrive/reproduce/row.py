@@ -1,14 +1,26 @@
 """One number or checkable claim of a source paper beside what the program computes.
 
-The status is never written down, it follows from the comparison: a number agrees when it lies within half a unit of the
-last printed digit, or within the stated tolerance; a range when it holds the computed value; a claim when it holds.
+The status is never written down. It follows from what the row holds: the law of the package that gives the value, what
+was assumed, what was fitted, and the comparison. A number agrees when it lies within half a unit of the last printed
+digit, or within the stated tolerance; a range when it holds the computed value; a claim when it holds.
+
+| status | law of the package | fitted to the compared value | assumed beside the print | agrees |
+|---|---|---|---|---|
+| reproduced | yes | no | no | yes |
+| with a stated assumption | yes | no | yes | yes |
+| fitted | yes | yes | - | yes |
+| contradicted | yes | - | - | no |
+| about the paper only | no | - | - | - |
+| not possible | - | - | - | nothing is computed |
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum, StrEnum
+from typing import Any
 
 
 class Paper(Enum):
@@ -35,12 +47,32 @@ class Status(StrEnum):
     """What became of a printed number or claim."""
 
     REPRODUCED = "reproduced"
+    """A law of the package gives the printed value from printed ones alone."""
+
     ASSUMPTION = "with a stated assumption"
+    """A law of the package gives the printed value; something that is not printed had to be assumed."""
+
+    FITTED = "fitted"
+    """A law of the package can take the printed value, as a value of it was chosen so that it does."""
+
+    PAPER_ONLY = "about the paper only"
+    """Arithmetic on printed numbers, or printed equations among themselves: no law of the package takes part."""
+
     CONTRADICTED = "contradicted"
+    """A law of the package gives another value."""
+
     NOT_POSSIBLE = "not possible"
+    """Nothing can be computed."""
 
 
-@dataclass(frozen=True)
+Law = Callable[..., Any]
+"""A function, method or class of the package outside this folder, which gives the computed value."""
+
+_NO_LAW = "printed numbers and equations among themselves"
+"""Reason of a row without a law that agrees and says nothing else."""
+
+
+@dataclass(frozen=True, kw_only=True)
 class Row:
     """A line of the comparison.
 
@@ -52,8 +84,11 @@ class Row:
         printed: as the paper prints it.
         computed: as the program computes it; "" where it cannot.
         deviation: (computed - printed) / printed; None where there is no such number.
-        status: what became of it.
-        reason: one line, required for every status but `REPRODUCED`.
+        agrees: whether printed and computed value agree; None where nothing is computed.
+        law: function of the package that gives the computed value, "module.name"; "" where none takes part.
+        assumed: what is not printed and had to be assumed.
+        fitted: what was chosen so that the computed value is the printed one.
+        otherwise: why it does not agree, or cannot be computed.
     """
 
     paper: Paper
@@ -61,21 +96,51 @@ class Row:
     quantity: str
     unit: str
     printed: str
-    computed: str
-    deviation: float | None
-    status: Status
-    reason: str = ""
+    computed: str = ""
+    deviation: float | None = None
+    agrees: bool | None = None
+    law: str = ""
+    assumed: str = ""
+    fitted: str = ""
+    otherwise: str = ""
 
     def __post_init__(self) -> None:
+        where = f"{self.paper.number} {self.place} {self.quantity}"
         if self.status is not Status.REPRODUCED and not self.reason:
-            raise ValueError(f"{self.paper.number} {self.place} {self.quantity}: {self.status} needs a reason")
+            raise ValueError(f"{where}: {self.status} needs a reason")
         if "\n" in self.reason:
-            raise ValueError(f"{self.paper.number} {self.place} {self.quantity}: the reason is one line")
+            raise ValueError(f"{where}: the reason is one line")
+        if self.law.startswith(_HERE) or (self.law and not self.law.startswith("feeddrive.")):
+            raise ValueError(f"{where}: {self.law} is no law of the package")
+
+    @property
+    def status(self) -> Status:
+        """What became of it."""
+        if self.agrees is None:
+            return Status.NOT_POSSIBLE
+        if not self.law:
+            return Status.PAPER_ONLY
+        if not self.agrees:
+            return Status.CONTRADICTED
+        if self.fitted:
+            return Status.FITTED
+        return Status.ASSUMPTION if self.assumed else Status.REPRODUCED
+
+    @property
+    def reason(self) -> str:
+        """One line on the status; "" where it is reproduced."""
+        stated = "; ".join(text for text in (self.fitted, self.assumed) if text)
+        if not self.agrees:
+            return self.otherwise or stated
+        return stated or ("" if self.law else _NO_LAW)
+
+
+_HERE = __name__.rpartition(".")[0] + "."
 
 
 def number(
-    paper: Paper, place: str, quantity: str, unit: str, printed: str, computed: float, *,
-    within: float | None = None, assumption: str = "", otherwise: str = "",
+    paper: Paper, place: str, quantity: str, unit: str, printed: str, computed: float, *, law: Law | None,
+    within: float | None = None, assumption: str = "", fitted: str = "", otherwise: str = "",
 ) -> Row:  # fmt: skip
     """A printed number.
 
@@ -86,40 +151,61 @@ def number(
         unit: of both.
         printed: exactly as printed, with its digits ("244.7").
         computed: the same quantity, in `unit`.
+        law: of the package that gives `computed`; None for arithmetic on printed numbers.
         within: relative tolerance in place of half a unit of the last printed digit.
-        assumption: what had to be assumed to reproduce it.
+        assumption: what is not printed and had to be assumed.
+        fitted: what was chosen so that the printed value comes out.
         otherwise: why it is contradicted, where it does not agree.
     """
     value = float(printed)
     margin = abs(value) * within if within is not None else 0.5 * last_digit(printed)
-    agrees = math.isfinite(computed) and abs(computed - value) <= margin * (1 + 1e-9)
-    deviation = (computed - value) / value if value else None
-    shown = f"{computed:.{significant_digits(printed) + 1}g}"
-    return _row(paper, place, quantity, unit, printed, shown, deviation, agrees, assumption, otherwise)
+    return Row(
+        paper=paper, place=place, quantity=quantity, unit=unit, printed=printed,
+        computed=f"{computed:.{significant_digits(printed) + 1}g}",
+        deviation=(computed - value) / value if value else None,
+        agrees=math.isfinite(computed) and abs(computed - value) <= margin * (1 + 1e-9),
+        law=name_of(law), assumed=assumption, fitted=fitted, otherwise=otherwise,
+    )  # fmt: skip
 
 
 def span(
     paper: Paper, place: str, quantity: str, unit: str, low: float, high: float, computed: float | tuple[float, ...], *,
-    slack: float = 0.0, assumption: str = "", otherwise: str = "",
+    law: Law | None, slack: float = 0.0, assumption: str = "", fitted: str = "", otherwise: str = "",
 ) -> Row:  # fmt: skip
     """A printed range that must hold one or several computed values, to within `slack` [unit] at its ends."""
     values = computed if isinstance(computed, tuple) else (computed,)
-    agrees = all(low - slack <= value <= high + slack for value in values)
-    shown = " to ".join(f"{value:.4g}" for value in dict.fromkeys((min(values), max(values))))
-    return _row(paper, place, quantity, unit, f"{low:g} to {high:g}", shown, None, agrees, assumption, otherwise)
+    return Row(
+        paper=paper, place=place, quantity=quantity, unit=unit, printed=f"{low:g} to {high:g}",
+        computed=" to ".join(f"{value:.4g}" for value in dict.fromkeys((min(values), max(values)))),
+        agrees=all(low - slack <= value <= high + slack for value in values),
+        law=name_of(law), assumed=assumption, fitted=fitted, otherwise=otherwise,
+    )  # fmt: skip
 
 
 def claim(
-    paper: Paper, place: str, quantity: str, printed: str, computed: str, holds: bool, *,
-    unit: str = "", assumption: str = "", otherwise: str = "",
+    paper: Paper, place: str, quantity: str, printed: str, computed: str, holds: bool, *, law: Law | None,
+    unit: str = "", assumption: str = "", fitted: str = "", otherwise: str = "",
 ) -> Row:  # fmt: skip
     """A claim in words: what is claimed, what is computed, and whether that makes it true."""
-    return _row(paper, place, quantity, unit, printed, computed, None, bool(holds), assumption, otherwise)
+    return Row(
+        paper=paper, place=place, quantity=quantity, unit=unit, printed=printed, computed=computed, agrees=bool(holds),
+        law=name_of(law), assumed=assumption, fitted=fitted, otherwise=otherwise,
+    )  # fmt: skip
+
+
+def misprint(paper: Paper, place: str, quantity: str, printed: str, needed: str, why: str) -> Row:
+    """A letter, sign or unit that the paper prints beside the one that its other equations or numbers need."""
+    return claim(paper, place, quantity, printed, needed, printed == needed, law=None, otherwise=why)
 
 
 def not_possible(paper: Paper, place: str, quantity: str, unit: str, printed: str, reason: str) -> Row:
     """Something printed that no computation can reach, and why."""
-    return Row(paper, place, quantity, unit, printed, "", None, Status.NOT_POSSIBLE, reason)
+    return Row(paper=paper, place=place, quantity=quantity, unit=unit, printed=printed, otherwise=reason)
+
+
+def name_of(law: Law | None) -> str:
+    """Module and name of a law of the package, "" for none."""
+    return "" if law is None else f"{law.__module__}.{law.__qualname__}"
 
 
 def significant_digits(printed: str) -> int:
@@ -133,14 +219,3 @@ def last_digit(printed: str) -> float:
     mantissa, _, exponent = printed.lower().partition("e")
     places = len(mantissa.partition(".")[2])
     return float(10.0 ** (int(exponent or 0) - places))
-
-
-def _row(
-    paper: Paper, place: str, quantity: str, unit: str, printed: str, shown: str, deviation: float | None,
-    agrees: bool, assumption: str, otherwise: str,
-) -> Row:  # fmt: skip
-    if not agrees:
-        reason = otherwise or assumption
-        return Row(paper, place, quantity, unit, printed, shown, deviation, Status.CONTRADICTED, reason)
-    status = Status.ASSUMPTION if assumption else Status.REPRODUCED
-    return Row(paper, place, quantity, unit, printed, shown, deviation, status, assumption)

@@ -114,13 +114,6 @@ def test_slope_is_the_derivative(grade: int, temperature: float) -> None:
     assert oil.viscosity_slope(temperature) == pytest.approx(difference, rel=1e-6)
 
 
-def test_oil_of_the_life_test() -> None:
-    """DTE 24 of paper 001 is an ISO VG 32: about 31.5 and 5.29 mm^2/s at 40 and 100 degC (data sheet, from memory)."""
-    oil = mineral_oil(32)
-    assert oil.viscosity(40.0) == pytest.approx(31.5e-6, rel=0.1)  # the grade's own tolerance
-    assert oil.viscosity(100.0) == pytest.approx(5.29e-6, rel=0.05)
-
-
 # From 40 and 100 degC to the viscosity index, ASTM D2270: range of y = nu_100, then a, b, c of L and d, e, f of H,
 # L = a y^2 + b y + c the viscosity at 40 degC of index 0, H = d y^2 + e y + f that of index 100 [mm^2/s].
 D2270 = """

@@ -23,6 +23,7 @@ from feeddrive.plant.linear import INPUTS, OUTPUTS, ode_parameters, state_names,
 from feeddrive.plant.modes import free_modes
 from feeddrive.plant.plant import Plant
 from tests.analytic.export_cases import BENCH, PLANTS, TESTBED
+from tests.claims.book import CLAIMS
 
 POINT = Point(0.1)
 
@@ -37,8 +38,9 @@ def poles_of(A: object) -> np.ndarray:
 
 def assert_same_poles(A: object, plant: Plant, point: Point = POINT) -> None:
     wanted = np.sort_complex(state_space(plant, point.linearised_at, point.position).poles())
-    # Numbers are written without loss, so that this is met by far.
-    assert poles_of(A) == pytest.approx(wanted, rel=1e-9, abs=1e-12 * np.max(np.abs(wanted)))
+    # Numbers are written without loss, so that this is met by far; poles at zero count a thousandth of the fastest.
+    sizes = np.maximum(np.abs(wanted), 1e-3 * np.max(np.abs(wanted)))
+    CLAIMS["export.poles"].check(float(np.max(np.abs(poles_of(A) - wanted) / sizes)))
 
 
 @pytest.mark.parametrize("name", PLANTS)

@@ -30,6 +30,7 @@ from feeddrive.simulate.scenario import Scenario
 from feeddrive.simulate.scenario_file import read_scenario
 from feeddrive.simulate.scenario_result import ScenarioResult
 from feeddrive.simulate.scenario_run import run_scenario
+from tests.claims.book import CLAIMS
 
 
 def scenario(name: str, **changes: str) -> Scenario:
@@ -72,7 +73,7 @@ def test_measured_response_is_that_of_the_linear_loop() -> None:
     linear = linear_response(result, "speed_command", "motor_speed", response.frequency)
     assert linear is not None
     # friction curvature at 2 m/min over ±30 rev/min: some 0.1 % of full scale at the lowest lines
-    np.testing.assert_allclose(response.response, linear, atol=4e-3)
+    CLAIMS["servo.response"].check(100 * np.abs(response.response - linear).max())
 
 
 def test_reversal_value_is_the_backlash_less_the_wind_up() -> None:

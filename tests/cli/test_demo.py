@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from feeddrive.cli.main import main
+from tests.claims.book import CLAIMS
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -20,9 +21,9 @@ def test_demo_finds_what_was_planted(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert {effect["name"] for effect in result["effects"]} == {"lead_error_periodic", "friction_vs_position"}
     found = {effect["name"]: effect["parameters"] for effect in result["effects"]}
     # planted: 2.1 um at order 1, 38 N at 160 mm; noise leaves 0.02 % of the first, half a percent of the other
-    assert found["lead_error_periodic"]["amplitude"]["value"] == pytest.approx(2.1e-6, rel=1e-3)
-    assert found["friction_vs_position"]["peak"]["value"] == pytest.approx(38.0, rel=0.01)
-    assert found["friction_vs_position"]["centre"]["value"] == pytest.approx(0.160, abs=2e-4)
+    CLAIMS["demo.amplitude"].check(1e6 * found["lead_error_periodic"]["amplitude"]["value"])
+    CLAIMS["demo.peak"].check(found["friction_vs_position"]["peak"]["value"])
+    CLAIMS["demo.centre"].check(1e3 * found["friction_vs_position"]["centre"]["value"])
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     printed = re.search(r"```text\n(The declared plant lacks: .*?)```", readme, re.DOTALL)
     assert printed is not None

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import csv
+import importlib
 import io
 import json
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +15,7 @@ from rich.console import Console
 
 from feeddrive.cli.comparison import Comparison, deviation_text
 from feeddrive.cli.main import main
+from feeddrive.parts.life_exponents import load_exponent
 from feeddrive.reproduce.collection import FIELDS, as_csv, counts, record, rows_of
 from feeddrive.reproduce.row import Paper, Row, Status, claim, not_possible, number
 
@@ -47,6 +50,62 @@ def test_there_are_enough_rows_and_every_other_one_has_a_reason(whole: list[Row]
         assert row.reason or row.status is Status.REPRODUCED, row
         assert row.computed or row.status is Status.NOT_POSSIBLE, row
         assert row.place and row.quantity, row
+
+
+LAW = load_exponent
+"""Any law of the package."""
+
+
+@pytest.mark.parametrize(
+    ("given", "status"),
+    [
+        ({"law": LAW}, Status.REPRODUCED),
+        ({"law": LAW, "assumption": "a"}, Status.ASSUMPTION),
+        ({"law": LAW, "fitted": "f"}, Status.FITTED),
+        ({"law": LAW, "fitted": "f", "assumption": "a"}, Status.FITTED),
+        ({"law": None}, Status.PAPER_ONLY),
+        ({"law": None, "fitted": "f"}, Status.PAPER_ONLY),
+    ],
+)
+def test_status_follows_from_what_the_row_holds(given: dict[str, Any], status: Status) -> None:
+    agreeing = number(Paper.LIFE, "eq. 1", "p", "", "3", 3.04, **given)
+    assert agreeing.status is status
+    missed = number(Paper.LIFE, "eq. 1", "p", "", "3", 3.6, otherwise="why", **given)
+    assert missed.status is (Status.CONTRADICTED if given["law"] else Status.PAPER_ONLY)
+    assert missed.reason == "why"
+
+
+def test_a_law_is_one_of_the_package() -> None:
+    for other in (rows_of, json.loads):  # of this comparison itself, and of elsewhere
+        with pytest.raises(ValueError, match="no law of the package"):
+            number(Paper.LIFE, "eq. 1", "p", "", "3", 3.0, law=other)
+
+
+@pytest.mark.parametrize("paper", Paper, ids=lambda paper: paper.number)
+def test_the_named_laws_are_run(paper: Paper) -> None:
+    """A row may name only a law that computing the rows of its paper calls."""
+    module = importlib.import_module(f"feeddrive.reproduce.paper_{paper.number}")
+    for name, other in list(sys.modules.items()):  # results that were kept from earlier
+        if name.startswith("feeddrive.reproduce") or name.startswith("feeddrive.parts"):
+            for kept in vars(other).values():
+                if hasattr(kept, "cache_clear"):
+                    kept.cache_clear()
+    called: set[str] = set()
+
+    def note(frame: Any, event: str, _: object) -> None:
+        if event == "call":
+            name = frame.f_globals.get("__name__", "")
+            if name.startswith("feeddrive."):
+                called.add(f"{name}.{frame.f_code.co_qualname}")
+
+    sys.setprofile(note)
+    try:
+        found = module.rows()
+    finally:
+        sys.setprofile(None)
+    laws = {row.law for row in found if row.law}
+    # A class is called as its methods are.
+    assert {law for law in laws if not any(one == law or one.startswith(f"{law}.") for one in called)} == set()
 
 
 def test_no_row_stands_twice(whole: list[Row]) -> None:
@@ -123,12 +182,12 @@ def test_files_hold_the_same_rows(tmp_path: Path, capsys: pytest.CaptureFixture[
 
 
 def test_commas_and_quotes_survive_the_csv() -> None:
-    row = claim(Paper.HEAT, 'eq. "1", (2)', "a, b", "x", "y", False, otherwise='because "it" is, so')
+    row = claim(Paper.HEAT, 'eq. "1", (2)', "a, b", "x", "y", False, law=None, otherwise='because "it" is, so')
     assert next(iter(csv.DictReader(io.StringIO(as_csv([row])))))["reason"] == 'because "it" is, so'
 
 
 def test_texts_of_a_row() -> None:
-    row = number(Paper.LIFE, "table 1", "load", "kN", "13.5", 13.24, otherwise="2 % off")
+    row = number(Paper.LIFE, "table 1", "load", "kN", "13.5", 13.24, law=None, otherwise="2 % off")
     text = _words(_shown([row], 80))
     assert "printed 13.5 kN; computed 13.24 kN; deviation -1.9 %" in text
     # A unit stands with numbers alone.

@@ -17,6 +17,7 @@ from feeddrive.plant.linear import ode, ode_parameters, state_space, steady_moti
 from feeddrive.plant.modes import braked_modes, free_modes
 from feeddrive.plant.plant import Plant
 from tests.analytic.screw_fem import ScrewDrive, frequencies, static_stiffness
+from tests.claims.book import CLAIMS
 
 DRIVE = ScrewDrive()
 PLACES = np.linspace(0.1, 1.1, 11)
@@ -72,12 +73,16 @@ def worst(drive: ScrewDrive, elements: int, braked: bool) -> np.ndarray:
 
 def test_six_coordinates_free() -> None:
     # The source's digest allows 1 %; the first frequency is an order better.
-    assert (worst(DRIVE, 1, braked=False) < [0.0015, 0.008]).all()
+    first, second = 100 * worst(DRIVE, 1, braked=False)
+    CLAIMS["chain.first"].check(first)
+    CLAIMS["chain.free"].check(second)
 
 
 def test_six_coordinates_braked() -> None:
     # The source's digest allows 1.3 %, which is needed near the far end.
-    assert (worst(DRIVE, 1, braked=True) < [0.0015, 0.013]).all()
+    first, second = 100 * worst(DRIVE, 1, braked=True)
+    CLAIMS["chain.first"].check(first)
+    CLAIMS["chain.braked"].check(second)
 
 
 def test_six_coordinates_fixed_at_both_ends() -> None:

@@ -20,6 +20,7 @@ from feeddrive.plant.plant import Plant
 from feeddrive.servo.sampled import SampledController
 from feeddrive.simulate.controlled import TorqueLoop, simulate_controlled
 from feeddrive.simulate.sensitivity import simulate_sensitivity
+from tests.claims.book import CLAIMS
 from tests.convergence.test_simulate import BENCH
 
 SAMPLE, LAG = 5e-4, 3e-4
@@ -127,8 +128,9 @@ def test_against_complex_steps_through_the_same_scheme() -> None:
     for name in NAMES:
         exact = by_hand(count, name, 1e-30j).imag / 1e-30 / size_of(name)
         error = np.abs(found.changes[name]["table_position"] - exact).max()
-        # 1e-8 is asked for; a damping of which all moves the table by 60 nm is felt to rounding, 1e-13 m as above
-        assert error <= max(1e-8 * np.abs(exact).max(), 1e-13 / size_of(name)), name
+        # a damping of which all moves the table by 60 nm is felt to rounding, 1e-13 m as above
+        if error > 1e-13 / size_of(name):
+            CLAIMS["gradient.error"].check(error / np.abs(exact).max())
 
 
 @pytest.mark.usefixtures("both_ways")

@@ -317,7 +317,7 @@ def test_rows_say_what_became_of_every_number() -> None:
     assert {row.paper for row in found} == {Paper.LIFE}
     assert len({(row.place, row.quantity) for row in found}) == len(found)
     by_status = {status: sum(row.status is status for row in found) for status in Status}
-    assert all(count >= 5 for count in by_status.values())
+    assert all(count >= 5 for status, count in by_status.items() if status is not Status.FITTED)
 
 
 @pytest.mark.parametrize(
@@ -331,8 +331,8 @@ def test_rows_say_what_became_of_every_number() -> None:
         ("L10 of 300 000, slope 3.6 and all ten failed by 500 000 rev", Status.CONTRADICTED),
         ("f_s at which the nut takes over from the screw", Status.CONTRADICTED),
         ("Weibull slope", Status.NOT_POSSIBLE),
-        ("life law from eqs. (1), (2)", Status.REPRODUCED),
-        ("power of T_1 in the material constant", Status.CONTRADICTED),
+        ("life law from eqs. (1), (2)", Status.PAPER_ONLY),
+        ("power of T_1 in the material constant", Status.PAPER_ONLY),
         ("exponent of the load, named b", Status.ASSUMPTION),
         ("two nuts loaded with C_d both survive 10^6 revolutions", Status.REPRODUCED),
         ("temperature of the nuts under forced air", Status.NOT_POSSIBLE),
@@ -346,10 +346,15 @@ def test_status_of_known_rows(quantity: str, status: Status) -> None:
     ("quantity", "texts"),
     [
         ("F(b/a) is the difference of curvatures, screw and nut", ("0.84688", "0.81998")),
-        ("angle between the screw's groove and the path of the balls", ("0.4562", "0.4506")),
         ("power of T_1 in the material constant", ("-2.907",)),
     ],
 )
 def test_equations_give_what_was_found_by_hand(quantity: str, texts: tuple[str, ...]) -> None:
     (row,) = [row for row in rows() if row.quantity == quantity]
     assert all(text in row.computed for text in texts)
+
+
+def test_angle_without_a_formula_cannot_be_compared() -> None:
+    (row,) = [row for row in rows() if row.quantity.startswith("angle between the screw's groove")]
+    assert row.status is Status.NOT_POSSIBLE
+    assert "0.4562" in row.reason and "0.4506" in row.reason

@@ -1,35 +1,35 @@
-"""Paper 002 (explicit finite-difference thermal analysis): its printed numbers, and what was recomputed from them.
+"""Paper 002 (explicit finite-difference thermal analysis): its printed numbers, and its scheme beside the reduction.
 
 Min, Park, Chung, "Thermal Analysis of Ballscrew Systems by Explicit Finite Difference Method". Printed numbers carry
-their table; recomputed ones come from an independent run of the paper's explicit scheme that shares no code with the
-package.
+their table. What figure 7 is compared with is a reduced model that averages the moving nut; the paper's explicit scheme
+(`thermal/explicit.py`) moves the nut cell by cell and shares with it the cells and their conductances alone.
 """
 
 from __future__ import annotations
-
-import time
 
 import numpy as np
 import pytest
 
 from feeddrive.reproduce.paper_002 import rows
-from feeddrive.reproduce.paper_002_sets import PRELOADS, SPEEDS, Assumptions, plant, warm_up
+from feeddrive.reproduce.paper_002_sets import GRID, PRELOADS, SPEEDS, Assumptions, plant, warm_up
 from feeddrive.reproduce.row import Row, Status
 from feeddrive.thermal.explicit import run_explicitly
 from feeddrive.thermal.full_model import discretise
 from feeddrive.thermal.grid import Cells
 
 RPM = 0.10471975511965977
-CONTRADICTED = {
+WRONG_BY_A_LAW = {
     "T_bs at 670 N, 250 rev/min, literally",
     "T_bs at 1300 N, 250 rev/min, literally",
     "T_b(750) - T_b(250) with f0 of an oil bath",
+    "time constant at 1300 N, 250 rev/min",
+}
+WRONG_IN_ITSELF = {
     "heat put in over friction power ωT",
     "heat that node n = 2 loses and its neighbour does not get, over the exchange",
     "T_v in N m",
-    "time constant at 1300 N, 250 rev/min",
     "volume of a bearing's cell, at its outer surface",
-    "condition of class 8, a cell of the nut, holds C_bsg",
+    "contact in the condition of class 8, a cell of the nut",
     "number of nuts in (22) from (18) to (20)",
     "unit of a friction torque",
     "viscosities of 32 and 170",
@@ -38,11 +38,8 @@ CONTRADICTED = {
 
 @pytest.fixture(scope="module")
 def found() -> tuple[Row, ...]:
-    """The comparison; 2 s alone on one core, 10 s are asked for."""
-    began = time.perf_counter()
-    compared = rows()
-    assert time.perf_counter() - began < 10.0
-    return compared
+    """The comparison."""
+    return rows()
 
 
 def test_comparison_is_complete(found: tuple[Row, ...]) -> None:
@@ -52,7 +49,9 @@ def test_comparison_is_complete(found: tuple[Row, ...]) -> None:
 
 
 def test_only_what_is_wrong_in_the_paper_is_contradicted(found: tuple[Row, ...]) -> None:
-    assert {row.quantity for row in found if row.status is Status.CONTRADICTED} == CONTRADICTED
+    assert {row.quantity for row in found if row.status is Status.CONTRADICTED} == WRONG_BY_A_LAW
+    on_paper = [row for row in found if row.status is Status.PAPER_ONLY]
+    assert {row.quantity for row in on_paper if not row.agrees} == WRONG_IN_ITSELF
 
 
 def test_what_is_missing_is_named(found: tuple[Row, ...]) -> None:
@@ -61,38 +60,36 @@ def test_what_is_missing_is_named(found: tuple[Row, ...]) -> None:
         assert any(word in quantity for quantity in missing), word
 
 
-RECOMPUTED = {
-    # The paper's explicit scheme, nut moving; last digit as recomputed.
-    (Assumptions.PRINTED, 670): (3.10, 5.19, 7.03),
-    (Assumptions.PRINTED, 1300): (6.73, 10.83, 14.22),
-    (Assumptions.FITTED, 670): (3.16, 5.18, 6.93),
-    (Assumptions.FITTED, 1300): (7.00, 11.02, 14.29),
-}
+def test_what_was_fitted_is_not_called_reproduced(found: tuple[Row, ...]) -> None:
+    for row in found:
+        if row.place in ("table 3", "table 4", "fig. 7") and row.law and row.agrees:
+            assert row.status is Status.FITTED, row.quantity
+    # Nothing of this paper follows from its printed numbers alone: it gives neither steel nor nut.
+    assert not [row.quantity for row in found if row.status is Status.REPRODUCED]
 
 
-@pytest.mark.parametrize("kind", list(Assumptions))
+@pytest.mark.parametrize("speed", SPEEDS)
 @pytest.mark.parametrize("preload", PRELOADS)
-def test_rises_are_those_of_an_independent_run(kind: Assumptions, preload: int) -> None:
-    rises = [warm_up(kind, preload, speed).rise for speed in SPEEDS]
-    # A unit of the last digit: the other run has another grid and steps.
-    assert rises == pytest.approx(RECOMPUTED[kind, preload], abs=0.011)
-
-
-def test_time_constants_are_those_of_an_independent_run() -> None:
-    printed = [warm_up(Assumptions.PRINTED, 670, speed).time_constant for speed in SPEEDS]
-    fitted = [warm_up(Assumptions.FITTED, 670, speed).time_constant for speed in SPEEDS]
-    assert printed == pytest.approx([43.2, 33.0, 28.0], abs=0.1)
-    assert fitted == pytest.approx([44.8, 33.1, 27.3], abs=0.1)
+@pytest.mark.parametrize("kind", list(Assumptions))
+def test_warm_ups_are_those_of_the_explicit_scheme(kind: Assumptions, preload: int, speed: int) -> None:
+    machine, turning = plant(kind, preload), speed * RPM
+    parts = discretise(machine.rig, GRID)
+    heats = {name: float(heat[0]) for name, heat in machine.heats(np.array([turning])).items()}
+    run = run_explicitly(parts, machine.at_speed(turning), heats, machine.feed(turning), 180 * 60.0)
+    reduced = warm_up(kind, preload, speed)
+    there = np.interp(run.times, 60.0 * reduced.minutes, reduced.nut)
+    # Half a unit of the last digit that figure 7 prints, so that the reduction does not decide what a row says.
+    assert np.abs(there - run.outputs[:, 0]).max() < 0.005
 
 
 @pytest.mark.parametrize(
     ("quantity", "status", "text"),
     [
-        ("k1 to k6 take from a cell what they give to its neighbour", Status.REPRODUCED, "of an exchange"),
-        ("volume of a bearing's cell, at its outer surface", Status.CONTRADICTED, "3.2%"),
-        ("settling time at 500 rev/min, three time constants", Status.REPRODUCED, "99"),
-        ("feed at 750 rev/min, lead 5 mm", Status.REPRODUCED, "3.75"),
-        ("number of nuts in (22) from (18) to (20)", Status.CONTRADICTED, "4 in place of 2"),
+        ("k1 to k6 take from a cell what they give to its neighbour", Status.PAPER_ONLY, "of an exchange"),
+        ("volume of a bearing's cell, at its outer surface", Status.PAPER_ONLY, "3.2%"),
+        ("settling time at 500 rev/min, three time constants", Status.PAPER_ONLY, "99"),
+        ("feed at 750 rev/min, lead 5 mm", Status.PAPER_ONLY, "3.75"),
+        ("number of nuts in (22) from (18) to (20)", Status.PAPER_ONLY, "4 in place of 2"),
         ("friction torque grows with preload and speed", Status.ASSUMPTION, "0.0457"),
     ],
 )

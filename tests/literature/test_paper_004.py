@@ -237,11 +237,12 @@ def test_rows_of_the_comparison() -> None:
 
 
 @pytest.mark.parametrize(("quantity", "status"), [
-    ("k_BS, screw", Status.ASSUMPTION), ("k_XS", Status.ASSUMPTION), ("k_BS,T", Status.ASSUMPTION),
-    ("k_TOTAL,X", Status.ASSUMPTION), ("k_TOTAL,T", Status.ASSUMPTION), ("first natural", Status.ASSUMPTION),
+    ("k_BS, screw", Status.FITTED), ("k_XS", Status.REPRODUCED), ("k_BS,T", Status.FITTED),
+    ("k_TS", Status.FITTED), ("k_TOTAL,X", Status.REPRODUCED), ("k_TOTAL,T", Status.REPRODUCED),
+    ("first natural", Status.REPRODUCED), ("static stiffness, calculated above", Status.PAPER_ONLY),
     ("coupling and motor each", Status.NOT_POSSIBLE), ("axial to torsional share", Status.CONTRADICTED),
-    ("measured static", Status.NOT_POSSIBLE), ("guide friction", Status.CONTRADICTED),
-    ("nut 1.1 m", Status.CONTRADICTED), ("calculation and measurement", Status.CONTRADICTED),
+    ("measured static", Status.NOT_POSSIBLE), ("guide friction", Status.PAPER_ONLY),
+    ("nut 1.1 m", Status.CONTRADICTED), ("calculation and measurement", Status.PAPER_ONLY),
     ("lead screw", Status.CONTRADICTED), ("the conversion", Status.REPRODUCED),
 ])  # fmt: skip
 def test_verdicts(quantity: str, status: Status) -> None:

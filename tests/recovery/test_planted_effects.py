@@ -6,16 +6,62 @@ found and planted values, and the error left over that of the plant with what wa
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import pytest
 
+from feeddrive.diagnose.result import ChannelResult, Diagnosis
+from tests.claims.book import CLAIMS
 from tests.recovery.planted import TRUTH, null_errors, verdict
 
 SMOKE = ("bench/null", "bench/torque_ripple", "bench/backlash", "light/stribeck")
 """Run in every suite: nothing, a source, a transmission and a friction effect. The others are marked slow."""
 
 CASES = [f"{axis}/{case}" for axis, cases in TRUTH.items() for case in cases]
+
+
+def value(key: str, unit: float) -> Callable[[Diagnosis], float]:
+    """A parameter of the first effect, in a unit."""
+    return lambda result: float(result.effects[0].parameters[key].value) / unit
+
+
+def channel(result: Diagnosis, name: str) -> ChannelResult:
+    """One channel of the result."""
+    return next(one for one in result.channels if one.name == name)
+
+
+def over_noise(name: str) -> Callable[[Diagnosis], float]:
+    """Error of a channel after, over the noise of its sensor."""
+    return lambda result: channel(result, name).after.rms / channel(result, name).noise_rms
+
+
+def after(name: str, unit: float) -> Callable[[Diagnosis], float]:
+    """Error of a channel after, in a unit."""
+    return lambda result: channel(result, name).after.rms / unit
+
+
+MEASURED: dict[str, dict[str, Callable[[Diagnosis], float]]] = {
+    "bench/null": {
+        "known.null": lambda result: len(result.effects),
+        "known.null.torque": over_noise("motor_torque"),
+        "known.null.position": over_noise("table_position"),
+    },
+    "bench/backlash": {
+        "known.backlash.width": value("width", 1e-6),
+        "known.backlash.after": after("table_position", 1e-9),
+    },
+    "bench/torque_ripple": {
+        "known.ripple.amplitude": value("amplitude", 1.0),
+        "known.ripple.order": value("order", 1.0),
+        "known.ripple.after": after("motor_torque", 1.0),
+    },
+    "bench/presliding": {
+        "known.presliding.stiffness": value("stiffness", 1e6),
+        "known.presliding.after": after("table_position", 1e-9),
+    },
+}
+"""Claims of the README's table and what measures them, by case."""
 
 
 def marked(case: str) -> Any:
@@ -33,6 +79,8 @@ def test_what_was_planted_is_found_and_nothing_else(case: str) -> None:
     judged = verdict(axis, name)
     print(f"\n{judged.line(case)}")
     assert judged.misses == []
+    for key, measured in MEASURED.get(case, {}).items():
+        CLAIMS[key].check(measured(judged.result))
 
 
 @pytest.mark.parametrize("axis", list(TRUTH))

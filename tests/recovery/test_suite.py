@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +12,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
+from tests import state
 from tests.generator.effects import EFFECT_CLASSES
 from tests.recovery.suite import store
 from tests.recovery.suite.bound import fisher
@@ -150,15 +153,50 @@ def test_a_run_goes_on_where_it_was_stopped(tmp_path: Path, monkeypatch: pytest.
 
     monkeypatch.setattr(store, "run", run)
     with pytest.raises(KeyboardInterrupt):
-        store.run_missing(cases, tmp_path, 1, False, said.append)
+        store.run_missing(cases, tmp_path, 1, said.append)
     assert len(list(tmp_path.iterdir())) == 2  # whole files of what was done, nothing of the third
     done.clear()
-    assert store.run_missing(cases, tmp_path, 1, False, said.append) == 1
-    assert store.run_missing(cases, tmp_path, 1, False, said.append) == 0
+    assert store.run_missing(cases, tmp_path, 1, said.append) == 1
+    assert store.run_missing(cases, tmp_path, 1, said.append) == 0
     path = store.file_of(tmp_path, cases[0])
     path.write_text(json.dumps(json.loads(path.read_text()) | {"code": "another"}))
     assert store.kept(tmp_path, cases[0], store.code_state()) is None
-    assert store.kept(tmp_path, cases[0], "") is not None
+
+
+def test_state_changes_with_all_that_can_change_a_record(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    names = {path.relative_to(store.ROOT).as_posix() for path in store.state_files()}
+    folders = (*(f"feeddrive/{part}" for part in ("diagnose/", "servo/", "simulate/", "unit")), "tests/generator/",
+               "tests/recovery/suite/", "plants/")  # fmt: skip
+    for folder in folders:
+        assert any(name.startswith(folder) for name in names), folder
+    (driver, *_) = sorted(name for name in names if name.endswith(".c"))
+    assert not any(name.split("/")[1] in store.NOT_USED for name in names if name.startswith("feeddrive/"))
+    kept = tmp_path / "tree"
+    for name in names:
+        (kept / name).parent.mkdir(parents=True, exist_ok=True)
+        (kept / name).write_bytes((store.ROOT / name).read_bytes())
+    monkeypatch.setattr(store, "ROOT", kept)
+    before = store.code_state()
+    for name in (driver, "plants/bench_axis.toml", "tests/generator/motion.py"):
+        text = (kept / name).read_bytes()
+        (kept / name).write_bytes(text + b"\n")
+        assert store.code_state() != before, name
+        (kept / name).write_bytes(text)
+    assert store.code_state() == before
+    monkeypatch.setattr(state, "version", lambda library: "0")
+    assert store.code_state() != before
+
+
+def test_what_the_state_leaves_out_is_not_imported() -> None:
+    code = "import sys, tests.recovery.suite.one; print(*sorted(sys.modules))"
+    run = subprocess.run([sys.executable, "-c", code], cwd=store.ROOT, capture_output=True, text=True, check=True)
+    assert [name for name in run.stdout.split() if name.split(".")[:1] == ["feeddrive"] and len(name.split(".")) > 1
+            and name.split(".")[1] in store.NOT_USED] == []  # fmt: skip
+
+
+def test_records_of_two_states_make_no_table() -> None:
+    with pytest.raises(ValueError, match="2 states"):
+        document(all_cases(), [Verdict(record()), Verdict(record(code="another"))])
 
 
 def test_bound_is_that_of_least_squares_in_white_noise_of_the_band(generator: np.random.Generator) -> None:

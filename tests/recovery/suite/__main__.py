@@ -1,4 +1,4 @@
-"""Command line: python -m tests.recovery.suite [run | table | sizes | list]; see --help."""
+"""Command line: python -m tests.recovery.suite [run | table | sizes | list | state]; see --help."""
 
 from __future__ import annotations
 
@@ -21,6 +21,9 @@ ROOT = Path(__file__).resolve().parents[3]
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run what is asked for; 0 when done."""
     options = _parser().parse_args(arguments)
+    if options.what == "state":
+        _say(code_state())
+        return 0
     if options.what == "sizes":
         sizes.write(tuple(options.machine or MACHINES), options.effect)
         return 0
@@ -32,20 +35,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
             _say(f"{case.digest}  {case.label}")
         return 0
     if options.what == "run":
-        run_missing(
-            [c for c in cases if c.in_half or not options.half],
-            options.records,
-            options.workers,
-            options.any_code,
-            _say,
-        )
-    _write_table(options.records, options.any_code, options.table)
+        chosen = [case for case in cases if case.in_half or not options.half]
+        run_missing(chosen, options.records, options.workers, _say)
+    _write_table(options.records, options.table)
     return 0
 
 
-def _write_table(records: Path, any_code: bool, path: Path) -> None:
-    cases = all_cases()
-    code = "" if any_code else code_state()
+def _write_table(records: Path, path: Path) -> None:
+    cases, code = all_cases(), code_state()
     found = [Verdict(record) for case in cases if (record := kept(records, case, code)) is not None]
     write_text_atomically(path, document(cases, found))
     _say(f"{path}: {len(found)} of {len(cases)} cases")
@@ -57,7 +54,7 @@ def _say(text: str) -> None:
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python -m tests.recovery.suite", description="the recovery suite")
-    parser.add_argument("what", nargs="?", default="run", choices=("run", "table", "sizes", "list"))
+    parser.add_argument("what", nargs="?", default="run", choices=("run", "table", "sizes", "list", "state"))
     parser.add_argument("--workers", type=int, default=2, help="processes")
     parser.add_argument("--records", type=Path, default=ROOT / "build" / "recovery", help="folder of one file a case")
     parser.add_argument("--table", type=Path, default=ROOT / "docs" / "recovery.md", help="where the table goes")
@@ -66,7 +63,6 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--half", action="store_true", help="every other single: each size once an axis and once a noise"
     )
-    parser.add_argument("--any-code", action="store_true", help="take records made by other code as well")
     parser.add_argument("--machine", action="append", help="sizes: of this machine only, repeatable")
     parser.add_argument("--effect", default="", help="sizes: of this effect only")
     return parser

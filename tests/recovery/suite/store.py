@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import multiprocessing
 import re
@@ -10,24 +9,42 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
 
-import feeddrive
 from feeddrive.files import write_text_atomically
 from tests.recovery.suite.cases import Case
 from tests.recovery.suite.one import Record, run
+from tests.state import ROOT, digest_of
 
-PARTS = ("quantity.py", "recording", "parts", "effects", "plant", "thermal", "simulate", "diagnose")
-"""Of the package, what a diagnosis uses."""
+NOT_USED = ("cli", "export", "report", "reproduce")
+"""Folders of the package that no diagnosis imports (a test sees to it); all the rest counts, C included."""
+
+LIBRARIES = ("numpy", "scipy", "casadi", "pysindy", "scikit-learn")
+"""Libraries whose version counts."""
 
 Said = Callable[[str], None]
 
 
 def code_state() -> str:
-    """Digest of the package's code that a diagnosis uses; records of other code are not taken."""
-    root, digest = Path(feeddrive.__file__).parent, hashlib.sha256()
-    for part in PARTS:
-        for path in sorted([root / part] if part.endswith(".py") else (root / part).rglob("*.py")):
-            digest.update(path.relative_to(root).as_posix().encode() + b"\0" + path.read_bytes())
-    return digest.hexdigest()[:12]
+    """Digest of all that can change a record; records of another state are not taken.
+
+    The package but `NOT_USED`, the simulator that plants, the suite itself, the plant files, and the versions of Python
+    and of `LIBRARIES`.
+    """
+    return digest_of(state_files(), LIBRARIES, ROOT)
+
+
+def state_files() -> list[Path]:
+    """Files that the state is the digest of, in order."""
+    package = [
+        path
+        for path in (ROOT / "feeddrive").rglob("*")
+        if path.suffix in SOURCES and path.relative_to(ROOT).parts[1] not in NOT_USED
+    ]
+    beside = [path for folder in ("tests/generator", "tests/recovery/suite") for path in (ROOT / folder).rglob("*")]
+    plants = (ROOT / "plants").glob("*.toml")
+    return sorted(path for path in (*package, *beside, *plants) if path.suffix in SOURCES)
+
+
+SOURCES = (".py", ".c", ".h", ".toml", ".json")
 
 
 def file_of(folder: Path, case: Case) -> Path:
@@ -36,12 +53,12 @@ def file_of(folder: Path, case: Case) -> Path:
 
 
 def kept(folder: Path, case: Case, code: str) -> Record | None:
-    """The record of a case, or None where there is none of this code; any code where `code` is empty."""
+    """The record of a case, or None where there is none of this state of the code."""
     path = file_of(folder, case)
     if not path.exists():
         return None
     record: Record = json.loads(path.read_text(encoding="utf-8"))
-    return record if code in ("", record["code"]) else None
+    return record if record["code"] == code else None
 
 
 def do(case: Case, folder: Path, code: str) -> Record:
@@ -52,14 +69,13 @@ def do(case: Case, folder: Path, code: str) -> Record:
     return record
 
 
-def run_missing(cases: Sequence[Case], folder: Path, workers: int, any_code: bool, said: Said) -> int:
+def run_missing(cases: Sequence[Case], folder: Path, workers: int, said: Said) -> int:
     """Run the cases without a record, in an order that mixes them, so that a part is a fair sample.
 
     Args:
         cases: of the table.
         folder: of the records, made if missing.
         workers: processes; with one everything happens in this one.
-        any_code: take records of other code too.
         said: told of every case that ends.
 
     Returns:
@@ -67,7 +83,7 @@ def run_missing(cases: Sequence[Case], folder: Path, workers: int, any_code: boo
     """
     folder.mkdir(parents=True, exist_ok=True)
     code = code_state()
-    missing = [case for case in cases if kept(folder, case, "" if any_code else code) is None]
+    missing = [case for case in cases if kept(folder, case, code) is None]
     missing.sort(key=lambda case: case.digest)
     said(f"{len(cases) - len(missing)} of {len(cases)} cases are there, {len(missing)} to be run")
     if workers == 1:

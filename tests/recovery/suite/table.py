@@ -71,8 +71,15 @@ def document(cases: Sequence[Case], verdicts: Sequence[Verdict]) -> str:
 
 
 def _holds(cases: Sequence[Case], verdicts: Sequence[Verdict]) -> str:
-    codes = ", ".join(sorted({v.record["code"] for v in verdicts})) or "none"
-    said = f"It holds **{len(verdicts)} of {len(cases)} cases**, feeddrive {__version__}, code {codes}."
+    codes = {v.record["code"] for v in verdicts}
+    if len(codes) > 1:
+        raise ValueError(f"records of {len(codes)} states of the code make no table: {', '.join(sorted(codes))}")
+    said = (
+        f"It holds **{len(verdicts)} of {len(cases)} cases**, feeddrive {__version__}, state {''.join(codes) or 'none'}"
+    )
+    said += (
+        " of the code (`python -m tests.recovery.suite state` tells that of a checkout); of another it says nothing."
+    )
     if len(verdicts) < len(cases):
         said += " **The figures below are of this part only.**"
     if lost := unreachable():
