@@ -12,6 +12,7 @@ import numpy as np
 from feeddrive.errors import InputError
 from feeddrive.recording.formats.naming import axis_in, conversion, known_unit, plain_words
 from feeddrive.recording.formats.trace import Signal, Trace, clean, unique_names
+from feeddrive.recording.opening import FileContent
 from feeddrive.typing import FloatArray
 
 _TIME = re.compile(r"^(?:t|time|zeit|timestamps?|time ?axis|time s|time ?vector|x ?time)$")
@@ -28,8 +29,20 @@ def optional(module: str, package: str, what: str, where: str) -> Any:
         return importlib.import_module(module)
     except ImportError:
         extra = {"h5py": "hdf5", "npTDMS": "tdms", "asammdf": "mdf", "pyarrow": "parquet"}[package]
-        mend = f"pip install 'feeddrive[{extra}]', or pip install {package}"
+        mend = f"pip install 'feeddrive[{extra}]'"
+        mend += ", or save it in MATLAB with save(file, '-v7')" if package == "h5py" else f", or pip install {package}"
         raise InputError(f"{what} are read with {package}, which is not installed", where, mend) from None
+
+
+def refuse_bomb(values: int, content: FileContent) -> None:
+    """Refuse a file that declares far more values than its size can hold, before memory is taken for them.
+
+    Raises:
+        InputError: more than 64 MB of doubles, and more than 500 times the size of the file.
+    """
+    if 8 * values > max(64 << 20, 500 * len(content.data)):
+        what = f"declares {values} values in {len(content.data) // 1000} kB"
+        raise InputError(what, str(content.path), "the file is damaged, or holds nothing: copy or save it again")
 
 
 def vectors(arrays: Mapping[str, Any]) -> dict[str, FloatArray]:

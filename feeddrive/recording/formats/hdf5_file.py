@@ -8,12 +8,11 @@ from typing import Any
 import numpy as np
 
 from feeddrive.errors import InputError
-from feeddrive.recording.formats.container import optional, trace_of, vectors
+from feeddrive.recording.formats.container import optional, refuse_bomb, trace_of, vectors
 from feeddrive.recording.formats.trace import Trace
 from feeddrive.recording.opening import FileContent
 
 _MOST_DATASETS = 10_000
-_MOST_VALUES = 500_000_000  # 4 GB of doubles: declared sizes of a damaged file are not believed beyond it
 _UNITS = ("unit", "units", "Unit", "Units", "UNIT")
 
 
@@ -30,11 +29,13 @@ def read(content: FileContent, sample_time: float | None) -> Trace:
     matlab = content.data.startswith(b"MATLAB")
     try:
         with h5py.File(io.BytesIO(content.data), "r") as file:
-            _collect(file, "", arrays, units, h5py, 0)
+            _collect(file, "", arrays, units, h5py, content, 0)
     except InputError:
         raise
     except Exception as error:  # the library meets damage with errors of every kind
-        raise InputError(f"is a damaged {_name(matlab)}", where, "copy or save it again") from error
+        raise InputError(
+            f"is a damaged {_name(matlab)}", where, "copy it, or save it again: in MATLAB with save(file, '-v7')"
+        ) from error
     return trace_of(_name(matlab), vectors(arrays), units, sample_time, where)
 
 
@@ -42,7 +43,9 @@ def _name(matlab: bool) -> str:
     return "MATLAB 7.3 file" if matlab else "HDF5 file"
 
 
-def _collect(group: Any, path: str, arrays: dict[str, Any], units: dict[str, str], h5py: Any, depth: int) -> None:
+def _collect(
+    group: Any, path: str, arrays: dict[str, Any], units: dict[str, str], h5py: Any, content: FileContent, depth: int
+) -> None:
     """Collect datasets; links out of the file and back up the tree are not followed."""
     if depth > 20 or len(arrays) > _MOST_DATASETS:
         return
@@ -55,10 +58,9 @@ def _collect(group: Any, path: str, arrays: dict[str, Any], units: dict[str, str
         item = group[key]
         name = f"{path}.{key}" if path else key
         if isinstance(item, h5py.Group):
-            _collect(item, name, arrays, units, h5py, depth + 1)
+            _collect(item, name, arrays, units, h5py, content, depth + 1)
         elif isinstance(item, h5py.Dataset) and _numeric(item):
-            if item.size + sum(np.size(array) for array in arrays.values()) > _MOST_VALUES:
-                raise ValueError("more values than the file can hold")
+            refuse_bomb(item.size + sum(np.size(array) for array in arrays.values()), content)
             arrays[name] = item[()]
             units[name] = _unit(item.attrs)
 

@@ -8,13 +8,12 @@ from typing import Any
 import numpy as np
 
 from feeddrive.errors import InputError
-from feeddrive.recording.formats.container import optional, trace_of
+from feeddrive.recording.formats.container import optional, refuse_bomb, trace_of
 from feeddrive.recording.formats.trace import Trace
 from feeddrive.recording.opening import FileContent
 from feeddrive.typing import FloatArray
 
 NAME = "Parquet table"
-_MOST_VALUES = 500_000_000  # 4 GB of doubles
 
 
 def recognises(data: bytes) -> bool:
@@ -35,8 +34,7 @@ def read(content: FileContent, sample_time: float | None) -> Trace:
     units: dict[str, str] = {}
     try:
         file = library.ParquetFile(io.BytesIO(content.data))
-        if file.metadata.num_rows * max(1, file.metadata.num_columns) > _MOST_VALUES:
-            raise ValueError("more values than can be read")
+        refuse_bomb(file.metadata.num_rows * max(1, file.metadata.num_columns), content)
         table = file.read()
         for field, column in zip(table.schema, table.columns, strict=True):
             if types.is_timestamp(field.type) or types.is_duration(field.type):
@@ -47,6 +45,8 @@ def read(content: FileContent, sample_time: float | None) -> Trace:
             elif types.is_integer(field.type) or types.is_floating(field.type) or types.is_boolean(field.type):
                 arrays[field.name] = _values(column)
                 units[field.name] = _unit(field.metadata)
+    except InputError:
+        raise
     except Exception as error:  # the library meets damage with errors of every kind
         raise InputError(f"is a damaged {NAME}", where, "copy or write it again") from error
     return trace_of(
