@@ -10,6 +10,7 @@ from dataclasses import dataclass, field, replace
 from feeddrive.errors import InputError
 from feeddrive.quantity import format_quantity
 from feeddrive.recording.channels import channel_unit
+from feeddrive.recording.formats.held import at_updates
 from feeddrive.recording.formats.inference import Finding, infer
 from feeddrive.recording.formats.naming import MOTOR_SIDE, Candidate, candidate, conversion, is_rotary, known_unit
 from feeddrive.recording.formats.resampling import Part, Series, part_read, parts_of
@@ -20,6 +21,9 @@ _FAMILIES = (
     ("motor_torque", "motor_current", "motor_torque_share"),
 )
 """Channels of which a recording needs one: what moved, and what drove it."""
+
+_SAMPLED = frozenset(channel for family in _FAMILIES for channel in family)
+"""Channels whose samples a slow bus may hold; a set-point may rightly stand still."""
 
 
 @dataclass(frozen=True)
@@ -119,6 +123,12 @@ def choose(trace: Trace, wishes: Wishes, where: str) -> Choice:
             undecided[channel] = f"{names} may be {channel}: say which by --channel '{channel}={first[0][0].name}'"
             continue
         taken[channel] = first[0]
+    held: list[str] = []
+    for channel in set(taken) & _SAMPLED:
+        signal, told = taken[channel]
+        plain, said = at_updates(signal)
+        taken[channel] = plain, told
+        held += [said] if said else []
     findings, taken = _inferred(taken, signals, set(named), wishes.part, where)
     picks: list[Pick] = []
     for channel, (signal, found) in taken.items():
@@ -131,6 +141,7 @@ def choose(trace: Trace, wishes: Wishes, where: str) -> Choice:
     if wishes.sample_time is None and any(not pick.signal.timed for pick in picks):
         questions.insert(0, "the file holds no time: say the distance of its samples by --sample-time '1 ms'")
         return Choice(axis, tuple(picks), tuple(questions), findings, questions[0])
+    findings = (*(Finding("held", said, 1.0, "", 0.0) for said in sorted(held)), *findings)
     return Choice(axis, tuple(picks), tuple(questions), findings, _blocking(picks, undecided, questions, signals))
 
 

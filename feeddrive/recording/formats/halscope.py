@@ -84,7 +84,10 @@ def _new(lines: list[str], where: str) -> tuple[list[str], FloatArray, tuple[str
         cells = [cell.strip().replace(",", ".") for cell in line.split(";")]
         return cells[:-1] if len(cells) == len(names) + 1 and not cells[-1] else cells
 
-    values, notes = number_rows(lines[at + 1 :], split, len(names), at + 2, where)
+    first = at + 1
+    while first < len(lines) and lines[first].lstrip().startswith("#"):  # how it was drawn: # Position, # Scale
+        first += 1
+    values, notes = number_rows(lines[first:], split, len(names), first + 1, where)
     return names, values, notes
 
 

@@ -358,7 +358,7 @@ def _following(taken: Taken, found: list[Finding]) -> None:
     to_si = conversion(told.unit, "m")
     assert to_si is not None
     error = (target - place.values)[kept] * to_si.factor
-    speed = _smooth_slope(target[kept], place.time[kept]) * to_si.factor
+    speed = _smooth_slope(place.values[kept], place.time[kept]) * to_si.factor  # the position loop asks for K_v e
     gain = fit(error, speed)
     value, unit, scatter = float(np.max(np.abs(error))), "m", one.scatter
     text = f"{place.name} follows {wanted.name}: following error up to {format_quantity(value, 'm')}"

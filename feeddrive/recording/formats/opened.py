@@ -29,6 +29,7 @@ from feeddrive.recording.mapping import FileMapping, Hold, Variable
 from feeddrive.recording.opening import FileContent, decode, head_of, is_hdf5
 from feeddrive.typing import FloatArray
 
+_FEWEST_STAMPS = 100
 _Reader = Callable[[str, str, Wishes], Trace]
 _TEXTS: tuple[tuple[Callable[[str], bool], _Reader], ...] = (
     (twincat.recognises, lambda text, where, wishes: twincat.read(text, where)),
@@ -85,6 +86,27 @@ def read_trace(content: FileContent, wishes: Wishes) -> Trace | FrequencyRespons
                 said = (*said, "the file does not end with a line end: its last value may be cut short")
             return _usable(replace(trace, notes=(*said, *trace.notes)), where)
     return None
+
+
+def _clocks(signals: Sequence[Signal]) -> list[str]:
+    """Say two clocks: rates that would be the same but for some parts per million."""
+    first = next((signal for signal in signals if signal.time.size > _FEWEST_STAMPS and not gaps(signal.time)), None)
+    for other in signals if first is not None else ():
+        if other.time.size <= _FEWEST_STAMPS or gaps(other.time) or first is None:
+            continue
+        ratio = _mean_step(other) / _mean_step(first)
+        whole = max(1.0, round(ratio)) if ratio >= 1.0 else 1.0 / max(1.0, round(1.0 / ratio))
+        off = ratio / whole - 1.0
+        # Stamps resolve the ratio to one of their digits over the length; below 1 ppm no quartz is meant.
+        if 1e-6 < abs(off) < 1e-2 and abs(off) * (other.time.size - 1) > 0.5:
+            return [
+                f"two clocks: {other.name} is sampled {off * 1e6:+.0f} ppm slower than {first.name} by their stamps"
+            ]
+    return []
+
+
+def _mean_step(signal: Signal) -> float:
+    return float(signal.time[-1] - signal.time[0]) / (signal.time.size - 1)
 
 
 def _binary(content: FileContent, wishes: Wishes) -> Trace | None:
@@ -232,6 +254,7 @@ def _timing_notes(signals: Sequence[Signal]) -> list[str]:
                          f"{signal.time[first[0]]:.6g} s{many}")  # fmt: skip
         if signal.time[0] < 0.0:
             notes.append(f"{signal.name} begins at {signal.time[0] * 1e3:.6g} ms, before zero")
+    notes += _clocks(signals)
     steps = sorted({float(f"{signal.step:.6g}") for signal in signals if signal.step > 0.0})
     if len(steps) > 1:
         notes.append("sampled at different rates: every " + ", ".join(f"{step * 1e3:.6g} ms" for step in steps))

@@ -1,9 +1,9 @@
 """Signals with times of their own brought onto one even grid, knowingly: the rule is stated and what was done is said.
 
-The grid is that of the slowest channel, or the rate that is asked for: nothing is made up between its samples.
-Positions and speeds are read at the instants of the grid, between samples on the straight line. A torque or current
-acts from its sample to the next, so it becomes the mean over each step of the grid. Lost stretches divide the signals
-into parts.
+The grid is that of the slowest channel of motion or torque, or the rate that is asked for: nothing is made up between
+its samples. Positions and speeds are read at the instants of the grid, between samples on the straight line. A torque
+or current acts from its sample to the next, so it becomes the mean over each step of the grid. Lost stretches divide
+the signals into parts.
 """
 
 from __future__ import annotations
@@ -122,7 +122,8 @@ def on_one_grid(
         InputError: a rate that is not possible.
     """
     inside = {name: _cut(one, part) for name, one in series.items()}
-    fast = {name: one for name, one in inside.items() if not name.endswith("_temperature")} or inside
+    slow = {name for name in inside if name.endswith("_temperature") or name == "setpoint"}
+    fast = {name: one for name, one in inside.items() if name not in slow} or inside
     step = max(usual_step(one.time) for one in fast.values()) if rate is None else 1.0 / rate
     count = (part.stop - part.start) / step
     if count > 1e8:

@@ -42,6 +42,10 @@ def read(text: str, where: str) -> Trace:
     lines = text.split("\n")
     curves, first, keys = _header(lines, where)
     columns = [_column(curve, where) for curve in curves]
+    if sorted(columns) == list(range(3, len(curves) + 3)):  # counted with the time
+        columns = [column - 1 for column in columns]
+    if len(set(columns)) < len(columns):
+        raise InputError("two curves stand in one column", where, "export it again from TNCscope")
     width = max([len(curves) + 1, *(column for column in columns)])
     comma = any("," in line for line in lines[first : first + 20])
 
