@@ -59,6 +59,7 @@ COMMANDS: dict[str, Entry] = {
     "check": Entry("check", "Check a machine against rules of plausibility."),
     "run": Entry("run", "Run a scenario: a machine under control; figures, metrics."),
     "sweep": Entry("sweep", "Run a scenario over varied values: one table, one figure."),
+    "read": Entry("read", "Read a trace file of a drive or control; say what it holds."),
     "diagnose": Entry("diagnose", "Find what a machine's model lacks, from recordings of it."),
     "export": Entry("export", "Write a machine as state space, .mat, CasADi, C, FMU or JSON."),
     "reproduce": Entry("reproduce", "Compare the source papers' numbers with computed ones."),

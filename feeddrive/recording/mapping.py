@@ -3,6 +3,9 @@
     format = "feeddrive-map/1"
     sample_time = "1 ms"            # where the file holds no time, in place of [time]
 
+    rate = "500 Hz"                 # trace files: of the one grid; with times of its own a file needs nothing else
+    part = 1                        # trace files: the stretch between gaps, 1 for the first; the longest if left out
+
     [time]
     variable = "t"
     unit = "s"
@@ -40,7 +43,7 @@ from feeddrive.recording.channels import channel_unit
 from feeddrive.recording.csv_file import Layout
 
 FORMAT = "feeddrive-map/1"
-_TOP_KEYS = ("format", "sample_time", "time", "channels", "file", "description")
+_TOP_KEYS = ("format", "sample_time", "time", "channels", "file", "description", "rate", "part")
 _VARIABLE_KEYS = ("variable", "unit", "factor", "offset", "hold", "column")
 _FILE_KEYS = ("header_row", "first_row", "separator", "decimal")
 
@@ -85,6 +88,8 @@ class FileMapping:
         sample_time: [s]; None if the file holds the time.
         channels: canonical channel -> its variable.
         layout: where the table stands in a text file.
+        rate: of the one grid of a trace file [Hz]; None for that of its slowest channel.
+        part: of a trace file between gaps, 1 for the first; None for the longest.
     """
 
     name: str
@@ -92,6 +97,8 @@ class FileMapping:
     sample_time: float | None
     channels: dict[str, Variable]
     layout: Layout
+    rate: float | None = None
+    part: int | None = None
 
 
 def read_mapping(path: Path) -> FileMapping:
@@ -105,17 +112,22 @@ def read_mapping(path: Path) -> FileMapping:
     if tree.get("format") != FORMAT:
         raise InputError("is not a mapping file of this version", where, f'write format = "{FORMAT}" in its first line')
     _refuse_unknown(tree, _TOP_KEYS, where)
-    if ("time" in tree) == ("sample_time" in tree):
-        raise InputError("needs either [time] or sample_time", where, 'e.g. sample_time = "1 ms"')
+    if ("time" in tree and "sample_time" in tree) or not {"time", "sample_time", "rate"} & set(tree):
+        mend = 'e.g. sample_time = "1 ms", or rate = "1 kHz" for a trace file that has its own time'
+        raise InputError("needs either [time] or sample_time", where, mend)
     channels = _table(tree, "channels", where)
     if not channels:
         raise InputError("maps no channel", where, "add e.g. [channels.motor_torque]")
     read = {name: _variable(channels, name, channel_unit(name, where), f"{where}, channels") for name in channels}
     time = _variable(tree, "time", "s", where) if "time" in tree else None
-    sample_time = parse(tree["sample_time"], "s", f"{where}, sample_time") if time is None else None
+    sample_time = parse(tree["sample_time"], "s", f"{where}, sample_time") if "sample_time" in tree else None
     if sample_time is not None and sample_time <= 0.0:
         raise InputError("the sample time is not positive", f"{where}, sample_time", 'e.g. "1 ms"')
-    return FileMapping(path.name, time, sample_time, read, _layout(_table(tree, "file", where), where))
+    rate = parse(tree["rate"], "Hz", f"{where}, rate") if "rate" in tree else None
+    if rate is not None and rate <= 0.0:
+        raise InputError("the rate is not positive", f"{where}, rate", 'e.g. "1 kHz"')
+    part = _count(tree["part"], 1, f"{where}, part") if "part" in tree else None
+    return FileMapping(path.name, time, sample_time, read, _layout(_table(tree, "file", where), where), rate, part)
 
 
 def _toml(path: Path, where: str) -> dict[str, Any]:

@@ -10,10 +10,15 @@ from feeddrive.recording.checks import check_alive, check_finite, check_length, 
 from feeddrive.recording.copies import refuse_copied_setpoint
 from feeddrive.recording.csv_faults import is_number
 from feeddrive.recording.csv_file import Layout, TextTable, find_table
+from feeddrive.recording.derived import with_angle
 from feeddrive.recording.find_flaws import find_flaws
 from feeddrive.recording.findings import sample_notes
 from feeddrive.recording.flaws import filled, sentence
 from feeddrive.recording.foreign import mapped_columns, table_variables
+from feeddrive.recording.formats.choosing import Wishes
+from feeddrive.recording.formats.opened import Understood, columns_of, mapped, read_trace, understand
+from feeddrive.recording.formats.trace import Trace
+from feeddrive.recording.frequency_response import FrequencyResponse
 from feeddrive.recording.mapping import FileMapping, read_mapping
 from feeddrive.recording.mat_file import read_variables
 from feeddrive.recording.opening import FileContent, decode, open_file
@@ -26,7 +31,8 @@ def read_recording(path: Path, mapping: Path | None = None, *, decimal: str | No
     """Read and check a recording.
 
     Args:
-        path: .csv or .csv.gz with headings `name [unit]`, or with a mapping a .mat or foreign text file.
+        path: .csv or .csv.gz with headings `name [unit]`, a trace file of a drive or control, or with a mapping a .mat
+            or foreign text file.
         mapping: mapping file; None for files with canonical headings.
         decimal: "." or ","; None to let the file tell.
 
@@ -38,11 +44,36 @@ def read_recording(path: Path, mapping: Path | None = None, *, decimal: str | No
         raise InputError(f"{decimal!r} is not a decimal sign", "--decimal", "write . or ,")
     known = read_mapping(Path(mapping)) if mapping is not None else None
     content = open_file(path)
-    if known is not None:
+    trace = read_trace(content, Wishes(sample_time=known.sample_time if known else None))
+    if trace is not None:
+        columns, first_row, notes = _traced(content, trace, known)
+    elif known is not None:
         columns, first_row, notes = _foreign(content, known, decimal)
     else:
         columns, first_row, notes = _canonical(content, decimal)
     return _checked(content, columns, first_row, notes)
+
+
+def _traced(
+    content: FileContent, trace: Trace | FrequencyResponse, mapping: FileMapping | None
+) -> tuple[dict[str, FloatArray], int, tuple[str, ...]]:
+    """Return the columns of a trace file, the row they begin in (its own has no meaning any more), and notes."""
+    where = str(content.path)
+    if isinstance(trace, FrequencyResponse):
+        mend = "lay it over the machine's by feeddrive bode PLANT --recording FILE"
+        raise InputError("is a frequency response, not a recording over time", where, mend)
+    understood = mapped(trace, mapping, where) if mapping is not None else understand(trace, Wishes(), where)
+    return columns_of(understood, where), 1, (trace.format, *understood.notes)
+
+
+def checked_trace(content: FileContent, understood: Understood) -> Recording:
+    """Check the channels of a trace file and make the recording.
+
+    Raises:
+        InputError: a question about the file has to be answered first, or as `read_recording`.
+    """
+    columns = columns_of(understood, str(content.path))
+    return _checked(content, columns, 1, (understood.trace.format, *understood.notes))
 
 
 def _canonical(content: FileContent, decimal: str | None) -> tuple[dict[str, FloatArray], int, tuple[str, ...]]:
@@ -111,11 +142,13 @@ def _checked(content: FileContent, columns: dict[str, FloatArray], first_row: in
     sample_time = mean_sample_time(time)
     check_sample_time(sample_time, where)
     check_alive(columns, where)
+    columns, derived = with_angle(columns, time)
     refuse_copied_setpoint(columns, where)
     flaws = find_flaws(columns, sample_time, first_row, where)
     columns = filled(columns, flaws)
     found = (
         *notes,
+        *derived,
         *clock_notes(time, sample_time),
         *sample_notes(columns),
         *(sentence(one, first_row) for one in flaws),

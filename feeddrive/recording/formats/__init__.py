@@ -1,0 +1,1 @@
+"""Trace files as drives, controls and loggers write them, one file for each format; recognised by their content."""

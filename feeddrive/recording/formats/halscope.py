@@ -1,0 +1,189 @@
+"""LinuxCNC halscope, both generations, and halsampler. None of them writes units; halsampler not even names or times.
+
+| writer | first line | rows |
+|---|---|---|
+| halscope to 2.9 | `Sampling period is 100000 nSec` | `name value name value ...`, decimal sign of the locale |
+| halscope later | `# Sampling period is 100000 ns` | `value;value;...`, names in the row above |
+| halsampler | none | values divided by blanks; with -t the number of the sample first; `overrun` for a lost stretch |
+
+Source: LinuxCNC, src/hal/utils/scope_files.c; docs/src/man/man1/halsampler.1.adoc.
+"""
+
+from __future__ import annotations
+
+import re
+from itertools import pairwise
+
+import numpy as np
+
+from feeddrive.errors import InputError
+from feeddrive.recording.formats.naming import axis_in
+from feeddrive.recording.formats.rows import number_rows
+from feeddrive.recording.formats.trace import Signal, Trace, clean, unique_names
+from feeddrive.typing import FloatArray
+
+NAME, SAMPLER = "halscope log", "halsampler output"
+_PERIOD = re.compile(r"\s*#?\s*Sampling period is\s+(\d{1,12})\s*n", re.IGNORECASE)
+_OVERRUN = "overrun"
+_FEWEST = 3  # lines of numbers without any word by which halsampler's output is known
+
+
+def recognises(head: str) -> bool:
+    """Tell by its first letters whether a text was written by halscope."""
+    return _PERIOD.match(head.lstrip("\ufeff")) is not None
+
+
+def recognises_sampler(head: str) -> bool:
+    """Tell by its first letters whether a text was written by halsampler: numbers between blanks, and nothing else."""
+    if "\t" in head[:4000]:
+        return False
+    lines = [line.split() for line in head.split("\n")[:40] if line.strip()]
+    lines = lines[:-1] if len(head) >= 60_000 else lines
+    rows = [cells for cells in lines if cells != [_OVERRUN]]
+    if len(rows) < _FEWEST or (len(rows[0]) < 2 and [_OVERRUN] not in lines):
+        return False
+    return all(len(cells) == len(rows[0]) and all(map(_is_plain, cells)) for cells in rows[:_FEWEST])
+
+
+def read(text: str, where: str) -> Trace:
+    """Read a log of halscope.
+
+    Raises:
+        InputError: no names, rows that do not fit them.
+    """
+    lines = text.lstrip("\ufeff").split("\n")
+    match = _PERIOD.match(lines[0])
+    period = int(match[1]) * 1e-9 if match else 0.0
+    if not period > 0.0:
+        raise InputError("the sampling period is not above zero", f"{where}, row 1", "save the log again")
+    if lines[0].lstrip().startswith("#"):
+        names, values, notes = _new(lines, where)
+    else:
+        names, values, notes = _old(lines, where)
+    if all("." not in name for name in names):
+        notes = (*notes, "the names are no HAL pins or signals that tell a joint")
+    time: FloatArray = np.arange(values.shape[0], dtype=np.float64) * period
+    plain = unique_names(names)
+    signals = tuple(Signal(name, time, np.ascontiguousarray(values[:, i]), "", axis_in(name))
+                    for i, name in enumerate(plain))  # fmt: skip
+    return Trace(NAME, signals, notes)
+
+
+def _new(lines: list[str], where: str) -> tuple[list[str], FloatArray, tuple[str, ...]]:
+    """Read names and values divided by semicolons."""
+    at = next((i for i, line in enumerate(lines) if line.strip() and not line.lstrip().startswith("#")), None)
+    if at is None:
+        raise InputError("the log holds no names", where, "save it again")
+    names = [name.strip() for name in lines[at].split(";")]
+    while names and not names[-1]:
+        names.pop()
+    if not names or all(map(_is_plain, names)):
+        raise InputError("the row of names is missing", f"{where}, row {at + 1}", "save the log again")
+
+    def split(line: str) -> list[str]:
+        cells = [cell.strip().replace(",", ".") for cell in line.split(";")]
+        return cells[:-1] if len(cells) == len(names) + 1 and not cells[-1] else cells
+
+    first = at + 1
+    while first < len(lines) and lines[first].lstrip().startswith("#"):  # how it was drawn: # Position, # Scale
+        first += 1
+    values, notes = number_rows(lines[first:], split, len(names), first + 1, where)
+    return names, values, notes
+
+
+def _old(lines: list[str], where: str) -> tuple[list[str], FloatArray, tuple[str, ...]]:
+    """Read rows in which names and values alternate; a name may come twice, and the decimal sign is the locale's."""
+    at = next((i for i in range(1, len(lines)) if lines[i].strip()), None)
+    if at is None:
+        raise InputError("the log holds no rows", where, "save it again")
+    names = lines[at].split()[0::2]
+    comma = "," in lines[at]
+
+    def split(line: str) -> list[str]:
+        words = line.split()
+        if words[0::2] != names or len(words) != 2 * len(names):
+            return words  # of another number than the values, which is told
+        return [word.replace(",", ".") for word in words[1::2]]
+
+    if len(lines[at].split()) != 2 * len(names) or any(map(_is_plain, names)):
+        raise InputError("names and values do not alternate", f"{where}, row {at + 1}", "save the log again")
+    values, notes = number_rows(lines[at:], lambda line: _wide(split(line), len(names)), len(names), at + 1, where)
+    return names, values, (*notes, *(("the comma is read as the decimal sign",) if comma else ()))
+
+
+def _wide(cells: list[str], width: int) -> list[str]:
+    """Make cells that are no values fail by their number, also where there are as many by chance."""
+    return [*cells, ""] if len(cells) == width and not all(map(_is_plain, cells)) else cells
+
+
+def read_sampler(text: str, where: str, sample_time: float | None, columns: tuple[str, ...]) -> Trace:
+    """Read the output of halsampler.
+
+    Args:
+        text: content of the file.
+        where: file name.
+        sample_time: [s]; None where the person did not say it.
+        columns: names of the columns; numbered where there are none.
+
+    Raises:
+        InputError: rows of different lengths, columns that do not fit, sample numbers that run back.
+    """
+    lines = text.lstrip("\ufeff").split("\n")
+    losses: list[int] = []
+    kept: list[str] = []
+    rows: list[int] = []
+    for number, line in enumerate(lines, start=1):
+        if line.strip() == _OVERRUN:
+            losses.append(len(kept))
+        elif line.strip():
+            kept.append(line)
+            rows.append(number)
+    width = len(kept[0].split())
+    values, notes = number_rows(kept, lambda line: [cell.replace(",", ".") for cell in line.split()], width, 1, where)
+    count = values[:, 0]
+    numbered = width > 1 and bool(np.all(count == np.round(count)) and np.all(np.diff(count) >= 1)
+                                  and np.mean(np.diff(count) == 1) > 0.5)  # fmt: skip
+    data = values[:, 1:] if numbered else values
+    names = _columns(columns, data.shape[1], numbered, where)
+    place: FloatArray = count - count[0] if numbered else np.arange(values.shape[0], dtype=np.float64)
+    notes = (*notes, *_losses(losses, place, rows, numbered))
+    if losses and not numbered:
+        data, place, said = _longest(data, place, losses)
+        notes = (*notes, said)
+    time = place * (sample_time or 1.0)
+    timed = sample_time is not None
+    signals = tuple(
+        Signal(name, time, np.ascontiguousarray(data[:, i]), "", axis_in(name), timed=timed)
+        for i, name in enumerate(names)
+    )
+    return Trace(SAMPLER, signals, notes)
+
+
+def _columns(columns: tuple[str, ...], width: int, numbered: bool, where: str) -> list[str]:
+    if not columns:
+        return [f"column {i + 1 + numbered}" for i in range(width)]
+    if len(columns) != width:
+        what = f"{len(columns)} names for {width} columns of values"
+        behind = " behind the number of the sample" if numbered else ""
+        raise InputError(what, where, f"name every column{behind} by --columns")
+    return unique_names([clean(name) for name in columns])
+
+
+def _losses(losses: list[int], place: FloatArray, rows: list[int], numbered: bool) -> tuple[str, ...]:
+    if not losses:
+        return ()
+    row = rows[losses[0]] if losses[0] < len(rows) else rows[-1]
+    how = "its length is told by the sample numbers" if numbered else "its length is not known"
+    return (f"{len(losses)} overruns: a stretch was lost before row {row}; {how}",)
+
+
+def _longest(data: FloatArray, place: FloatArray, losses: list[int]) -> tuple[FloatArray, FloatArray, str]:
+    """Return the longest stretch between overruns of unknown length."""
+    edges = sorted({0, *losses, data.shape[0]})
+    first, last = max(pairwise(edges), key=lambda pair: pair[1] - pair[0])
+    said = f"rows {first + 1} to {last} of the numbers, the longest stretch without an overrun, are read"
+    return data[first:last], place[first:last] - place[first], said
+
+
+def _is_plain(cell: str) -> bool:
+    return re.fullmatch(r"[+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][+-]?\d+)?", cell) is not None

@@ -1,0 +1,228 @@
+"""SINUMERIK Edge / Analyze MyWorkpiece Capture: JSON, and the `*_hfdata.csv` tables made of it.
+
+`CYCLE` counts the interpolator cycles and is the clock: rows are not, since a capture loses stretches without a sign.
+Signals are called NAME|axis number; `Axis` gives the machine's name of the axis. There is no unit anywhere.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from datetime import datetime
+from typing import Any
+
+import numpy as np
+
+from feeddrive.errors import InputError
+from feeddrive.recording.formats.rows import number_rows
+from feeddrive.recording.formats.trace import Signal, Trace, unique_names
+from feeddrive.typing import FloatArray
+
+NAME = "SINUMERIK Edge capture"
+CYCLE = 2e-3
+"""Cycle [s] of captures that do not say theirs; Edge writes CycleTimeMs = 2."""
+_CLOCK = "CYCLE"
+_KINDS = {"DES_POS": "position", "ENC_POS": "position", "ENC1_POS": "position", "ENC2_POS": "position",
+          "CTRL_POS": "position", "CTRL_DIFF": "position", "CTRL_DIFF2": "position", "CONT_DEV": "position",
+          "TORQUE": "torque", "TORQUE_FFW": "torque", "CURRENT": "current", "POWER": "power"}  # fmt: skip
+
+
+def recognises(head: str) -> bool:
+    """Tell by its first letters whether a text is a capture in JSON."""
+    return head.lstrip("\ufeff \n\t").startswith("{") and any(
+        mark in head for mark in ('"SignalListHFData"', '"HFData"', '"CycleTimeMs"', '"Header"')
+    )
+
+
+def recognises_table(head: str) -> bool:
+    """Tell by its first letters whether a text is a table made of a capture."""
+    names = _split(head.lstrip("\ufeff").split("\n", 1)[0])
+    return _CLOCK in names and any("|" in name for name in names)
+
+
+def read(text: str, where: str, sample_time: float | None = None) -> Trace:
+    """Read a capture in JSON.
+
+    Args:
+        text: content of the file.
+        where: file name.
+        sample_time: of a cycle [s], where the person says it.
+
+    Raises:
+        InputError: not whole JSON, no rows, rows that do not fit the list of signals, a clock that runs back.
+    """
+    try:
+        tree = json.loads(text)
+    except (ValueError, RecursionError) as error:
+        place = f"{where}, line {error.lineno}" if isinstance(error, json.JSONDecodeError) else where
+        raise InputError("is not whole JSON", place, "copy or record it again") from None
+    header = tree.get("Header") if isinstance(tree, Mapping) else None
+    listed = header.get("SignalListHFData") if isinstance(header, Mapping) else None
+    payload = tree.get("Payload") if isinstance(tree, Mapping) else None
+    if not isinstance(listed, list) or not isinstance(payload, list) or not isinstance(header, Mapping):
+        raise InputError("is JSON, but not a capture: Header.SignalListHFData or Payload is missing", where,
+                         "name a file of SINUMERIK Edge, or save the table as CSV")  # fmt: skip
+    names = [str(signal.get("Name", "")) if isinstance(signal, Mapping) else "" for signal in listed]
+    axes = [str(signal.get("Axis", "")) if isinstance(signal, Mapping) else "" for signal in listed]
+    rows = [row for item in payload if isinstance(item, Mapping) for row in _list(item.get("HFData"))]
+    values = _table(rows, len(names), where)
+    given = header.get("CycleTimeMs")
+    cycle, said = _cycle(given / 1e3 if isinstance(given, int | float) else None, sample_time, where)
+    trace = _trace(names, axes, values, cycle, said, where, "row of HFData")
+    stamps = [item["HFTimestamp"] for item in payload if isinstance(item, Mapping) and "HFTimestamp" in item]
+    return Trace(
+        trace.format, trace.signals, (*trace.notes, *_adapter_clock(stamps, values[:, names.index(_CLOCK)], cycle))
+    )
+
+
+def read_table(text: str, where: str, sample_time: float | None = None) -> Trace:
+    """Read a table made of a capture, as `read`.
+
+    Raises:
+        InputError: rows that do not fit the header, a clock that runs back.
+    """
+    lines = text.lstrip("\ufeff").split("\n")
+    separator = _separator(lines[0])
+    names = _split(lines[0])
+    while names and not names[-1]:
+        names.pop()
+    comma = separator == ";" and any("," in line for line in lines[1:])
+
+    def split(line: str) -> list[str]:
+        cells = [cell.strip().strip('"') for cell in (line.replace(",", ".") if comma else line).split(separator)]
+        return cells[: len(names)] if len(cells) == len(names) + 1 and not cells[-1] else cells
+
+    kept = [i for i, name in enumerate(names) if name == _CLOCK or "|" in name]
+
+    def split_kept(line: str) -> list[str]:
+        cells = split(line)
+        return [cells[i] for i in kept] if len(cells) == len(names) else cells
+
+    if len(kept) == len(names):
+        values, notes = number_rows(lines[1:], split, len(names), 2, where, gaps=True)
+    else:
+        # A row of another length is told with all its cells: it does not reach the width of those that are kept.
+        values, notes = number_rows(
+            lines[1:], lambda line: _as_wide(split_kept(line), len(kept)), len(kept), 2, where, True
+        )
+        left = ", ".join(names[i] or f"column {i + 1}" for i in range(len(names)) if i not in kept)
+        notes = (*notes, f"not signals of the capture and left out: {left}")
+    cycle, said = _cycle(None, sample_time, where)
+    chosen = [names[i] for i in kept]
+    axes = [name.rsplit("|", 1)[-1] if "|" in name else "" for name in chosen]
+    return _trace(chosen, axes, values, cycle, (*said, *notes), where, "row", first_row=2)
+
+
+def _as_wide(cells: list[str], width: int) -> list[str]:
+    return cells if len(cells) == width else [*cells, *[""] * (width + 1)]
+
+
+def _separator(line: str) -> str:
+    return max(",;\t", key=line.count)
+
+
+def _split(line: str) -> list[str]:
+    return [cell.strip().strip('"') for cell in line.split(_separator(line))]
+
+
+def _list(value: Any) -> list[Any]:
+    return value if isinstance(value, list) else []
+
+
+def _table(rows: Sequence[Any], width: int, where: str) -> FloatArray:
+    if not rows:
+        raise InputError("the capture holds no row of HFData", where, "record again")
+    for number, row in enumerate(rows, start=1):
+        if not isinstance(row, list) or len(row) != width:
+            count = len(row) if isinstance(row, list) else 0
+            what = f"the row has {count} values, the header names {width} signals"
+            raise InputError(what, f"{where}, row {number} of HFData", "record again")
+    try:
+        return np.array([[np.nan if cell is None else cell for cell in row] for row in rows], dtype=np.float64)
+    except (TypeError, ValueError, OverflowError):
+        raise InputError("a value of HFData is not a number", where, "record again") from None
+
+
+def _cycle(in_file: float | None, said: float | None, where: str) -> tuple[float, tuple[str, ...]]:
+    """Return the cycle time [s], and how it is known."""
+    if said is not None:
+        return said, (f"a cycle of {said * 1e3:g} ms, as given",)
+    if in_file is None:
+        return CYCLE, (f"a cycle of {CYCLE * 1e3:g} ms assumed, as Edge writes it; another by --sample-time",)
+    if not 1e-5 <= in_file <= 10.0:
+        raise InputError(f"a cycle of {in_file * 1e3:g} ms is not possible", where, "give it by --sample-time")
+    return in_file, ()
+
+
+def _trace(
+    names: list[str],
+    axes: list[str],
+    values: FloatArray,
+    cycle: float,
+    notes: tuple[str, ...],
+    where: str,
+    row: str,
+    first_row: int = 1,
+) -> Trace:
+    if names.count(_CLOCK) != 1:
+        raise InputError(f"there is no signal {_CLOCK}, which is the clock", where, f"record it with {_CLOCK}")
+    clock = values[:, names.index(_CLOCK)]
+    if not np.all(np.isfinite(clock)):
+        bad = int(np.flatnonzero(~np.isfinite(clock))[0])
+        raise InputError(f"{_CLOCK} is not a number", f"{where}, {row} {bad + first_row}", "remove the row")
+    again = np.flatnonzero(np.diff(clock) == 0.0) + 1
+    again = again[[np.array_equal(values[i], values[i - 1], equal_nan=True) for i in again]] if again.size else again
+    if again.size:
+        values, clock = np.delete(values, again, axis=0), np.delete(clock, again)
+        notes = (*notes, f"{again.size} rows are there twice and used once")
+    back = np.flatnonzero(np.diff(clock) <= 0.0)
+    if back.size:
+        place = f"{where}, {row} {int(back[0]) + 1 + first_row}"
+        raise InputError(f"{_CLOCK} does not increase", place, "use one capture to a file")
+    time: FloatArray = (clock - clock[0]) * cycle
+    plain = unique_names(names)
+    signals = []
+    for index, name in enumerate(plain):
+        if names[index] == _CLOCK:
+            continue
+        kind = _KINDS.get(names[index].split("|")[0], "")
+        there = np.isfinite(values[:, index])
+        if not there.all():
+            notes = (*notes, f"{name} lacks {int(np.sum(~there))} values")
+        own = time if there.all() else time[there]
+        signals.append(Signal(name, own, values[there, index], "", axes[index], "", kind))
+    return Trace(NAME, tuple(signal for signal in signals if signal.values.size), notes)
+
+
+def _adapter_clock(stamps: Sequence[Any], clock: FloatArray, cycle: float) -> tuple[str, ...]:
+    """Say by how much the clock of the adapter runs beside that of the control, where its stamps resolve it.
+
+    Across a lost stretch its stamps jump, so each stretch between them has its own zero.
+    """
+    pairs = []
+    for stamp in stamps:
+        try:
+            at = datetime.fromisoformat(str(stamp["Time"]).replace("Z", "+00:00")).timestamp()
+            pairs.append((float(stamp["HFProbeCounter"]), at))
+        except (KeyError, TypeError, ValueError, OverflowError):
+            continue
+    if not pairs or not np.all(np.isfinite(pairs)):
+        return ()
+    counted, told = np.array(pairs).T
+    lost = clock[:-1][np.diff(clock) > 1.5]
+    stretch = np.searchsorted(lost, counted)
+    spread, late = counted * cycle, told - told[0]
+    for part in np.unique(stretch):
+        inside = stretch == part
+        spread[inside] -= spread[inside].mean()
+        late[inside] -= late[inside].mean()
+    power, freedom = float(spread @ spread), counted.size - np.unique(stretch).size - 1
+    if power == 0.0 or freedom < 8:
+        return ()
+    slope = float(spread @ late) / power
+    rest = late - slope * spread
+    deviation = float(np.sqrt(rest @ rest / freedom / power))
+    if abs(slope - 1.0) <= 3.0 * deviation:  # not resolved: the stamps are those of a network, to 1 ms
+        return ()
+    return (f"the adapter's clock runs {1e6 * (slope - 1.0):+.0f} ± {2e6 * deviation:.0f} ppm beside the control's; "
+            "the control's is used",)  # fmt: skip

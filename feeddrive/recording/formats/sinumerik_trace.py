@@ -1,0 +1,172 @@
+"""SINUMERIK Operate trace, XML (`traceSession`): a value is written only when it changes.
+
+Each signal has a grid of its own: from its first value on, one point every `interval`, the last value held. The points
+of the interpolator cycle (4 ms, say) lie between those of the servo cycle, so channels keep their own times. Units are
+told by class alone (`unitsType`). The present points alone, joined by lines, would make ramps of steps.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from xml.etree.ElementTree import Element
+
+import numpy as np
+
+from feeddrive.errors import InputError
+from feeddrive.recording.formats.trace import Signal, Trace, unique_names
+from feeddrive.recording.formats.xml_tree import parse_xml
+from feeddrive.typing import FloatArray
+
+NAME = "SINUMERIK Operate trace"
+_KINDS = {"posn": "position", "velo": "velocity", "velorot": "speed", "accel": "acceleration", "current": "current",
+          "torque": "torque", "force": "force", "power": "power"}  # fmt: skip
+_MOST_POINTS = 20_000_000  # a day at 4 ms; more is a damaged time
+_OFF_GRID = 0.01  # of the interval: stamps are written in whole µs
+
+
+def recognises(head: str) -> bool:
+    """Tell by its first letters whether a text is such a trace."""
+    return "<traceSession" in head or (
+        "SINUMERIK" in head and "trace" in head.lower() and head.lstrip("\ufeff \n").startswith("<")
+    )
+
+
+@dataclass(frozen=True)
+class _Declared:
+    """What the file says of a signal: id, name, interval [s], number of points, class of unit."""
+
+    id: str
+    name: str
+    about: str
+    interval: float
+    points: int
+    kind: str
+
+
+def read(text: str, where: str) -> Trace:
+    """Read a trace.
+
+    Raises:
+        InputError: not whole XML, no data, values that are no numbers or do not lie on the signal's grid.
+    """
+    root = parse_xml(text, where)
+    frames = [frame for data in root.iter("traceData") for frame in data if _tag(frame) == "dataFrame"]
+    if not frames:
+        frames = list(root.iter("dataFrame"))
+    if not frames:
+        raise InputError("the trace holds no data", where, "save it with its data at the control")
+    notes: list[str] = []
+    if len(frames) > 1:
+        notes.append(f"{len(frames)} frames of data; the first is read")
+    frame = frames[0]
+    for header in frame.iter("frameHeader"):
+        lost = header.get("dropOuts", "0").strip()
+        if lost not in ("", "0"):
+            notes.append(f"the control reports {lost} drop-outs: samples are missing and were held")
+    declared = [_declared(element, where) for element in frame.iter("dataSignal")]
+    if not declared:
+        raise InputError("the trace names no signal", where, "save it with its data at the control")
+    times, values = _present(frame, {one.id for one in declared}, where)
+    if not any(times.values()):
+        raise InputError("no signal of the trace has a value", where, "save it with its data at the control")
+    end = max(stamps[-1] for stamps in times.values() if stamps)
+    for header in frame.iter("frameHeader"):
+        stop = _number(header.get("stopInc", "0"), f"{where}, frameHeader")
+        end = max(end, stop) if math.isfinite(stop) else end
+    signals, held = [], 0
+    names = unique_names([one.name for one in declared])
+    for name, one in zip(names, declared, strict=True):
+        if not times[one.id]:
+            notes.append(f"{name} has no value in the file and is left out")
+            continue
+        signal, present = _on_its_grid(name, one, times[one.id], values[one.id], end, where)
+        signals.append(signal)
+        held += signal.values.size - present
+        if one.points and signal.values.size != one.points:
+            notes.append(f"{name} declares {one.points} points, the file gives {signal.values.size}")
+    if held:
+        notes.append(f"{held} values are not written because they did not change, and are held")
+    return Trace(NAME, tuple(signals), tuple(notes))
+
+
+def _tag(element: Element) -> str:
+    return element.tag.rsplit("}", 1)[-1]
+
+
+def _declared(element: Element, where: str) -> _Declared:
+    id_, name = element.get("id", ""), element.get("name", "")
+    place = f"{where}, signal {name or id_}"
+    interval = _number(element.get("interval", "0"), place)
+    points = element.get("datapointCount", "")
+    if not id_ or id_ == "time":
+        raise InputError("a signal has no id", where, "save the trace again at the control")
+    if not (math.isfinite(interval) and interval >= 0.0):
+        raise InputError(f"the interval {interval:g} s is not possible", place, "save the trace again at the control")
+    kind = _KINDS.get(element.get("unitsType", "").lower(), "")
+    return _Declared(id_, name or id_, element.get("description", ""), interval,
+                     int(points) if points.isdigit() and len(points) < 12 else 0, kind)  # fmt: skip
+
+
+def _present(frame: Element, ids: set[str], where: str) -> tuple[dict[str, list[float]], dict[str, list[float]]]:
+    """Return times and values that are written, by the id of their signal."""
+    times: dict[str, list[float]] = {id_: [] for id_ in ids}
+    values: dict[str, list[float]] = {id_: [] for id_ in ids}
+    before = -math.inf
+    for number, record in enumerate(_records(frame), start=1):
+        place = f"{where}, record {number}"
+        at = _number(record.get("time", ""), place)
+        if not at > before or not math.isfinite(at):
+            raise InputError("the time does not increase", place, "save the trace again at the control")
+        before = at
+        for key, written in record.items():
+            if key in times:
+                times[key].append(at)
+                values[key].append(_number(written, place))
+            elif key != "time":
+                raise InputError(f'a value of the unknown signal "{key}"', place, "save the trace again at the control")
+    if before == -math.inf:
+        raise InputError("the trace holds no record", where, "save it with its data at the control")
+    return times, values
+
+
+def _records(frame: Element) -> Iterator[Element]:
+    return (element for element in frame.iter() if _tag(element) == "rec")
+
+
+def _number(written: str, place: str) -> float:
+    plain = written.strip().lower()
+    if plain in ("true", "false"):
+        return float(plain == "true")
+    try:
+        return float(plain.replace(",", "."))
+    except ValueError:
+        shown = written if len(written) <= 40 else written[:37] + "..."
+        raise InputError(f'"{shown}" is not a number', place, "save the trace again at the control") from None
+
+
+def _on_its_grid(
+    name: str, one: _Declared, times: list[float], values: list[float], end: float, where: str
+) -> tuple[Signal, int]:
+    """Return a signal on its own grid, the last value held, and how many of its points are written."""
+    stamps = np.array(times)
+    step = one.interval or (float(np.min(np.diff(stamps))) if stamps.size > 1 else 0.0)
+    if step <= 0.0:
+        raise InputError(f"the interval of {name} is not known", where, "save the trace again at the control")
+    places = (stamps - stamps[0]) / step
+    index = np.round(places)
+    if np.max(np.abs(places - index)) > _OFF_GRID * max(1.0, 1e-3 / step) or np.any(np.diff(index) < 1):
+        what = f"values of {name} do not lie on its grid of {step * 1e3:g} ms"
+        raise InputError(what, where, "save the trace again at the control")
+    until_end = (end - stamps[0]) / step + _OFF_GRID + 1.0
+    if until_end > _MOST_POINTS:
+        raise InputError(f"{name} would have {until_end:.3g} points", where, "save a shorter trace")
+    # The last points are not written either where nothing changes any more; the count and the end tell of them.
+    count = max(int(index[-1]) + 1, min(one.points or int(until_end), int(until_end)))
+    last = np.searchsorted(index, np.arange(count), side="right") - 1
+    time: FloatArray = np.round((stamps[0] + step * np.arange(count)) * 1e9) / 1e9
+    axis = re.search(r"\[\s*u?\d+\s*,\s*(\d+)\s*\]", one.name)
+    held = np.array(values, dtype=np.float64)[last]
+    return Signal(name, time, held, "", axis[1] if axis else "", one.about, one.kind), len(values)

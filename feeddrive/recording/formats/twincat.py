@@ -1,0 +1,289 @@
+"""Beckhoff TwinCAT 3 Scope, text export (CSV or TXT), in all its variants.
+
+One time column [ms] for each group of channels; groups that were sampled more slowly end earlier. The decimal sign of
+the numbers is told by the numbers: that of the header follows the language of the computer. Layout: `twincat_header`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import accumulate, combinations
+
+import numpy as np
+
+from feeddrive.errors import InputError
+from feeddrive.recording.formats.naming import axis_in
+from feeddrive.recording.formats.trace import Signal, Trace, unique_names
+from feeddrive.recording.formats.twincat_header import Header, read_header
+from feeddrive.typing import FloatArray
+
+NAME = "TwinCAT 3 Scope export"
+_CHUNK = 20_000  # rows that are held as text at a time
+_FILETIME = 1e15  # no time in ms is as large; 100 ns since 1601 is 1.3e17
+_NO_NUMBERS = {"true": "1", "false": "0", "1.#qnan": "nan", "-1.#ind": "nan", "1.#inf": "inf", "-1.#inf": "-inf"}
+
+
+def recognises(head: str) -> bool:
+    """Tell by its first letters whether a text is such an export."""
+    return (
+        head.startswith("Name") and head[4:5] in "\t ;:," and ("\nData-Type" in head or "Starttime of export" in head)
+    )
+
+
+def read(text: str, where: str) -> Trace:
+    """Read an export.
+
+    Raises:
+        InputError: header and numbers that do not fit each other, or cannot be told apart.
+    """
+    lines = text.split("\n")
+    header = read_header(lines, where)
+    table = _Table(header, where)
+    table.fill(lines)
+    names = unique_names(header.attributes["Name"])
+    signals: list[Signal] = []
+    for group, first in enumerate(_first_channels(header.groups)):
+        time = _seconds(table.column(group, 0), header, where)
+        _refuse_unordered(time, header.first_line + 1, names[first], where)
+        signals.extend(_signal(header, names, first + i, time, table.column(group, 1 + i))
+                       for i in range(header.groups[group]))  # fmt: skip
+    signals, said = _scaled(signals, header)
+    return Trace(NAME, tuple(signals), (*header.notes, *table.notes, *said))
+
+
+class _Table:
+    """Cells of the numbers by group, as text; a group is whole in a row or absent, and once absent it stays so."""
+
+    def __init__(self, header: Header, where: str) -> None:
+        self._header, self._where = header, where
+        ends = list(accumulate(width + 1 for width in header.groups))
+        self._spans = [(end - width - 1, end) for end, width in zip(ends, header.groups, strict=True)]
+        self._parts: list[list[list[FloatArray]]] = [[[] for _ in range(width + 1)] for width in header.groups]
+        self._first: list[str] = []
+        self._stamps: list[list[str]] = [[] for _ in header.groups]
+        self._ended = [False] * len(header.groups)
+        self._decimal_comma = False
+        self.notes: list[str] = []
+
+    def fill(self, lines: list[str]) -> None:
+        """Read all rows."""
+        body, first = self._body(lines)
+        self._decimal_comma = self._decides(body)
+        for start in range(0, len(body), _CHUNK):
+            self._take(body[start : start + _CHUNK], first + start, len(body) + first)
+        for width, name in zip(self._parts, self._header.groups, strict=True):
+            if not width[0] or not sum(part.size for part in width[0]):
+                raise InputError(f"a group of {name} channels has no numbers", self._where, "export it again")
+
+    def column(self, group: int, index: int) -> FloatArray:
+        """Return the numbers of a column of a group, (n,); 0 is the time."""
+        return np.concatenate(self._parts[group][index])
+
+    def _body(self, lines: list[str]) -> tuple[list[str], int]:
+        """Return the rows of numbers and the row in the file of the first."""
+        first = self._header.first_line
+        body = lines[first:]
+        while body and not body[-1].strip(self._header.separator + " "):
+            body.pop()
+        if body and body[-1].strip(self._header.separator + " ") == "EOF":
+            body.pop()
+        if not body:
+            raise InputError("there is a header and no row of numbers", self._where, "export it again")
+        return body, first + 1
+
+    def _decides(self, body: list[str]) -> bool:
+        """Tell whether the comma is the decimal sign."""
+        if self._header.separator == ",":
+            return False
+        comma = next((i for i, line in enumerate(body) if "," in line), None)
+        point = next((i for i, line in enumerate(body) if "." in line), None)
+        if comma is not None and point is not None:
+            row = self._header.first_line + 1 + max(comma, point)
+            raise InputError("both comma and point stand in numbers", f"{self._where}, row {row}", "export it again")
+        if comma is not None:
+            self.notes.append("the comma is read as the decimal sign")
+        return comma is not None
+
+    def _take(self, lines: list[str], first_row: int, end: int) -> None:
+        """Take rows of text; `end` is the row behind the last of the file, which may be cut short."""
+        kept: list[list[list[str]]] = [[] for _ in self._spans]
+        for row, line in enumerate(lines, start=first_row):
+            cells = self._cells_of(line, row)
+            try:
+                present = self._present(cells, row)
+            except InputError:
+                if row != end - 1:
+                    raise
+                self.notes.append("the last row is cut short and left out")
+                continue
+            for group, is_there in enumerate(present):
+                if is_there:
+                    a, b = self._spans[group]
+                    kept[group].append(cells[a:b])
+        for group, rows in enumerate(kept):
+            if rows:
+                numbers = self._numbers(rows, first_row, group)
+                for index in range(numbers.shape[1]):
+                    self._parts[group][index].append(np.ascontiguousarray(numbers[:, index]))
+
+    def _present(self, cells: list[str], row: int) -> list[bool]:
+        place = f"{self._where}, row {row}"
+        width = self._spans[-1][1]
+        if len(cells) > width:
+            what = f"the row has {len(cells)} cells, the header names {width} columns"
+            mend = "export it again with the tab as separator" if self._header.separator == "," else "correct the row"
+            raise InputError(what, place, mend)
+        found = []
+        for group, (a, b) in enumerate(self._spans):
+            filled = [bool(cell) for cell in cells[a:b]] + [False] * (b - max(a, len(cells)))
+            if any(filled) and (not all(filled[: b - a]) or self._ended[group]):
+                raise InputError("a cell is empty between filled ones", place, "complete the row or remove it")
+            found.append(any(filled))
+        if not any(found):
+            raise InputError("the row is blank", place, "remove blank rows between rows of numbers")
+        self._ended = [not is_there for is_there in found]
+        return found
+
+    def _cells_of(self, line: str, row: int) -> list[str]:
+        separator = self._header.separator
+        if separator != " ":
+            cells = [cell.strip() for cell in line.split(separator)]
+        else:
+            cells = self._cells_between_blanks(line, row)
+        while cells and not cells[-1]:
+            cells.pop()
+        return cells
+
+    def _cells_between_blanks(self, line: str, row: int) -> list[str]:
+        """Split a row where a cell without value is itself a blank: two blanks for each, or one if it is nothing."""
+        raw = line.rstrip().split(" ")
+        if all(raw):
+            return raw
+        once = raw
+        twice: list[str] = []
+        run = 0
+        for cell in [*raw, "end"]:
+            if cell:
+                if run % 2:
+                    return once
+                twice.extend([""] * (run // 2) + [cell])
+                run = 0
+            else:
+                run += 1
+        edges = {a for a, _ in self._spans}
+        fits = [cells for cells in (once, twice[:-1]) if next(i for i, cell in enumerate(cells) if cell) in edges]
+        if len(fits) != 1:
+            what = "the blanks of the row do not tell its columns"
+            raise InputError(what, f"{self._where}, row {row}", "export it again with the tab as separator")
+        return fits[0]
+
+    def _numbers(self, rows: list[list[str]], first_row: int, group: int) -> FloatArray:
+        if self._decimal_comma:
+            rows = [[cell.replace(",", ".") for cell in cells] for cells in rows]
+        try:
+            return np.array(rows, dtype=np.float64)
+        except ValueError:
+            return np.array([[self._number(cell, first_row + i) for cell in cells] for i, cells in enumerate(rows)])
+
+    def _number(self, cell: str, row: int) -> float:
+        try:
+            return float(_NO_NUMBERS.get(cell.lower(), cell))
+        except ValueError:
+            shown = cell if len(cell) <= 40 else cell[:37] + "..."
+            place = f"{self._where}, row {row}"
+            raise InputError(f'"{shown}" is not a number', place, "export it again, or correct the cell") from None
+
+
+def _first_channels(groups: tuple[int, ...]) -> list[int]:
+    return [0, *accumulate(groups)][:-1]
+
+
+def _seconds(stamps: FloatArray, header: Header, where: str) -> FloatArray:
+    """Return time stamps [s] since the start of the export, from ms or from 100 ns since 1601, (n,)."""
+    if stamps.size and stamps[0] > _FILETIME:
+        # A double holds 1.3e17 to 16 units, 1.6 µs; the difference is exact.
+        return (stamps - (header.start or stamps[0])) * 1e-7
+    return stamps / 1e3  # the nearest double to the decimal stamp in s, which times 1e-3 is not
+
+
+def _refuse_unordered(time: FloatArray, first_row: int, name: str, where: str) -> None:
+    bad = np.flatnonzero(~(np.diff(time) > 0.0))
+    if bad.size:
+        place = f'{where}, row {first_row + int(bad[0]) + 1}, time of "{name}"'
+        raise InputError("the time does not increase", place, "export one recording to a file")
+
+
+def _signal(header: Header, names: list[str], index: int, time: FloatArray, values: FloatArray) -> Signal:
+    def cell(attribute: str) -> str:
+        cells = header.attributes.get(attribute)
+        return cells[index] if cells else ""
+
+    unit = cell("Unit").split(" ")[0]
+    symbol = cell("SymbolName")
+    return Signal(names[index], time, values, "" if unit == "(None)" else unit, axis_in(symbol, names[index]), symbol)
+
+
+@dataclass(frozen=True)
+class _Scaling:
+    """What the Scope shows of a raw value: (raw factor + offset) unit_factor + unit_offset."""
+
+    factor: float
+    offset: float
+    unit_factor: float
+    unit_offset: float
+
+    def apply(self, raw: FloatArray) -> FloatArray:
+        """Return what is shown of raw values, (n,)."""
+        return (raw * self.factor + self.offset) * self.unit_factor + self.unit_offset
+
+    @property
+    def neutral(self) -> bool:
+        return self == _Scaling(1.0, 0.0, 1.0, 0.0)
+
+
+def _scalings(header: Header, count: int) -> list[_Scaling]:
+    columns = []
+    for key, neutral in (("ScaleFactor", "1"), ("Offset", "0"), ("Unit ScaleFactor", "1"), ("Unit Offset", "0")):
+        cells = header.attributes.get(key, [neutral] * count)
+        columns.append([_float(cell or neutral) for cell in cells])
+    return [_Scaling(*row) for row in zip(*columns, strict=True)]
+
+
+def _scaled(signals: list[Signal], header: Header) -> tuple[list[Signal], tuple[str, ...]]:
+    """Apply the scaling of the header if the export left it out, which no line of the file says.
+
+    The option `Scale values before export` decides it. Two channels of one symbol tell: raw they are equal, scaled they
+    are as their scalings. Without such a pair the scaling is taken as applied, which is the usual export, and said.
+    """
+    scalings = _scalings(header, len(signals))
+    shown = ", ".join(s.name for s, scaling in zip(signals, scalings, strict=True) if not scaling.neutral)
+    if not shown:
+        return signals, ()
+    votes = set()
+    for i, j in combinations(range(len(signals)), 2):
+        first, second = signals[i], signals[j]
+        same = first.about and first.about == second.about and np.array_equal(first.time, second.time)
+        if not same or scalings[i] == scalings[j]:
+            continue
+        # Times a scaling that has an inverse, only where one of the two is neutral: nothing is divided by zero.
+        if scalings[i].neutral or scalings[j].neutral:
+            plain, other = (i, j) if scalings[i].neutral else (j, i)
+            expected = scalings[other].apply(signals[plain].values)
+            if np.array_equal(first.values, second.values):
+                votes.add(False)
+            elif np.allclose(signals[other].values, expected, rtol=1e-6, atol=0.0):  # REAL32 has seven digits
+                votes.add(True)
+    if votes == {False}:
+        made = [replace(s, values=scaling.apply(s.values)) for s, scaling in zip(signals, scalings, strict=True)]
+        return made, (f"exported without scaling, as channels of one symbol show; applied by the header to {shown}",)
+    how = "applied in the export, as channels of one symbol show" if votes == {True} else (
+        "taken as applied (the option Scale values before export); if it was off, give factor and offset in a mapping"
+    )  # fmt: skip
+    return signals, (f"scale factors or offsets stand in the header for {shown}: {how}",)
+
+
+def _float(cell: str) -> float:
+    try:
+        return float(cell.replace(",", "."))
+    except ValueError:
+        return float("nan")
