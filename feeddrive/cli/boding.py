@@ -11,7 +11,7 @@ import numpy as np
 
 from feeddrive import __version__
 from feeddrive.cli.bode_tables import family_tables
-from feeddrive.cli.output import deliver, tell_written, warnings_as_lines
+from feeddrive.cli.output import chain_remark, deliver, finite, tell_written, warnings_as_lines
 from feeddrive.errors import InputError
 from feeddrive.export.point import export_point
 from feeddrive.files import find_plant, shipped_scenarios, write_bytes_atomically, write_text_atomically
@@ -21,6 +21,7 @@ from feeddrive.output_folder import output_folder, refuse_unusable
 from feeddrive.plant.entries import nearest
 from feeddrive.plant.linear import INPUTS, OUTPUTS
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.resolution import resolved, resolved_modes
 from feeddrive.quantity import parse
 from feeddrive.recording.reading import read_recording
 from feeddrive.servo.cascade import Cascade
@@ -63,13 +64,18 @@ def run(request: Request, as_json: bool, out: Path | None) -> None:
     with warnings_as_lines():
         plant = read_drive_plant(find_plant(request.plant))
         cases = read_cases(plant, request.at, request.positions, request.payload)
-        families = _families(plant, request, cases)
+        low, high = _range(request.frequencies)
+        valid_to = min(resolved_modes(plant, case.position).chain_valid_to for case in cases)
+        fine = resolved(plant, high, [case.position for case in cases])
+        families = _families(fine, request, cases, low, high)
         measured = _measured(request)
-    content = _content(plant, families, measured)
+    content = _content(plant, families, measured) | {"chain_valid_to": finite(valid_to)}
     if out is not None:
         with output_folder(out) as folder:
             _write(families, measured, content, folder)
     tables = [] if as_json else [table for family in families for table in family_tables(plant.name, family)]
+    if tables and high > valid_to:
+        tables[-1].caption = chain_remark(valid_to)
     deliver(content, tables, as_json, None)
     tell_written(out, as_json)
 
@@ -111,12 +117,16 @@ def find_controller(name: str) -> Path:
     raise InputError("neither a file nor the name of a shipped scenario", name, nearest(Path(name).stem, known))
 
 
-def _families(plant: Plant, request: Request, cases: tuple[Case, ...]) -> list[Family]:
-    ends = quantities(request.frequencies, "Hz", "--range")
+def _range(text: str) -> tuple[float, float]:
+    ends = quantities(text, "Hz", "--range")
     if len(ends) != 2:
-        raise InputError(f'"{request.frequencies}" is not two frequencies', "--range", 'write e.g. "1 Hz,2 kHz"')
+        raise InputError(f'"{text}" is not two frequencies', "--range", 'write e.g. "1 Hz,2 kHz"')
     low, high = ends
     refuse_no_range(low, high)
+    return low, high
+
+
+def _families(plant: Plant, request: Request, cases: tuple[Case, ...], low: float, high: float) -> list[Family]:
     if not request.loop and not request.scenario:
         given, output = request.given or INPUTS[0], request.output or OUTPUTS[1]
         return [mechanics_family(plant, given, output, cases, low, high)]

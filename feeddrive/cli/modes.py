@@ -11,7 +11,7 @@ import numpy as np
 import typer
 from rich.table import Table
 
-from feeddrive.cli.output import JsonOption, deliver, table, tell_written, warnings_as_lines
+from feeddrive.cli.output import JsonOption, chain_remark, deliver, finite, table, tell_written, warnings_as_lines
 from feeddrive.files import find_plant, write_bytes_atomically, write_text_atomically
 from feeddrive.output_folder import output_folder, refuse_unusable
 from feeddrive.plant.mode_map import ModeMap, mode_map
@@ -62,7 +62,8 @@ def _content(plant: Plant, found: ModeMap) -> dict[str, Any]:
         "format": "feeddrive-modes/1",
         "name": plant.name,
         "structure": plant.chain.structure,
-        **{key: value.tolist() for key, value in asdict(found).items()},
+        **{key: value.tolist() for key, value in asdict(found).items() if key != "chain_valid_to"},
+        "chain_valid_to": [finite(value) for value in found.chain_valid_to.tolist()],
     }
 
 
@@ -78,7 +79,9 @@ def _tables(plant: Plant, found: ModeMap) -> list[Table]:
     columns.append(("k [N/µm]", _numbers(1e-6 * found.stiffness)))
     for name, frequencies in (("braked" if brake else "held", found.held), ("free", found.free)):
         columns += [(f"{name} f{i} [Hz]", _numbers(column)) for i, column in enumerate(frequencies.T[:SHOWN], 1)]
-    return [table(title, [heading for heading, _ in columns], list(zip(*(cells for _, cells in columns), strict=True)))]
+    shown = table(title, [heading for heading, _ in columns], list(zip(*(cells for _, cells in columns), strict=True)))
+    shown.caption = chain_remark(float(np.min(found.chain_valid_to)))
+    return [shown]
 
 
 def _numbers(values: FloatArray) -> list[str]:

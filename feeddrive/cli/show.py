@@ -12,7 +12,7 @@ import typer
 from rich.table import Table
 
 from feeddrive.cli.machine import read_machine
-from feeddrive.cli.output import JsonOption, deliver, table, tell_written, warnings_as_lines
+from feeddrive.cli.output import JsonOption, chain_remark, deliver, finite, table, tell_written, warnings_as_lines
 from feeddrive.cli.show_folder import is_folder, write_folder
 from feeddrive.cli.show_heat import heat_content, heat_tables
 from feeddrive.cli.show_life import life_content, life_table
@@ -24,9 +24,6 @@ from feeddrive.plant.rated_life import LifeRow, rated_life
 from feeddrive.plant.summary import Summary, summarise
 from feeddrive.quantity import format_quantity, parse
 from feeddrive.thermal.plant import ThermalPlant
-
-MODES = 4
-"""Modes in the table, of each kind."""
 
 _KNOWN = ("motor", "screw", "axial", "table")
 
@@ -75,7 +72,12 @@ def _content(plant: Plant, summary: Summary, life: Sequence[LifeRow]) -> dict[st
         "stiffness": asdict(summary.stiffness) if summary.stiffness else None,
         "friction": [asdict(row) for row in summary.friction],
         "life": life_content(life),
-        "modes": {"braked": _modes_content(summary.braked), "free": _modes_content(summary.free)},
+        "modes": {
+            "coordinates": list(summary.modes.coordinates),
+            "braked": _modes_content(summary.modes.braked),
+            "free": _modes_content(summary.modes.free),
+            "chain_valid_to": finite(summary.modes.chain_valid_to),
+        },
     }
 
 
@@ -90,7 +92,7 @@ def _modes_content(modes: Modes) -> dict[str, Any]:
 def _values(plant: Plant) -> list[tuple[str, Any, str, str]]:
     """Key, SI value, unit and source of every value of chain and effects."""
     rows: list[tuple[str, Any, str, str]] = []
-    for value in plant.chain.required:
+    for value in plant.chain.known_values:
         key = f"{value.section}.{value.section_key}"
         rows.append((key, plant.chain.values[value.key], value.unit, plant.origins.get(value.key, "")))
     if math.isfinite(plant.torque_limit):
@@ -123,11 +125,14 @@ def _tables(plant: Plant, summary: Summary, life: Sequence[LifeRow]) -> list[Tab
 
 def _mode_table(plant: Plant, summary: Summary, at: str) -> Table:
     """Modes by the coordinates that people know; JSON has all modes and coordinates."""
-    names = plant.chain.coordinates
+    found = summary.modes
+    names = found.coordinates
     kept = [i for i, name in enumerate(names) if name in _KNOWN]
-    rows = [*_mode_rows("held", summary.braked, kept), *_mode_rows("free", summary.free, kept)]
+    rows = [*_mode_rows("held", found.braked, kept), *_mode_rows("free", found.free, kept)]
     headings = ("motor is", "frequency", "damping", *(names[i] for i in kept))
-    return table(f"Modes of the chain, in table travel{at}", headings, rows)
+    shown = table(f"Modes, in table travel{at}", headings, rows)
+    shown.caption = chain_remark(found.chain_valid_to)
+    return shown
 
 
 def _part_rows(plant: Plant) -> list[list[str]]:
@@ -176,7 +181,7 @@ def _friction_rows(summary: Summary) -> list[list[str]]:
 
 
 def _mode_rows(motor: str, modes: Modes, kept: Sequence[int]) -> list[list[str]]:
-    columns = zip(modes.frequencies[:MODES], modes.damping, modes.shapes.T[:, kept] + 0.0, strict=False)
+    columns = zip(modes.frequencies, modes.damping, modes.shapes.T[:, kept] + 0.0, strict=False)
     return [
         [motor, format_quantity(frequency, "Hz"), f"{damping:.2%}", *(f"{part:+.2f}" for part in shape)]
         for frequency, damping, shape in columns

@@ -40,6 +40,9 @@ def read_chain(top: Table) -> tuple[Chain, BallScrewDrive | None]:
     values: dict[str, float] = {}
     for value in structure.required:
         values[value.key] = _value(top, value, structure, computed)
+    for value in structure.optional:
+        if value.section_key in top.table(value.section).entries:
+            values[value.key] = _value(top, value, structure, computed)
     chain = _made(top, structure, values)
     return _damped(top, chain, computed), drive
 

@@ -13,6 +13,7 @@ For three inertias everything up to the coupling turns with the motor, and the w
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 from feeddrive.errors import InputError
@@ -81,6 +82,20 @@ def lumped_values(drive: BallScrewDrive, position: float) -> dict[str, Computed]
 def without_brake(drive: BallScrewDrive) -> BallScrewDrive:
     """The drive with its rotor held ideally."""
     return replace(drive, motor=replace(drive.motor, brake=None))
+
+
+def hubs_between(drive: BallScrewDrive) -> tuple[tuple[float, float], ...]:
+    """(a_j, J_j) of hubs and wheels that ride between motor and screw, in their order [1, kg m^2]."""
+    springs = without_brake(drive).torsion_springs(0.0)[1:-1]
+    compliance = math.fsum(spring.compliance for spring in springs)
+    found: dict[float, float] = {}
+    passed = 0.0
+    for spring in springs:
+        passed += spring.compliance
+        share = passed / compliance
+        if spring.inertia > 0 and 0 < share < 1 - 1e-12:
+            found[share] = found.get(share, 0.0) + spring.inertia
+    return tuple(found.items())
 
 
 def _rotary(drive: BallScrewDrive) -> dict[str, Computed]:

@@ -17,6 +17,7 @@
     torsional_damping = "0.074 N m s/rad"
     axial_stiffness = "244.7 N/µm"
     axial_damping = "8650 N s/m"
+    ratio = 1.5                      # motor turns per screw turn; may be left out: direct
     [table]
     mass = "134 kg"
     [[effect]]                       # any number; `feeddrive list` shows names, ports and keys
@@ -199,14 +200,14 @@ def _refuse_unknown_keys(top: Table) -> None:
         mend = "leave its sections out, or use another structure"
         raise InputError("a rigid machine has neither springs nor dampers", top.where, mend)
     for section in _SECTIONS:
-        known = [value.section_key for value in structure.required if value.section == section]
+        known = [value.section_key for value in (*structure.required, *structure.optional) if value.section == section]
         known += [value.key for value in RATINGS.get(section, ())]
         if parts:
             known += [value.key for value in PART_VALUES.get(section, ())]
         elsewhere = {
             value.section_key: f'leave it out, or use structure = "{other.structure}"'
             for other in CHAINS.values()
-            for value in other.required
+            for value in (*other.required, *other.optional)
             if value.section == section
         }
         further = _further(section, structure, parts)

@@ -43,6 +43,11 @@ def symbolic(matrix: Matrix) -> Expression:
     return ca.vertcat(*[ca.horzcat(*row) for row in matrix])
 
 
+def is_travel(coordinate: str) -> bool:
+    """Whether a coordinate of a chain is a position [m]; the others are angles [rad]."""
+    return coordinate == "table" or "axial" in coordinate
+
+
 @dataclass(frozen=True)
 class ChainValue:
     """A value of the chain.
@@ -98,6 +103,7 @@ class Chain:
 
     structure: ClassVar[str]
     required: ClassVar[tuple[ChainValue, ...]]
+    optional: ClassVar[tuple[ChainValue, ...]] = ()
     varies: ClassVar[bool] = False
 
     values: Mapping[str, float]
@@ -106,6 +112,11 @@ class Chain:
     def coordinates(self) -> tuple[str, ...]:
         """Names of q."""
         raise NotImplementedError
+
+    @property
+    def known_values(self) -> tuple[ChainValue, ...]:
+        """The required values, and those of the optional ones that are given."""
+        return (*self.required, *(value for value in self.optional if value.key in self.values))
 
     @property
     def key(self) -> tuple[object, ...]:
@@ -190,10 +201,10 @@ def _along_rows(size: int, springs: list[tuple[Row, Expression]]) -> Matrix:
     """sum of value row' row."""
     matrix: Matrix = [[0.0] * size for _ in range(size)]
     for row, value in springs:
-        for i, left in enumerate(row):
-            for j, right in enumerate(row):
-                if not (_is_zero(left) or _is_zero(right)):
-                    matrix[i][j] += left * right * value
+        touched = [(i, entry) for i, entry in enumerate(row) if not _is_zero(entry)]
+        for i, left in touched:
+            for j, right in touched:
+                matrix[i][j] += left * right * value
     return matrix
 
 

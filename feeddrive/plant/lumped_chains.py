@@ -6,15 +6,16 @@ Rigid, q = [x]:
 
 Three inertias, q = [theta, phi, x]:
 
-    J_m theta'' = T - k_TS (theta - phi) - c_TS (theta' - phi')
-    J_s phi''   = k_TS (theta - phi) + c_TS (theta' - phi') - r F
+    J_m theta'' = T - (k_TS (theta / i - phi) + c_TS (theta' / i - phi')) / i
+    J_s phi''   = k_TS (theta / i - phi) + c_TS (theta' / i - phi') - r F
     m x''       = F + F_c,     F = k_XS e + c_XS e',  e = r phi - x
 
 | symbol | meaning | unit |
 |---|---|---|
 | theta, phi, x | motor angle, screw angle at the nut, table position | rad, rad, m |
 | J_m, J_s, m | inertia at the motor, of the screw, table mass | kg m^2, kg m^2, kg |
-| k_TS, c_TS | torsional stiffness and damping, motor to screw | N m/rad, N m s/rad |
+| i | motor turns per screw turn; 1 where it is not given | 1 |
+| k_TS, c_TS | torsional stiffness and damping, motor to screw, at the screw | N m/rad, N m s/rad |
 | k_XS, c_XS | axial stiffness and damping, screw to table | N/m, N s/m |
 | r | lead / 2 pi | m/rad |
 
@@ -79,12 +80,16 @@ class ThreeInertias(Chain):
         ChainValue("table_mass", "table", "kg", usual=(0.2, 1e5)),
     )
 
+    optional = (ChainValue("ratio", "transmission", "1"),)
+
     @property
     def coordinates(self) -> tuple[str, ...]:
         return ("motor", "screw", "table")
 
     def springs(self, p: Values, position: Expression = 0.0) -> tuple[Spring, ...]:
-        torsion = Spring("torsion", [1.0, -1.0, 0.0], p["torsional_stiffness"], p["torsional_damping"])
+        torsion = Spring(
+            "torsion", [1.0 / p.get("ratio", 1.0), -1.0, 0.0], p["torsional_stiffness"], p["torsional_damping"]
+        )
         return (torsion, self.nut(p))
 
     def nut(self, p: Values) -> Spring:
@@ -102,4 +107,4 @@ class ThreeInertias(Chain):
 
     def rigid_motion(self, p: Values) -> Row:
         r = p["lead"] / (2 * math.pi)
-        return [1 / r, 1 / r, 1.0]
+        return [p.get("ratio", 1.0) / r, 1 / r, 1.0]

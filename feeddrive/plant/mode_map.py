@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from feeddrive.errors import InputError
-from feeddrive.plant.modes import braked_modes, free_modes
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.resolution import FIRST, resolved_modes
 from feeddrive.plant.stiffness_budget import stiffness_budget
 from feeddrive.typing import FloatArray
 
@@ -26,6 +26,8 @@ class ModeMap:
         stiffness: static, at the table with the motor held [N/m], shape (n,); empty in a rigid structure.
         held, free: natural frequencies with the motor held and free, without the free motion [Hz], shape (n, k).
         held_damping, free_damping: their damping ratios [1].
+        chain_valid_to: up to where the modes of the chain that simulations use are right [Hz], shape (n,); infinite
+            where it is the machine itself (`feeddrive.plant.resolution`).
     """
 
     positions: FloatArray
@@ -35,22 +37,24 @@ class ModeMap:
     held_damping: FloatArray
     free: FloatArray
     free_damping: FloatArray
+    chain_valid_to: FloatArray
 
 
-def mode_map(plant: Plant, positions: FloatArray | None = None) -> ModeMap:
-    """Modes along the stroke.
+def mode_map(plant: Plant, positions: FloatArray | None = None, count: int = FIRST) -> ModeMap:
+    """Modes along the stroke, of a screw with as many coordinates as they need.
 
     Args:
         plant: the machine.
         positions: of the table [m]; over the declared stroke if not given.
+        count: modes of each kind; fewer where the chain has fewer.
 
     Raises:
         InputError: no positions are given and no stroke is declared though the modes depend on it, or the nut would
             not be on the screw.
     """
     places = _stroke(plant) if positions is None else np.atleast_1d(np.asarray(positions, dtype=float))
-    held = [braked_modes(plant, float(x)) for x in places]
-    free = [free_modes(plant, float(x)) for x in places]
+    found = [resolved_modes(plant, float(x), count) for x in places]
+    held, free = [modes.braked for modes in found], [modes.free for modes in found]
     elastic = plant.chain.elastic
     first = float(plant.chain.values["first_nut_position"]) if plant.chain.varies else 0.0
     return ModeMap(
@@ -61,6 +65,7 @@ def mode_map(plant: Plant, positions: FloatArray | None = None) -> ModeMap:
         held_damping=np.array([modes.damping for modes in held]),
         free=np.array([modes.frequencies[1:] for modes in free]),
         free_damping=np.array([modes.damping[1:] for modes in free]),
+        chain_valid_to=np.array([modes.chain_valid_to for modes in found]),
     )
 
 

@@ -22,6 +22,7 @@ from feeddrive.plant.equations import (
     parameter_values,
     travel_deviation,
 )
+from feeddrive.plant.linear_chain import is_travel
 from feeddrive.plant.motor_torque import acting_torque
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.structure import per_structure
@@ -31,8 +32,7 @@ from feeddrive.typing import Expression
 INPUTS = ("motor_torque", "cutting_force")
 OUTPUTS = ("motor_angle", "motor_speed", "table_position", "table_velocity")
 
-_ALONG = ("axial", "far_axial", "table")
-"""Coordinates that are positions; the others are angles."""
+_FEW = 10  # coordinates: a chain of a plant file, with a mode or two on its table
 
 
 def state_names(plant: Plant) -> tuple[str, ...]:
@@ -43,7 +43,7 @@ def state_names(plant: Plant) -> tuple[str, ...]:
 
 
 def _state_pair(coordinate: str) -> tuple[str, str]:
-    if coordinate in _ALONG or coordinate.startswith(StructuralMode.name):
+    if is_travel(coordinate) or coordinate.startswith(StructuralMode.name):
         return f"{coordinate}_position", f"{coordinate}_velocity"
     return f"{coordinate}_angle", f"{coordinate}_speed"
 
@@ -87,11 +87,16 @@ def timed_ode(plant: Plant) -> ca.Function:
     )
     acting = acting_torque(plant, symbols, u[0])
     pushed = motor.T * acting + table.T * u[1] + forces.on_coordinates - (damping @ rate + stiffness @ q)
-    acceleration = ca.inv_minor(ca.sparsify(mass)) @ pushed
+    acceleration = _solved(ca.sparsify(mass), pushed)
     xdot = ca.vertcat(rate, acceleration, forces.bristle_rates)
     shown = at if plant.chain.elastic else at + _rigid_deviation(plant, symbols, at, time)
     y = ca.vertcat(motor @ q, motor @ rate, shown, ca.jacobian(shown, q) @ rate + ca.jacobian(shown, time))
     return ca.Function("ode", [time, x, u, symbols.vector], [xdot, y], ["time", "x", "u", "p"], ["xdot", "y"])
+
+
+def _solved(mass: Expression, pushed: Expression) -> Expression:
+    """M^-1 f; by minors, which are short where M is nearly diagonal, and by elimination where it is large."""
+    return ca.inv_minor(mass) @ pushed if mass.shape[0] <= _FEW else ca.solve(mass, pushed)
 
 
 def _rigid_deviation(plant: Plant, symbols: Symbols, x: Expression, time: Expression) -> Expression:

@@ -5,13 +5,16 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from feeddrive.effects.base import ChainEffect, Effect, TravelEffect, Value
 from feeddrive.parts.screw_drive import BallScrewDrive
 from feeddrive.plant.chain import Chain
 from feeddrive.plant.composition import refuse_what_cannot_compose, refuse_what_misses_values
 from feeddrive.plant.table_mode import with_modes
+
+if TYPE_CHECKING:
+    from feeddrive.plant.lumping import Lumped
 
 
 @dataclass(frozen=True)
@@ -124,6 +127,19 @@ class Plant:
             if isinstance(effect, ChainEffect):
                 values = effect.chain(values, effect.values)
         return values
+
+    def lumped(self, at: float | None = None) -> Lumped:
+        """The three-inertia machine that is nearest with the table at a position, and how near it is.
+
+        Args:
+            at: position of the table [m]; the middle of the stroke if not given.
+
+        Raises:
+            InputError: a rigid machine, or the nut would not be on the screw.
+        """
+        from feeddrive.plant.lumping import lump  # which makes a plant
+
+        return lump(self, self.middle if at is None else at)
 
     @property
     def middle(self) -> float:

@@ -135,7 +135,7 @@ def _damping(plant: Plant, summary: Summary) -> Finding:
     rule = f"damping ratio of the first mode, above {DAMPING[0]:.1%}"
     if not plant.chain.elastic:
         return _unknown(rule, "needs an elastic structure")
-    ratio = float(summary.free.damping[1])
+    ratio = float(summary.modes.free.damping[1])
     verdict = Verdict.KEPT if DAMPING[0] <= ratio <= DAMPING[1] else Verdict.BROKEN
     return Finding(rule, ratio, DAMPING[1], "1", Sense.AT_MOST, verdict, "usual, friction of the guides not counted")
 

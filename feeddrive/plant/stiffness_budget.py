@@ -16,11 +16,10 @@ import numpy as np
 
 from feeddrive.parts.combined_stiffness import Deformation, combined_stiffness
 from feeddrive.plant.drive_values import without_brake
-from feeddrive.plant.linear_chain import Spring
+from feeddrive.plant.linear_chain import Spring, is_travel
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray
 
-_ALONG = ("axial", "far_axial", "table")
 _SAME = 1e-6  # relative: parts and chain agree, no value was replaced
 
 
@@ -103,7 +102,7 @@ def _of_springs(plant: Plant, position: float) -> list[tuple[str, str, float]]:
 
 def _deformation(plant: Plant, spring: Spring) -> str:
     touched = (name for name, entry in zip(plant.chain.coordinates, spring.row, strict=True) if entry != 0)
-    return str(Deformation.AXIAL.value if any(name in _ALONG for name in touched) else Deformation.TORSIONAL.value)
+    return str(Deformation.AXIAL.value if any(map(is_travel, touched)) else Deformation.TORSIONAL.value)
 
 
 def _of_parts(plant: Plant, position: float) -> list[tuple[str, str, float]]:

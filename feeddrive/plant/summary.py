@@ -1,6 +1,6 @@
 """The figures by which a servo engineer knows an axis: inertias, combined stiffness, friction over speed, modes.
 
-The stiffness budget is that of `feeddrive.plant.stiffness_budget`, the modes those of `feeddrive.plant.modes`.
+The stiffness budget is that of `feeddrive.plant.stiffness_budget`, the modes those of `feeddrive.plant.resolution`.
 """
 
 from __future__ import annotations
@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feeddrive.plant.modes import Modes, braked_modes, free_modes
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.resolution import ResolvedModes, resolved_modes
 from feeddrive.plant.steady import steady_motions
 from feeddrive.plant.stiffness_budget import StiffnessBudget, stiffness_budget
 
@@ -53,7 +53,7 @@ class Summary:
         inertias: its parts by coordinate.
         stiffness: None where the structure is rigid.
         friction: at `SPEEDS`.
-        braked, free: modes with the motor held and free.
+        modes: with the motor held and free.
     """
 
     position: float
@@ -62,8 +62,7 @@ class Summary:
     inertias: tuple[InertiaRow, ...]
     stiffness: StiffnessBudget | None
     friction: tuple[FrictionRow, ...]
-    braked: Modes
-    free: Modes
+    modes: ResolvedModes
 
 
 def summarise(plant: Plant, position: float | None = None) -> Summary:
@@ -85,8 +84,7 @@ def summarise(plant: Plant, position: float | None = None) -> Summary:
         inertias=inertias,
         stiffness=stiffness_budget(plant, at) if plant.chain.elastic else None,
         friction=_friction(plant, at),
-        braked=braked_modes(plant, at),
-        free=free_modes(plant, at),
+        modes=resolved_modes(plant, at),
     )
 
 

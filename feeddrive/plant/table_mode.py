@@ -44,6 +44,10 @@ class TableMode(Chain):
         return self.carrier.required
 
     @property
+    def optional(self) -> tuple[object, ...]:  # type: ignore[override]
+        return self.carrier.optional
+
+    @property
     def varies(self) -> bool:  # type: ignore[override]
         return self.carrier.varies
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 SHOWN = 3
-"""Modes that are drawn; of higher ones a chain of few coordinates knows little."""
+"""Modes that are drawn."""
 
 _POINTS = 61
 
@@ -26,7 +26,7 @@ def modes_figure(plant: Plant) -> ReportFigure:
         InputError: no stroke is declared.
     """
     stroke = plant.stroke
-    found = mode_map(plant) if stroke is None else mode_map(plant, np.linspace(*stroke, _POINTS))
+    found = mode_map(plant, None if stroke is None else np.linspace(*stroke, _POINTS), SHOWN)
     figure = new_figure(5.2)
     frequency, stiffness = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1.2))
     brake = plant.drive is not None and plant.drive.motor.brake is not None

@@ -37,10 +37,9 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 
-import numpy as np
-
 from feeddrive.errors import InputError
 from feeddrive.plant.entries import Table
+from feeddrive.plant.moving_inertia import inertia_at_motor
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade, Feedback, FeedForward, divider
 from feeddrive.servo.cascade_function import velocity_loop_of
@@ -141,14 +140,6 @@ def _feed_forward(table: Table, plant: Plant) -> FeedForward:
             raise InputError("is negative", inner.place(key), "write zero or more")
     values.setdefault("inertia", inertia_at_motor(plant))
     return FeedForward(**values)
-
-
-def inertia_at_motor(plant: Plant) -> float:
-    """Inertia of everything that moves with the motor, seen there [kg m^2]; screw and chain in mid-stroke."""
-    values = plant.chain_values()
-    rigid = np.array(plant.chain.rigid_motion(values), dtype=float)
-    mass = np.array(plant.chain.mass(values, plant.middle), dtype=float)
-    return float(rigid @ mass @ rigid) * plant.chain.motor_radius**2
 
 
 def _filters(table: Table, place: str) -> tuple[Filter, ...]:

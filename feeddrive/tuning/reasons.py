@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 from feeddrive.errors import printable
 from feeddrive.plant.modes import braked_modes
+from feeddrive.plant.moving_inertia import inertia_at_motor
 from feeddrive.plant.plant import Plant
 from feeddrive.quantity import format_quantity
 from feeddrive.servo.cascade import KV_UNIT, Cascade
 from feeddrive.servo.frequency_response import Case
-from feeddrive.simulate.scenario_controller import inertia_at_motor
 from feeddrive.tuning.largest_gain import GainLimit, Limit
 from feeddrive.tuning.recommendation import Recommendation
 from feeddrive.tuning.velocity_loop import NotchChoice

@@ -13,12 +13,12 @@ from dataclasses import dataclass, replace
 import control
 
 from feeddrive.errors import InputError
+from feeddrive.plant.moving_inertia import inertia_at_motor
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade, FeedForward
 from feeddrive.servo.frequency_response import Case
 from feeddrive.servo.linear_loop import open_position_loop, open_velocity_loop, worst_eigenvalue
 from feeddrive.servo.margins import GROWTH, Margins, margins
-from feeddrive.simulate.scenario_controller import inertia_at_motor
 from feeddrive.tuning.demand import Demand
 from feeddrive.tuning.largest_gain import GainLimit
 from feeddrive.tuning.position_loop import position_gain

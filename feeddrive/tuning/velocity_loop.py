@@ -26,6 +26,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feeddrive.errors import InputError
+from feeddrive.plant.moving_inertia import inertia_at_motor
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade
 from feeddrive.servo.filters import Filter, notch
@@ -33,7 +34,6 @@ from feeddrive.servo.frequency_response import Case, grid, transfer
 from feeddrive.servo.linear_loop import open_velocity_loop
 from feeddrive.servo.margins import frequency_response
 from feeddrive.servo.resonances import Kind, Resonance, resonances
-from feeddrive.simulate.scenario_controller import inertia_at_motor
 from feeddrive.tuning.demand import Demand
 from feeddrive.tuning.largest_gain import GainLimit, largest_gain
 from feeddrive.typing import ComplexArray, FloatArray

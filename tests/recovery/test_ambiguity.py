@@ -11,7 +11,7 @@ from feeddrive.diagnose.certainty.ambiguity import ambiguous_sets, at_its_limit,
 from feeddrive.diagnose.certainty.next_experiment import distance, hardly_known, next_experiments
 from feeddrive.diagnose.certainty.noise_colour import independent_share
 from feeddrive.diagnose.certainty.preferred import with_the_preferred
-from feeddrive.diagnose.certainty.rehearsal import Rehearsal, moving_inertia, rehearsals
+from feeddrive.diagnose.certainty.rehearsal import Rehearsal, rehearsals
 from feeddrive.diagnose.cross_validation import compare_left_out
 from feeddrive.diagnose.evidence import AxisEvidence, prepare
 from feeddrive.diagnose.fit import Problem, fit
@@ -19,6 +19,7 @@ from feeddrive.diagnose.judge import share_of
 from feeddrive.diagnose.prediction import AxisPredictor
 from feeddrive.effects.base import Effect, Port
 from feeddrive.effects.catalogue import EFFECTS
+from feeddrive.plant.moving_inertia import inertia_at_motor
 from tests.recovery.drawn import drawn, settled
 from tests.recovery.planted import axis_plant, pair
 
@@ -152,7 +153,7 @@ def test_rehearsed_scenarios_fit_the_axis() -> None:
 
 def test_moving_inertia_is_that_of_three_inertias() -> None:
     """Motor 2.6e-3, screw 2.37e-3 and 134 kg at 20 mm per revolution: the sum by hand."""
-    assert moving_inertia(axis_plant("bench")) == pytest.approx(2.6e-3 + 2.37e-3 + 134 * (0.02 / 2 / np.pi) ** 2)
+    assert inertia_at_motor(axis_plant("bench")) == pytest.approx(2.6e-3 + 2.37e-3 + 134 * (0.02 / 2 / np.pi) ** 2)
 
 
 def test_next_experiment_says_that_there_is_none_where_there_is_none() -> None:

@@ -20,6 +20,7 @@ from feeddrive.diagnose.evidence import SHORTEST, AxisEvidence, prepare
 from feeddrive.errors import InputError
 from feeddrive.files import shipped_scenarios
 from feeddrive.plant.entries import Origins, Table
+from feeddrive.plant.moving_inertia import inertia_at_motor
 from feeddrive.plant.plant import DeclaredCascade, Plant
 from feeddrive.servo.cascade import Cascade
 from feeddrive.servo.linear_loop import refuse_unstable
@@ -157,7 +158,7 @@ def _cascade(scenario: Scenario, plant: Plant) -> Cascade:
         cascade = cascade if mode > 0 else replace(cascade, position_gain=0.0)
     else:
         given = scenario.cascade
-        ratio = moving_inertia(plant) / moving_inertia(scenario.plant)
+        ratio = inertia_at_motor(plant) / inertia_at_motor(scenario.plant)
         forward = replace(
             given.feed_forward,
             inertia=given.feed_forward.inertia * ratio,
@@ -176,14 +177,6 @@ def _cascade(scenario: Scenario, plant: Plant) -> Cascade:
             torque_filters=filters,
         )
     return replace(cascade, torque_limit=min(cascade.torque_limit, plant.torque_limit))
-
-
-def moving_inertia(plant: Plant) -> float:
-    """Everything that the motor moves, seen at the motor [kg m^2]."""
-    values = plant.chain_values()
-    rigid = np.array(plant.chain.rigid_motion(values), dtype=float)
-    mass = np.array(plant.chain.mass(values, plant.middle), dtype=float)
-    return float(rigid @ mass @ rigid) * plant.chain.motor_radius**2
 
 
 def _with_noise_of(evidence: AxisEvidence, like: AxisEvidence) -> AxisEvidence:

@@ -1,0 +1,198 @@
+"""The three inertias nearest to a machine of parts: held against finite elements, and used by every command."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from feeddrive.cli.main import main
+from feeddrive.effects.catalogue import EFFECTS
+from feeddrive.errors import InputError
+from feeddrive.files import find_plant
+from feeddrive.plant.chain import ThreeInertias
+from feeddrive.plant.files import read_plant
+from feeddrive.plant.lumping import Lumped
+from feeddrive.plant.modes import braked_modes, free_modes
+from feeddrive.plant.moving_inertia import inertia_at_motor
+from feeddrive.plant.plant import Plant
+from feeddrive.plant.steady import steady_motion
+from tests.generator.drawn_drives import drawn_drive
+from tests.generator.screw_elements import Drive, at_nut, chains, drive_of, frequencies, matrices
+
+SHIPPED = ("kimm_testbed", "hsr_axis", "vertical_axis")
+
+
+def compliance(drive: Drive, position: float) -> np.ndarray:
+    """Deflection of the screw's angle at the nut and of the table under torque and force, motor held."""
+    _, K = matrices(drive, position)
+    rows = np.zeros((2, len(K)))
+    made = chains(drive)
+    node, share, _ = at_nut(made.places, drive.first + position, drive.axial, drive.torsional, drive.radius)
+    rows[0, made.first_node + node], rows[0, made.first_node + node + 1] = 1 - share, share
+    rows[1, -1] = 1.0
+    found: np.ndarray = rows[:, 1:] @ np.linalg.inv(K[1:, 1:]) @ rows[:, 1:].T
+    return found
+
+
+def refuse_unlike(found: Lumped, drive: Drive, nearest: float) -> None:
+    """What is promised exactly is exact, and what is told of the rest is true."""
+    values, x = found.plant.chain.values, found.position
+    H = compliance(drive, x)
+    r = drive.radius
+    # Rounding over nine decades of stiffness; the angle between two nodes lacks what the rod itself gives way there.
+    assert 1 / values["axial_stiffness"] + r**2 / values["torsional_stiffness"] == pytest.approx(H[1, 1], rel=1e-5)
+    assert 1 / values["torsional_stiffness"] == pytest.approx(H[0, 0], rel=0.01)
+    M = matrices(drive, x)[0]
+    turning = chains(drive).turning[0].size
+    whole = float(np.sum(M[:turning, :turning]))
+    ratio = values.get("ratio", 1.0)
+    assert ratio == drive.ratio
+    assert values["motor_inertia"] * ratio**2 + values["screw_inertia"] == pytest.approx(whole, rel=1e-9)
+    true = frequencies(drive, x, True, 2), frequencies(drive, x, False, 2)
+    told = {row.name: row for row in found.compared}
+    own = braked_modes(found.plant).frequencies, free_modes(found.plant).frequencies[1:]
+    names = ("anti-resonance, motor held", "resonance, motor free")
+    for name, machine, lumped in zip(names, true, own, strict=True):
+        for i, number in enumerate(("first", "second")):
+            # the elements and the standing waves agree to 0.2 % and better (tests/convergence/test_standing_waves.py)
+            assert told[f"{number} {name}"].machine == pytest.approx(machine[i], rel=0.003)
+            assert told[f"{number} {name}"].lumped == pytest.approx(lumped[i], rel=1e-9)
+        assert lumped[0] == pytest.approx(machine[0], rel=nearest)
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_shipped_machines(name: str) -> None:
+    plant = read_plant(find_plant(name))
+    assert plant.stroke is not None
+    for x in (plant.stroke[0], plant.middle, plant.stroke[1]):
+        # One value is free for two frequencies; on these machines both come to 1 %.
+        refuse_unlike(plant.lumped(x), drive_of(find_plant(name)), 0.012)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_drawn_machines(seed: int, tmp_path: Path) -> None:
+    path = tmp_path / "drawn.toml"
+    path.write_text(drawn_drive(seed), encoding="utf-8")
+    # A table no heavier than the screw is no three inertias any more; what is off is told in the file.
+    refuse_unlike(read_plant(path).lumped(), drive_of(path), 0.06)
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_what_does_not_bend_moves_alike(name: str) -> None:
+    """Torque and stretch at constant speed, inertia at the motor: friction, weight and gear are carried over."""
+    plant = read_plant(find_plant(name))
+    lumped = plant.lumped().plant
+    assert inertia_at_motor(lumped) == pytest.approx(inertia_at_motor(plant), rel=1e-9)
+    assert lumped.chain.motor_radius == pytest.approx(plant.chain.motor_radius, rel=1e-12)
+    for velocity in (-0.2, 0.002, 0.1):
+        one, other = (steady_motion(machine, velocity, plant.middle) for machine in (plant, lumped))
+        # Newton ends where the springs' rounding begins: 1e-12 of forces of 1e9 N/m over 0.5 m, some mN.
+        assert other.torque == pytest.approx(one.torque, rel=1e-4)
+        # The motor stands as far ahead of the table; rounding of angles of 100 rad beside microns of stretch.
+        assert other.state[0] == pytest.approx(one.state[0], rel=1e-12)
+    assert lumped.torque_limit == plant.torque_limit
+    assert lumped.stroke == pytest.approx(plant.stroke)
+    assert lumped.sensors == plant.sensors
+    for key, datum in lumped.data.items():
+        assert datum.value == pytest.approx(plant.data[key].value)
+
+
+def test_declared_deviations_are_in_the_values() -> None:
+    plant = read_plant(find_plant("kimm_testbed"))
+    changed = plant.with_effects(
+        EFFECTS["payload"].of(mass=40.0),
+        EFFECTS["inertia_deviation"].of(place="motor", inertia=1e-3),
+        EFFECTS["stiffness_deviation"].of(factor=0.8),
+    )
+    found = changed.lumped(0.464)
+    assert found.plant.chain.values["table_mass"] == 174.0
+    assert inertia_at_motor(found.plant) == pytest.approx(inertia_at_motor(plant) + 1e-3 + 40 * plant.chain.radius**2)
+    before = plant.lumped(0.464).plant.chain.values["axial_stiffness"]
+    assert found.plant.chain.values["axial_stiffness"] == pytest.approx(0.8 * before, rel=1e-9)
+    assert {effect.name for effect in found.plant.effects} == {"guide_friction", "nut_drag", "bearing_drag"}
+    assert any("payload" in line for line in found.left_out)
+
+
+def test_laws_of_the_nut_are_converted() -> None:
+    """A nut that has lost its preload is as soft at the table in the chain of parts and in three inertias."""
+    plant = read_plant(find_plant("kimm_testbed"))
+    worn = plant.with_effects(EFFECTS["preload_loss"].of(ratio=0.3, force=200.0))
+    lumped = worn.lumped(0.464).plant
+    nut = float(plant.chain.nut(plant.chain_values()).stiffness)
+    axial = lumped.chain.values["axial_stiffness"]
+    ratio = next(e for e in lumped.effects if e.name == "preload_loss").values["ratio"]
+    # springs in series: 1 / k = 1 / k_N + rest, with k_N softer by 0.3
+    assert 1 / (axial * ratio) == pytest.approx(1 / (0.3 * nut) + 1 / axial - 1 / nut, rel=1e-9)
+
+
+def test_a_gear_of_three_inertias_is_a_motor_counted_so_often() -> None:
+    bench = read_plant(find_plant("bench_axis"))
+    values = dict(bench.chain.values)
+    geared = Plant("geared", ThreeInertias({**values, "motor_inertia": values["motor_inertia"] / 4, "ratio": 2.0}))
+    direct = Plant("direct", ThreeInertias(values))
+    assert free_modes(geared).frequencies[1:] == pytest.approx(free_modes(direct).frequencies[1:], rel=1e-9)
+    assert geared.chain.motor_radius == pytest.approx(direct.chain.motor_radius / 2, rel=1e-15)
+    assert inertia_at_motor(geared) == pytest.approx(inertia_at_motor(direct) / 4, rel=1e-12)
+
+
+def test_a_rigid_machine_is_refused() -> None:
+    with pytest.raises(InputError, match="nothing to lump"):
+        read_plant(find_plant("emps")).lumped()
+    with pytest.raises(InputError, match="not on the screw"):
+        read_plant(find_plant("kimm_testbed")).lumped(5.0)
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_file_in_every_command(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "lumped.toml"
+    assert main(["lump", name, "--out", str(path)]) == 0
+    shown = " ".join(capsys.readouterr().out.split())
+    assert "first anti-resonance, motor held" in shown
+    text = path.read_text(encoding="utf-8")
+    assert "first resonance, motor free:" in text
+    assert "Not in this file:" in text
+    for command in (["show"], ["check"], ["modes"], ["bode", "--range", "5 Hz,500 Hz"], ["tune"]):
+        assert main([command[0], str(path), *command[1:]]) == 0, command
+    capsys.readouterr()
+    scenario = tmp_path / "step.toml"
+    scenario.write_text(_scenario(path), encoding="utf-8")
+    assert main(["run", str(scenario), "--out", str(tmp_path / "run")]) == 0
+
+
+def _scenario(plant: Path) -> str:
+    return f"""format = "feeddrive-scenario/1"
+name = "a stroke"
+plant = "{plant}"
+[controller]
+velocity_rate = "8 kHz"
+position_rate = "2 kHz"
+position_gain = "40 1/s"
+velocity_gain = "1.5 N m s/rad"
+reset_time = "20 ms"
+current_bandwidth = "1 kHz"
+[trajectory]
+kind = "moves"
+start = "200 mm"
+targets = ["210 mm"]
+velocity = "5 m/min"
+acceleration = "2 m/s^2"
+jerk = "100 m/s^3"
+dwell = "0.1 s"
+"""
+
+
+def test_json_and_refusals(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["lump", "kimm_testbed", "--at", "464mm", "--json"]) == 0
+    content = json.loads(capsys.readouterr().out)
+    assert content["format"] == "feeddrive-lumped/1"
+    assert content["position"] == pytest.approx(0.464)
+    assert math.isclose(content["compared"][0]["error"], 0.0, abs_tol=1e-9)
+    assert content["file"] is None
+    for arguments in (["--at", "5 m"], ["--at", "464"], ["--out", str(tmp_path)]):
+        assert main(["lump", "kimm_testbed", *arguments]) == 2
+        assert capsys.readouterr().err.startswith("error: ")
+    assert main(["lump", "emps"]) == 2
