@@ -1,3 +1,65 @@
-"""feeddrive: a control plant of machine-tool ball-screw feed drives that closes the loop with measured data."""
+"""feeddrive: a control plant of machine-tool ball-screw feed drives that closes the loop with measured data.
+
+    import feeddrive as fd
+
+    axis = fd.load("bench_axis")
+    found = fd.diagnose(axis, fd.read("monday.csv"), validate=fd.read("tuesday.csv"))
+
+Every name below is loaded when it is first used, so that the import takes no time. What is not listed in `__all__` may
+change without notice.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any
 
 __version__ = "0.1.0"
+
+_HOMES = {
+    "Axis": "interface.axis",
+    "Bode": "interface.bode",
+    "Check": "interface.machine_tables",
+    "Diagnosed": "interface.diagnosed",
+    "Effect": "effects.base",
+    "InputError": "errors",
+    "Life": "interface.machine_tables",
+    "Modes": "interface.machine_tables",
+    "Recording": "recording.recording",
+    "Run": "interface.experiments",
+    "Servo": "interface.servo",
+    "Stiffness": "interface.machine_tables",
+    "Sweep": "interface.sweeping",
+    "ValidityWarning": "errors",
+    "WarmUp": "interface.warm_up",
+    "diagnose": "interface.diagnosed",
+    "Explained": "interface.numbers",
+    "effect": "interface.library",
+    "explain": "interface.numbers",
+    "list_effects": "interface.library",
+    "list_plants": "interface.library",
+    "list_scenarios": "interface.library",
+    "load": "interface.axis",
+    "read": "interface.reading",
+    "run": "interface.experiments",
+    "si": "interface.quantities",
+    "sweep": "interface.sweeping",
+    "tune": "interface.servo",
+    "warm_up": "interface.warm_up",
+}
+
+__all__ = ["__version__", *sorted(_HOMES)]
+
+
+def __getattr__(name: str) -> Any:
+    """A public name, imported on first use (PEP 562)."""
+    if name not in _HOMES:
+        raise AttributeError(f"module 'feeddrive' has no attribute {name!r}")
+    value = getattr(import_module(f"feeddrive.{_HOMES[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    """The public names."""
+    return list(__all__)

@@ -72,6 +72,40 @@ def find_plant(name_or_path: str) -> Path:
     raise InputError(what, where=name_or_path, mend=_nearest(path.stem, list(by_name)))
 
 
+def find_scenario(name: str) -> Path:
+    """Find a scenario file.
+
+    Args:
+        name: path of a file, or the name of a shipped scenario with or without `.toml`. A file wins over a name.
+
+    Raises:
+        InputError: neither a file nor a shipped scenario; names the nearest.
+    """
+    return _find_toml(name, shipped_scenarios(), "a scenario file", "a shipped scenario")
+
+
+def find_scenario_or_controller(name: str) -> Path:
+    """Find a scenario or controller file by its path, or a shipped scenario by its name.
+
+    Raises:
+        InputError: neither; names the nearest shipped scenario.
+    """
+    return _find_toml(name, shipped_scenarios(), "a scenario or controller file", "a shipped scenario")
+
+
+def _find_toml(name: str, shipped: list[Path], kind: str, shipped_kind: str) -> Path:
+    path = Path(name)
+    # Not Path.is_file: it raises where a name is too long for the file system.
+    if os.path.isfile(path):
+        return path
+    by_name = {one.stem: one for one in shipped}
+    stem = name.removesuffix(_SUFFIX)
+    if stem in by_name:
+        return by_name[stem]
+    what = f"is a folder, not {kind}" if os.path.isdir(path) else f"neither a file nor the name of {shipped_kind}"
+    raise InputError(what, where=name, mend=_nearest(path.stem, list(by_name)))
+
+
 def find_scenario_file(relative: str) -> Path:
     """Find a file that comes with the shipped scenarios.
 

@@ -13,8 +13,8 @@ def command(
         list[str],
         typer.Argument(
             metavar="PLANT REC...",
-            help="Plant file, or the name of a shipped plant; then the recordings that are fitted, oldest first. With "
-            "--continue the plant may be left out.",
+            help="Plant file, or the name of a shipped plant; then the recordings that are fitted, oldest first, or "
+            "one TOML file of measured numbers. With --continue the plant may be left out.",
         ),
     ],
     out: Annotated[
@@ -37,6 +37,11 @@ def command(
     as_json: Annotated[bool, typer.Option("--json", help="Print diagnosis.json instead of the summary.")] = False,
 ) -> None:
     """Find what a machine's model lacks, from recordings of it, and report the error before and after."""
+    from feeddrive.cli.explaining import are_measured_numbers, run_numbers
+
+    if earlier is None and are_measured_numbers(arguments[1:]):
+        run_numbers(arguments[0], arguments[1], out, as_json)
+        return
     from feeddrive.cli.continuing import continued_job, first_job
     from feeddrive.cli.diagnosing import Options, run_job
 

@@ -6,13 +6,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from feeddrive.errors import InputError
+from feeddrive.recording.channels import channel_unit
 from feeddrive.recording.flaws import Flaw
 from feeddrive.typing import FloatArray
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Recording:
     """Evenly sampled channels of one run, SI units (temperatures in degC).
 
@@ -50,6 +52,43 @@ class Recording:
                 )
         if not self.sample_time > 0.0:
             raise InputError(f"sample time {self.sample_time} s is not positive", self.name)
+
+    @classmethod
+    def from_arrays(cls, name: str = "arrays", **channels: ArrayLike) -> Recording:
+        """A recording of arrays that are in memory.
+
+        Args:
+            name: what to call it.
+            **channels: `time` [s] and canonical channels, each of shape (n,), SI: `motor_torque` [N m], `motor_angle`
+                [rad], `table_position` [m], `setpoint` [m], ...
+
+        Raises:
+            InputError: no time, an unknown channel, lengths that differ, a value that is not finite, or time stamps
+                that are not even and ascending.
+
+        >>> import feeddrive as fd
+        >>> fd.Recording.from_arrays(time=[0.0, 0.5, 1.0], motor_angle=[0.0, 0.1, 0.2])
+        Recording 'arrays': 3 samples at 2 Hz, motor_angle
+        """
+        arrays = {key: np.asarray(values, dtype=np.float64) for key, values in channels.items()}
+        for key, values in arrays.items():
+            if key != "time":
+                channel_unit(key, name)
+            if values.ndim != 1 or not np.isfinite(values).all():
+                raise InputError(f"{key} is not one row of finite numbers", name, "give an array of shape (n,)")
+        time = arrays.pop("time", np.zeros(0))
+        if time.size < 2:
+            raise InputError("there is no time", name, "give time=..., in seconds, at least two samples")
+        sample_time = float(time[-1] - time[0]) / (time.size - 1)
+        if not sample_time > 0 or np.max(np.abs(np.diff(time) - sample_time)) > 0.01 * sample_time:
+            raise InputError("the time stamps are not even and ascending", name, "resample before")
+        return cls(name, time, arrays, sample_time)
+
+    def __repr__(self) -> str:
+        """Name, samples, rate, channels."""
+        return (
+            f"Recording {self.name!r}: {len(self)} samples at {1 / self.sample_time:.6g} Hz, {', '.join(self.channels)}"
+        )
 
     def __getitem__(self, channel: str) -> FloatArray:
         """Return the samples of a channel, (n,).

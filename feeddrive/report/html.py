@@ -60,7 +60,7 @@ def report_page(diagnosis: Diagnosis, figures: tuple[RenderedFigure, ...]) -> st
         recordings_section(diagnosis),
         stamp_section(diagnosis),
     )
-    return _page(f"Diagnosis of {diagnosis.plant}", _under_title(diagnosis), "".join(sections))
+    return page(f"Diagnosis of {diagnosis.plant}", _under_title(diagnosis), "".join(sections))
 
 
 def _under_title(diagnosis: Diagnosis) -> str:
@@ -83,7 +83,7 @@ def _not_drawn(diagnosis: Diagnosis) -> str:
     )
 
 
-def _page(title: str, under: str, body: str) -> str:
+def page(title: str, under: str, body: str) -> str:
     """The frame of the page."""
     return (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'

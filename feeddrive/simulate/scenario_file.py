@@ -24,6 +24,7 @@ import hashlib
 import json
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -62,13 +63,33 @@ _LONGEST = 2e9
 """Ticks: three days at 8 kHz; more is a slip of a unit."""
 
 
-def read_scenario(path: Path, overrides: Mapping[str, str] | None = None) -> Scenario:
+@dataclass(frozen=True)
+class GivenPlant:
+    """A plant in place of the one that a scenario names.
+
+    Attributes:
+        plant: the machine.
+        content: bytes that are the same where the machine is the same.
+    """
+
+    plant: Plant
+    content: bytes
+
+
+def read_scenario(
+    path: Path,
+    overrides: Mapping[str, str] | None = None,
+    given: GivenPlant | None = None,
+    controller: Mapping[str, Any] | None = None,
+) -> Scenario:
     """Read a scenario file.
 
     Args:
         path: of the file.
         overrides: dotted key to text, put in place of what the file says; "plant.table.mass" and the like lead into
             the plant file.
+        given: plant in place of the one that the file names.
+        controller: entries in place of those of the file.
 
     Raises:
         InputError: not found, not TOML, unknown key, a value missing or impossible, rates that do not fit, a motion
@@ -84,12 +105,16 @@ def read_scenario(path: Path, overrides: Mapping[str, str] | None = None) -> Sce
     of_plant = {key.removeprefix("plant."): wanted.pop(key) for key in list(wanted) if key.startswith("plant.")}
     if "controller" in wanted:
         entries["controller"] = wanted.pop("controller")
+    if controller is not None:
+        entries["controller"] = dict(controller)
     controller_where = insert_controller(entries, path)
     entries = with_overrides(entries, _own_keys(wanted))
     top = Table(entries, where, Origins())
     top.refuse_unknown(_KEYS)
-    plant_path = _plant_path(top, path.parent)
-    plant = _plant(plant_path, of_plant).with_effects(*read_effects(top))
+    if given is None:
+        plant_path = _plant_path(top, path.parent)
+        given = GivenPlant(_plant(plant_path, of_plant), plant_path.read_bytes())
+    plant = given.plant.with_effects(*read_effects(top))
     refuse_active_friction(plant, where)
     written = top.table("controller")
     cascade, unstable = read_cascade(Table(written.entries, controller_where, top.origins), plant)
@@ -106,7 +131,7 @@ def read_scenario(path: Path, overrides: Mapping[str, str] | None = None) -> Sce
         name=top.text("name", path.stem), description=top.text("description", ""), plant=plant, cascade=cascade,
         trajectory=trajectory, force=read_forces(top.tables("force"), path.parent), excitation=excitation,
         recorder=_recorder(top, cascade), ticks=ticks, evaluations=read_evaluations(top.tables("evaluate")),
-        digest=_digest(entries, path.parent, plant_path, of_plant),
+        digest=_digest(entries, path.parent, given.content, of_plant),
     )  # fmt: skip
 
 
@@ -170,11 +195,11 @@ def _recorder(top: Table, cascade: Cascade) -> Recorder:
     return Recorder(ticks, channels, noise, boolean(table, "quantised", False), whole(table, "seed", 0))
 
 
-def _digest(entries: Mapping[str, Any], folder: Path, plant: Path, overrides: Mapping[str, str]) -> str:
+def _digest(entries: Mapping[str, Any], folder: Path, plant: bytes, overrides: Mapping[str, str]) -> str:
     """Checksum of the version, the scenario with its controller, the plant, overrides, and the files of forces."""
     content = hashlib.sha256(__version__.encode())
     content.update(json.dumps([entries, overrides], sort_keys=True, default=str).encode())
-    content.update(plant.read_bytes())
+    content.update(plant)
     for force in entries.get("force", []):
         if "path" in force:
             content.update((folder / force["path"]).read_bytes())

@@ -1,0 +1,217 @@
+"""Declared values of a plant file that may be other than declared: which, how well each is known, what would settle it.
+
+A tolerance is two standard deviations of the logarithm of value over declared. It is that of the file where one is
+written (`tolerance = "5 %"`); else it follows from what the value is and how its source calls it:
+
+| kind of value | from a catalogue or drawing | "assumed", "guess", "typical" | "measured" |
+|---|---|---|---|
+| stiffness of nut, bearing, coupling, shaft | 20 % | 50 % | 2 % |
+| diameter that carries (no root diameter is declared) | 5 % | 5 % | 2 % |
+| root diameter, lengths | 1 % | 20 % | 2 % |
+| mass, inertia | 5 % | 30 % | 2 % |
+| friction | 30 % | 50 % | 2 % |
+| what no file declares: bracket and housing, as a share of the whole compliance | 5 % | | |
+
+The shares are judgements of what a catalogue, a drawing or an assumption is worth, taken from no standard; they decide
+from which difference on a value is called other than declared, so a tolerance that is written takes their place.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from feeddrive.errors import InputError
+from feeddrive.quantity import parse
+
+_UNSURE = ("assumed", "guess", "typical", "estimate")
+_MEASURED = 0.02
+_LEAST_SHARE = 1e-4  # of the compliance; a stiffer part than that counts as rigid
+
+
+@dataclass(frozen=True)
+class Kind:
+    """How well a kind of value is known: shares, from a catalogue, and where its source is unsure."""
+
+    catalogue: float
+    unsure: float
+
+
+STIFFNESS, CARRYING, LENGTH = Kind(0.20, 0.50), Kind(0.05, 0.05), Kind(0.01, 0.20)
+MASS, FRICTION, MISSING = Kind(0.05, 0.30), Kind(0.30, 0.50), Kind(0.05, 0.05)
+
+
+@dataclass(frozen=True)
+class DeclaredValue:
+    """A value that may be other than declared.
+
+    Attributes:
+        key: in the plant file, dotted, as `--set plant.KEY`.
+        unit: SI unit.
+        words: for sentences.
+        value: as declared [SI]; of `missing` ones the stiffness that would double the whole compliance.
+        deviation: standard deviation of the coordinate before anything is measured.
+        settled_by: what would single it out.
+        missing: whether the file declares none: the coordinate is then the share that it adds to the compliance, and
+            else the logarithm of the value over the declared one.
+    """
+
+    key: str
+    unit: str
+    words: str
+    value: float
+    deviation: float
+    settled_by: str
+    missing: bool = False
+
+    def at(self, coordinate: float) -> str | None:
+        """The value at a coordinate as a file writes it; None where nothing is to be written."""
+        number = self.number(coordinate)
+        return None if number is None else f"{number!r} {self.unit}"
+
+    def number(self, coordinate: float) -> float | None:
+        """The value at a coordinate [SI]; None for a missing part that adds nothing."""
+        if self.missing:
+            return self.value / coordinate if coordinate > _LEAST_SHARE else None
+        return self.value * math.exp(coordinate)
+
+
+@dataclass(frozen=True)
+class _Place:
+    key: str
+    unit: str
+    words: str
+    kind: Kind
+    settled_by: str
+
+
+_FORCE = "under the same force"
+_PLACES = (
+    _Place("nut.axial_stiffness", "N/m", "nut stiffness", STIFFNESS,
+           f"displacement of the nut's flange against the screw beside it {_FORCE}"),
+    _Place("nut.catalogue_stiffness", "N/m", "nut stiffness", STIFFNESS,
+           f"displacement of the nut's flange against the screw beside it {_FORCE}"),
+    _Place("nut.combined_stiffness", "N/m", "nut stiffness", STIFFNESS,
+           f"displacement of the nut's flange against the screw beside it {_FORCE}"),
+    _Place("bearing.near.axial_stiffness", "N/m", "stiffness of the bearing at the motor's end", STIFFNESS,
+           f"displacement of the screw's end face against the bearing housing {_FORCE}"),
+    _Place("bearing.far.axial_stiffness", "N/m", "stiffness of the far bearing", STIFFNESS,
+           f"displacement of the screw's far end face against its housing {_FORCE}"),
+    _Place("coupling.torsional_stiffness", "N m/rad", "coupling stiffness", STIFFNESS,
+           f"twist of the screw's end against the motor's encoder {_FORCE}"),
+    _Place("motor.shaft_stiffness", "N m/rad", "motor shaft stiffness", STIFFNESS,
+           f"twist of the coupling's motor hub against the motor's encoder {_FORCE}"),
+    _Place("belt.torsional_stiffness", "N m/rad", "belt stiffness", STIFFNESS,
+           f"twist of the screw's end against the motor's encoder {_FORCE}"),
+    _Place("gear.torsional_stiffness", "N m/rad", "gear stiffness", STIFFNESS,
+           f"twist of the screw's end against the motor's encoder {_FORCE}"),
+    _Place("brake.stiffness", "N m/rad", "brake stiffness", STIFFNESS,
+           f"turn of the motor's encoder {_FORCE}"),
+    _Place("transmission.axial_stiffness", "N/m", "axial stiffness", STIFFNESS,
+           f"displacement of the table against the nut's screw end {_FORCE}"),
+    _Place("transmission.torsional_stiffness", "N m/rad", "torsional stiffness", STIFFNESS,
+           f"twist of the screw against the motor's encoder {_FORCE}"),
+    _Place("ball_screw.root_diameter", "m", "root diameter of the screw", LENGTH, "root diameter, by measuring"),
+    _Place("ball_screw.diameter", "m", "diameter that carries", CARRYING,
+           "root diameter by measuring, or the stiffness at two more nut positions"),
+    _Place("ball_screw.length", "m", "screw length", LENGTH, "length with a rule; the second natural frequency"),
+    _Place("table.first_nut_position", "m", "place of the nut", LENGTH, "distance from bearing to nut with a rule"),
+    _Place("table.mass", "kg", "table mass", MASS, "weighing, or the frequency again with a known mass added"),
+    _Place("motor.rotor_inertia", "kg m^2", "rotor inertia", MASS, "torque of a known acceleration, coupling undone"),
+    _Place("motor.inertia", "kg m^2", "motor inertia", MASS, "torque of a known acceleration, coupling undone"),
+    _Place("ball_screw.inertia", "kg m^2", "screw inertia", MASS, "torque of a known acceleration"),
+    _Place("coupling.inertia", "kg m^2", "coupling inertia", MASS, "the catalogue; the second natural frequency"),
+)  # fmt: skip
+_FRICTION_UNITS = {
+    "guide_friction": {"coulomb": "N", "viscous": "N s/m"},
+    "nut_drag": {"coulomb": "N m", "viscous": "N m/(rad/s)^(2/3)"},
+    "bearing_drag": {"coulomb": "N m"},
+}
+_SETTLED_HOUSING = f"displacement of bearing housing and nut bracket against bed and table {_FORCE}"
+_SETTLED_FRICTION = "torque at several constant speeds, with the nut or the coupling undone"
+
+
+def declared_values(entries: Mapping[str, Any], whole_stiffness: float | None) -> tuple[DeclaredValue, ...]:
+    """The values of a plant file that may be other than declared.
+
+    Args:
+        entries: of the file, read already.
+        whole_stiffness: at the table, motor held [N/m]; None where nothing is elastic.
+
+    Raises:
+        InputError: a tolerance that cannot be read.
+    """
+    found = [value for place in _PLACES if (value := _declared(entries, place)) is not None]
+    if any(value.key == "ball_screw.root_diameter" for value in found):
+        found = [value for value in found if value.key != "ball_screw.diameter"]
+    found += _frictions(entries)
+    parts = any(value.key.startswith(("nut.", "bearing.")) for value in found)
+    if whole_stiffness is not None and parts and "housing_stiffness" not in entries.get("support", {}):
+        found.append(
+            DeclaredValue("support.housing_stiffness", "N/m", "bracket and housing stiffness, declared rigid",
+                          whole_stiffness, MISSING.catalogue / 2, _SETTLED_HOUSING, missing=True)
+        )  # fmt: skip
+    return tuple(found)
+
+
+def _declared(entries: Mapping[str, Any], place: _Place) -> DeclaredValue | None:
+    at: Any = entries
+    *path, last = place.key.split(".")
+    sources = [str(entries.get("source", ""))]
+    for step in path:
+        at = at.get(step) if isinstance(at, Mapping) else None
+        if not isinstance(at, Mapping):
+            return None
+        sources.append(str(at.get("source", "")) or sources[-1])
+    if last not in at:
+        return None
+    return _value(at[last], place, sources[-1])
+
+
+def _value(written: Any, place: _Place, source: str) -> DeclaredValue | None:
+    tolerance = ""
+    if isinstance(written, Mapping):
+        source, tolerance = str(written.get("source", source)), str(written.get("tolerance", ""))
+        written = written.get("value")
+    if isinstance(written, list):
+        return None
+    number = parse(written, place.unit, place.key)
+    if not number > 0:
+        return None
+    share = _share(tolerance, number, place) if tolerance else _usual(place.kind, source)
+    return DeclaredValue(place.key, place.unit, place.words, number, 0.5 * math.log1p(share), place.settled_by)
+
+
+def _usual(kind: Kind, source: str) -> float:
+    words = source.lower()
+    if any(word in words for word in _UNSURE):
+        return kind.unsure
+    return _MEASURED if words.startswith("measured") else kind.catalogue
+
+
+def _share(tolerance: str, number: float, place: _Place) -> float:
+    text = tolerance.removeprefix("±").strip()
+    try:
+        share = parse(text, "1", place.key)
+    except InputError:
+        share = parse(text, place.unit, place.key) / number
+    return max(share, 1e-6)
+
+
+def _frictions(entries: Mapping[str, Any]) -> list[DeclaredValue]:
+    found, counts = [], dict[str, int]()
+    for effect in entries.get("effect", []):
+        name = effect.get("name", "")
+        counts[name] = counts.get(name, 0) + 1
+        if counts[name] > 1:
+            continue  # an override names an effect by its name, and two of one name by their number
+        for key, unit in _FRICTION_UNITS.get(name, {}).items():
+            if key in effect:
+                words = f"{name.replace('_', ' ')}, {key}"
+                place = _Place(f"effect.{name}.{key}", unit, words, FRICTION, _SETTLED_FRICTION)
+                source = str(effect.get("source", entries.get("source", "")))
+                value = _value(effect[key], place, source)
+                found += [value] if value is not None else []
+    return found

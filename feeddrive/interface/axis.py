@@ -1,0 +1,379 @@
+"""A feed axis as its user holds it: a plant file, perhaps with other values or further effects, and what it answers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from feeddrive.effects.base import Effect
+from feeddrive.effects.catalogue import THERMAL_EFFECTS
+from feeddrive.effects.thermal.base import ThermalEffect
+from feeddrive.errors import InputError
+from feeddrive.files import find_plant, write_text_atomically
+from feeddrive.interface.machine_tables import Check, Life, Modes, Stiffness
+from feeddrive.interface.quantities import Quantity, quantities, si, span
+from feeddrive.plant.effect_text import plant_text_with_effects
+from feeddrive.plant.entries import Origins, Table, parse_toml
+from feeddrive.plant.files import declares_heat_alone, plant_from_entries
+from feeddrive.plant.mode_map import mode_map
+from feeddrive.plant.plant import Plant
+from feeddrive.plant.plausibility import check_plant
+from feeddrive.plant.rated_life import rated_life
+from feeddrive.plant.stiffness_budget import stiffness_budget
+from feeddrive.simulate.scenario_overrides import with_overrides
+from feeddrive.thermal.files import SECTION, thermal_plant
+from feeddrive.thermal.plant import ThermalPlant
+from feeddrive.thermal.plausibility import check_thermal_plant
+
+if TYPE_CHECKING:
+    import casadi
+    import control
+
+    from feeddrive.interface.bode import Bode
+    from feeddrive.interface.servo import Servo
+
+
+def load(name: str | Path) -> Axis:
+    """The axis of a plant file.
+
+    Args:
+        name: path of the file, or the name of a shipped machine, see `list_plants`.
+
+    Raises:
+        InputError: neither a file nor a shipped machine, or a file that cannot be used; one line with file, key and
+            remedy.
+
+    >>> import feeddrive as fd
+    >>> axis = fd.load("bench_axis")
+    >>> axis
+    Axis 'bench axis': three_inertias, 3 effects
+    """
+    if not isinstance(name, str | Path):
+        raise InputError(f"{name!r} is no path", "load", "give a string or a pathlib.Path")
+    path = find_plant(str(name))
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"cannot be read ({error})", str(path), "give a TOML file in UTF-8") from None
+    return axis_of_text(text, path)
+
+
+def axis_of_text(text: str, path: Path) -> Axis:
+    """The axis of the text of a plant file, checked whole.
+
+    Args:
+        text: TOML.
+        path: of the file, for messages and the name.
+
+    Raises:
+        InputError: as `load`.
+    """
+    axis = Axis(path, text)
+    axis.refuse_unusable()
+    return axis
+
+
+@dataclass(frozen=True, repr=False)
+class Axis:
+    """A feed axis: what `load` gives. Never changed; `with_values` and `with_effects` give another one.
+
+    Attributes:
+        path: of the plant file.
+        text: of the plant file.
+        values: put in place of the file's, keys as of `--set` without "plant.".
+        added: effects beyond those of the file.
+    """
+
+    path: Path
+    text: str
+    values: tuple[tuple[str, str], ...] = ()
+    added: tuple[Effect, ...] = ()
+
+    def __repr__(self) -> str:
+        """Name, structure, effects, stroke."""
+        if not self.has_motion:
+            return f"Axis {self.heat.name!r}: heat alone, {len(self.heat.effects)} effects"
+        plant = self.plant
+        low, high = ("" if plant.stroke is None else _short(end) for end in plant.stroke or (0.0, 0.0))
+        stroke = f", stroke {low} to {high}" if plant.stroke else ""
+        heat = ", with heat" if self.has_heat else ""
+        return f"Axis {plant.name!r}: {plant.chain.structure}, {len(plant.effects)} effects{stroke}{heat}"
+
+    @cached_property
+    def entries(self) -> dict[str, Any]:
+        """What the file holds, with the values that were put in."""
+        written = parse_toml(self.text, str(self.path))
+        return with_overrides(written, dict(self.values))
+
+    @property
+    def has_motion(self) -> bool:
+        """Whether the file declares masses and drives."""
+        return not declares_heat_alone(self.entries)
+
+    @property
+    def has_heat(self) -> bool:
+        """Whether the file declares heat."""
+        return SECTION in self.entries
+
+    @cached_property
+    def plant(self) -> Plant:
+        """The equations of motion: chain, effects, drive.
+
+        Raises:
+            InputError: the file declares heat alone.
+        """
+        motion = [one for one in self.added if not isinstance(one, ThermalEffect)]
+        return plant_from_entries(self.entries, self.path).with_effects(*motion)
+
+    @cached_property
+    def heat(self) -> ThermalPlant:
+        """The heat of the machine.
+
+        Raises:
+            InputError: the file declares none.
+        """
+        top = Table(self.entries, str(self.path), Origins(), str(self.entries.get("source", "")))
+        found = thermal_plant(top, self.path.stem)
+        return found.with_effects(*(one for one in self.added if isinstance(one, ThermalEffect)))
+
+    @property
+    def name(self) -> str:
+        """Name of the machine."""
+        return self.plant.name if self.has_motion else self.heat.name
+
+    def refuse_unusable(self) -> None:
+        """Read everything that the file declares.
+
+        Raises:
+            InputError: the first thing that cannot be used.
+        """
+        if self.has_motion:
+            _ = self.plant
+        if self.has_heat:
+            _ = self.heat
+
+    def with_values(self, values: Mapping[str, Quantity | Sequence[str]]) -> Axis:
+        """The axis with other values.
+
+        Args:
+            values: key as of `--set`, "table.mass" or "effect.guide_friction.coulomb", to a quantity with its unit.
+
+        Raises:
+            InputError: a key or a value that the file could not hold either.
+
+        >>> import feeddrive as fd
+        >>> axis = fd.load("bench_axis").with_values({"table.mass": "160 kg"})
+        >>> axis.plant.chain_values()["table_mass"]
+        160.0
+        """
+        written = {key: _as_written(value) for key, value in values.items()}
+        changed = replace(self, values=tuple({**dict(self.values), **written}.items()))
+        changed.refuse_unusable()
+        return changed
+
+    def with_effects(self, *effects: Effect) -> Axis:
+        """The axis with further effects, see `effect`.
+
+        Raises:
+            InputError: an effect that cannot act here, or two that cannot act together.
+
+        >>> import feeddrive as fd
+        >>> worn = fd.load("bench_axis").with_effects(fd.effect("backlash", width="7.5 um"))
+        >>> worn.plant.effects[-1].name
+        'backlash'
+        """
+        for one in effects:
+            if not isinstance(one, Effect):
+                raise InputError(f"{one!r} is no effect", "with_effects", 'give fd.effect("backlash", width="7.5 um")')
+            if one.name in THERMAL_EFFECTS and not self.has_heat:
+                raise InputError(f"{one.name} acts on heat, and none is declared", str(self.path), "declare [thermal]")
+        changed = replace(self, added=(*self.added, *effects))
+        changed.refuse_unusable()
+        return changed
+
+    def save(self, path: str | Path) -> Path:
+        """Write the plant file, with the effects that were added at its end.
+
+        Raises:
+            InputError: values were put in, which a text cannot take; or the file cannot be written.
+        """
+        if self.values:
+            keys = ", ".join(key for key, _ in self.values)
+            raise InputError(f"{keys} differ from the file", "save", "write them into the plant file itself")
+        target = Path(path)
+        write_text_atomically(target, plant_text_with_effects(self.text, self.added))
+        return target
+
+    def modes(self, at: Quantity | Sequence[Quantity] | None = None) -> Modes:
+        """Natural frequencies, motor held and free.
+
+        Args:
+            at: table position or several; along the stroke if left out.
+
+        Raises:
+            InputError: a position off the stroke or the screw.
+
+        >>> import feeddrive as fd
+        >>> modes = fd.load("kimm_testbed").modes(["0 mm", "600 mm"])
+        >>> modes.held.shape[0]
+        2
+        """
+        places = quantities(at, "m", "at")
+        return Modes(self.name, mode_map(self.plant, np.array(places) if places else None))
+
+    def stiffness(self, at: Quantity | None = None) -> Stiffness:
+        """Static stiffness at the table with the motor held, and whose compliance it is.
+
+        Args:
+            at: table position; the middle of the stroke if left out.
+
+        Raises:
+            InputError: a rigid machine, or a position off the screw.
+        """
+        place = self.plant.middle if at is None else si(at, "m", "at")
+        if not self.plant.chain.elastic:
+            raise InputError("nothing is elastic in a rigid machine", self.name, "declare another structure")
+        return Stiffness(self.name, place, stiffness_budget(self.plant, place))
+
+    def check(self, position_gain: Quantity | None = None) -> Check:
+        """Rules of plausibility.
+
+        Args:
+            position_gain: K_v of the controller, "60 1/s"; the declared one if left out.
+
+        Raises:
+            InputError: a gain that is not above zero.
+        """
+        if not self.has_motion:
+            return Check(self.name, check_thermal_plant(self.heat))
+        gain = None if position_gain is None else si(position_gain, "1/s", "position_gain")
+        if gain is not None and not gain > 0:
+            raise InputError(f"{position_gain} is no gain", "position_gain", "write one above zero, such as '50 1/s'")
+        return Check(self.name, check_plant(self.plant, gain))
+
+    def life(self) -> Life:
+        """Rated life of the ball screw, survived by 90 %."""
+        return Life(self.name, rated_life(self.plant))
+
+    def linear(self, at: str = "") -> control.StateSpace:
+        """The axis linearised exactly about a steady motion, states, inputs and outputs named, SI.
+
+        Args:
+            at: "x=600 mm, v=3 m/min"; without x the middle of the stroke, without v at a slow motion: at rest the
+                slope of the friction swamps everything.
+
+        Raises:
+            InputError: a point off the stroke, or where no steady motion is found.
+
+        >>> import feeddrive as fd
+        >>> G = fd.load("bench_axis").linear(at="x=200 mm, v=3 m/min")
+        >>> G.input_labels
+        ['motor_torque', 'cutting_force']
+        """
+        from feeddrive.export.point import export_point
+        from feeddrive.plant.linear import state_space
+
+        point = export_point(self.plant, at, "at")
+        return state_space(self.plant, point.linearised_at, point.position)
+
+    def ode(self) -> casadi.Function:
+        """The equations of motion as a CasADi function (x, u, p) -> (dx/dt, y), SI, with all effects."""
+        from feeddrive.plant.ode import ode
+
+        return ode(self.plant)
+
+    def bode(
+        self,
+        given: str = "motor_torque",
+        output: str = "motor_speed",
+        *,
+        at: str = "",
+        positions: Quantity | Sequence[Quantity] | None = None,
+        payload: Quantity | Sequence[Quantity] | None = None,
+        controller: Servo | str | Path | None = None,
+        loop: str = "open",
+        frequencies: Sequence[Quantity] = ("1 Hz", "2 kHz"),
+    ) -> Bode:
+        """Frequency responses: of the mechanics, or with a controller of its velocity loop.
+
+        Args:
+            given: input, such as "motor_torque"; of the mechanics.
+            output: such as "motor_speed" or "table_position"; of the mechanics.
+            at: operating point, "x=200 mm, v=3 m/min".
+            positions: of the table, one curve each; that of `at` if left out.
+            payload: masses on the table beyond the declared one, one curve each.
+            controller: of `tune`, or a controller or scenario file; its loops are shown then.
+            loop: "velocity" or "position", with a controller: that open loop with its margins.
+            frequencies: lowest and highest.
+
+        Raises:
+            InputError: an unknown signal or loop, a point off the stroke, an unstable loop.
+
+        >>> import feeddrive as fd
+        >>> bode = fd.load("bench_axis").bode("motor_torque", "motor_speed", payload=["0 kg", "60 kg"])
+        >>> len(bode.curves)
+        2
+        """
+        from feeddrive.export.point import export_point
+        from feeddrive.interface.bode import Bode
+        from feeddrive.interface.servo import cascade_for
+        from feeddrive.plant.entries import nearest
+        from feeddrive.servo.loop_response import loops_of
+        from feeddrive.servo.response_family import mechanics_family, open_family
+        from feeddrive.tuning.demand import cases_of
+
+        point = export_point(self.plant, at, "at")
+        places = quantities(positions, "m", "positions") or (point.position,)
+        cases = cases_of(self.plant, places, quantities(payload, "kg", "payload"), point.linearised_at)
+        low, high = span(frequencies, "Hz", "frequencies")
+        if controller is None:
+            return Bode(self.name, mechanics_family(self.plant, given, output, cases, low, high))
+        cascade = cascade_for(self.plant, controller)
+        wanted = "velocity" if loop == "open" else loop
+        known = {str(one): one for one in loops_of(cascade)}
+        if wanted not in known:
+            raise InputError(f'no loop "{loop}"', "loop", nearest(loop, known))
+        return Bode(self.name, open_family(self.plant, cascade, known[wanted], cases, low, high))
+
+    def export(self, form: str, folder: str | Path, at: str = "") -> tuple[Path, ...]:
+        """Write the axis in the form of another tool.
+
+        Args:
+            form: "ss", "mat", "json" (linear), "casadi", "c", "fmu" (nonlinear, with all effects).
+            folder: for the files; made if it is not there.
+            at: operating point.
+
+        Returns:
+            The files.
+
+        Raises:
+            InputError: an unknown form, a point off the stroke, or a folder that cannot be written.
+        """
+        from feeddrive.export.point import export_point
+        from feeddrive.export.writing import Form, write_export
+        from feeddrive.plant.entries import nearest
+
+        forms = {str(one): one for one in Form}
+        if form not in forms:
+            raise InputError(f'no form "{form}"', "export", nearest(form, forms))
+        return write_export(self.plant, forms[form], export_point(self.plant, at, "at"), Path(folder))
+
+
+def _short(length: float) -> str:
+    from feeddrive.quantity import format_quantity
+
+    return format_quantity(length, "m")
+
+
+def _as_written(value: object) -> str:
+    """A value as it is written behind `--set key=`."""
+    if isinstance(value, str):
+        return value
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(repr(one) if not isinstance(one, str) else chr(34) + one + chr(34) for one in value)}]"
+    return repr(value).lower() if isinstance(value, bool) else repr(value)

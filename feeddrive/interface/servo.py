@@ -1,0 +1,201 @@
+"""Controllers: the recommended cascade of an axis, with the why of each setting."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from feeddrive.errors import InputError
+from feeddrive.files import find_scenario_or_controller, write_text_atomically
+from feeddrive.interface.quantities import Quantity, quantities, si
+from feeddrive.interface.shown import Listing, Shown
+from feeddrive.plant.entries import nearest
+from feeddrive.plant.plant import Plant
+from feeddrive.servo.cascade import KV_UNIT, Cascade, Feedback
+from feeddrive.servo.loop_response import loops_of
+from feeddrive.servo.response_family import open_family
+from feeddrive.simulate.controller_file import read_controller
+from feeddrive.tuning.bare_drive import bare_drive
+from feeddrive.tuning.demand import Demand, cases_of
+from feeddrive.tuning.reasons import Setting, controller_text, rules, settings
+from feeddrive.tuning.recommendation import Recommendation, recommend
+
+if TYPE_CHECKING:
+    from feeddrive.interface.axis import Axis
+    from feeddrive.report.drawing import ReportFigure
+
+LOWEST, HIGHEST = 1.0, 4000.0
+"""Frequencies of the figure of the open loops [Hz]."""
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Servo(Shown):
+    """A recommended cascade.
+
+    Attributes:
+        plant: that it is for.
+        recommendation: settings, demand, and the margins reached in every case.
+    """
+
+    plant: Plant
+    recommendation: Recommendation
+
+    @property
+    def cascade(self) -> Cascade:
+        """The settings, SI."""
+        return self.recommendation.cascade
+
+    @property
+    def position_gain(self) -> float:
+        """K_v [1/s]."""
+        return self.cascade.position_gain
+
+    @property
+    def velocity_gain(self) -> float:
+        """K_p [N m s/rad]."""
+        return self.cascade.velocity_gain
+
+    @property
+    def reset_time(self) -> float:
+        """T_n [s]."""
+        return self.cascade.reset_time
+
+    @property
+    def why(self) -> dict[str, str]:
+        """Setting to the sentence that says why it is so."""
+        found = {one.symbol: one.why for one in self.settings}
+        return found | {f"rule {i}": text for i, text in enumerate(rules(self.plant, self.recommendation), 1)}
+
+    @property
+    def settings(self) -> tuple[Setting, ...]:
+        """Every setting, as shown, with its why."""
+        return settings(self.plant, self.recommendation)
+
+    @property
+    def text(self) -> str:
+        """The controller file."""
+        return controller_text(self.recommendation, f"recommended for {self.plant.name}")
+
+    def save(self, path: str | Path) -> Path:
+        """Write the controller file, which scenarios name.
+
+        Raises:
+            InputError: the file cannot be written.
+        """
+        target = Path(path)
+        write_text_atomically(target, self.text)
+        return target
+
+    def listing(self) -> Listing:
+        """One row per setting."""
+        rows = [[one.symbol, one.shown, one.why] for one in self.settings]
+        records = [
+            {"setting": "position_gain [1/s]", "value": self.position_gain},
+            {"setting": "position_gain [(m/min)/mm]", "value": self.position_gain / KV_UNIT},
+            {"setting": "velocity_gain [N m s/rad]", "value": self.velocity_gain},
+            {"setting": "reset_time [s]", "value": self.reset_time},
+        ]
+        return Listing(f"{self.plant.name}: recommended cascade", ("setting", "value", "why"), rows, records)
+
+    def _figures(self) -> Sequence[ReportFigure]:
+        from feeddrive.report.figure_bode import bode_figure
+
+        cases = [one.case for one in self.recommendation.reached]
+        loops = loops_of(self.cascade)
+        return [bode_figure(open_family(self.plant, self.cascade, one, cases, LOWEST, HIGHEST)) for one in loops]
+
+
+def tune(
+    axis: Axis,
+    *,
+    phase: Quantity = "45 deg",
+    gain: Quantity = "8 dB",
+    positions: Quantity | Sequence[Quantity] | None = None,
+    payload: Quantity | Sequence[Quantity] | None = None,
+    velocity: Quantity = "3 m/min",
+    drive: str | Path | None = None,
+    velocity_rate: Quantity = "8 kHz",
+    position_rate: Quantity = "2 kHz",
+    current_bandwidth: Quantity = "1 kHz",
+    dead_time: Quantity = "125 us",
+    feedback: str | None = None,
+) -> Servo:
+    """Recommend K_p, T_n, notches and K_v that keep margins over positions and payloads.
+
+    Args:
+        axis: the machine.
+        phase, gain: least margins of either loop.
+        positions: of the table at which they must hold; along the stroke if left out.
+        payload: masses on the table with which they must hold.
+        velocity: of the table about which is linearised.
+        drive: scenario or controller file of the drive; gives rates, delays and limits in place of what follows.
+        velocity_rate, position_rate, current_bandwidth, dead_time: of the drive.
+        feedback: "motor" or "table", what the position loop reads; a scale if declared.
+
+    Raises:
+        InputError: margins that cannot be met, or a value that cannot be used.
+    """
+    plant = axis.plant
+    place = _feedback(feedback)
+    if drive is not None:
+        read = cascade_for(plant, drive)
+        bare = replace(read, feedback=place or read.feedback, torque_filters=(), speed_filters=())
+    else:
+        late = si(dead_time, "s", "dead_time")
+        if late < 0:
+            raise InputError(f"{dead_time} is negative", "dead_time", "write zero or more")
+        bare = bare_drive(
+            plant,
+            _positive(velocity_rate, "Hz", "velocity_rate"),
+            _positive(position_rate, "Hz", "position_rate"),
+            _positive(current_bandwidth, "Hz", "current_bandwidth"),
+            late,
+            place,
+        )
+    demand = Demand(phase=round(math.degrees(si(phase, "rad", "phase")), 9), gain=si(gain, "dB", "gain"))
+    places, loads = quantities(positions, "m", "positions"), quantities(payload, "kg", "payload")
+    cases = cases_of(plant, places, loads, si(velocity, "m/s", "velocity"))
+    return Servo(plant, recommend(plant, bare, cases, demand))
+
+
+def cascade_for(plant: Plant, controller: Servo | str | Path) -> Cascade:
+    """The cascade of a tuned servo, or of a controller or scenario file.
+
+    Raises:
+        InputError: none of them, or a controller that cannot be read.
+    """
+    if isinstance(controller, Servo):
+        return controller.cascade
+    if isinstance(controller, str | Path):
+        return read_controller(find_scenario_or_controller(str(controller)), plant)
+    what = f"{type(controller).__name__} is no controller"
+    raise InputError(what, "controller", "give fd.tune(...), or a controller or scenario file")
+
+
+def controller_entries(controller: Servo | str | Path) -> Mapping[str, Any]:
+    """The controller as a scenario holds it.
+
+    Raises:
+        InputError: a file that cannot be read.
+    """
+    if isinstance(controller, Servo):
+        return tomllib.loads(controller.text)
+    return {"file": str(Path(controller).resolve())}
+
+
+def _feedback(written: str | None) -> Feedback | None:
+    allowed = [str(place) for place in Feedback]
+    if written is not None and written not in allowed:
+        raise InputError(f'"{written}" is not possible', "feedback", nearest(written, allowed))
+    return None if written is None else Feedback(written)
+
+
+def _positive(value: Quantity, unit: str, where: str) -> float:
+    found = si(value, unit, where)
+    if not found > 0:
+        raise InputError(f"{value} is not above zero", where, "write a positive value")
+    return found

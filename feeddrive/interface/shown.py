@@ -1,0 +1,119 @@
+"""Results that show themselves: a table as text, as HTML in a notebook, as a pandas DataFrame; a figure as PNG."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Sequence
+from dataclasses import dataclass
+from html import escape
+from typing import TYPE_CHECKING, Any
+
+from feeddrive.errors import InputError
+
+if TYPE_CHECKING:
+    import pandas
+    from matplotlib.figure import Figure
+
+    from feeddrive.report.drawing import ReportFigure
+
+MOST_ROWS = 30
+"""Rows that are shown as text or HTML; `to_pandas` has all."""
+
+
+@dataclass(frozen=True)
+class Listing:
+    """A table for people and for programs.
+
+    Attributes:
+        title: one line.
+        headings: of the columns, as shown.
+        rows: cells as shown, each row as long as the headings.
+        records: the same rows for programs: key with its SI unit, such as "position [m]", to value.
+    """
+
+    title: str
+    headings: Sequence[str]
+    rows: Sequence[Sequence[str]]
+    records: Sequence[dict[str, Any]]
+
+    def text(self) -> str:
+        """Title, headings and rows in columns of equal width."""
+        shown = [list(self.headings), *(list(row) for row in self.rows[:MOST_ROWS])]
+        widths = [max(len(row[column]) for row in shown) for column in range(len(self.headings))]
+        lines = [
+            "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in shown
+        ]
+        more = [f"… {len(self.rows) - MOST_ROWS} more"] if len(self.rows) > MOST_ROWS else []
+        return "\n".join([self.title, *lines, *more])
+
+    def html(self) -> str:
+        """The table as HTML."""
+        head = "".join(f"<th>{escape(heading)}</th>" for heading in self.headings)
+        body = "".join(
+            "<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>" for row in self.rows[:MOST_ROWS]
+        )
+        return f"<table><caption>{escape(self.title)}</caption><tr>{head}</tr>{body}</table>"
+
+
+class Shown:
+    """A result that is a table; what it is drawn as, if anything, `_figures` gives."""
+
+    def listing(self) -> Listing:
+        """The table."""
+        raise NotImplementedError
+
+    def _figures(self) -> Sequence[ReportFigure]:
+        """The figures, the telling one first; none where there is nothing to draw."""
+        return ()
+
+    def __repr__(self) -> str:
+        """The table as text."""
+        return self.listing().text()
+
+    def _repr_html_(self) -> str:
+        """The table and the first figure, as a notebook shows them."""
+        drawn = "".join(_picture(one) for one in self._figures()[:1])
+        return self.listing().html() + drawn
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """All rows as a DataFrame, columns in SI with their unit in brackets.
+
+        Raises:
+            InputError: pandas is not installed.
+        """
+        found: pandas.DataFrame = needed_pandas().DataFrame(list(self.listing().records))
+        return found
+
+    def plot(self) -> Figure:
+        """The figure, of Matplotlib; `figure.savefig("x.png")` writes it.
+
+        Raises:
+            InputError: nothing to draw.
+        """
+        figures = self._figures()
+        if not figures:
+            raise InputError("there is nothing to draw", self.listing().title, "look at its table")
+        return figures[0].figure
+
+
+def needed_pandas() -> Any:
+    """The pandas module.
+
+    Raises:
+        InputError: it is not installed.
+    """
+    try:
+        import pandas
+    except ImportError:
+        raise InputError("pandas is not installed", "to_pandas", "pip install 'feeddrive[pandas]'") from None
+    return pandas
+
+
+def _picture(drawn: ReportFigure) -> str:
+    from feeddrive.report.drawing import render
+
+    made = render(drawn)
+    data = base64.b64encode(made.png).decode()
+    return (
+        f'<figure><img alt="{escape(made.title)}" src="data:image/png;base64,{data}" style="max-width:100%"></figure>'
+    )
