@@ -63,7 +63,8 @@ def plant_text(generator: random.Random) -> tuple[str, str]:
 
 
 COMMANDS = [
-    ["check"], ["check"], ["show"], ["show"], ["show"], ["run"], ["run"], ["run"], ["modes"], ["modes"], ["bode"], ["bode"],
+    ["check"], ["check"], ["show"], ["show"], ["show"], ["modes"], ["modes"], ["bode"], ["bode"],
+    ["run"], ["run"], ["run"],
     ["export", "--to", "json"], ["export", "--to", "ss"], ["export", "--to", "mat"], ["thermal", "--duration", "2 min"],
 ]  # fmt: skip
 
