@@ -41,7 +41,7 @@ def _scenario(folder: Path) -> str:
     entries |= {
         "plant": "machine.toml",
         "controller": {**controller, "allow_unstable": True},
-        "run": {"duration": "0.15 s"},
+        "run": {"duration": "0.03 s"},
     }
     entries |= {"travel": ["-1 m", "2 m"]}
     path = folder / "scenario.toml"
