@@ -16,7 +16,7 @@ from feeddrive.cli import main as entry
 from feeddrive.errors import InputError
 
 HEAVY = ("numpy", "scipy", "casadi", "control", "matplotlib", "pint", "pydantic")
-"""Each takes from tenths of a second to seconds to import: none may be needed for `--help`. Typer has pydantic."""
+"""Each takes from tenths of a second to seconds to import: none may be needed to answer `--help`."""
 
 Command = Callable[[], None]
 
