@@ -72,7 +72,7 @@ def output_folder(folder: Path) -> Iterator[Path]:
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with _turn(folder):
-            finish_interrupted(folder)
+            _finish(folder)
             begun = folder / f"{_MARK}{secrets.token_hex(4)}{_BEGUN}"
             begun.mkdir()
             try:
@@ -107,9 +107,23 @@ def take_away(inside: Path, names: Iterable[str]) -> None:
 def finish_interrupted(folder: Path) -> None:
     """Move in what a command that was killed has left whole, and remove what it has only begun.
 
+    Args:
+        folder: that is about to be read; nothing happens where it is none.
+
     Raises:
-        OSError: a file cannot be moved or removed.
+        InputError: a file cannot be moved or removed, or another command is writing.
     """
+    if not folder.is_dir():
+        return
+    try:
+        with _turn(folder):
+            _finish(folder)
+    except OSError as error:
+        mend = "make it writable for a moment"
+        raise InputError(f"an interrupted run cannot be finished ({error.strerror})", str(folder), mend) from None
+
+
+def _finish(folder: Path) -> None:
     for left in sorted(folder.glob(f"{_MARK}*")):
         if left.suffix == _WHOLE:
             _move_in(left, folder)

@@ -14,7 +14,7 @@ import pytest
 import feeddrive
 from feeddrive import output_folder as module
 from feeddrive.errors import InputError
-from feeddrive.output_folder import output_folder, refuse_unusable
+from feeddrive.output_folder import finish_interrupted, output_folder, refuse_unusable
 
 NAMES = ("diagnosis.json", "figure.png", "report.html")
 
@@ -175,3 +175,16 @@ def test_writer_that_takes_too_long_is_named(tmp_path: Path, monkeypatch: pytest
         other.kill()
     _write(tmp_path / "out", "new")  # the dead hold nothing
     assert _ours(tmp_path / "out") == ["new"] * 3
+
+
+def test_what_was_left_whole_is_moved_in_before_it_is_read(tmp_path: Path) -> None:
+    _write(tmp_path, "old")
+    whole, begun = tmp_path / ".feeddrive-0.whole", tmp_path / ".feeddrive-1.part"
+    for left, text in ((whole, "new"), (begun, "half")):
+        left.mkdir()
+        for name in NAMES:
+            (left / name).write_text(text)
+    finish_interrupted(tmp_path)
+    assert _ours(tmp_path) == ["new"] * 3
+    assert len(list(tmp_path.iterdir())) == 3
+    finish_interrupted(tmp_path / "nowhere")
