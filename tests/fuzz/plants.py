@@ -64,7 +64,7 @@ def plant_text(generator: random.Random) -> tuple[str, str]:
 
 COMMANDS = [
     ["check"], ["check"], ["show"], ["show"], ["show"], ["modes"], ["modes"], ["bode"], ["bode"],
-    ["run"], ["run"], ["run"],
+    ["run"], ["run"], ["run"], ["lump"],
     ["export", "--to", "json"], ["export", "--to", "ss"], ["export", "--to", "mat"], ["thermal", "--duration", "2 min"],
 ]  # fmt: skip
 
