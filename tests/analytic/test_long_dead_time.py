@@ -31,5 +31,5 @@ def test_margins_of_three_hundred_ticks_take_no_minutes() -> None:
     loop = open_velocity_loop(PLANT, replace(CASCADE, dead_time=300 * CASCADE.sample_time), 0.05, 0.25)
     begun = time.process_time()
     margins(loop, points=2000)
-    # 0.3 s here; a dense solution for every frequency took 40 times as long.
+    # 1.4 s here; a dense solution for every frequency took 25 s.
     assert time.process_time() - begun < 5
