@@ -152,8 +152,8 @@ def _refuse_folders_in_the_way(begun: Path, folder: Path) -> None:
 
 def _shown(where: str, folder: Path) -> str:
     """A place in the hidden folder by the name that it was to have."""
-    start, inside = f"{folder}{os.sep}{_MARK}", where.partition(_BEGUN)[2]
-    return f"{folder}{inside}" if where.startswith(start) else where
+    start = f"{folder}{os.sep}{_MARK}"
+    return str(folder / where.removeprefix(start).partition(os.sep)[2]) if where.startswith(start) else where
 
 
 @contextmanager

@@ -128,9 +128,10 @@ def test_full_disk_names_the_file_as_it_was_to_be_called(tmp_path: Path, monkeyp
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(Path, "write_bytes", full)
-    with pytest.raises(InputError) as raised, output_folder(tmp_path / "out") as inside:
+    folder = tmp_path / "my.parts"  # a name that holds the mark of what is begun
+    with pytest.raises(InputError) as raised, output_folder(folder) as inside:
         write_text_atomically(inside / "report.html", "new")
-    assert raised.value.where == str(tmp_path / "out" / "report.html")
+    assert raised.value.where == str(folder / "report.html")
     assert "No space left" in raised.value.what
 
 
