@@ -13,7 +13,7 @@ import os
 import secrets
 import shutil
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
@@ -23,7 +23,7 @@ from feeddrive.errors import InputError
 LONGEST_WAIT = 60.0
 """Seconds that a command waits for another one that writes to the folder; drawing and writing take some."""
 
-_MARK, _BEGUN, _WHOLE = ".feeddrive-", ".part", ".whole"
+_MARK, _BEGUN, _WHOLE, _GONE = ".feeddrive-", ".part", ".whole", ".gone"
 _MEND = "name another folder for --out"
 
 
@@ -61,6 +61,9 @@ def output_folder(folder: Path) -> Iterator[Path]:
     Args:
         folder: made where it is not there.
 
+    Yields:
+        The folder to write into; see `take_away` for files of an earlier time that are not written anew.
+
     Raises:
         InputError: it cannot be written, or another command writes to it for longer than `LONGEST_WAIT`.
     """
@@ -69,7 +72,7 @@ def output_folder(folder: Path) -> Iterator[Path]:
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with _turn(folder):
-            finish_interrupted(folder)
+            _finish(folder)
             begun = folder / f"{_MARK}{secrets.token_hex(4)}{_BEGUN}"
             begun.mkdir()
             try:
@@ -91,12 +94,36 @@ def output_folder(folder: Path) -> Iterator[Path]:
                 folder.rmdir()  # where nothing came of it
 
 
+def take_away(inside: Path, names: Iterable[str]) -> None:
+    """Have files of an earlier time removed with those that are replaced, so that none of them stays beside the new.
+
+    Args:
+        inside: what `output_folder` gave.
+        names: of files; a name that leads out of the folder is passed over.
+    """
+    (inside / _GONE).write_text("\n".join(name for name in names if Path(name).name == name), encoding="utf-8")
+
+
 def finish_interrupted(folder: Path) -> None:
     """Move in what a command that was killed has left whole, and remove what it has only begun.
 
+    Args:
+        folder: that is about to be read; nothing happens where it is none.
+
     Raises:
-        OSError: a file cannot be moved or removed.
+        InputError: a file cannot be moved or removed, or another command is writing.
     """
+    if not folder.is_dir():
+        return
+    try:
+        with _turn(folder):
+            _finish(folder)
+    except OSError as error:
+        mend = "make it writable for a moment"
+        raise InputError(f"an interrupted run cannot be finished ({error.strerror})", str(folder), mend) from None
+
+
+def _finish(folder: Path) -> None:
     for left in sorted(folder.glob(f"{_MARK}*")):
         if left.suffix == _WHOLE:
             _move_in(left, folder)
@@ -106,11 +133,14 @@ def finish_interrupted(folder: Path) -> None:
 
 def _move_in(whole: Path, folder: Path) -> None:
     """Take the old files away, then move the new ones in, so that old and new are never side by side."""
-    names = sorted(path.name for path in whole.iterdir())
-    for name in names:
-        (folder / name).unlink(missing_ok=True)
+    names = sorted(path.name for path in whole.iterdir() if path.name != _GONE)
+    gone = (whole / _GONE).read_text(encoding="utf-8").splitlines() if (whole / _GONE).exists() else []
+    for name in (*gone, *names):
+        if not (folder / name).is_dir():
+            (folder / name).unlink(missing_ok=True)
     for name in names:
         os.replace(whole / name, folder / name)
+    (whole / _GONE).unlink(missing_ok=True)
     whole.rmdir()
 
 
@@ -122,8 +152,8 @@ def _refuse_folders_in_the_way(begun: Path, folder: Path) -> None:
 
 def _shown(where: str, folder: Path) -> str:
     """A place in the hidden folder by the name that it was to have."""
-    start, inside = f"{folder}{os.sep}{_MARK}", where.partition(_BEGUN)[2]
-    return f"{folder}{inside}" if where.startswith(start) else where
+    start = f"{folder}{os.sep}{_MARK}"
+    return str(folder / where.removeprefix(start).partition(os.sep)[2]) if where.startswith(start) else where
 
 
 @contextmanager

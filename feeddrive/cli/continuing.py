@@ -39,8 +39,7 @@ def continued_job(arguments: Sequence[str], folder: Path, options: Options) -> J
     Raises:
         InputError: an earlier diagnosis that cannot be taken up, another plant than its, or a recording it has already.
     """
-    if folder.is_dir():
-        finish_interrupted(folder)  # an earlier diagnosis that was killed at its very end
+    finish_interrupted(folder)  # an earlier diagnosis may have been killed at its very end
     earlier = earlier_run(folder)
     names = list(arguments)
     plant = _plant(names[0])

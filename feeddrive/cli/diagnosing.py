@@ -15,12 +15,12 @@ from feeddrive.cli.machine import read_machine
 from feeddrive.cli.output import escaped
 from feeddrive.diagnose.diagnosis import diagnose
 from feeddrive.diagnose.ledger.continued import Earlier, changed_since
-from feeddrive.diagnose.ledger.ledger import FileUse, RunFiles, runs_of, write_ledger
+from feeddrive.diagnose.ledger.ledger import FileUse, RunFiles, runs_of, write_ledger, written_earlier
 from feeddrive.diagnose.outputs import diagnosis_json, write_outputs
 from feeddrive.diagnose.result import Diagnosis
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError, printable
-from feeddrive.output_folder import output_folder, refuse_unusable
+from feeddrive.output_folder import output_folder, refuse_unusable, take_away
 from feeddrive.recording import Recording, read_recording
 from feeddrive.report.certainty import experiment_sentences
 from feeddrive.report.figures import render_figures, save_figures
@@ -96,7 +96,9 @@ def run_job(job: Job, as_json: bool = False) -> Diagnosis:
             save_figures(result, folder, pictures)
             write_report(result, folder / "report.html", pictures)
             # Read now: another diagnosis may have written here meanwhile.
-            before = runs_of(job.out) or (job.earlier.runs if job.earlier is not None else [])
+            there = runs_of(job.out)
+            take_away(folder, written_earlier(there))  # a figure that this run has no reason to draw
+            before = there or (job.earlier.runs if job.earlier is not None else [])
             write_ledger(folder, before, result, effects, _files(job, declared, fitted, judged, before))
     if as_json:
         typer.echo(escaped(diagnosis_json(result)), nl=False)

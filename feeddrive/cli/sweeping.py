@@ -33,6 +33,9 @@ from feeddrive.simulate.sweep_workers import Workers, in_this_process, processes
 MOST_METRICS = 4
 """In the figure."""
 
+MOST_WORKERS = 256
+"""Processes of one computer, all of which are started at once; more is a slip of the hand."""
+
 
 @dataclass(frozen=True)
 class Wanted:
@@ -82,8 +85,10 @@ def _workers(wanted: Wanted) -> Workers:
             raise InputError("--workers and --scheduler are both given", "", "leave one of them out")
         return on_cluster(wanted.scheduler)
     count = usable_processors() if wanted.workers is None else wanted.workers
-    if count < 1:
-        raise InputError(f"{count} workers", "--workers", "write 1 or more")
+    if not 1 <= count <= MOST_WORKERS:
+        raise InputError(
+            f"{count} workers", "--workers", f"write 1 to {MOST_WORKERS}; a cluster is named by --scheduler"
+        )
     return in_this_process if count == 1 else processes(count)
 
 

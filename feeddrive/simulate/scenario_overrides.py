@@ -65,7 +65,7 @@ def _place(entries: list[Any], step: str, key: str) -> int:
     names = [entry.get("name") for entry in entries if isinstance(entry, dict)]
     if names.count(step) == 1:
         return names.index(step)
-    if not step.isdecimal() or not 1 <= int(step) <= len(entries):
+    if not step.isdecimal() or len(step) > 9 or not 1 <= int(step) <= len(entries):  # a longer one is no count
         named = f", or name one of {', '.join(map(str, names))}" if any(names) else ""
         raise InputError(f"no entry {step}", f"--set {key}", f"count from 1 to {len(entries)}{named}")
     return int(step) - 1

@@ -94,7 +94,7 @@ def _stepped(key: str, low: str, high: str, points: str) -> Parameter:
     count, _, unit_behind = points.strip().partition(" ")
     if unit_behind:
         high = f"{high} {unit_behind}"
-    if not count.isdecimal():
+    if not count.isdecimal() or len(count) > _DIGITS:
         what = f'"{count}" is not a number of points'
         raise InputError(what, f"--vary {key}", "write first:last:points, e.g. 40:80:9 1/s")
     number = int(count)

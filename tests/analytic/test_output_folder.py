@@ -14,7 +14,7 @@ import pytest
 import feeddrive
 from feeddrive import output_folder as module
 from feeddrive.errors import InputError
-from feeddrive.output_folder import output_folder, refuse_unusable
+from feeddrive.output_folder import finish_interrupted, output_folder, refuse_unusable
 
 NAMES = ("diagnosis.json", "figure.png", "report.html")
 
@@ -128,9 +128,10 @@ def test_full_disk_names_the_file_as_it_was_to_be_called(tmp_path: Path, monkeyp
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(Path, "write_bytes", full)
-    with pytest.raises(InputError) as raised, output_folder(tmp_path / "out") as inside:
+    folder = tmp_path / "my.parts"  # a name that holds the mark of what is begun
+    with pytest.raises(InputError) as raised, output_folder(folder) as inside:
         write_text_atomically(inside / "report.html", "new")
-    assert raised.value.where == str(tmp_path / "out" / "report.html")
+    assert raised.value.where == str(folder / "report.html")
     assert "No space left" in raised.value.what
 
 
@@ -175,3 +176,16 @@ def test_writer_that_takes_too_long_is_named(tmp_path: Path, monkeypatch: pytest
         other.kill()
     _write(tmp_path / "out", "new")  # the dead hold nothing
     assert _ours(tmp_path / "out") == ["new"] * 3
+
+
+def test_what_was_left_whole_is_moved_in_before_it_is_read(tmp_path: Path) -> None:
+    _write(tmp_path, "old")
+    whole, begun = tmp_path / ".feeddrive-0.whole", tmp_path / ".feeddrive-1.part"
+    for left, text in ((whole, "new"), (begun, "half")):
+        left.mkdir()
+        for name in NAMES:
+            (left / name).write_text(text)
+    finish_interrupted(tmp_path)
+    assert _ours(tmp_path) == ["new"] * 3
+    assert len(list(tmp_path.iterdir())) == 3
+    finish_interrupted(tmp_path / "nowhere")

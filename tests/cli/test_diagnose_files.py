@@ -18,6 +18,7 @@ import feeddrive
 from feeddrive.cli import diagnosing
 from feeddrive.cli.main import main
 from feeddrive.files import find_plant, find_scenario_file
+from feeddrive.report.drawing import RenderedFigure
 from tests.analytic import report_examples as examples
 
 PLANT = find_plant("bench_axis").read_bytes()
@@ -28,6 +29,7 @@ PROGRAM = """
 import pathlib, sys, time
 from feeddrive.cli import diagnosing
 from feeddrive.cli.main import main
+from feeddrive.report.drawing import RenderedFigure
 from tests.analytic import report_examples as examples
 folder, name, others = pathlib.Path(sys.argv[1]), sys.argv[2], sys.argv[3:]
 def diagnose(*_):
@@ -129,3 +131,28 @@ def test_two_at_the_same_time_lose_no_entry_of_the_ledger(tmp_path: Path) -> Non
     runs = json.loads((tmp_path / "out" / "ledger.json").read_text())["runs"]
     assert [run["run"] for run in runs] == [1, 2, 3]
     assert {path.name for path in (tmp_path / "out").iterdir()} == FILES
+
+
+def test_figure_of_an_earlier_run_does_not_stay_beside_the_new_ones(
+    tmp_path: Path, told: None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    arguments = ["diagnose", "bench_axis", RECORDING, "--out", str(tmp_path)]
+    drawn = (RenderedFigure("curve_stribeck", "Curve", "", b"png"), RenderedFigure("tried", "Tried", "", b"png"))
+    monkeypatch.setattr(diagnosing, "render_figures", lambda _: drawn)
+    assert main(arguments) == 0
+    (tmp_path / "mine.png").write_bytes(b"mine")
+    monkeypatch.setattr(diagnosing, "render_figures", lambda _: drawn[1:])
+    assert main(arguments) == 0
+    assert {path.name for path in tmp_path.iterdir()} == {*FILES, "tried.png", "mine.png"}
+
+
+def test_ledger_cannot_lead_a_removal_out_of_the_folder(tmp_path: Path, told: None) -> None:
+    out, other = tmp_path / "out", tmp_path / "other.txt"
+    arguments = ["diagnose", "bench_axis", RECORDING, "--out", str(out)]
+    assert main(arguments) == 0
+    other.write_text("mine")
+    record = json.loads((out / "ledger.json").read_text())
+    record["runs"][0]["written"] += ["../other.txt", str(other), "..", ".", 5]
+    (out / "ledger.json").write_text(json.dumps(record))
+    assert main(arguments) == 0
+    assert other.read_text() == "mine"

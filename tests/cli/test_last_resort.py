@@ -318,3 +318,18 @@ def test_warning_of_a_library_is_one_line_without_a_place(capfd: pytest.CaptureF
     environment = {**os.environ, "PYTHONPATH": str(Path(feeddrive.__file__).parents[1]), "PYTHONWARNINGS": "default"}
     run = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True, text=True, timeout=60)
     assert (run.returncode, run.stderr) == (0, "warning: overflow\n")
+
+
+@pytest.mark.parametrize("count", ["0", "-1", "100000"])
+def test_workers_that_no_computer_holds(count: str, capsys: pytest.CaptureFixture[str]) -> None:
+    arguments = ["sweep", "step_position", "--vary", "controller.position_gain=40,80 1/s", "--workers", count]
+    _refused(arguments, ["--workers", "write 1 to"], capsys)
+
+
+@pytest.mark.parametrize("option", [
+    ["--set", "evaluate." + "9" * 5000 + ".at=1 s"], ["--vary", "controller.position_gain=1:2:" + "9" * 5000],
+], ids=["set", "vary"])  # fmt: skip
+def test_whole_numbers_of_thousands_of_digits(option: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    """More digits than Python reads as a number."""
+    more = [] if option[0] == "--vary" else ["--vary", "controller.position_gain=40,80 1/s"]
+    _refused(["sweep", "step_position", "--workers", "1", *option, *more], [], capsys)

@@ -189,7 +189,7 @@ def test_main_effects_of_random_and_listed_values(tmp_path: Path, capsys: pytest
         (["--vary", "plant.table.mass=200~100 kg", "--samples", "5"], "write the smaller end first"),
         (["--vary", "plant.table.mass=100,200 kg", "--samples", "5"], "nothing is random"),
         (["--vary", "plant=bench_axis,bench_axs"], "the nearest shipped plants: bench_axis"),
-        (["--vary", "plant.table.mass=100,200 kg", "--workers", "0"], "0 workers; write 1 or more"),
+        (["--vary", "plant.table.mass=100,200 kg", "--workers", "0"], "0 workers; write 1 to 256"),
         (["--vary", "plant.table.mass=100,200 kg", "--scheduler", "here"], "is not an address"),
         (["--vary", "plant.table.mass=100,200 kg", "--metric", "step.rize", "--workers", "1"], '"step.rise"?'),
         (["--vary", "controller.velocity_gain=20,30 N m s/rad", "--workers", "1"], "all 2 runs failed, the first: the"),

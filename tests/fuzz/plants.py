@@ -6,7 +6,7 @@ import random
 import tomllib
 from pathlib import Path
 
-from feeddrive.files import shipped_plants
+from feeddrive.files import scenarios_folder, shipped_plants
 from tests.fuzz.commands import command
 from tests.fuzz.harness import Attempt
 from tests.fuzz.toml_text import all_keys, changed, grown, quantity, spoiled, written
@@ -25,12 +25,28 @@ def attempt(generator: random.Random, folder: Path) -> Attempt:
     path = folder / "machine.toml"
     path.write_bytes(text.encode("utf-8", "replace"))
     arguments = [*generator.choice(COMMANDS), *options(generator)]
-    arguments.insert(1, str(path))
+    arguments.insert(1, _scenario(folder) if arguments[0] == "run" else str(path))
     if generator.random() < 0.1:
         arguments += ["--out", str(folder / "out")]
     if arguments[0] == "export":
         arguments += ["--out", str(folder / "out")] if "--out" not in arguments else []
     return Attempt(f"{' '.join(arguments[:1] + arguments[2:])[:200]}: {what}", lambda: command(arguments))
+
+
+def _scenario(folder: Path) -> str:
+    """A short run of the machine in the folder."""
+    entries = tomllib.loads((scenarios_folder() / "step_position.toml").read_text(encoding="utf-8"))
+    controller = tomllib.loads((scenarios_folder() / entries["controller"]).read_text(encoding="utf-8"))
+    del controller["format"], controller["name"]
+    entries |= {
+        "plant": "machine.toml",
+        "controller": controller,
+        "run": {"duration": "0.03 s"},
+    }
+    entries |= {"travel": ["-1 m", "2 m"]}
+    path = folder / "scenario.toml"
+    path.write_text(written(entries), encoding="utf-8")
+    return str(path)
 
 
 def plant_text(generator: random.Random) -> tuple[str, str]:
@@ -48,6 +64,7 @@ def plant_text(generator: random.Random) -> tuple[str, str]:
 
 COMMANDS = [
     ["check"], ["check"], ["show"], ["show"], ["show"], ["modes"], ["modes"], ["bode"], ["bode"],
+    ["run"], ["run"], ["run"], ["lump"],
     ["export", "--to", "json"], ["export", "--to", "ss"], ["export", "--to", "mat"], ["thermal", "--duration", "2 min"],
 ]  # fmt: skip
 

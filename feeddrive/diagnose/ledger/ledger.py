@@ -99,18 +99,27 @@ def write_ledger(folder: Path, runs: Sequence[dict[str, Any]], result: Diagnosis
     """Write the ledger with one more run, at once or not at all.
 
     Args:
-        folder: of the diagnosis.
+        folder: of the diagnosis, with the other files of the new run.
         runs: that were before.
         result: of the new run.
         effects: of the machine as it was in the last recording.
         files: of the new run.
     """
-    record = {"format": FORMAT, "runs": [*runs, _run(len(runs) + 1, result, effects, files)]}
+    written = [path.name for path in folder.iterdir()]
+    record = {"format": FORMAT, "runs": [*runs, _run(len(runs) + 1, result, effects, files, written)]}
     text = json.dumps(record, indent=1, ensure_ascii=False, allow_nan=False)
     write_text_atomically(folder / NAME, text + "\n")
 
 
-def _run(number: int, result: Diagnosis, effects: Sequence[Effect], files: RunFiles) -> dict[str, Any]:
+def written_earlier(runs: Sequence[dict[str, Any]]) -> tuple[str, ...]:
+    """Names of the files that the last run has written into the folder of its ledger."""
+    names = runs[-1].get("written", []) if runs else []
+    return tuple(name for name in names if isinstance(name, str)) if isinstance(names, list) else ()
+
+
+def _run(
+    number: int, result: Diagnosis, effects: Sequence[Effect], files: RunFiles, written: Sequence[str]
+) -> dict[str, Any]:
     told = diagnosis_record(result)
     return {
         "run": number,
@@ -126,6 +135,7 @@ def _run(number: int, result: Diagnosis, effects: Sequence[Effect], files: RunFi
         "covariance": {"values": list(result.kept.covariance.names),
                        "matrix": [list(row) for row in result.kept.covariance.matrix]},
         "since": list(result.kept.since),
+        "written": sorted([NAME, *written]),
     }  # fmt: skip
 
 
