@@ -88,8 +88,5 @@ def table(claims: Sequence[Claim], outcomes: Mapping[str, Outcome]) -> tuple[str
         lines.append(f"{said[0]:{width - 60}s}  {claim.bound():24s} {measured:20s} {verdict}")
         lines += [f"  {line}" for line in said[1:]]
         lines += [f"    {line}" for line in textwrap.wrap(why, width - 8)]
-    total = sum(outcome.seconds for outcome in outcomes.values())
-    lines.append(
-        f"\n{len(claims)} claims, {outside} outside, {skipped} not checked; {total / 60:.1f} minutes of tests in all"
-    )
+    lines.append(f"\n{len(claims)} claims, {outside} outside, {skipped} not checked")
     return "\n".join(lines), outside
