@@ -67,7 +67,7 @@ def run_all(targets: Sequence[str], folder: Path, workers: int, said: Said) -> d
     Scripts are timings: they run one after another and alone, after the tests.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    state = state_of_the_tree()
+    state, before = state_of_the_tree(), sum(os.times()[2:4])
     found = {target: old for target in targets if (old := _kept(folder, target, state)) is not None}
     missing = [target for target in targets if target not in found]
     said(f"state {state}: {len(found)} of {len(targets)} are there, {len(missing)} to be run")
@@ -80,6 +80,10 @@ def run_all(targets: Sequence[str], folder: Path, workers: int, said: Said) -> d
                 found[outcome.target] = outcome
                 _file(folder, outcome.target).write_text(json.dumps(asdict(outcome), indent=1), encoding="utf-8")
                 said(f"{len(found):3d}/{len(targets)}  {outcome.seconds:6.1f} s  {outcome.ended:7s} {outcome.target}")
+    if missing:
+        said(
+            f"{(sum(os.times()[2:4]) - before) / 60:.1f} minutes of processor time"
+        )  # of all that was run and has ended
     return found
 
 

@@ -45,18 +45,6 @@ def test_what_is_printed_is_the_bound(claim: Claim) -> None:
             assert bound in said, f"{file}: {words}, and the bound is {claim.bound()}"
 
 
-def test_every_key_is_used_or_passes_by_its_tests() -> None:
-    used = {
-        key
-        for folder in ("tests", "benchmarks")
-        for path in (ROOT / folder).rglob("*.py")
-        for key in re.findall(
-            r'(?:CLAIMS\[|_figure\(\s*|    )"([a-z0-9_.]+)"(?:\]|[,:])', path.read_text(encoding="utf-8")
-        )
-    }
-    assert {claim.key for claim in CLAIMS.values() if claim.numeric} <= used
-
-
 CLAIM = Claim("a", "a length", ("tests/x.py",), at_most=2.0, unit="m")
 
 

@@ -24,6 +24,39 @@ def test_links_and_files_exist(document: Path) -> None:
         assert (ROOT / path).exists(), path
 
 
+def test_contributing_names_what_exists() -> None:
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    named = re.findall(r"`((?:feeddrive|tests|benchmarks|plants|scenarios|docs|\.ci)/[\w./-]*)`", text)
+    assert len(named) >= 10
+    assert [path for path in named if not (ROOT / path).exists() and path != "feeddrive/library/"] == []
+    makefile = "\n" + (ROOT / "Makefile").read_text(encoding="utf-8")
+    for typed in re.findall(r"(?:^    |`)make ([^#`&\n]+)", text, re.MULTILINE):
+        for word in typed.split():
+            name, _, value = word.partition("=")
+            assert (f"\n{name}:" in makefile) if not value else (f"\n{name} " in makefile), typed
+            assert not value.startswith("tests/") or (ROOT / value).exists(), typed
+    for folder in re.findall(r"^\| `([a-z]+/)` \|", text, re.MULTILINE):
+        assert (ROOT / folder).exists() or (ROOT / "tests" / folder).exists(), folder
+
+
+def test_imports_run_the_one_way_that_is_said() -> None:
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    chain = re.search(r"^    (\w+ →[^\n]*(?:\n    [^\n]*)*)", text, re.MULTILINE)
+    assert chain is not None
+    order = re.findall(r"\w+", chain[1])
+    assert len(order) >= 14
+    wrong = []
+    for number, folder in enumerate(order):
+        path = ROOT / "feeddrive" / folder
+        files = sorted(path.rglob("*.py")) if path.is_dir() else [path.with_suffix(".py")]
+        for file in files:
+            imported = re.findall(
+                r"^\s*(?:from|import) feeddrive\.(\w+)", file.read_text(encoding="utf-8"), re.MULTILINE
+            )
+            wrong += [f"{file.name}: {name}" for name in imported if name in order[number + 1 :]]
+    assert wrong == []
+
+
 @pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.name)
 def test_commands_exist_with_their_options(document: Path) -> None:
     text = document.read_text(encoding="utf-8")

@@ -36,6 +36,11 @@ def over_noise(name: str) -> Callable[[Diagnosis], float]:
     return lambda result: channel(result, name).after.rms / channel(result, name).noise_rms
 
 
+def before(name: str, unit: float) -> Callable[[Diagnosis], float]:
+    """Error of a channel of the declared plant, in a unit."""
+    return lambda result: channel(result, name).before.rms / unit
+
+
 def after(name: str, unit: float) -> Callable[[Diagnosis], float]:
     """Error of a channel after, in a unit."""
     return lambda result: channel(result, name).after.rms / unit
@@ -49,15 +54,18 @@ MEASURED: dict[str, dict[str, Callable[[Diagnosis], float]]] = {
     },
     "bench/backlash": {
         "known.backlash.width": value("width", 1e-6),
+        "known.backlash.before": before("table_position", 1e-6),
         "known.backlash.after": after("table_position", 1e-9),
     },
     "bench/torque_ripple": {
         "known.ripple.amplitude": value("amplitude", 1.0),
         "known.ripple.order": value("order", 1.0),
+        "known.ripple.before": before("motor_torque", 1.0),
         "known.ripple.after": after("motor_torque", 1.0),
     },
     "bench/presliding": {
         "known.presliding.stiffness": value("stiffness", 1e6),
+        "known.presliding.before": before("table_position", 1e-9),
         "known.presliding.after": after("table_position", 1e-9),
     },
 }
