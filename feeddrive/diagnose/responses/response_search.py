@@ -203,10 +203,8 @@ def _linear_promise(found: ResponseFit, place: int) -> float:
     weight = 1 / (found.variance * found.correlation)
     normal = found.jacobian.T @ (weight[:, None] * found.jacobian) + np.diag(1 / spreads**2)
     slope = found.jacobian.T @ (weight * found.residual) + found.coordinates / spreads**2
-    return (
-        0.5 * float(slope @ np.linalg.solve(normal, slope))
-        + 0.5 * (found.coordinates[place] / found.spreads[place]) ** 2
-    )
+    freed = float(found.coordinates[place] / found.spreads[place])
+    return 0.5 * freed**2 + 0.5 * float(slope @ np.linalg.solve(normal, slope))
 
 
 def _mode_starts(problem: ResponseProblem, found: ResponseFit) -> list[float]:
