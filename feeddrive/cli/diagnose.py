@@ -14,7 +14,7 @@ def command(
         typer.Argument(
             metavar="PLANT REC...",
             help="Plant file, or the name of a shipped plant; then the recordings that are fitted, oldest first, or "
-            "one TOML file of measured numbers. With --continue the plant may be left out.",
+            "one TOML file of measured numbers, or one frequency response. With --continue the plant may be left out.",
         ),
     ],
     out: Annotated[
@@ -34,13 +34,16 @@ def command(
     simulate: Annotated[
         bool, typer.Option("--simulate", help="Simulate the closed loop where a controller is declared, and refine.")
     ] = False,
+    at: Annotated[
+        str, typer.Option("--at", help='Operating point of a frequency response, "x=200 mm,v=3 m/min".')
+    ] = "",
     as_json: Annotated[bool, typer.Option("--json", help="Print diagnosis.json instead of the summary.")] = False,
 ) -> None:
     """Find what a machine's model lacks, from recordings of it, and report the error before and after."""
-    from feeddrive.cli.explaining import are_measured_numbers, run_numbers
+    from feeddrive.cli.explaining import are_no_recordings, explain_and_tell
 
-    if earlier is None and are_measured_numbers(arguments[1:]):
-        run_numbers(arguments[0], arguments[1], out, as_json)
+    if earlier is None and are_no_recordings(arguments[1:]):
+        explain_and_tell(arguments[0], arguments[1], at, out, as_json)
         return
     from feeddrive.cli.continuing import continued_job, first_job
     from feeddrive.cli.diagnosing import Options, run_job

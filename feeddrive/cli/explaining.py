@@ -1,4 +1,4 @@
-"""`feeddrive diagnose PLANT NUMBERS.toml`: measured numbers in place of recordings."""
+"""`feeddrive diagnose PLANT FILE` where FILE is no recording over time: measured numbers, or a frequency response."""
 
 from __future__ import annotations
 
@@ -9,46 +9,53 @@ from rich.console import Console
 
 from feeddrive.cli.output import table, warnings_as_lines
 from feeddrive.diagnose.numbers.measured_file import holds_measured_numbers
-from feeddrive.diagnose.numbers.numbers_result import numbers_json
-from feeddrive.errors import InputError
+from feeddrive.errors import InputError, printable
 from feeddrive.interface.axis import load
-from feeddrive.interface.numbers import explain
+from feeddrive.interface.explaining import explain, read_response_file
+from feeddrive.output_folder import output_folder, refuse_unusable
 from feeddrive.plant.entries import read_toml
 
 
-def are_measured_numbers(names: Sequence[str]) -> bool:
-    """Whether what stands behind the plant is a file of measured numbers.
+def are_no_recordings(names: Sequence[str]) -> bool:
+    """Whether what stands behind the plant is a file of measured numbers, or a frequency response.
 
     Raises:
-        InputError: measured numbers beside recordings.
+        InputError: such a file beside others.
     """
-    holding = [name for name in names if Path(name).suffix.lower() == ".toml" and Path(name).is_file()]
-    holding = [name for name in holding if holds_measured_numbers(read_toml(Path(name), "file"))]
-    if holding and len(names) > 1:
-        raise InputError(
-            "measured numbers stand beside other files", holding[0], "diagnose them by themselves, in one file"
-        )
-    return bool(holding)
+    found = [name for name in names if Path(name).is_file() and _is_no_recording(Path(name))]
+    if found and len(names) > 1:
+        raise InputError("is no recording over time, and others stand beside it", found[0], "diagnose it by itself")
+    return bool(found)
 
 
-def run_numbers(plant: str, numbers: str, out: Path | None, as_json: bool) -> None:
-    """Trace measured numbers to declared values, write the files, and print the summary or the JSON.
+def _is_no_recording(path: Path) -> bool:
+    if path.suffix.lower() == ".toml":
+        return holds_measured_numbers(read_toml(path, "file"))
+    try:
+        return read_response_file(path) is not None
+    except InputError:
+        return False  # told where it is read as a recording
+
+
+def explain_and_tell(plant: str, measured: str, at: str, out: Path | None, as_json: bool) -> None:
+    """Trace the measurement to the plant file, write the files, and print the summary or the JSON.
 
     Raises:
         InputError: an input that cannot be used; nothing is written then.
     """
     if out is None:
         raise InputError("--out is missing", "", "give a folder for the report, such as --out report")
-    if out.exists() and not out.is_dir():
-        raise InputError("--out is a file", str(out), "give a folder")
+    refuse_unusable(out)
     with warnings_as_lines(), Console(stderr=True).status("reading") as status:
-        found = explain(load(plant), Path(numbers), progress=status.update)
-        found.save(out)
+        found = explain(load(plant), Path(measured), at=at, progress=status.update)
+        with output_folder(out) as folder:
+            found.save(folder)
     if as_json:
-        print(numbers_json(found.result), end="")
+        print((out / "diagnosis.json").read_text(encoding="utf-8"), end="")
         return
     console = Console(soft_wrap=True, highlight=False)
-    console.print(found.verdict, markup=False)
+    console.print(printable(found.verdict), markup=False)
     listing = found.listing()
-    console.print(table(listing.title, listing.headings, listing.rows), markup=False)
-    console.print(f"report: {(out / 'report.html').resolve()}", markup=False)
+    if listing.rows:
+        console.print(table(listing.title, listing.headings, listing.rows), markup=False)
+    console.print(f"report: {printable(str((out / 'report.html').resolve()))}", markup=False)

@@ -1,16 +1,14 @@
-"""Measured numbers against an axis, from a script: a stiffness, a natural frequency, a drag torque, a lost motion."""
+"""What measured numbers say of an axis: a stiffness, a natural frequency, a drag torque, a lost motion."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from feeddrive.diagnose.numbers.measured_file import read_measured_numbers
 from feeddrive.diagnose.numbers.numbers_result import (
     NumbersResult,
-    diagnose_numbers,
     numbers_json,
     numbers_record,
     plant_text_after,
@@ -96,24 +94,3 @@ class Explained(Shown):
         from feeddrive.report.figure_numbers import numbers_figure
 
         return (numbers_figure(self.result),)
-
-
-def explain(axis: Axis, numbers: str | Path, *, progress: Callable[[str], None] | None = None) -> Explained:
-    """Trace the difference of measured numbers from an axis to its declared values.
-
-    Args:
-        axis: as declared, without effects or values that were put in.
-        numbers: file with `[[measured]]` tables.
-        progress: called with a word for what is being done.
-
-    Raises:
-        InputError: a file that cannot be used, or a number that this axis cannot give.
-
-    >>> import feeddrive as fd
-    >>> found = fd.explain(fd.load("kimm_testbed"), "scenarios/measured/kimm_testbed.toml")
-    >>> len(found.result.beyond)
-    0
-    """
-    measured = read_measured_numbers(Path(numbers), axis.plant)
-    result = diagnose_numbers(axis.entries, axis.path, axis.plant, measured, progress or (lambda _: None))
-    return Explained(axis, result)

@@ -10,6 +10,7 @@ written (`tolerance = "5 %"`); else it follows from what the value is and how it
 | root diameter, lengths | 1 % | 20 % | 2 % |
 | mass, inertia | 5 % | 30 % | 2 % |
 | friction | 30 % | 50 % | 2 % |
+| damping | 100 % | 100 % | 20 % |
 | what no file declares: bracket and housing, as a share of the whole compliance | 5 % | | |
 
 The shares are judgements of what a catalogue, a drawing or an assumption is worth, taken from no standard; they decide
@@ -27,7 +28,6 @@ from feeddrive.errors import InputError
 from feeddrive.quantity import parse
 
 _UNSURE = ("assumed", "guess", "typical", "estimate")
-_MEASURED = 0.02
 _LEAST_SHARE = 1e-4  # of the compliance; a stiffer part than that counts as rigid
 
 
@@ -37,10 +37,12 @@ class Kind:
 
     catalogue: float
     unsure: float
+    measured: float = 0.02
 
 
 STIFFNESS, CARRYING, LENGTH = Kind(0.20, 0.50), Kind(0.05, 0.05), Kind(0.01, 0.20)
 MASS, FRICTION, MISSING = Kind(0.05, 0.30), Kind(0.30, 0.50), Kind(0.05, 0.05)
+DAMPING = Kind(1.0, 1.0, 0.2)
 
 
 @dataclass(frozen=True)
@@ -69,7 +71,7 @@ class DeclaredValue:
     def at(self, coordinate: float) -> str | None:
         """The value at a coordinate as a file writes it; None where nothing is to be written."""
         number = self.number(coordinate)
-        return None if number is None else f"{number!r} {self.unit}"
+        return None if number is None else f"{number!r} {self.unit}".removesuffix(" 1")
 
     def number(self, coordinate: float) -> float | None:
         """The value at a coordinate [SI]; None for a missing part that adds nothing."""
@@ -88,6 +90,7 @@ class _Place:
 
 
 _FORCE = "under the same force"
+_SETTLED_DAMPING = "height of the resonance in a frequency response"
 _PLACES = (
     _Place("nut.axial_stiffness", "N/m", "nut stiffness", STIFFNESS,
            f"displacement of the nut's flange against the screw beside it {_FORCE}"),
@@ -122,6 +125,9 @@ _PLACES = (
     _Place("motor.rotor_inertia", "kg m^2", "rotor inertia", MASS, "torque of a known acceleration, coupling undone"),
     _Place("motor.inertia", "kg m^2", "motor inertia", MASS, "torque of a known acceleration, coupling undone"),
     _Place("ball_screw.inertia", "kg m^2", "screw inertia", MASS, "torque of a known acceleration"),
+    _Place("damping.ratio", "1", "damping ratio", DAMPING, _SETTLED_DAMPING),
+    _Place("transmission.torsional_damping", "N m s/rad", "torsional damping", DAMPING, _SETTLED_DAMPING),
+    _Place("transmission.axial_damping", "N s/m", "axial damping", DAMPING, _SETTLED_DAMPING),
     _Place("coupling.inertia", "kg m^2", "coupling inertia", MASS, "the catalogue; the second natural frequency"),
 )  # fmt: skip
 _FRICTION_UNITS = {
@@ -188,7 +194,7 @@ def _usual(kind: Kind, source: str) -> float:
     words = source.lower()
     if any(word in words for word in _UNSURE):
         return kind.unsure
-    return _MEASURED if words.startswith("measured") else kind.catalogue
+    return kind.measured if words.startswith("measured") else kind.catalogue
 
 
 def _share(tolerance: str, number: float, place: _Place) -> float:

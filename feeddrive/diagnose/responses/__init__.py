@@ -1,0 +1,1 @@
+"""Measured frequency responses against what a plant file declares."""

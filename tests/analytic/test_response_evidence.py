@@ -1,0 +1,145 @@
+"""Measured frequency responses against a plant file, the measurement from matrices that are written here."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import feeddrive as fd
+from feeddrive.diagnose.responses.response_result import diagnose_response
+from feeddrive.recording.frequency_response import FrequencyResponse, write_response
+from feeddrive.servo.frequency_response import Case
+
+FREQUENCY = np.arange(8.0, 700.0, 2.0)
+AVERAGES = 16
+NOISE = 0.02
+"""Relative scatter of a line where the response is as large as its median."""
+
+LEAD = 0.020
+MOTOR, SCREW, TWIST, TWIST_DAMPING = 2.6e-3, 2.37e-3, 11982.4, 0.074
+AXIAL, AXIAL_DAMPING, TABLE = 244.7e6, 8650.0, 134.0
+GUIDE, SLOPE_SPEED = 300.0, 0.05
+"""plants/bench_axis.toml, typed again; the point moves at 0.05 m/s, where the Coulomb levels have no slope any more."""
+
+
+def bench(seed: int, **changed: float) -> FrequencyResponse:
+    """Speed of the motor over its torque: three inertias, perhaps a mass on the table, a dead time, other values."""
+    values = {"motor": MOTOR, "screw": SCREW, "twist": TWIST, "axial": AXIAL, "table": TABLE, "delay": 0.0} | changed
+    r = LEAD / (2 * math.pi)
+    speed = SLOPE_SPEED / r
+    drag = 0.02 * (2 / 3) * speed ** (-1 / 3)  # slope of the nut's drag
+    mass, share = np.diag([values["motor"], values["screw"], values["table"], values.get("swinging", 1.0)]), 4
+    damping, stiffness = np.zeros((4, 4)), np.zeros((4, 4))
+    for row, k, c in (
+        ([1.0, -1.0, 0.0, 0.0], values["twist"], TWIST_DAMPING),
+        ([0.0, r, -1.0, 0.0], values["axial"], AXIAL_DAMPING),
+    ):
+        stiffness += k * np.outer(row, row)
+        damping += c * np.outer(row, row)
+    damping[1, 1] += drag
+    damping[2, 2] += GUIDE
+    if "swinging" in values:
+        w = 2 * math.pi * values["frequency"]
+        row = [0.0, 0.0, -1.0, 1.0]
+        stiffness += values["swinging"] * w**2 * np.outer(row, row)
+        damping += 2 * values["damping"] * values["swinging"] * w * np.outer(row, row)
+    else:
+        share = 3
+    M, C, K = (matrix[:share, :share] for matrix in (mass, damping, stiffness))
+    s = 2j * math.pi * FREQUENCY
+    exact = np.array([one * np.linalg.solve(M * one**2 + C * one + K, np.eye(share)[:, 0])[0] for one in s])
+    exact = exact * np.exp(-s * values["delay"])
+    generator = np.random.default_rng([20261122, seed])
+    scatter = NOISE * np.sqrt(np.maximum(1.0, np.median(np.abs(exact)) / np.abs(exact)))
+    coherence = 1 / (1 + 2 * AVERAGES * scatter**2)
+    error = scatter * (generator.standard_normal(len(s)) + 1j * generator.standard_normal(len(s)))
+    return FrequencyResponse("made", "motor_torque", "motor_speed", "", FREQUENCY, exact * np.exp(error), coherence)
+
+
+def result_of(response: FrequencyResponse):  # type: ignore[no-untyped-def]
+    axis = fd.load("bench_axis")
+    case = Case(axis.plant.middle, SLOPE_SPEED)
+    return diagnose_response(axis.entries, axis.path, axis.plant, response, case)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_nothing_is_found_where_all_is_as_declared(seed: int) -> None:
+    result = result_of(bench(seed))
+    assert not result.found
+    # the error before is the scatter itself, coherence and all
+    assert result.error_after == pytest.approx(result.scatter, rel=0.1)
+
+
+def test_values_within_tolerance_are_calibrated() -> None:
+    """Stiffnesses 10 % off, of 20 % that catalogues leave open, are no finding, and the response is met."""
+    result = result_of(bench(11, axial=0.9 * AXIAL, twist=1.1 * TWIST))
+    assert not result.asserted
+    assert result.error_after == pytest.approx(result.scatter, rel=0.1)
+    moved = {words: factor for words, factor, _ in result.calibrated_values}
+    # lines of 2 % at resonances: stiffness to 3 %
+    assert moved["axial stiffness"] == pytest.approx(0.9, rel=0.03)
+    assert moved["torsional stiffness"] == pytest.approx(1.1, rel=0.03)
+
+
+def test_a_mass_beyond_its_tolerance_is_found() -> None:
+    result = result_of(bench(12, table=200.0))
+    (found,) = result.found
+    assert found.asserted
+    assert found.parameters[0].key == "table.mass"
+    assert found.parameters[0].value == pytest.approx(200.0, rel=0.03)
+    assert found.parameters[0].interval[0] < 200.0 < found.parameters[0].interval[1]
+
+
+def test_a_dead_time_is_found() -> None:
+    result = result_of(bench(13, delay=0.4e-3))
+    assert [one.name for one in result.asserted] == ["drive_delay"]
+    # 350 lines of 2 % know a phase over 700 Hz to microseconds
+    assert result.asserted[0].parameters[0].value == pytest.approx(0.4e-3, abs=5e-6)
+
+
+def test_a_further_mode_is_found() -> None:
+    result = result_of(bench(14, swinging=20.0, frequency=90.0, damping=0.03))
+    assert [one.name for one in result.asserted] == ["structural_mode"]
+    found = {one.key: one for one in result.asserted[0].parameters}
+    assert found["frequency"].value == pytest.approx(90.0, rel=0.005)
+    assert found["mass"].value == pytest.approx(20.0, rel=0.1)
+    assert found["frequency"].interval[0] < 90.0 < found["frequency"].interval[1]
+    assert result.error_after < 0.5 * result.error_before
+
+
+def test_files_and_command(tmp_path: Path) -> None:
+    """The file of a response goes through the command's own road and comes back as a plant that can be read."""
+    path = tmp_path / "frf.csv"
+    write_response(bench(15, delay=0.4e-3), path)
+    found = fd.explain(fd.load("bench_axis"), path, at="x=0 mm, v=3 m/min")
+    out = found.save(tmp_path / "out")
+    record = json.loads((out / "diagnosis.json").read_text(encoding="utf-8"))
+    assert [one["name"] for one in record["effects"]] == ["drive_delay"]
+    after = fd.load(out / "plant_after.toml")
+    assert after.plant.effects[-1].name == "drive_delay"
+    assert "dead time" in found.verdict
+    assert len(found.listing().rows) == 1
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"given": "speed_command"}, "motor_torque"),
+        ({"output": "motor_position"}, "motor_speed"),
+        ({"frequency": FREQUENCY[:10]}, "lines"),
+        ({"values": np.zeros(len(FREQUENCY), dtype=complex)}, "zero"),
+    ],
+)
+def test_mistakes_are_told_in_one_line(change: dict[str, object], words: str) -> None:
+    made = bench(0)
+    fields = {"name": "made", "given": made.given, "output": made.output, "unit": "", "frequency": made.frequency,
+              "values": made.values, "coherence": made.coherence} | change  # fmt: skip
+    if len(fields["frequency"]) < len(FREQUENCY):  # type: ignore[arg-type]
+        fields["values"], fields["coherence"] = made.values[:10], made.coherence[:10]
+    with pytest.raises(fd.InputError) as caught:
+        result_of(FrequencyResponse(**fields))  # type: ignore[arg-type]
+    assert words in str(caught.value)
