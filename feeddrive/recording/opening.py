@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-import gzip
 import hashlib
-import zlib
+import os
+import stat
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import BinaryIO
 
 from feeddrive.errors import InputError
+from feeddrive.recording.unpacking import GZIP, unpacked
 
 _HDF5 = b"\x89HDF\r\n\x1a\n"
-_GZIP = b"\x1f\x8b"
-_BYTE_ORDER_MARKS = ((b"\xef\xbb\xbf", "utf-8-sig"), (b"\xff\xfe", "utf-16"), (b"\xfe\xff", "utf-16"))
+BYTE_ORDER_MARKS = ((b"\xef\xbb\xbf", "utf-8-sig"), (b"\xff\xfe", "utf-16"), (b"\xfe\xff", "utf-16"))
 _ALLOWED_CONTROLS = b"\t\n\r\f\x1a"  # 0x1a ends some DOS files
 
 
@@ -25,24 +28,46 @@ class FileContent:
     sha256: str
 
 
+@contextmanager
+def opened(path: Path, kind_of_file: str = "recording") -> Iterator[BinaryIO]:
+    """Open a file for reading its bytes.
+
+    Raises:
+        InputError: not found, a folder, a pipe or a device, unreadable.
+    """
+    where = str(path)
+    try:
+        kind = os.stat(path).st_mode
+        if stat.S_ISDIR(kind):
+            raise InputError(f"is a folder, not a {kind_of_file}", where, "name the file in it")
+        if not stat.S_ISREG(kind):  # which may never end, or wait for ever
+            raise InputError("is a pipe or a device, not a file", where, "write it to a .csv file first")
+        with path.open("rb") as file:
+            yield file
+    except FileNotFoundError:
+        what = "no such file" if kind_of_file == "recording" else f"no such {kind_of_file}"
+        raise InputError(what, where, "check the name and the folder") from None
+    except OSError as error:
+        raise InputError(f"cannot be read ({error.strerror})", where, "check its name and permissions") from None
+    except ValueError as error:
+        if isinstance(error, InputError) or "null" not in str(error):
+            raise
+        raise InputError("no such file", where, "a name holds no null byte") from None
+    except MemoryError:
+        raise InputError("takes more memory than there is", where, "cut the recording into parts") from None
+
+
 def open_file(path: Path) -> FileContent:
     """Read a file, gunzip it if it is compressed.
 
     Raises:
-        InputError: not found, a folder, unreadable, empty, or a damaged .gz.
+        InputError: not found, a folder, a pipe or a device, unreadable, empty, or a damaged .gz.
     """
-    where = str(path)
-    if path.is_dir():
-        raise InputError("is a folder, not a recording", where, "name a .csv, .csv.gz or .mat file")
-    try:
-        raw = path.read_bytes()
-    except FileNotFoundError:
-        raise InputError("no such file", where, "check the name and the folder") from None
-    except OSError as error:
-        raise InputError(f"cannot be read ({error.strerror})", where, "check the permissions of the file") from None
-    data = _decompressed(raw, where) if raw.startswith(_GZIP) else raw
+    with opened(path) as file:
+        raw = file.read()
+        data = unpacked(raw, str(path)) if raw.startswith(GZIP) else raw
     if not data.strip():
-        raise InputError("the file is empty", where, "record again or name another file")
+        raise InputError("the file is empty", str(path), "record again or name another file")
     return FileContent(path, data, hashlib.sha256(raw).hexdigest())
 
 
@@ -58,8 +83,8 @@ def decode(content: FileContent) -> tuple[str, tuple[str, ...]]:
         InputError: the file is not text.
     """
     data, where = content.data, str(content.path)
-    _refuse_known_binary(data, where)
-    encoding = next((name for mark, name in _BYTE_ORDER_MARKS if data.startswith(mark)), "utf-8")
+    refuse_known_binary(data, where)
+    encoding = next((name for mark, name in BYTE_ORDER_MARKS if data.startswith(mark)), "utf-8")
     notes: tuple[str, ...] = ()
     try:
         text = data.decode(encoding)
@@ -70,14 +95,12 @@ def decode(content: FileContent) -> tuple[str, tuple[str, ...]]:
     return text.replace("\r\n", "\n").replace("\r", "\n").rstrip("\x1a"), notes
 
 
-def _decompressed(raw: bytes, where: str) -> bytes:
-    try:
-        return gzip.decompress(raw)
-    except (EOFError, OSError, zlib.error):
-        raise InputError("the .gz file is damaged or cut short", where, "copy or compress it again") from None
+def refuse_known_binary(data: bytes, where: str) -> None:
+    """Refuse what is no text by its first bytes.
 
-
-def _refuse_known_binary(data: bytes, where: str) -> None:
+    Raises:
+        InputError: a .mat file, or a workbook.
+    """
     if is_hdf5(data) or data.startswith(b"MATLAB"):
         raise InputError("is a .mat file by its content", where, "give it the ending .mat and a mapping (--map)")
     if data.startswith(b"PK\x03\x04"):
