@@ -17,6 +17,9 @@ from feeddrive.typing import FloatArray
 MOST_HEAD = 16_000_000
 """Letters within which a header, and a row, must end."""
 
+MOST_ABOVE = 10_000
+"""Blank and # lines above a header at most."""
+
 MOST_COLUMNS = 10_000
 """Columns of a table at most; a trace of every axis of a large control has some hundred."""
 
@@ -109,8 +112,8 @@ def find_table(blocks: Iterator[str], layout: Layout, where: str) -> TextTable:
         needed = max(header or 0, (layout.first_row or 0) - 1) + 2
         if header is not None and text.count("\n") >= needed:
             break
-        if len(text) > MOST_HEAD:
-            raise InputError(f"no header within {MOST_HEAD // 10**6} million letters", where, _NOT_A_TABLE)
+        if len(text) > MOST_HEAD or (header is None and text.count("\n") > MOST_ABOVE):
+            raise InputError("there is no header at the beginning", where, _NOT_A_TABLE)
     header = _header_index(text, layout) or 0
     first = layout.first_row - 1 if layout.first_row is not None else header + 1
     lines = text.split("\n", max(header, first) + 1)
@@ -128,7 +131,7 @@ def _header_index(text: str, layout: Layout) -> int | None:
     if layout.header_row is not None:
         return layout.header_row - 1
     start = 0
-    for index in range(text.count("\n") + 1):
+    for index in range(min(text.count("\n") + 1, MOST_ABOVE)):
         end = text.find("\n", start)
         line = text[start : end if end >= 0 else len(text)]
         if line.strip() and not line.lstrip().startswith("#"):

@@ -45,6 +45,9 @@ FORMAT = "feeddrive-map/1"
 LONGEST = 1_000_000
 """Bytes of a mapping file at most; a hundred channels take ten thousand."""
 
+LONGEST_LINE = 2000
+"""Letters of a line at most; the time that a key takes to read grows with the square of its dots."""
+
 _TOP_KEYS = ("format", "sample_time", "time", "channels", "file", "description")
 _VARIABLE_KEYS = ("variable", "unit", "factor", "offset", "hold", "column")
 _FILE_KEYS = ("header_row", "first_row", "separator", "decimal")
@@ -128,6 +131,9 @@ def _toml(path: Path, where: str) -> dict[str, Any]:
         raw = file.read(LONGEST + 1)
     if len(raw) > LONGEST:
         raise InputError(f"is longer than {LONGEST // 1000} kB", where, "name a mapping file")
+    longest = max(map(len, raw.splitlines()), default=0)
+    if longest > LONGEST_LINE:
+        raise InputError(f"has a line of {longest} letters", where, "write one key to a line")
     try:
         return tomllib.loads(raw.decode("utf-8"))
     except RecursionError:
