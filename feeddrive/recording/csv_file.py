@@ -181,8 +181,9 @@ def _whole_rows(blocks: Iterator[str], where: str) -> Iterator[str]:
             end = held.find("\n", len(whole)) + 1
             yield held[: end - 1]
             held = held[end:]
-    if held.strip():
-        yield held.rstrip()
+    held = held.rstrip().rstrip("\x1a").rstrip()  # the letter that ends some DOS files
+    if held:
+        yield held
 
 
 class _Columns:

@@ -55,7 +55,7 @@ class TextFile:
                 mend = "name a .csv or .csv.gz file, or a .mat file with its mapping"
                 raise InputError("is not a text file", self.where, mend)
             anything = anything or bool(text.strip())
-            yield text.rstrip("\x1a") if last else text
+            yield text
             self.notes = decode.notes
         if not anything:
             raise InputError("the file is empty", self.where, "record again or name another file")
