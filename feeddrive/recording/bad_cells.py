@@ -139,7 +139,9 @@ def odd_steps(samples: FloatArray, resolution: float) -> IndexArray:
 def rows_per_change(samples: FloatArray) -> int:
     """Return how many rows a channel, (n,), holds its value where it moves fastest: 1 where each row is its own."""
     moved = np.abs(samples[AROUND:] - samples[:-AROUND])
-    fast = np.flatnonzero(moved > 0.5 * moved.max(initial=0.0)) + AROUND // 2
+    moving = moved[moved > 0.0]
+    usual = float(np.quantile(moving, 0.9)) if moving.size else 0.0  # not the most, which may be a bad cell
+    fast = np.flatnonzero(moved > 0.5 * usual) + AROUND // 2
     changes = float(np.mean(samples[fast] != samples[fast - 1])) if fast.size else 1.0
     return round(1.0 / max(changes, 1.0 / AROUND)) if changes < 0.6 else 1
 
