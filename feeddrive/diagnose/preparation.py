@@ -16,6 +16,7 @@ from feeddrive.diagnose.torque_channel import refuse_what_is_no_torque
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording, check_against_lead
+from feeddrive.recording.copies import refuse_copied_setpoint
 from feeddrive.thermal.plant import ThermalPlant
 
 Prepared = tuple[Problem, list[Evidence], tuple[str, ...]]
@@ -46,6 +47,7 @@ def prepared(
     _refuse_parts(plant)
     for recording in (*recordings, *validation):
         _refuse_heat(recording)
+        refuse_copied_setpoint(recording.channels, recording.name)
         check_against_lead(recording, 2 * np.pi * plant.chain.motor_radius, recording.name)
     fitted = tuple(prepare(recording, plant, 1.0 if validation else split, hold) for recording in recordings)
     judged: list[Evidence] = [prepare(recording, plant, 0.0, hold) for recording in validation] or list(fitted)

@@ -70,7 +70,8 @@ def _vibrating(torque: FloatArray, rate: float, reach: int) -> BoolArray:
     """Rows between which the torque jumps, (n,)."""
     squares = np.zeros(len(torque))
     squares[2:-2] = np.diff(torque, 4) ** 2 / 70  # of white noise, its power
-    jumps: BoolArray = np.sqrt(uniform_filter1d(squares, reach)) > ROUGH * white_noise(torque, rate)
+    power = np.maximum(uniform_filter1d(squares, reach), 0.0)  # a running sum loses digits of what is much larger
+    jumps: BoolArray = np.sqrt(power) > ROUGH * white_noise(torque, rate)
     # a vibration passes a multiple of the rows' rate and looks slow for a moment
     share = uniform_filter1d(jumps.astype(float), max(1, round(VIBRATION * rate)), mode="nearest")
     return np.asarray(jumps | (share > 0.5))

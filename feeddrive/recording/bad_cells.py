@@ -139,7 +139,9 @@ def odd_steps(samples: FloatArray, resolution: float) -> IndexArray:
 def rows_per_change(samples: FloatArray) -> int:
     """Return how many rows a channel, (n,), holds its value where it moves fastest: 1 where each row is its own."""
     moved = np.abs(samples[AROUND:] - samples[:-AROUND])
-    fast = np.flatnonzero(moved > 0.5 * moved.max(initial=0.0)) + AROUND // 2
+    moving = moved[moved > 0.0]
+    usual = float(np.quantile(moving, 0.9)) if moving.size else 0.0  # not the most, which may be a bad cell
+    fast = np.flatnonzero(moved > 0.5 * usual) + AROUND // 2
     changes = float(np.mean(samples[fast] != samples[fast - 1])) if fast.size else 1.0
     return round(1.0 / max(changes, 1.0 / AROUND)) if changes < 0.6 else 1
 
@@ -205,7 +207,8 @@ def transmission(angle: FloatArray, position: FloatArray) -> tuple[float, float]
     """
     apart = np.linspace(0, angle.size - 1, min(angle.size, 1000)).astype(np.int64)
     turned, moved = (np.diff(series[apart]) for series in (angle, position))
-    strong = (np.abs(turned) >= 0.1 * np.max(np.abs(turned), initial=0.0)) & (turned != 0.0)
+    fast = float(np.quantile(np.abs(turned), 0.95))  # not the fastest, which may be a bad cell
+    strong = (np.abs(turned) >= 0.1 * fast) & (turned != 0.0)
     if not np.any(strong):
         return 0.0, 0.0
     ratio = float(np.median(moved[strong] / turned[strong]))

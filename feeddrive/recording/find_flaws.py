@@ -23,11 +23,12 @@ def find_flaws(channels: Mapping[str, FloatArray], sample_time: float, first_row
         InputError: motion that jumps, or a bad cell in a channel that is not compared row by row.
     """
     steps = {name: resolution(samples) for name, samples in channels.items()}
-    held = held_and_clipped(channels, sample_time, steps)
-    # What was held is made up for by a jump; filled, there is none.
-    bad, jumps = bad_cells(filled(channels, held), sample_time, steps)
+    bad, _ = bad_cells(channels, sample_time, steps)
+    # A bad cell of one position looks as if the other were left behind; and what was held is made up for by a jump.
+    held = held_and_clipped(filled(channels, bad), sample_time, steps)
+    more, jumps = bad_cells(filled(channels, [*bad, *held]), sample_time, steps)
     ends = {(one.channel, int(row)) for one in held for row in one.rows}
     refuse_jumps([jump for jump in jumps if (jump.channel, jump.row) not in ends], first_row, where)
-    flaws = [*bad, *held]
+    flaws = [*bad, *more, *held]
     refuse_where_not_compared(flaws, first_row, where)
     return flaws

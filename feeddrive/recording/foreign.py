@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from feeddrive.errors import InputError
+from feeddrive.errors import InputError, quoted
 from feeddrive.recording.csv_file import Table
 from feeddrive.recording.mapping import FileMapping, Hold, Variable
 from feeddrive.typing import FloatArray
@@ -20,8 +20,8 @@ def table_variables(table: Table) -> dict[str, Any]:
     variables: dict[str, Any] = {}
     for index, name in enumerate(table.names):
         short = re.sub(r"\s*\[[^\]]*\]$", "", name)
-        variables.setdefault(short, table.values[:, index])
-    return variables | {name: table.values[:, index] for index, name in enumerate(table.names)}
+        variables.setdefault(short, table.columns[index])
+    return variables | dict(zip(table.names, table.columns, strict=True))
 
 
 def mapped_columns(variables: Mapping[str, Any], mapping: FileMapping, where: str) -> dict[str, FloatArray]:
@@ -54,13 +54,14 @@ def _channel(variables: Mapping[str, Any], variable: Variable, where: str) -> Fl
     factors = [_vector(_find(variables, name, where), variable.column, f'{where}, variable "{name}"')
                for name in variable.names]  # fmt: skip
     longest = max(factor.size for factor in factors)
-    product = np.full(longest, variable.factor)
-    for factor in factors:
-        if factor.size not in (1, longest):
-            raise InputError(f"variables of {factor.size} and {longest} values cannot be multiplied",
-                             f"{where}, {' * '.join(variable.names)}", "map variables of the same length")  # fmt: skip
-        product = product * factor
-    channel = variable.conversion.apply(product) + variable.offset
+    product: FloatArray = np.full(longest if len(factors) > 1 else 1, variable.factor)
+    with np.errstate(all="ignore"):  # a number beyond all bounds is refused where its row is known
+        for factor in factors:
+            if factor.size not in (1, longest):
+                what = f"variables of {factor.size} and {longest} values cannot be multiplied"
+                raise InputError(what, f"{where}, {' * '.join(variable.names)}", "map variables of the same length")
+            product = product * factor
+        channel = variable.conversion.apply(product) + variable.offset
     if variable.hold is Hold.INTERVAL_BEFORE:
         channel = np.concatenate((channel[1:], channel[-1:]))
     return channel
@@ -79,8 +80,8 @@ def _find(variables: Mapping[str, Any], name: str, where: str) -> Any:
 
 
 def _absent(name: str, part: str, among: Mapping[str, Any], where: str) -> InputError:
-    near = difflib.get_close_matches(part, list(among), n=1, cutoff=0.6)
-    held = ", ".join(list(among)[:12])
+    near = difflib.get_close_matches(part, list(among)[:1000], n=1, cutoff=0.6)
+    held = ", ".join(quoted(one, 40) for one in list(among)[:12])
     return InputError(f'no variable "{name}"', where, f'did you mean "{near[0]}"?' if near else f"it holds {held}")
 
 

@@ -89,14 +89,14 @@ def read_response(content: FileContent) -> FrequencyResponse:
     """
     text, said = decode(content)
     where = str(content.path)
-    table = find_table(text, Layout(), where).numbers(None)
+    table = find_table(iter((text,)), Layout(), where).numbers(None)
     columns: dict[str, tuple[str, FloatArray]] = {}
     for index, heading in enumerate(table.names):
         match = _COLUMN.fullmatch(heading)
         if match is None or match[1] not in ("frequency", "magnitude", "phase", "coherence"):
             known = "frequency [Hz],magnitude [...],phase [deg],coherence [1]"
             raise InputError(f'"{heading}" is not a column of a frequency response', where, f"write {known}")
-        columns[match[1]] = match[2].strip(), table.values[:, index]
+        columns[match[1]] = match[2].strip(), table.columns[index]
     for name, unit in (("frequency", "Hz"), ("magnitude", ""), ("phase", "deg")):
         if name not in columns or (unit and columns[name][0] != unit):
             raise InputError(f"there is no column {name} [{unit or '...'}]", where, "add it, or correct its unit")

@@ -105,14 +105,19 @@ def _made_up_for(samples: FloatArray, resolution: float, first: IndexArray, leng
     last = first + length - 1
     step = samples[np.minimum(last + 1, samples.size - 1)] - samples[last]
     held = np.zeros(first.size, dtype=bool)
-    for i in np.flatnonzero(np.abs(step) > 3.0 * resolution).tolist():
+    # In a channel that is itself held for some rows most steps are none: asked first, as there are many such runs.
+    same = np.concatenate(([0], np.cumsum(samples[1:] == samples[:-1])))
+    after = np.minimum(last + 1, samples.size - 1)
+    beyond = np.minimum(after + AROUND, samples.size - 1)
+    still = (same[first] - same[np.maximum(first - AROUND, 0)], same[beyond] - same[after])
+    likely = (np.abs(step) > 3.0 * resolution) & (np.maximum(*still) <= AROUND // 2)
+    for i in np.flatnonzero(likely).tolist():
         beside = samples[max(0, first[i] - AROUND) : first[i] + 1], samples[last[i] + 1 : last[i] + 2 + AROUND]
         if min(map(len, beside)) < AROUND // 2:
             continue
         speeds = [math.copysign(1.0, step[i]) * float(part[-1] - part[0]) / (part.size - 1) for part in beside]
         usual = [float(np.median(np.abs(np.diff(part)))) for part in beside]
         expected = min(speeds) * float(length[i])
-        # In a channel that is itself held for some rows most steps are none.
         moves = all(one > 0.3 * speed for one, speed in zip(usual, speeds, strict=True))
         least = 6.0 * max(resolution, *map(_noise, beside))
         # A short stop at slow rows is no dropout: nothing is made up for, the first step is like those that follow.

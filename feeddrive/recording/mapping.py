@@ -30,6 +30,7 @@ Nothing in the file is evaluated.
 from __future__ import annotations
 
 import difflib
+import sys
 import tomllib
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -37,12 +38,19 @@ from enum import Enum
 from pathlib import Path
 from typing import Any
 
-from feeddrive.errors import InputError
+from feeddrive.errors import InputError, quoted
 from feeddrive.quantity import Conversion, parse, split_quantity, unit_conversion
 from feeddrive.recording.channels import channel_unit
 from feeddrive.recording.csv_file import Layout
+from feeddrive.recording.opening import opened
 
 FORMAT = "feeddrive-map/1"
+LONGEST = 1_000_000
+"""Bytes of a mapping file at most; a hundred channels take ten thousand."""
+
+LONGEST_LINE = 2000
+"""Letters of a line at most; the time that a key takes to read grows with the square of its dots."""
+
 _TOP_KEYS = ("format", "sample_time", "time", "channels", "file", "description", "rate", "part")
 _VARIABLE_KEYS = ("variable", "unit", "factor", "offset", "hold", "column")
 _FILE_KEYS = ("header_row", "first_row", "separator", "decimal")
@@ -131,14 +139,19 @@ def read_mapping(path: Path) -> FileMapping:
 
 
 def _toml(path: Path, where: str) -> dict[str, Any]:
+    with opened(path, "mapping file") as file:
+        raw = file.read(LONGEST + 1)
+    if len(raw) > LONGEST:
+        raise InputError(f"is longer than {LONGEST // 1000} kB", where, "name a mapping file")
+    longest = max(map(len, raw.splitlines()), default=0)
+    if longest > LONGEST_LINE:
+        raise InputError(f"has a line of {longest} letters", where, "write one key to a line")
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except (FileNotFoundError, IsADirectoryError):
-        raise InputError("no such mapping file", where, "check the name and the folder") from None
-    except OSError as error:
-        raise InputError(f"cannot be read ({error.strerror})", where, "check the permissions of the file") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InputError(f"is not TOML: {error}", where, "correct that line") from None
+        return tomllib.loads(raw.decode("utf-8"))
+    except RecursionError:
+        raise InputError("is nested too deeply", where, "write one table to a channel") from None
+    except ValueError as error:  # besides its own, those of numbers that Python does not convert, and of the encoding
+        raise InputError(f"is not TOML: {quoted(str(error), 120)}", where, "correct that line") from None
 
 
 def _variable(tree: dict[str, Any], key: str, needed: str, where: str) -> Variable:
@@ -169,6 +182,8 @@ def _conversion(table: dict[str, Any], needed: str, where: str) -> tuple[float, 
     written = table.get("factor", 1.0)
     if isinstance(written, bool) or not isinstance(written, str | int | float):
         raise InputError("the factor is not a number", f"{where}, factor", 'e.g. factor = 2.0 or factor = "0.4 mm/rad"')
+    if isinstance(written, int) and abs(written) > sys.float_info.max:
+        raise InputError("the factor is beyond what can be computed with", f"{where}, factor", "e.g. factor = 2.0")
     factor, factor_unit = split_quantity(str(written), f"{where}, factor")
     if factor_unit == "1":
         return factor, unit_conversion(unit, needed, f"{where}, unit")
@@ -210,13 +225,13 @@ def _table(tree: dict[str, Any], key: str, where: str) -> dict[str, Any]:
 
 def _choice(value: object, allowed: list[str], where: str) -> str:
     if not isinstance(value, str) or value not in allowed:
-        raise InputError(f"{value!r} is not possible", where, f"write one of {', '.join(map(repr, allowed))}")
+        raise InputError(f"'{quoted(value)}' is not possible", where, f"write one of {', '.join(map(repr, allowed))}")
     return value
 
 
 def _count(value: object, smallest: int, where: str) -> int:
-    if isinstance(value, bool) or not isinstance(value, int) or value < smallest:
-        raise InputError(f"{value!r} is not a whole number from {smallest} on", where, f"e.g. {smallest}")
+    if isinstance(value, bool) or not isinstance(value, int) or not smallest <= value <= LONGEST:
+        raise InputError(f"{quoted(value)} is not a whole number from {smallest} on", where, f"e.g. {smallest}")
     return value
 
 

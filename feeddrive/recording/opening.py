@@ -2,24 +2,21 @@
 
 from __future__ import annotations
 
-import gzip
 import hashlib
-import io
-import zlib
+import os
+import stat
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import BinaryIO
 
 from feeddrive.errors import InputError
+from feeddrive.recording.unpacking import GZIP, Unpacker, unpacked
 
 _HDF5 = b"\x89HDF\r\n\x1a\n"
-_GZIP = b"\x1f\x8b"
-_BYTE_ORDER_MARKS = ((b"\xef\xbb\xbf", "utf-8-sig"), (b"\xff\xfe", "utf-16"), (b"\xfe\xff", "utf-16"))
+BYTE_ORDER_MARKS = ((b"\xef\xbb\xbf", "utf-8-sig"), (b"\xff\xfe", "utf-16"), (b"\xfe\xff", "utf-16"))
 _HEAD = 65_536  # bytes: the header of a hundred channels
-_MOST_BYTES = (
-    4 << 30
-)  # of a decompressed file: an hour of 64 channels at 8 kHz as text is 15 GB, and no reader holds it
-_MOST_RATIO = 500  # numbers as text pack 3 to 60 times, a bomb 1000 times
-_FREE = 64 << 20  # bytes up to which the ratio is not looked at: an axis at rest packs well too
 _ALLOWED_CONTROLS = b"\t\n\r\f\x1a"  # 0x1a ends some DOS files
 
 
@@ -32,31 +29,64 @@ class FileContent:
     sha256: str
 
 
+@contextmanager
+def opened(path: Path, kind_of_file: str = "recording") -> Iterator[BinaryIO]:
+    """Open a file for reading its bytes.
+
+    Raises:
+        InputError: not found, a folder, a pipe or a device, unreadable.
+    """
+    where = str(path)
+    try:
+        kind = os.stat(path).st_mode
+        if stat.S_ISDIR(kind):
+            raise InputError(f"is a folder, not a {kind_of_file}", where, "name the file in it")
+        if not stat.S_ISREG(kind):  # which may never end, or wait for ever
+            raise InputError("is a pipe or a device, not a file", where, "write it to a .csv file first")
+        with path.open("rb") as file:
+            yield file
+    except FileNotFoundError:
+        what = "no such file" if kind_of_file == "recording" else f"no such {kind_of_file}"
+        raise InputError(what, where, "check the name and the folder") from None
+    except OSError as error:
+        raise InputError(f"cannot be read ({error.strerror})", where, "check its name and permissions") from None
+    except ValueError as error:
+        if isinstance(error, InputError) or "null" not in str(error):
+            raise
+        raise InputError("no such file", where, "a name holds no null byte") from None
+    except MemoryError:
+        raise InputError("takes more memory than there is", where, "cut the recording into parts") from None
+
+
+def first_bytes(path: Path) -> bytes:
+    """Return the first bytes of a file after decompression, as many as tell its format.
+
+    Raises:
+        InputError: as `opened`, or a damaged .gz.
+    """
+    with opened(path) as file:
+        raw = file.read(_HEAD)
+        return next(iter(Unpacker(str(path))(raw)), b"")[:_HEAD] if raw.startswith(GZIP) else raw
+
+
 def open_file(path: Path) -> FileContent:
     """Read a file, gunzip it if it is compressed.
 
     Raises:
-        InputError: not found, a folder, unreadable, empty, or a damaged .gz.
+        InputError: not found, a folder, a pipe or a device, unreadable, empty, or a damaged .gz.
     """
-    where = str(path)
-    if path.is_dir():
-        raise InputError("is a folder, not a recording", where, "name a .csv, .csv.gz or .mat file")
-    try:
-        raw = path.read_bytes()
-    except FileNotFoundError:
-        raise InputError("no such file", where, "check the name and the folder") from None
-    except OSError as error:
-        raise InputError(f"cannot be read ({error.strerror})", where, "check the permissions of the file") from None
-    data = _decompressed(raw, where) if raw.startswith(_GZIP) else raw
+    with opened(path) as file:
+        raw = file.read()
+        data = unpacked(raw, str(path)) if raw.startswith(GZIP) else raw
     if not data.strip():
-        raise InputError("the file is empty", where, "record again or name another file")
+        raise InputError("the file is empty", str(path), "record again or name another file")
     return FileContent(path, data, hashlib.sha256(raw).hexdigest())
 
 
 def head_of(data: bytes) -> str:
     """Return the first letters of a file as text, whatever its encoding, for recognising its format; \\n ends lines."""
     start = data[:_HEAD]
-    encoding = next((name for mark, name in _BYTE_ORDER_MARKS if start.startswith(mark)), None)
+    encoding = next((name for mark, name in BYTE_ORDER_MARKS if start.startswith(mark)), None)
     if encoding is None:
         return start.decode("latin-1").replace("\r\n", "\n")
     even = start[: len(start) // 2 * 2] if encoding == "utf-16" else start
@@ -75,8 +105,8 @@ def decode(content: FileContent) -> tuple[str, tuple[str, ...]]:
         InputError: the file is not text.
     """
     data, where = content.data, str(content.path)
-    _refuse_known_binary(data, where)
-    encoding = next((name for mark, name in _BYTE_ORDER_MARKS if data.startswith(mark)), "utf-8")
+    refuse_known_binary(data, where)
+    encoding = next((name for mark, name in BYTE_ORDER_MARKS if data.startswith(mark)), "utf-8")
     notes: tuple[str, ...] = ()
     try:
         text = data.decode(encoding)
@@ -87,24 +117,12 @@ def decode(content: FileContent) -> tuple[str, tuple[str, ...]]:
     return text.replace("\r\n", "\n").replace("\r", "\n").rstrip("\x1a"), notes
 
 
-def _decompressed(raw: bytes, where: str) -> bytes:
-    """Decompress block by block, so that a small file that unpacks to a disk full of zeros is refused on the way."""
-    parts: list[bytes] = []
-    size = 0
-    try:
-        with gzip.GzipFile(fileobj=io.BytesIO(raw)) as stream:
-            while part := stream.read(1 << 22):
-                size += len(part)
-                if size > _MOST_BYTES or (size > _FREE and size > _MOST_RATIO * len(raw)):
-                    what = f"the .gz file unpacks to more than {size // 1_000_000} MB from {len(raw) // 1000} kB"
-                    raise InputError(what, where, "unpack and look at it first, or compress the recording alone")
-                parts.append(part)
-    except (EOFError, OSError, zlib.error):
-        raise InputError("the .gz file is damaged or cut short", where, "copy or compress it again") from None
-    return b"".join(parts)
+def refuse_known_binary(data: bytes, where: str) -> None:
+    """Refuse what is no text by its first bytes.
 
-
-def _refuse_known_binary(data: bytes, where: str) -> None:
+    Raises:
+        InputError: a .mat file, or a workbook.
+    """
     if is_hdf5(data) or data.startswith(b"MATLAB"):
         raise InputError("is a .mat file by its content", where, "give it the ending .mat and a mapping (--map)")
     if data.startswith(b"PK\x03\x04"):

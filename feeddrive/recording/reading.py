@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from feeddrive.errors import InputError, printable
+import numpy as np
+
+from feeddrive.errors import InputError, printable, quoted
 from feeddrive.recording.channels import Heading, read_heading
 from feeddrive.recording.checks import check_alive, check_finite, check_length, check_sample_time, check_size
-from feeddrive.recording.copies import refuse_copied_setpoint
 from feeddrive.recording.csv_faults import is_number
 from feeddrive.recording.csv_file import Layout, TextTable, find_table
 from feeddrive.recording.derived import with_angle
@@ -16,13 +17,14 @@ from feeddrive.recording.findings import sample_notes
 from feeddrive.recording.flaws import filled, sentence
 from feeddrive.recording.foreign import mapped_columns, table_variables
 from feeddrive.recording.formats.choosing import Wishes
-from feeddrive.recording.formats.opened import Understood, columns_of, mapped, read_trace, understand
+from feeddrive.recording.formats.opened import Understood, columns_of, could_be_trace, mapped, read_trace, understand
 from feeddrive.recording.formats.trace import Trace
 from feeddrive.recording.frequency_response import FrequencyResponse
 from feeddrive.recording.mapping import FileMapping, read_mapping
 from feeddrive.recording.mat_file import read_variables
-from feeddrive.recording.opening import FileContent, decode, open_file
+from feeddrive.recording.opening import FileContent, first_bytes, open_file
 from feeddrive.recording.recording import Recording
+from feeddrive.recording.text_blocks import TextFile
 from feeddrive.recording.time_checks import check_time, clock_notes, mean_sample_time
 from feeddrive.typing import FloatArray
 
@@ -43,15 +45,17 @@ def read_recording(path: Path, mapping: Path | None = None, *, decimal: str | No
     if decimal not in (None, ".", ","):
         raise InputError(f"{decimal!r} is not a decimal sign", "--decimal", "write . or ,")
     known = read_mapping(Path(mapping)) if mapping is not None else None
-    content = open_file(path)
-    trace = read_trace(content, Wishes(sample_time=known.sample_time if known else None))
-    if trace is not None:
-        columns, first_row, notes = _traced(content, trace, known)
-    elif known is not None:
-        columns, first_row, notes = _foreign(content, known, decimal)
+    if could_be_trace(first_bytes(path)):
+        content = open_file(path)
+        trace = read_trace(content, Wishes(sample_time=known.sample_time if known else None))
+        if trace is not None:
+            return _checked(content, *_traced(content, trace, known))
+    source = TextFile(path) if path.suffix != ".mat" else open_file(path)
+    if known is not None:
+        columns, first_row, notes = _foreign(source, known, decimal)
     else:
-        columns, first_row, notes = _canonical(content, decimal)
-    return _checked(content, columns, first_row, notes)
+        columns, first_row, notes = _canonical(source, decimal)
+    return _checked(source, columns, first_row, notes)
 
 
 def _traced(
@@ -76,20 +80,22 @@ def checked_trace(content: FileContent, understood: Understood) -> Recording:
     return _checked(content, columns, 1, (understood.trace.format, *understood.notes))
 
 
-def _canonical(content: FileContent, decimal: str | None) -> tuple[dict[str, FloatArray], int, tuple[str, ...]]:
+def _canonical(
+    source: TextFile | FileContent, decimal: str | None
+) -> tuple[dict[str, FloatArray], int, tuple[str, ...]]:
     """Return the columns of a file with canonical headings, the row they begin in, and notes."""
-    where = str(content.path)
-    if content.path.suffix == ".mat":
-        held = ", ".join(list(read_variables(content))[:12])
+    where = str(source.path)
+    if isinstance(source, FileContent):
+        held = ", ".join(quoted(name, 40) for name in list(read_variables(source))[:12])
         raise InputError(f"a .mat file has no units (it holds {held})", where, "name its mapping file by --map")
-    text_table, said = _table(content, Layout())
+    text_table = find_table(source.blocks(), Layout(), where)
     headings = _headings(text_table, where)
     table = text_table.numbers(decimal)
-    columns = {}
-    for index, heading in enumerate(headings):
-        column = table.values[:, index].copy()
-        columns[heading.channel] = heading.conversion.apply(column)
-    return columns, table.first_row, (*said, *table.notes)
+    columns = dict(zip((heading.channel for heading in headings), table.columns, strict=True))
+    with np.errstate(all="ignore"):  # a number beyond all bounds is refused where its row is known
+        for heading in headings:
+            columns[heading.channel] = heading.conversion.apply(columns[heading.channel])
+    return columns, table.first_row, (*source.notes, *table.notes)
 
 
 def _headings(table: TextTable, where: str) -> list[Heading]:
@@ -109,28 +115,23 @@ def _headings(table: TextTable, where: str) -> list[Heading]:
 
 
 def _foreign(
-    content: FileContent, mapping: FileMapping, decimal: str | None
+    source: TextFile | FileContent, mapping: FileMapping, decimal: str | None
 ) -> tuple[dict[str, FloatArray], int, tuple[str, ...]]:
     """Return the columns of a foreign file, the row they begin in (1 in a .mat file), and notes."""
-    where = str(content.path)
-    said = f"read through the mapping {mapping.name}"
-    if content.path.suffix == ".mat":
-        return mapped_columns(read_variables(content), mapping, where), 1, (said,)
-    text_table, encoding = _table(content, mapping.layout)
-    table = text_table.numbers(decimal or mapping.layout.decimal)
-    notes = (said, *encoding, *table.notes)
+    where = str(source.path)
+    said = f"read through the mapping {printable(mapping.name)}"
+    if isinstance(source, FileContent):
+        return mapped_columns(read_variables(source), mapping, where), 1, (said,)
+    table = find_table(source.blocks(), mapping.layout, where).numbers(decimal or mapping.layout.decimal)
+    notes = (said, *source.notes, *table.notes)
     return mapped_columns(table_variables(table), mapping, where), table.first_row, notes
 
 
-def _table(content: FileContent, layout: Layout) -> tuple[TextTable, tuple[str, ...]]:
-    """Find the table of a text file; the second result are notes on its encoding."""
-    text, said = decode(content)
-    return find_table(text, layout, str(content.path)), said
-
-
-def _checked(content: FileContent, columns: dict[str, FloatArray], first_row: int, notes: tuple[str, ...]) -> Recording:
+def _checked(
+    source: TextFile | FileContent, columns: dict[str, FloatArray], first_row: int, notes: tuple[str, ...]
+) -> Recording:
     """Check the columns and make the recording."""
-    where = str(content.path)
+    where = str(source.path)
     check_length(columns["time"].size, where)
     for name, samples in columns.items():
         check_finite(samples, name, first_row, where)
@@ -143,7 +144,6 @@ def _checked(content: FileContent, columns: dict[str, FloatArray], first_row: in
     check_sample_time(sample_time, where)
     check_alive(columns, where)
     columns, derived = with_angle(columns, time)
-    refuse_copied_setpoint(columns, where)
     flaws = find_flaws(columns, sample_time, first_row, where)
     columns = filled(columns, flaws)
     found = (
@@ -153,5 +153,5 @@ def _checked(content: FileContent, columns: dict[str, FloatArray], first_row: in
         *sample_notes(columns),
         *(sentence(one, first_row) for one in flaws),
     )
-    name = printable(content.path.name)
-    return Recording(name, time, columns, sample_time, where, content.sha256, found, tuple(flaws))
+    name = printable(source.path.name)
+    return Recording(name, time, columns, sample_time, where, source.sha256, found, tuple(flaws))

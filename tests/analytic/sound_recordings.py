@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 import numpy.typing as npt
@@ -23,6 +24,7 @@ class Sound:
     kind: str
 
 
+@cache
 def sound_recording(seed: int) -> Sound:
     """Return a recording of a machine drawn at random.
 

@@ -10,7 +10,8 @@ MODULE = "tests.analytic.fuzz_culprits"
 SAID = {
     "answers": "",
     "refuses": "",
-    "hangs": "no answer within 6 s",
+    "hangs": "no answer within 1 s",
+    "waits": "no answer within 1 s",
     "dies": "the process died with 9",
     "raises": "ZeroDivisionError",
     "exits": "status 1",

@@ -63,6 +63,14 @@ class Understood:
     notes: tuple[str, ...]
 
 
+def could_be_trace(start: bytes) -> bool:
+    """Whether the first bytes of a file are those of a known trace format; `read_trace` then reads the file whole."""
+    if is_hdf5(start) or tdms.recognises(start) or mdf4.recognises(start) or parquet.recognises(start):
+        return True
+    head = head_of(start)
+    return recognises_response(head) or sinumerik_frf.recognises(head) or any(known(head) for known, _ in _TEXTS)
+
+
 def read_trace(content: FileContent, wishes: Wishes) -> Trace | FrequencyResponse | None:
     """Read a file of a known trace format; None if it is none of them.
 
