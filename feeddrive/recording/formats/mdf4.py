@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import gc
 import io
 import logging
+import sys
 import warnings
+from typing import Any
 
 import numpy as np
 
@@ -32,14 +35,9 @@ def read(content: FileContent) -> Trace:
     where = str(content.path)
     library = optional("asammdf", "asammdf", "MDF files", where)
     logging.getLogger("asammdf").setLevel(logging.CRITICAL)
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            with library.MDF(io.BytesIO(content.data)) as file:
-                found = [(one.name, one.unit or "", one.comment or "", one.timestamps, one.samples)
-                         for one in file.iter_channels(skip_master=True)]  # fmt: skip
-    except Exception as error:  # the library meets damage with errors of every kind
-        raise InputError(f"is a damaged {NAME}", where, "copy or save it again") from error
+    found = _channels(library, content)
+    if found is None:
+        raise InputError(f"is a damaged {NAME}", where, "copy or save it again")
     kept = [row for row in found if np.ndim(row[4]) == 1 and np.size(row[4]) > 1 and row[4].dtype.kind in "fiub"]
     if not kept:
         raise InputError(f"this {NAME} holds no numeric channel", where, "record again")
@@ -54,3 +52,25 @@ def read(content: FileContent) -> Trace:
         values = np.ascontiguousarray(samples, dtype=np.float64)
         signals.append(Signal(name, time, values, str(unit), axis_in(name), clean(str(about))))
     return Trace(NAME, tuple(signals))
+
+
+def _channels(library: Any, content: FileContent) -> list[tuple[str, str, str, Any, Any]] | None:
+    """Return name, unit, comment, times and samples of each channel; None for a damaged file.
+
+    The library's object of a damaged file complains on the error stream when it is thrown away, so it is thrown away
+    here, unheard.
+    """
+    kept, sys.unraisablehook = sys.unraisablehook, lambda _: None
+    found: list[tuple[str, str, str, Any, Any]] | None = None
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            with library.MDF(io.BytesIO(content.data)) as file:
+                found = [(one.name, one.unit or "", one.comment or "", one.timestamps, one.samples)
+                         for one in file.iter_channels(skip_master=True)]  # fmt: skip
+    except Exception:  # the library meets damage with errors of every kind
+        found = None
+    finally:
+        gc.collect()
+        sys.unraisablehook = kept
+    return found

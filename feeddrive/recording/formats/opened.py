@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 
@@ -26,7 +27,7 @@ from feeddrive.recording.formats.resampling import Series, gaps, on_one_grid, pa
 from feeddrive.recording.formats.trace import Signal, Trace, clean
 from feeddrive.recording.frequency_response import FrequencyResponse, read_response, recognises_response
 from feeddrive.recording.mapping import FileMapping, Hold, Variable
-from feeddrive.recording.opening import FileContent, decode, head_of, is_hdf5
+from feeddrive.recording.opening import FileContent, decode, head_of, is_hdf5, open_file
 from feeddrive.typing import FloatArray
 
 _FEWEST_STAMPS = 100
@@ -107,6 +108,19 @@ def _clocks(signals: Sequence[Signal]) -> list[str]:
 
 def _mean_step(signal: Signal) -> float:
     return float(signal.time[-1] - signal.time[0]) / (signal.time.size - 1)
+
+
+def read_frequency_response(path: Path) -> FrequencyResponse | None:
+    """Read a file that holds a frequency response; None if it holds anything else.
+
+    Raises:
+        InputError: the file cannot be opened, or is a damaged frequency response.
+    """
+    content = open_file(path)
+    head = head_of(content.data)
+    if recognises_response(head):
+        return read_response(content)
+    return sinumerik_frf.read(content, decode(content)[0]) if sinumerik_frf.recognises(head) else None
 
 
 def _binary(content: FileContent, wishes: Wishes) -> Trace | None:
