@@ -237,6 +237,24 @@ def test_drop_outs_and_missing_points_of_a_sinumerik_trace_are_said(tmp_path: Pa
     assert any("declares 1200 points, the file gives 1000" in note for note in found.notes)
 
 
+def test_values_that_were_not_there_yet(tmp_path: Path) -> None:
+    """The control writes the bits of a double that is no number as a whole number."""
+    text, series = made.sinumerik_trace()
+    first = text.index('f3="')
+    end = text.index('"', first + 4)
+    found = trace(written(tmp_path, text[:first] + 'f3="9221120237041090560.000000' + text[end:], "a.xml"))
+    velocity = found.signals[2]
+    later = np.flatnonzero(series["f3"] != series["f3"][0])[0]
+    assert velocity.time[0] == pytest.approx(0.002 * later, abs=1e-12)
+    assert np.array_equal(velocity.values, series["f3"][later:])
+
+
+def test_attributes_of_a_record_that_are_no_signals(tmp_path: Path) -> None:
+    text, series = made.sinumerik_trace()
+    found = trace(written(tmp_path, text.replace("<rec ", '<rec event="1" '), "a.xml"))
+    assert np.array_equal(found.signals[0].values, series["f1"])
+
+
 def test_booleans_of_the_plc(tmp_path: Path) -> None:
     text, _ = made.sinumerik_trace()
     text = text.replace('<dataSignal id="f1"', '<dataSignal id="f9" interval="0.004" datapointCount="3" name="M1.0" '
@@ -421,6 +439,16 @@ def test_halscope(tmp_path: Path, form: str) -> None:
     assert by_name["joint.0.pos-fb"].time == pytest.approx(time, abs=1e-15)
     # Fourteen decimals stand in the file.
     assert by_name["joint.0.pos-fb"].values == pytest.approx(made.motion(time)[0], abs=1e-14)
+
+
+def test_row_behind_the_memory_of_an_old_halscope_is_left_out(tmp_path: Path) -> None:
+    """The writer of 2.9 counts `while (n <= samples)`, one row too many; what stands there is of an earlier capture."""
+    text = made.halscope_old(comma=False)
+    stale = "joint.0.pos-fb +900.00000000000000 joint.0.pos-cmd +0.00000000000000 \n"
+    found = trace(written(tmp_path, text + stale, "a.log"))
+    assert found.signals[0].values.size == 500
+    assert any("one row behind the end of its memory" in note for note in found.notes)
+    assert trace(written(tmp_path, text, "b.log")).signals[0].values.size == 500
 
 
 def test_name_that_comes_twice_in_a_halscope_log(tmp_path: Path) -> None:

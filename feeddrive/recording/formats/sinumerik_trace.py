@@ -24,6 +24,7 @@ NAME = "SINUMERIK Operate trace"
 _KINDS = {"posn": "position", "velo": "velocity", "velorot": "speed", "accel": "acceleration", "current": "current",
           "torque": "torque", "force": "force", "power": "power"}  # fmt: skip
 _MOST_POINTS = 20_000_000  # a day at 4 ms; more is a damaged time
+_NOTHING = 9.2188684e18  # bits of a double that is no number, written as a whole number where there was no value yet
 _OFF_GRID = 0.01  # of the interval: stamps are written in whole µs
 
 
@@ -66,7 +67,9 @@ def read(text: str, where: str) -> Trace:
         lost = header.get("dropOuts", "0").strip()
         if lost not in ("", "0"):
             notes.append(f"the control reports {lost} drop-outs: samples are missing and were held")
-    declared = [_declared(element, where) for element in frame.iter("dataSignal")]
+    declared = [_declared(element, where) for element in frame.iter() if _tag(element) == "dataSignal"]
+    if len({one.id for one in declared}) < len(declared):
+        raise InputError("two signals have one id", where, "save the trace again at the control")
     if not declared:
         raise InputError("the trace names no signal", where, "save it with its data at the control")
     times, values = _present(frame, {one.id for one in declared}, where)
@@ -114,6 +117,7 @@ def _present(frame: Element, ids: set[str], where: str) -> tuple[dict[str, list[
     """Return times and values that are written, by the id of their signal."""
     times: dict[str, list[float]] = {id_: [] for id_ in ids}
     values: dict[str, list[float]] = {id_: [] for id_ in ids}
+    kinds = {id_.rstrip("0123456789") for id_ in ids}
     before = -math.inf
     for number, record in enumerate(_records(frame), start=1):
         place = f"{where}, record {number}"
@@ -123,9 +127,11 @@ def _present(frame: Element, ids: set[str], where: str) -> tuple[dict[str, list[
         before = at
         for key, written in record.items():
             if key in times:
-                times[key].append(at)
-                values[key].append(_number(written, place))
-            elif key != "time":
+                value = _number(written, place)
+                if value < _NOTHING:
+                    times[key].append(at)
+                    values[key].append(value)
+            elif key != "time" and key.rstrip("0123456789") in kinds:
                 raise InputError(f'a value of the unknown signal "{key}"', place, "save the trace again at the control")
     if before == -math.inf:
         raise InputError("the trace holds no record", where, "save it with its data at the control")
