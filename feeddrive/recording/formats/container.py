@@ -28,10 +28,15 @@ def optional(module: str, package: str, what: str, where: str) -> Any:
     try:
         return importlib.import_module(module)
     except ImportError:
-        extra = {"h5py": "hdf5", "npTDMS": "tdms", "asammdf": "mdf", "pyarrow": "parquet"}[package]
-        mend = f"pip install 'feeddrive[{extra}]'"
-        mend += ", or save it in MATLAB with save(file, '-v7')" if package == "h5py" else f", or pip install {package}"
-        raise InputError(f"{what} are read with {package}, which is not installed", where, mend) from None
+        raise not_installed(package, what, where) from None
+
+
+def not_installed(package: str, what: str, where: str) -> InputError:
+    """Return the error of a library that is not installed; the line says how to install it."""
+    extra = {"h5py": "hdf5", "npTDMS": "tdms", "asammdf": "mdf", "pyarrow": "parquet"}[package]
+    mend = f"pip install 'feeddrive[{extra}]'"
+    mend += ", or save it in MATLAB with save(file, '-v7')" if package == "h5py" else f", or pip install {package}"
+    return InputError(f"{what} are read with {package}, which is not installed", where, mend)
 
 
 def refuse_bomb(values: int, content: FileContent) -> None:

@@ -87,7 +87,8 @@ def _new(lines: list[str], where: str) -> tuple[list[str], FloatArray, tuple[str
     first = at + 1
     while first < len(lines) and lines[first].lstrip().startswith("#"):  # how it was drawn: # Position, # Scale
         first += 1
-    values, notes = number_rows(lines[first:], split, len(names), first + 1, where)
+    separator = "" if any("," in line for line in lines[first : first + 20]) else ";"
+    values, notes = number_rows(lines[first:], split, len(names), first + 1, where, separator=separator)
     return names, values, notes
 
 
@@ -151,10 +152,17 @@ def read_sampler(text: str, where: str, sample_time: float | None, columns: tupl
         elif line.strip():
             kept.append(line)
             rows.append(number)
-    width = len(kept[0].split())
-    values, notes = number_rows(kept, lambda line: [cell.replace(",", ".") for cell in line.split()], width, 1, where)
+    cells = kept[0].replace(",", ".").split()
+    values, notes = number_rows(
+        kept,
+        lambda line: [cell.replace(",", ".") for cell in line.split()],
+        len(cells),
+        1,
+        where,
+        separator="" if "," in kept[0] else None,
+    )
     count = values[:, 0]
-    numbered = width > 1 and bool(np.all(count == np.round(count)) and np.all(np.diff(count) >= 1)
+    numbered = len(cells) > 1 and bool(np.all(count == np.round(count)) and np.all(np.diff(count) >= 1)
                                   and np.mean(np.diff(count) == 1) > 0.5)  # fmt: skip
     data = values[:, 1:] if numbered else values
     names = _columns(columns, data.shape[1], numbered, where)

@@ -143,7 +143,8 @@ def understand(trace: Trace, wishes: Wishes, where: str) -> Understood:
     Raises:
         InputError: what a person wishes is not there, or the signals cannot be brought together.
     """
-    choice = choose(trace, wishes, where)
+    with np.errstate(over="ignore", invalid="ignore"):  # of values that no drive has; they are refused later
+        choice = choose(trace, wishes, where)
     notes = [*trace.notes, *_timing_notes([pick.signal for pick in choice.picks] or trace.signals)]
     notes += [f"{pick.channel} from {pick.signal.name}: {pick.reason}" for pick in choice.picks]
     notes += [finding.text for finding in choice.findings]

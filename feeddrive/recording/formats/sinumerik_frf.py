@@ -56,7 +56,7 @@ def read(content: FileContent, text: str) -> FrequencyResponse:
         raise InputError("the spectra differ in length", where, "export it again")
     if not np.all(given.spectrum.real > 0.0):
         raise InputError("the input was not excited at every frequency", where, "measure again")
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         coherence = np.abs(values) ** 2 / (given.spectrum.real * output.spectrum.real)
     names, unit, said = _names(root, given, output, (values / given.spectrum.real)[frequency > 0.0])
     notes = (f"{NAME}: from {names[0]} to {names[1]}", *said, *_clock(root, frequency, given))

@@ -55,7 +55,8 @@ def read(text: str, where: str) -> Trace:
             cells.pop()
         return cells
 
-    values, notes = number_rows(lines[first:], split, width, first + 1, where)
+    separator = "" if comma else ";"
+    values, notes = number_rows(lines[first:], split, width, first + 1, where, separator=separator)
     stamps = values[:, 0]
     bad = np.flatnonzero(~(np.diff(stamps) > 0.0))
     if bad.size:

@@ -6,6 +6,7 @@ the numbers is told by the numbers: that of the header follows the language of t
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, replace
 from itertools import accumulate, combinations
 
@@ -13,9 +14,10 @@ import numpy as np
 
 from feeddrive.errors import InputError
 from feeddrive.recording.formats.naming import axis_in
+from feeddrive.recording.formats.rows import whole_rows
 from feeddrive.recording.formats.trace import Signal, Trace, unique_names
 from feeddrive.recording.formats.twincat_header import Header, read_header
-from feeddrive.typing import FloatArray
+from feeddrive.typing import BoolArray, FloatArray
 
 NAME = "TwinCAT 3 Scope export"
 _CHUNK = 20_000  # rows that are held as text at a time
@@ -106,6 +108,8 @@ class _Table:
 
     def _take(self, lines: list[str], first_row: int, end: int) -> None:
         """Take rows of text; `end` is the row behind the last of the file, which may be cut short."""
+        if self._take_whole(lines):
+            return
         kept: list[list[list[str]]] = [[] for _ in self._spans]
         for row, line in enumerate(lines, start=first_row):
             cells = self._cells_of(line, row)
@@ -125,6 +129,55 @@ class _Table:
                 numbers = self._numbers(rows, first_row, group)
                 for index in range(numbers.shape[1]):
                     self._parts[group][index].append(np.ascontiguousarray(numbers[:, index]))
+
+    def _take_whole(self, lines: list[str]) -> bool:
+        """Take rows in one go where each group is whole or absent, as in any undamaged file; tell whether they were."""
+        separator = self._header.separator
+        text = "\n".join(lines)
+        if "nan" in text.lower() or '"' in text or (separator == " " and "  " in text):
+            return False
+        text = text.replace(",", ".") if self._decimal_comma else text
+        sign = re.escape(separator)
+        if separator != " ":
+            text = re.sub(rf"(?m)^ *(?={sign})", "nan", text)
+            text = re.sub(rf"(?<={sign}) *(?={sign}|$)", "nan", text, flags=re.MULTILINE)
+        rows = text.split("\n")
+        counts = [line.count(separator) for line in rows]
+        taken: list[tuple[int, FloatArray]] = []
+        ended = list(self._ended)
+        start = 0
+        while start < len(rows):
+            stop = start + 1
+            while stop < len(rows) and counts[stop] == counts[start]:
+                stop += 1
+            numbers = whole_rows(rows[start:stop], separator, counts[start] + 1)
+            if numbers is None or len(taken) > 40 * len(self._spans) or not self._fits(numbers, ended, taken):
+                return False
+            start = stop
+        for group, columns in taken:
+            for index in range(columns.shape[1]):
+                self._parts[group][index].append(np.ascontiguousarray(columns[:, index]))
+        self._ended = ended
+        return True
+
+    def _fits(self, numbers: FloatArray, ended: list[bool], taken: list[tuple[int, FloatArray]]) -> bool:
+        """Add the groups of rows of one width to those taken; tell whether every group was whole, and then absent."""
+        missing: BoolArray = np.isnan(numbers)
+        for group, (a, b) in enumerate(self._spans):
+            if a >= numbers.shape[1]:
+                ended[group] = True
+                continue
+            if b > numbers.shape[1] and not missing[:, a:].all():
+                return False
+            absent: BoolArray = np.all(missing[:, a:b], axis=1)
+            there: BoolArray = ~np.any(missing[:, a:b], axis=1)
+            rows = int(np.sum(there))
+            if not np.all(absent | there) or not there[:rows].all() or (rows and ended[group]):
+                return False
+            ended[group] = rows < there.size
+            if rows:
+                taken.append((group, numbers[:rows, a:b]))
+        return bool(np.all(missing[:, self._spans[-1][1] :])) and not bool(missing.all(axis=1).any())
 
     def _present(self, cells: list[str], row: int) -> list[bool]:
         place = f"{self._where}, row {row}"
