@@ -180,9 +180,7 @@ def test_damaged_files_are_told_in_one_line(tmp_path: Path, name: str, generator
     path = tmp_path / name
     FORMATS[name](path)
     whole = path.read_bytes()
-    for _ in range(
-        4 if name == "d.mf4" else 20
-    ):  # its library loads anew each time
+    for _ in range(4 if name == "d.mf4" else 20):  # its library loads anew each time
         data = bytearray(whole[: int(generator.integers(600, len(whole)))])
         for place in generator.integers(0, len(data), 5):
             data[place] = int(generator.integers(0, 256))

@@ -208,6 +208,19 @@ def test_columns_of_tncscope_are_those_that_its_header_names(tmp_path: Path) -> 
     assert all(np.array_equal(plain[name].values, swapped[name].values) for name in plain)
 
 
+def test_debug_channels_of_tncscope_are_known_by_their_number(tmp_path: Path) -> None:
+    text = made.tncscope().replace("%NAME=I ist/Y\r\n%CHANNELTYPE=I ist", "%NAME=DSP-Debug/Y\r\n%CHANNELTYPE=DSP-Debug")
+    found = understood(written(tmp_path, text.replace("%DIMENSION=Ampere", "%DIMENSION=id(10)"), "a.sco"))
+    assert "motor_current" in found.channels
+    assert any("debug channel id(10)" in note for note in found.notes)
+
+
+def test_english_names_of_tncscope(tmp_path: Path) -> None:
+    text = made.tncscope().replace(" ist", " actual").replace(" soll", " nominal")
+    found = understood(written(tmp_path, text, "a.sco"))
+    assert set(found.channels) == {"table_position", "setpoint", "table_velocity", "motor_current"}
+
+
 def test_current_without_a_sign_is_no_torque(tmp_path: Path) -> None:
     found = understood(written(tmp_path, made.tncscope(magnitude=True), "a.sco"))
     assert "motor_current" not in found.channels
@@ -408,6 +421,46 @@ def test_damage_of_a_frequency_response(tmp_path: Path, old: str, new: str, what
         text = text.replace(old, new)
     with pytest.raises(InputError, match=what):
         read_trace(open_file(written(tmp_path, text, "a.xml", "latin-1")), Wishes())
+
+
+def base_85(numbers: object) -> str:
+    """Write doubles as the control does."""
+    from feeddrive.recording.formats.sinumerik_frf import _LETTERS
+
+    text = ""
+    for word in np.asarray(numbers, dtype=">f8").view(">u4").tolist():
+        digits = [(word // 85**place) % 85 for place in range(4, -1, -1)]
+        text += "." if word == 0 else "".join(_LETTERS[digit] for digit in digits)
+    return text
+
+
+def test_plant_of_automatic_servo_tuning(tmp_path: Path) -> None:
+    frequency = np.array([0.0, 1.0, 2.5, 10.0])
+    values = np.array([4.0, 2.0 - 1.0j, -1.0j, -0.25])
+    coherence = np.array([1.0, 0.99, 0.9, 0.5])
+
+    def array(name: str, kind: str, numbers: object) -> str:
+        count = len(np.asarray(numbers)) // (2 if kind == "ComplexNumber" else 1)
+        length = f'<unsigned_int name="m_length">{count}</unsigned_int>'
+        raw = f'<raw name="m_pNumberArray"><![CDATA[{base_85(numbers)}]]></raw>'
+        return f'<NumericArray elementtype="{kind}" format="base85" name="{name}">{length}{raw}</NumericArray>'
+
+    def response(name: str, numbers: object) -> str:
+        pairs = np.column_stack((np.real(numbers), np.imag(numbers))).ravel()  # type: ignore[arg-type]
+        return (f'<FrequencyResponseFunction name="{name}">{array("m_ValueVector", "ComplexNumber", pairs)}'
+                f'{array("m_FrequencyVector", "double", frequency)}</FrequencyResponseFunction>')  # fmt: skip
+
+    gains = '<float name="m_dKpGain">1.5</float><float name="m_dIntegralTime">0.01</float>'
+    both = response("m_pPlant", values) + response("m_pMeasCoherence", coherence)
+    text = ('<?xml version="1.0" encoding="ISO-8859-1"?><AutoServoTune satclassid="1">'
+            f'<DynamicModel>{both}</DynamicModel><Regulator>{gains}</Regulator></AutoServoTune>')  # fmt: skip
+    found = read_trace(open_file(written(tmp_path, text, "a.xml")), Wishes())
+    assert isinstance(found, FrequencyResponse)
+    assert np.array_equal(found.frequency, frequency)
+    assert np.array_equal(found.values, values)
+    assert np.array_equal(found.coherence, coherence)
+    assert (found.given, found.output, found.unit) == ("motor_torque", "motor_speed", "")
+    assert any("K_p 1.5 and T_n 0.01" in note for note in found.notes)
 
 
 def test_frequency_response_is_no_recording() -> None:

@@ -64,7 +64,13 @@ def test_rotary_axis_is_told_by_degrees_and_rev_per_min() -> None:
     speed = Signal("nckServoDataActVelMotorSide64 [u1, 7]", TIME, motion(TIME)[1] / 6.0, kind="velocity")
     result = understood(angle, speed)
     assert found(result, "speed") == pytest.approx(1.0 / 6.0, rel=1e-4)
-    assert "table_position" not in result.channels  # degrees of a table are no length
+    assert not result.channels  # an angle of a table is neither a length nor an angle of the motor
+
+
+def test_two_encoders_in_the_unit_of_the_axis_are_compared() -> None:
+    motor = Signal("nckServoDataMeasPos1 [u1, 7]", TIME, 1.0001 * motion(TIME)[0], kind="position")
+    result = understood(Signal("nckServoDataMeasPos2 [u1, 7]", TIME, motion(TIME)[0], kind="position"), motor)
+    assert found(result, "encoders") == pytest.approx(1.0 / 1.0001, rel=1e-9)
 
 
 def test_lead_of_motor_angle_and_table_position() -> None:
@@ -118,6 +124,16 @@ def test_magnitude_is_no_torque_and_a_load_is() -> None:
     assert "motor_current" not in magnitude.channels
     hanging = understood(position(), Signal("ActCurrent", TIME, 10.0 + current(TIME), "A"))
     assert "motor_current" in hanging.channels  # never changes its sign either, and follows the motion
+
+
+def test_current_without_a_sign_in_one_direction_cannot_be_told() -> None:
+    time = np.arange(900) * 1e-3  # the speed of this motion changes its sign later
+    time = time[motion(time)[1] > 1.0]
+    result = understood(
+        Signal("ActPos", time, motion(time)[0], "mm"), Signal("ActCurrent", time, 2.0 + 0.1 * time, "A")
+    )
+    assert any("whether it has one cannot be told" in note for note in result.notes)
+    assert "motor_current" in result.channels
 
 
 def test_following_error_and_gain() -> None:

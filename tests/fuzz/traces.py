@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import gzip
 import random
+import tempfile
 from collections.abc import Callable
 from functools import cache
 from importlib.util import find_spec
@@ -107,10 +108,7 @@ def judge(path: Path, name: str, touched: int) -> int:
 @cache
 def values_of(name: str) -> dict[str, Any]:
     """Return the values of each signal of an undamaged text, sorted."""
-    folder = Path("/tmp") if Path("/tmp").is_dir() else Path(".")
-    import tempfile
-
-    with tempfile.TemporaryDirectory(dir=folder) as place:
+    with tempfile.TemporaryDirectory() as place:
         path = Path(place) / name
         path.write_text(text_of(name), encoding="utf-8", newline="")
         found = read_trace(open_file(path), WISHES)

@@ -79,6 +79,7 @@ def infer(taken: Taken, signals: Sequence[Signal], fixed: set[str]) -> tuple[tup
     """
     found: list[Finding] = []
     taken = dict(taken)
+    _encoders(taken, found)
     _speeds(taken, signals, fixed, found)
     _lead(taken, found)
     _torque_constant(taken, signals, fixed, found)
@@ -225,10 +226,7 @@ def _give_unit(taken: Taken, signal: Signal, unit: str, one: Fit, fixed: set[str
             if conversion(unit, needed) is not None:
                 taken[channel] = signal, _settled(candidate, channel, unit, reason)
             elif channel not in fixed:
-                del taken[channel]
-                other = "table_velocity" if channel == "motor_speed" else "motor_speed"
-                if other not in taken:
-                    taken[other] = signal, _settled(candidate, other, unit, reason)
+                del taken[channel]  # an angle of the table, not of the motor, for which there is no channel
             return
 
 
@@ -236,9 +234,19 @@ def _settled(candidate: Candidate, channel: str, unit: str, reason: str) -> Cand
     return replace(candidate, channel=channel, unit=unit, reason=f"{candidate.reason}; {reason}", told=True)
 
 
+def _encoders(taken: Taken, found: list[Finding]) -> None:
+    """Say the ratio of a motor encoder and a direct one that a control counts in the unit of the axis."""
+    table, motor = taken.get("table_position"), taken.get(MOTOR_SIDE)
+    one = fit(at_times(motor[0], table[0].time), table[0].values) if table is not None and motor is not None else None
+    if one is None or one.scatter > _CLOSE or table is None or motor is None:
+        return
+    text = f"{table[0].name} per {motor[0].name} is {one.factor:.7g}, ± {one.scatter:.1g}: two encoders in one unit"
+    found.append(Finding("encoders", text, one.factor, "1", one.scatter))
+
+
 def _lead(taken: Taken, found: list[Finding]) -> None:
-    """Say the lead where motor angle and table position are there, and the ratio of two encoders in one unit."""
-    table, motor = taken.get("table_position"), taken.get("motor_angle") or taken.get(MOTOR_SIDE)
+    """Say the lead where motor angle and table position are there."""
+    table, motor = taken.get("table_position"), taken.get("motor_angle")
     if table is None or motor is None:
         return
     one = fit(at_times(motor[0], table[0].time), table[0].values)
@@ -249,9 +257,6 @@ def _lead(taken: Taken, found: list[Finding]) -> None:
         lead = one.factor * length.factor / angle.factor * 2.0 * math.pi
         text = f"{table[0].name} moves {format_quantity(lead, 'm')} per revolution of {motor[0].name}"
         found.append(Finding("lead", f"{text}, ± {one.scatter:.1g} of it", lead, "m/rev", one.scatter))
-    elif motor[1].channel == MOTOR_SIDE:
-        text = f"{table[0].name} per {motor[0].name} is {one.factor:.7g}: two encoders in one unit"
-        found.append(Finding("encoders", f"{text}, ± {one.scatter:.1g}", one.factor, "1", one.scatter))
 
 
 def _torque_constant(taken: Taken, signals: Sequence[Signal], fixed: set[str], found: list[Finding]) -> None:
@@ -281,7 +286,7 @@ def _sign(channel: str, taken: Taken, fixed: set[str], found: list[Finding]) -> 
         return
     speed, acceleration = motion
     limit = _MOVING * float(np.nanmax(np.abs(speed)))
-    reverses = bool(np.mean(speed > limit) > 0.05 and np.mean(speed < -limit) > 0.05)
+    reverses = bool(np.sum(speed > limit) > _FEWEST and np.sum(speed < -limit) > _FEWEST)
     share, by_acceleration, by_direction = _explained(
         signal.values, acceleration, np.where(np.abs(speed) > limit, np.sign(speed), 0.0)
     )
@@ -292,6 +297,9 @@ def _sign(channel: str, taken: Taken, fixed: set[str], found: list[Finding]) -> 
             text += " and is not used as torque"
         found.append(Finding("magnitude", text, float(np.min(signal.values)), "", share))
         return
+    if one_sided and not reverses and not np.all(signal.values == signal.values[0]):
+        text = f"{signal.name} never changes its sign, nor does the motion reverse: whether it has one cannot be told"
+        found.append(Finding("magnitude", text, float(np.min(signal.values)), "", share))
     if share >= _EXPLAINS and by_acceleration < 0.0 and by_direction < 0.0:
         text = f"{signal.name} acts against acceleration and motion, which explain {100 * share:.0f} % of it: its sign"
         text += " is reversed"

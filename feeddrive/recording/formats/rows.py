@@ -64,11 +64,13 @@ def whole_rows(lines: Sequence[str], separator: str | None, width: int) -> Float
         separator: of the cells; None for blanks. One at the end of each line is passed over.
         width: cells of a row.
     """
-    if separator is not None and lines and lines[0].rstrip().endswith(separator):
+    if not lines or not lines[0].strip():  # numpy warns where there is nothing but blank lines
+        return None
+    if separator is not None and lines[0].rstrip().endswith(separator):
         lines = [line.rstrip().removesuffix(separator) for line in lines]
     try:
         numbers = np.loadtxt(lines, delimiter=separator, comments=None, ndmin=2, dtype=np.float64)
-    except (ValueError, UserWarning):  # a warning where it finds no number at all
+    except ValueError:
         return None
     return numbers if numbers.shape == (len(lines), width) else None  # it passes over blank lines
 
