@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from feeddrive.errors import InputError
+from feeddrive.recording.formats.trace import clean
 from feeddrive.typing import FloatArray
 
 _CHUNK = 20_000  # rows that are held as split text at a time
@@ -97,7 +98,7 @@ def _fault(cells: list[str], width: int, gaps: bool) -> str:
         try:
             _number(cell)
         except ValueError:
-            shown = cell if len(cell) <= 40 else cell[:37] + "..."
+            shown = clean(cell)
             return f'"{shown}" is not a number'
         if not gaps and not cell.strip():
             return "a cell is empty"

@@ -16,7 +16,7 @@ from xml.etree.ElementTree import Element
 import numpy as np
 
 from feeddrive.errors import InputError
-from feeddrive.recording.formats.trace import Signal, Trace, unique_names
+from feeddrive.recording.formats.trace import Signal, Trace, clean, unique_names
 from feeddrive.recording.formats.xml_tree import parse_xml
 from feeddrive.typing import FloatArray
 
@@ -149,7 +149,7 @@ def _number(written: str, place: str) -> float:
     try:
         return float(plain.replace(",", "."))
     except ValueError:
-        shown = written if len(written) <= 40 else written[:37] + "..."
+        shown = clean(written)
         raise InputError(f'"{shown}" is not a number', place, "save the trace again at the control") from None
 
 
