@@ -131,13 +131,19 @@ def test_channels_units_and_times(tmp_path: Path, name: str) -> None:
 def test_matlab_7_3(tmp_path: Path) -> None:
     matlab(tmp_path / "b.mat")
     found = by_name(trace(tmp_path / "b.mat"))
-    assert set(found) == {"rec.position", "rec.both column 1", "rec.both column 2"}
+    assert set(found) == {"rec.t", "rec.position", "rec.both column 1", "rec.both column 2"}
+    assert set(
+        understood(tmp_path / "b.mat", Wishes(channels={"table_position": ("rec.position", "mm")})).channels
+    ) == {"table_position"}
     assert np.array_equal(found["rec.position"].time, TIME)
     assert np.array_equal(found["rec.both column 1"].values, current(TIME))
     mapping = tmp_path / "map.toml"
-    mapping.write_text('format = "feeddrive-map/1"\n[time]\nvariable = "rec.both column 2"\nunit = "s"\n'
-                       '[channels.table_position]\nvariable = "rec.position"\nunit = "mm"\n')  # fmt: skip
-    assert np.array_equal(read_recording(tmp_path / "b.mat", mapping)["table_position"], motion(TIME)[0] / 1e3)
+    for clock in ('variable = "rec.t"', 'variable = "rec.both"\ncolumn = 2'):
+        mapping.write_text(f'format = "feeddrive-map/1"\n[time]\n{clock}\nunit = "s"\n'
+                           '[channels.table_position]\nvariable = "rec.position"\nunit = "mm"\n')  # fmt: skip
+        recording = read_recording(tmp_path / "b.mat", mapping)
+        assert np.array_equal(recording["table_position"], motion(TIME)[0] / 1e3)
+        assert np.array_equal(recording.time, TIME)
 
 
 def test_rates_of_mdf_groups_are_their_own(tmp_path: Path) -> None:
@@ -164,7 +170,7 @@ def test_links_out_of_an_hdf5_file_are_not_followed(tmp_path: Path) -> None:
         file["ActPos [mm]"] = motion(TIME)[0]
         file["outside"] = h5py.ExternalLink(str(tmp_path / "other.h5"), "X/ActPos")
         file["round"] = h5py.SoftLink("/")
-    assert set(by_name(trace(tmp_path / "a.h5"))) == {"ActPos [mm]"}
+    assert set(by_name(trace(tmp_path / "a.h5"))) == {"t", "ActPos [mm]"}
 
 
 def test_hdf5_that_declares_more_than_it_holds_is_refused(tmp_path: Path) -> None:

@@ -95,16 +95,16 @@ def trace_of(
     for name, plain in zip(arrays, unique_names([clean(name) for name in arrays]), strict=True):
         values = arrays[name]
         clock = clocks.get(values.size)
-        if clock is not None and clock[0] == name:
-            continue
         shown, unit = _unit_of(plain, units.get(name, ""))
         if clock is not None:
             time, timed = clock[1], True
         else:
             time = np.arange(values.size, dtype=np.float64) * (sample_time or 1.0)
             timed = sample_time is not None
-        signals.append(Signal(plain, time, values, unit, axis_in(shown), shown if shown != plain else "", "", timed))
-    if not signals:
+        kind = "time" if clock is not None and clock[0] == name else ""
+        about = shown if shown != plain else ""
+        signals.append(Signal(plain, time, values, unit, axis_in(shown), about, kind, timed))
+    if all(signal.kind == "time" for signal in signals):
         raise InputError(f"this {format_} holds a time and no signal", where, "save the signals beside it")
     return Trace(format_, tuple(signals), tuple(notes))
 

@@ -202,9 +202,9 @@ def mapped(trace: Trace, mapping: FileMapping, where: str) -> Understood:
     series = {}
     picks: list[Pick] = []
     for channel, variable in mapping.channels.items():
-        factors = [_named(name, by_name, where) for name in variable.names]
+        factors = [_named(name, by_name, where, variable.column) for name in variable.names]
         if mapping.time is not None:
-            clock = _named(mapping.time.names[0], by_name, where)
+            clock = _named(mapping.time.names[0], by_name, where, mapping.time.column)
             factors = [replace(one, time=_clock(clock, mapping.time, one, where)) for one in factors]
         if any(not same_time(one.time, factors[0].time) for one in factors):
             what = "signals that are multiplied were not sampled together"
@@ -218,10 +218,9 @@ def mapped(trace: Trace, mapping: FileMapping, where: str) -> Understood:
             values = np.concatenate((values[1:], values[-1:]))
         series[channel] = Series(factors[0].time, values)
         factor = variable.factor * variable.conversion.factor
-        picks.append(Pick(channel, by_name[variable.names[0]], "", factor, variable.offset, "by the mapping"))
+        picks.append(Pick(channel, factors[0], "", factor, variable.offset, "by the mapping"))
     wishes = Wishes(rate=mapping.rate, part=mapping.part)
-    timed = all(by_name[name].timed for variable in mapping.channels.values() for name in variable.names)
-    if not timed and mapping.time is None and mapping.sample_time is None:
+    if not all(pick.signal.timed for pick in picks) and mapping.time is None and mapping.sample_time is None:
         raise InputError(f"this {trace.format} holds no time", where, "add sample_time or [time] to the mapping")
     time, channels, notes = _on_grid(series, wishes, where)
     timing = _timing_notes([pick.signal for pick in picks])
@@ -229,7 +228,10 @@ def mapped(trace: Trace, mapping: FileMapping, where: str) -> Understood:
     return Understood(trace, Choice("", tuple(picks), (), ()), time, channels, said)
 
 
-def _named(name: str, by_name: dict[str, Signal], where: str) -> Signal:
+def _named(name: str, by_name: dict[str, Signal], where: str, column: int) -> Signal:
+    """Return a signal, or a column of a matrix."""
+    if name not in by_name and f"{name} column {column}" in by_name:
+        return by_name[f"{name} column {column}"]
     if name not in by_name:
         near = difflib.get_close_matches(name, by_name, n=1, cutoff=0.6)
         mend = f'did you mean "{near[0]}"?' if near else f"it holds {', '.join(list(by_name)[:12])}"
