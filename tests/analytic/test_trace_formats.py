@@ -130,6 +130,29 @@ def test_what_real_exports_differ_in(tmp_path: Path, change: object) -> None:
     assert all(same(found[name], reference[name]) for name in reference)
 
 
+@pytest.mark.parametrize("kept", [("Name", "Unit"), ("Name", "SampleTime[ms]", "Port"), ("Name",)])
+def test_header_with_few_rows_and_an_empty_line_more(tmp_path: Path, kept: tuple[str, ...]) -> None:
+    lines = made.twincat().split("\n")
+    top = lines.index("", 5) + 1
+    end = lines.index("", top)
+    header = [line for line in lines[top:end] if line.split("\t")[0] in kept]
+    text = "\n".join([*lines[:top], *header, "", *lines[end:]])
+    found = signals(trace(written(tmp_path, text)))
+    reference = signals(trace(written(tmp_path, made.twincat(), "other.csv")))
+    assert all(same(found[name], reference[name]) for name in reference)
+
+
+def test_header_without_any_row_of_channels_is_refused(tmp_path: Path) -> None:
+    lines = made.twincat(" ").split("\n")
+    kept = [
+        line
+        for line in lines
+        if line.split(" ")[0] in ("Name", "File", "Starttime", "Endtime") or not line[:1].isalpha()
+    ]
+    with pytest.raises(InputError, match="the rows that tell the channels are missing"):
+        trace(written(tmp_path, "\n".join(kept)))
+
+
 def test_utf_16(tmp_path: Path) -> None:
     found = signals(trace(written(tmp_path, made.twincat(), encoding="utf-16")))
     assert found["ActPos"].values.size == 400
@@ -155,7 +178,6 @@ def test_full_time_stamps(tmp_path: Path) -> None:
         ("\t20.5\n4.0", "\t\n4.0", "a cell is empty between filled ones"),
         ("\n8.0\t", "\n8.0x\t", '"8.0x" is not a number'),
         ("\n8.0\t", "\n3.0\t", "the time does not increase"),
-        ("Data-Type\tREAL64", "Daten-Typ\tREAL64", '"Data-Type" of the channels is missing'),
         ("Name\tActPos\tActVelo", "Name\tActPos", "the names do not fit"),
     ],
 )
