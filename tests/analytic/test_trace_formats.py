@@ -290,6 +290,24 @@ def test_attributes_of_a_record_that_are_no_signals(tmp_path: Path) -> None:
     assert np.array_equal(found.signals[0].values, series["f1"])
 
 
+def test_signal_that_lies_on_no_grid_is_left_out_and_said(tmp_path: Path) -> None:
+    text, series = made.sinumerik_trace()
+    extra = (
+        '<dataSignal id="f9" interval="0.004" datapointCount="3" name="M1.0" unitsType="none"/>\n<dataSignal id="f1"'
+    )
+    text = text.replace('<dataSignal id="f1"', extra, 1).replace(
+        '<rec time="0.002000"', '<rec time="0.002000" f9="1"', 1
+    )
+    finer = trace(written(tmp_path, text.replace('<rec time="0.008000"', '<rec time="0.008000" f9="0"', 1), "a.xml"))
+    assert signals(finer)["M1.0"].step == pytest.approx(0.002, rel=1e-12)
+    assert any("lie on a grid of 2 ms, not of 4 ms" in note for note in finer.notes)
+    odd = text.replace('<rec time="0.008000"', '<rec time="0.007300" f9="0"/>\n<rec time="0.008000"', 1)
+    found = trace(written(tmp_path, odd, "b.xml"))
+    assert "M1.0" not in signals(found)
+    assert any("values of M1.0 do not lie on its grid" in note for note in found.notes)
+    assert np.array_equal(found.signals[0].values, series["f1"])
+
+
 def test_booleans_of_the_plc(tmp_path: Path) -> None:
     text, _ = made.sinumerik_trace()
     text = text.replace('<dataSignal id="f1"', '<dataSignal id="f9" interval="0.004" datapointCount="3" name="M1.0" '
@@ -305,7 +323,7 @@ def test_booleans_of_the_plc(tmp_path: Path) -> None:
         ("<traceSession", '<!DOCTYPE a [<!ENTITY b "c">]><traceSession', "holds a DTD"),
         ("</traceSession>", "", "is not whole XML"),
         ('time="0.010000"', 'time="0.001000"', "the time does not increase"),
-        ('time="0.010000"', 'time="0.0105"', "do not lie on its grid"),
+        ('<rec time="0.000000"', '<rec time="0.000000" f1="1.0"/>\n<rec time="0.000000"', "two values at one time"),
         ("<rec ", '<rec f77="1" ', 'unknown signal "f77"'),
         ('f1="', 'f1="x', "is not a number"),
         ('interval="0.002000"', 'interval="1e-12"', "points"),
