@@ -1,4 +1,4 @@
-"""What a trace file does not say, from what must hold: planted in made signals and found; absent, not found."""
+"""What a trace file does not say, from what must hold: planted in made signals, found, and not found where absent."""
 
 from __future__ import annotations
 
