@@ -22,10 +22,12 @@ from feeddrive.plant.entries import nearest
 from feeddrive.plant.linear import INPUTS, OUTPUTS
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.resolution import resolved, resolved_modes
-from feeddrive.quantity import parse
+from feeddrive.quantity import parse, unit_conversion
+from feeddrive.recording.formats.opened import read_frequency_response
+from feeddrive.recording.frequency_response import FrequencyResponse
 from feeddrive.recording.reading import read_recording
 from feeddrive.servo.cascade import Cascade
-from feeddrive.servo.frequency_response import Case, refuse_no_range
+from feeddrive.servo.frequency_response import UNITS, Case, refuse_no_range
 from feeddrive.servo.loop_response import loops_of, refuse_unstable_case
 from feeddrive.servo.response_family import Family, closed_family, controlled_family, mechanics_family, open_family
 from feeddrive.servo.response_json import family_content, measured_content
@@ -168,8 +170,29 @@ def _closed(
 def _measured(request: Request) -> Measured | None:
     if request.recording is None:
         return None
-    recording = read_recording(request.recording, request.mapping)
-    return recorded_response(recording, request.given or INPUTS[0], request.output or OUTPUTS[1])
+    given, output = request.given or INPUTS[0], request.output or OUTPUTS[1]
+    found = read_frequency_response(request.recording)
+    if found is not None:
+        return _in_si(found, given, output)
+    return recorded_response(read_recording(request.recording, request.mapping), given, output)
+
+
+def _in_si(found: FrequencyResponse, given: str, output: str) -> Measured:
+    """The response of a file, if it is from and to the signals of the plot.
+
+    Raises:
+        InputError: other signals, or a magnitude of another unit or of none.
+    """
+    if (found.given, found.output) != (given, output):
+        what = f"is the response from {found.given} to {found.output}, the plot is from {given} to {output}"
+        raise InputError(what, found.source, "choose --from and --to, or correct the first line of the file")
+    if not found.unit:
+        mend = f"write it in the header: magnitude [({UNITS[output]})/({UNITS[given]})]"
+        raise InputError("the magnitude has no unit", found.source, mend)
+    conversion = unit_conversion(found.unit, f"({UNITS[output]})/({UNITS[given]})", f"{found.source}, magnitude")
+    shown = found.positive
+    values: Any = shown.values * conversion.factor
+    return Measured(shown.frequency, values, shown.coherence, 0)
 
 
 def _content(plant: Plant, families: list[Family], measured: Measured | None) -> dict[str, Any]:

@@ -213,7 +213,7 @@ def _content(
             {
                 "name": signal.name, "unit": signal.unit or None, "axis": signal.axis or None,
                 "samples": int(signal.values.size), "start": float(signal.time[0]) if signal.time.size else None,
-                "step": signal.step, "gaps": [{"behind_row": i + 1, "missing": n} for i, n in lost],
+                "step": float(f"{signal.step:.12g}"), "gaps": [{"behind_row": i + 1, "missing": n} for i, n in lost],
                 "channel": pick.channel if pick else None, "reason": pick.reason if pick else None,
                 "unit_taken": pick.unit if pick else None, "to_si": pick.factor if pick else None,
             }

@@ -15,7 +15,7 @@ from feeddrive.diagnose.prediction import AxisPredictor
 from feeddrive.diagnose.torque_channel import refuse_what_is_no_torque
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
-from feeddrive.recording import Recording, check_against_lead
+from feeddrive.recording import Recording, check_against_lead, without_unfollowed_setpoint
 from feeddrive.recording.copies import refuse_copied_setpoint
 from feeddrive.thermal.plant import ThermalPlant
 
@@ -45,10 +45,14 @@ def prepared(
     if isinstance(plant, ThermalPlant):
         return _prepared_heat(plant, recordings, validation, split)
     _refuse_parts(plant)
+    lead = 2 * np.pi * plant.chain.motor_radius
     for recording in (*recordings, *validation):
         _refuse_heat(recording)
         refuse_copied_setpoint(recording.channels, recording.name)
-        check_against_lead(recording, 2 * np.pi * plant.chain.motor_radius, recording.name)
+        check_against_lead(recording, lead, recording.name)
+    recordings, validation = (
+        [without_unfollowed_setpoint(one, lead) for one in ones] for ones in (recordings, validation)
+    )
     fitted = tuple(prepare(recording, plant, 1.0 if validation else split, hold) for recording in recordings)
     judged: list[Evidence] = [prepare(recording, plant, 0.0, hold) for recording in validation] or list(fitted)
     return _scaled(plant, fitted, judged)

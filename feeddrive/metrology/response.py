@@ -28,7 +28,7 @@ class Response:
         frequency: [Hz], shape (n,).
         response: output per input, complex, shape (n,).
         coherence: 0 to 1, shape (n,); NaN where there is one average only.
-        averages: number of segments or periods.
+        averages: number of segments or periods; 0 where it is not known.
     """
 
     frequency: FloatArray

@@ -1,7 +1,7 @@
 """Recordings: one time-series type for measured and simulated runs, its files, and what is wrong with them."""
 
 from feeddrive.recording.channels import CHANNEL_UNITS, channel_unit
-from feeddrive.recording.lead_check import check_against_lead
+from feeddrive.recording.lead_check import check_against_lead, without_unfollowed_setpoint
 from feeddrive.recording.reading import read_recording
 from feeddrive.recording.recording import Recording
 from feeddrive.recording.writing import write_recording
@@ -12,5 +12,6 @@ __all__ = [
     "channel_unit",
     "check_against_lead",
     "read_recording",
+    "without_unfollowed_setpoint",
     "write_recording",
 ]

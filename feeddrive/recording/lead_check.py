@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -35,15 +36,29 @@ def check_against_lead(recording: Recording, lead: float, where: str, factor: fl
         factor: largest relative difference of the slope table_position / motor_angle from lead / 2pi [1].
 
     Raises:
-        InputError: another slope (swapped columns, wrong unit, wrong lead), or a set-point that is not followed.
+        InputError: another slope (swapped columns, wrong unit, wrong lead).
     """
     radius = lead / (2.0 * math.pi)
     if "motor_angle" in recording and "table_position" in recording:
         _check_slope(recording["motor_angle"], recording["table_position"], radius, where, factor)
-    if "setpoint" in recording:
-        position = _position(recording, radius)
-        if position is not None:
-            _check_setpoint(recording["setpoint"], position, where)
+
+
+def without_unfollowed_setpoint(recording: Recording, lead: float) -> Recording:
+    """Return the recording without a set-point that the position does not follow, and with a note of it.
+
+    A trace often holds the set-point of another axis, of another unit or before a transformation; what was measured is
+    as good without it.
+
+    Args:
+        recording: measured channels.
+        lead: table travel per motor revolution [m].
+    """
+    position = _position(recording, lead / (2.0 * math.pi)) if "setpoint" in recording else None
+    reason = _unfollowed(recording["setpoint"], position) if position is not None else ""
+    if not reason:
+        return recording
+    channels = {name: samples for name, samples in recording.channels.items() if name != "setpoint"}
+    return replace(recording, channels=channels, notes=(*recording.notes, reason))
 
 
 def _check_slope(angle: FloatArray, position: FloatArray, radius: float, where: str, factor: float) -> None:
@@ -74,14 +89,15 @@ def _position(recording: Recording, radius: float) -> FloatArray | None:
     return recording["motor_angle"] * radius if "motor_angle" in recording else None
 
 
-def _check_setpoint(setpoint: FloatArray, position: FloatArray, where: str) -> None:
+def _unfollowed(setpoint: FloatArray, position: FloatArray) -> str:
+    """Return why a set-point is not used; empty where the position follows it."""
     if np.ptp(setpoint) == 0.0:
-        return
+        return ""
     slope, correlation = _regression(setpoint, position)
     if correlation >= _MOVES_TOGETHER and _SETPOINT_RANGE[0] <= slope <= _SETPOINT_RANGE[1]:
-        return
+        return ""
     what = f"the position does not follow the setpoint (slope {slope:.3g}, correlation {correlation:.2f})"
-    raise InputError(what, where, "check which column holds the setpoint, and its unit")
+    return f"{what}: it is left out; check which column holds it, and its unit"
 
 
 def _regression(x: FloatArray, y: FloatArray) -> tuple[float, float]:

@@ -179,5 +179,6 @@ def _caption(family: Family, measured: Measured | None) -> str:
     if family.curves[0].margins is not None:
         said.append("Marked are the least gain margin and the least phase margin of the curves.")
     if measured is not None:
-        said.append(f"Points are measured, {measured.averages} averages, faint below a coherence of {_COHERENT:g}.")
+        averages = f", {measured.averages} averages" if measured.averages else ""  # a file of a control does not say
+        said.append(f"Points are measured{averages}, faint below a coherence of {_COHERENT:g}.")
     return " ".join(said)

@@ -16,7 +16,14 @@ from hypothesis import strategies as st
 from scipy.io import savemat
 
 from feeddrive.errors import InputError
-from feeddrive.recording import Recording, channel_unit, check_against_lead, read_recording, write_recording
+from feeddrive.recording import (
+    Recording,
+    channel_unit,
+    check_against_lead,
+    read_recording,
+    without_unfollowed_setpoint,
+    write_recording,
+)
 from feeddrive.recording.findings import quantisation_step
 
 LEAD = 0.020
@@ -375,8 +382,6 @@ def test_lead_fits_the_channels_to_a_tenth(factor: float, refused: bool) -> None
         (lambda r: {"table_position": 0.5 * r["table_position"]}, "10 mm per revolution"),
         (lambda r: {"table_position": 0.5 * r["table_position"]}, "lead is 20 mm"),
         (lambda r: {"table_position": 0.01 * r["motor_torque"]}, "do not move together"),
-        (lambda r: {"setpoint": r["motor_torque"]}, "setpoint"),
-        (lambda r: {"setpoint": 1000 * r["setpoint"]}, "setpoint"),
     ],
 )
 def test_channels_that_contradict_the_lead(change: object, said: str) -> None:
@@ -388,6 +393,16 @@ def test_channels_that_contradict_the_lead(change: object, said: str) -> None:
     assert message.startswith("a.csv: ")
     assert said in message
     assert "\n" not in message
+
+
+@pytest.mark.parametrize("factor", [1000.0, 0.0, -1.0])
+def test_setpoint_that_is_not_followed_is_left_out_and_said(factor: float) -> None:
+    recording = stroke()
+    other = factor * recording["setpoint"] + (1.0 - abs(np.sign(factor))) * recording["motor_torque"]
+    left = without_unfollowed_setpoint(recording.with_channels({"setpoint": other}), LEAD)
+    assert "setpoint" not in left
+    assert "does not follow the setpoint" in left.notes[-1]
+    assert without_unfollowed_setpoint(recording, LEAD) is recording
 
 
 def test_open_channel_names_have_units() -> None:

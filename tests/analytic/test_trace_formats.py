@@ -130,6 +130,29 @@ def test_what_real_exports_differ_in(tmp_path: Path, change: object) -> None:
     assert all(same(found[name], reference[name]) for name in reference)
 
 
+@pytest.mark.parametrize("kept", [("Name", "Unit"), ("Name", "SampleTime[ms]", "Port"), ("Name",)])
+def test_header_with_few_rows_and_an_empty_line_more(tmp_path: Path, kept: tuple[str, ...]) -> None:
+    lines = made.twincat().split("\n")
+    top = lines.index("", 5) + 1
+    end = lines.index("", top)
+    header = [line for line in lines[top:end] if line.split("\t")[0] in kept]
+    text = "\n".join([*lines[:top], *header, "", *lines[end:]])
+    found = signals(trace(written(tmp_path, text)))
+    reference = signals(trace(written(tmp_path, made.twincat(), "other.csv")))
+    assert all(same(found[name], reference[name]) for name in reference)
+
+
+def test_header_without_any_row_of_channels_is_refused(tmp_path: Path) -> None:
+    lines = made.twincat(" ").split("\n")
+    kept = [
+        line
+        for line in lines
+        if line.split(" ")[0] in ("Name", "File", "Starttime", "Endtime") or not line[:1].isalpha()
+    ]
+    with pytest.raises(InputError, match="the rows that tell the channels are missing"):
+        trace(written(tmp_path, "\n".join(kept)))
+
+
 def test_utf_16(tmp_path: Path) -> None:
     found = signals(trace(written(tmp_path, made.twincat(), encoding="utf-16")))
     assert found["ActPos"].values.size == 400
@@ -155,7 +178,6 @@ def test_full_time_stamps(tmp_path: Path) -> None:
         ("\t20.5\n4.0", "\t\n4.0", "a cell is empty between filled ones"),
         ("\n8.0\t", "\n8.0x\t", '"8.0x" is not a number'),
         ("\n8.0\t", "\n3.0\t", "the time does not increase"),
-        ("Data-Type\tREAL64", "Daten-Typ\tREAL64", '"Data-Type" of the channels is missing'),
         ("Name\tActPos\tActVelo", "Name\tActPos", "the names do not fit"),
     ],
 )
@@ -208,6 +230,19 @@ def test_columns_of_tncscope_are_those_that_its_header_names(tmp_path: Path) -> 
     assert all(np.array_equal(plain[name].values, swapped[name].values) for name in plain)
 
 
+def test_debug_channels_of_tncscope_are_known_by_their_number(tmp_path: Path) -> None:
+    text = made.tncscope().replace("%NAME=I ist/Y\r\n%CHANNELTYPE=I ist", "%NAME=DSP-Debug/Y\r\n%CHANNELTYPE=DSP-Debug")
+    found = understood(written(tmp_path, text.replace("%DIMENSION=Ampere", "%DIMENSION=id(10)"), "a.sco"))
+    assert "motor_current" in found.channels
+    assert any("debug channel id(10)" in note for note in found.notes)
+
+
+def test_english_names_of_tncscope(tmp_path: Path) -> None:
+    text = made.tncscope().replace(" ist", " actual").replace(" soll", " nominal")
+    found = understood(written(tmp_path, text, "a.sco"))
+    assert set(found.channels) == {"table_position", "setpoint", "table_velocity", "motor_current"}
+
+
 def test_current_without_a_sign_is_no_torque(tmp_path: Path) -> None:
     found = understood(written(tmp_path, made.tncscope(magnitude=True), "a.sco"))
     assert "motor_current" not in found.channels
@@ -237,6 +272,42 @@ def test_drop_outs_and_missing_points_of_a_sinumerik_trace_are_said(tmp_path: Pa
     assert any("declares 1200 points, the file gives 1000" in note for note in found.notes)
 
 
+def test_values_that_were_not_there_yet(tmp_path: Path) -> None:
+    """The control writes the bits of a double that is no number as a whole number."""
+    text, series = made.sinumerik_trace()
+    first = text.index('f3="')
+    end = text.index('"', first + 4)
+    found = trace(written(tmp_path, text[:first] + 'f3="9221120237041090560.000000' + text[end:], "a.xml"))
+    velocity = found.signals[2]
+    later = np.flatnonzero(series["f3"] != series["f3"][0])[0]
+    assert velocity.time[0] == pytest.approx(0.002 * later, abs=1e-12)
+    assert np.array_equal(velocity.values, series["f3"][later:])
+
+
+def test_attributes_of_a_record_that_are_no_signals(tmp_path: Path) -> None:
+    text, series = made.sinumerik_trace()
+    found = trace(written(tmp_path, text.replace("<rec ", '<rec event="1" '), "a.xml"))
+    assert np.array_equal(found.signals[0].values, series["f1"])
+
+
+def test_signal_that_lies_on_no_grid_is_left_out_and_said(tmp_path: Path) -> None:
+    text, series = made.sinumerik_trace()
+    extra = (
+        '<dataSignal id="f9" interval="0.004" datapointCount="3" name="M1.0" unitsType="none"/>\n<dataSignal id="f1"'
+    )
+    text = text.replace('<dataSignal id="f1"', extra, 1).replace(
+        '<rec time="0.002000"', '<rec time="0.002000" f9="1"', 1
+    )
+    finer = trace(written(tmp_path, text.replace('<rec time="0.008000"', '<rec time="0.008000" f9="0"', 1), "a.xml"))
+    assert signals(finer)["M1.0"].step == pytest.approx(0.002, rel=1e-12)
+    assert any("lie on a grid of 2 ms, not of 4 ms" in note for note in finer.notes)
+    odd = text.replace('<rec time="0.008000"', '<rec time="0.007300" f9="0"/>\n<rec time="0.008000"', 1)
+    found = trace(written(tmp_path, odd, "b.xml"))
+    assert "M1.0" not in signals(found)
+    assert any("values of M1.0 do not lie on its grid" in note for note in found.notes)
+    assert np.array_equal(found.signals[0].values, series["f1"])
+
+
 def test_booleans_of_the_plc(tmp_path: Path) -> None:
     text, _ = made.sinumerik_trace()
     text = text.replace('<dataSignal id="f1"', '<dataSignal id="f9" interval="0.004" datapointCount="3" name="M1.0" '
@@ -252,7 +323,7 @@ def test_booleans_of_the_plc(tmp_path: Path) -> None:
         ("<traceSession", '<!DOCTYPE a [<!ENTITY b "c">]><traceSession', "holds a DTD"),
         ("</traceSession>", "", "is not whole XML"),
         ('time="0.010000"', 'time="0.001000"', "the time does not increase"),
-        ('time="0.010000"', 'time="0.0105"', "do not lie on its grid"),
+        ('<rec time="0.000000"', '<rec time="0.000000" f1="1.0"/>\n<rec time="0.000000"', "two values at one time"),
         ("<rec ", '<rec f77="1" ', 'unknown signal "f77"'),
         ('f1="', 'f1="x', "is not a number"),
         ('interval="0.002000"', 'interval="1e-12"', "points"),
@@ -392,6 +463,46 @@ def test_damage_of_a_frequency_response(tmp_path: Path, old: str, new: str, what
         read_trace(open_file(written(tmp_path, text, "a.xml", "latin-1")), Wishes())
 
 
+def base_85(numbers: object) -> str:
+    """Write doubles as the control does."""
+    from feeddrive.recording.formats.sinumerik_frf import _LETTERS
+
+    text = ""
+    for word in np.asarray(numbers, dtype=">f8").view(">u4").tolist():
+        digits = [(word // 85**place) % 85 for place in range(4, -1, -1)]
+        text += "." if word == 0 else "".join(_LETTERS[digit] for digit in digits)
+    return text
+
+
+def test_plant_of_automatic_servo_tuning(tmp_path: Path) -> None:
+    frequency = np.array([0.0, 1.0, 2.5, 10.0])
+    values = np.array([4.0, 2.0 - 1.0j, -1.0j, -0.25])
+    coherence = np.array([1.0, 0.99, 0.9, 0.5])
+
+    def array(name: str, kind: str, numbers: object) -> str:
+        count = len(np.asarray(numbers)) // (2 if kind == "ComplexNumber" else 1)
+        length = f'<unsigned_int name="m_length">{count}</unsigned_int>'
+        raw = f'<raw name="m_pNumberArray"><![CDATA[{base_85(numbers)}]]></raw>'
+        return f'<NumericArray elementtype="{kind}" format="base85" name="{name}">{length}{raw}</NumericArray>'
+
+    def response(name: str, numbers: object) -> str:
+        pairs = np.column_stack((np.real(numbers), np.imag(numbers))).ravel()  # type: ignore[arg-type]
+        return (f'<FrequencyResponseFunction name="{name}">{array("m_ValueVector", "ComplexNumber", pairs)}'
+                f'{array("m_FrequencyVector", "double", frequency)}</FrequencyResponseFunction>')  # fmt: skip
+
+    gains = '<float name="m_dKpGain">1.5</float><float name="m_dIntegralTime">0.01</float>'
+    both = response("m_pPlant", values) + response("m_pMeasCoherence", coherence)
+    text = ('<?xml version="1.0" encoding="ISO-8859-1"?><AutoServoTune satclassid="1">'
+            f'<DynamicModel>{both}</DynamicModel><Regulator>{gains}</Regulator></AutoServoTune>')  # fmt: skip
+    found = read_trace(open_file(written(tmp_path, text, "a.xml")), Wishes())
+    assert isinstance(found, FrequencyResponse)
+    assert np.array_equal(found.frequency, frequency)
+    assert np.array_equal(found.values, values)
+    assert np.array_equal(found.coherence, coherence)
+    assert (found.given, found.output, found.unit) == ("motor_torque", "motor_speed", "")
+    assert any("K_p 1.5 and T_n 0.01" in note for note in found.notes)
+
+
 def test_frequency_response_is_no_recording() -> None:
     with pytest.raises(InputError, match="is a frequency response, not a recording"):
         read_recording(SAMPLES / "sinumerik_frf" / "freq_trace.xml.gz")
@@ -421,6 +532,16 @@ def test_halscope(tmp_path: Path, form: str) -> None:
     assert by_name["joint.0.pos-fb"].time == pytest.approx(time, abs=1e-15)
     # Fourteen decimals stand in the file.
     assert by_name["joint.0.pos-fb"].values == pytest.approx(made.motion(time)[0], abs=1e-14)
+
+
+def test_row_behind_the_memory_of_an_old_halscope_is_left_out(tmp_path: Path) -> None:
+    """The writer of 2.9 counts `while (n <= samples)`, one row too many; what stands there is of an earlier capture."""
+    text = made.halscope_old(comma=False)
+    stale = "joint.0.pos-fb +900.00000000000000 joint.0.pos-cmd +0.00000000000000 \n"
+    found = trace(written(tmp_path, text + stale, "a.log"))
+    assert found.signals[0].values.size == 500
+    assert any("one row behind the end of its memory" in note for note in found.notes)
+    assert trace(written(tmp_path, text, "b.log")).signals[0].values.size == 500
 
 
 def test_name_that_comes_twice_in_a_halscope_log(tmp_path: Path) -> None:

@@ -48,6 +48,13 @@ def test_unit_of_a_speed_by_the_derivative_of_the_position(unit: str, factor: fl
     assert result.channels["table_velocity"] == pytest.approx(1e-3 * motion(TIME)[1], rel=1e-9, abs=1e-12)
 
 
+def test_even_motion_tells_the_unit_of_a_speed_too() -> None:
+    even = Signal("ActPos", TIME, 25.0 * TIME, "mm")
+    assert found(understood(even, Signal("ActVelo", TIME, np.full(TIME.size, 1500.0) + 1e-3 * TIME)), "speed") == (
+        pytest.approx(60.0, rel=1e-6)
+    )
+
+
 def test_unit_that_contradicts_the_motion_is_said() -> None:
     result = understood(position(), Signal("ActVelo", TIME, 60.0 * motion(TIME)[1], "mm/s"))
     assert any("60 times what its unit mm/s says" in note for note in result.notes)
@@ -64,7 +71,13 @@ def test_rotary_axis_is_told_by_degrees_and_rev_per_min() -> None:
     speed = Signal("nckServoDataActVelMotorSide64 [u1, 7]", TIME, motion(TIME)[1] / 6.0, kind="velocity")
     result = understood(angle, speed)
     assert found(result, "speed") == pytest.approx(1.0 / 6.0, rel=1e-4)
-    assert "table_position" not in result.channels  # degrees of a table are no length
+    assert not result.channels  # an angle of a table is neither a length nor an angle of the motor
+
+
+def test_two_encoders_in_the_unit_of_the_axis_are_compared() -> None:
+    motor = Signal("nckServoDataMeasPos1 [u1, 7]", TIME, 1.0001 * motion(TIME)[0], kind="position")
+    result = understood(Signal("nckServoDataMeasPos2 [u1, 7]", TIME, motion(TIME)[0], kind="position"), motor)
+    assert found(result, "encoders") == pytest.approx(1.0 / 1.0001, rel=1e-9)
 
 
 def test_lead_of_motor_angle_and_table_position() -> None:
@@ -120,6 +133,16 @@ def test_magnitude_is_no_torque_and_a_load_is() -> None:
     assert "motor_current" in hanging.channels  # never changes its sign either, and follows the motion
 
 
+def test_current_without_a_sign_in_one_direction_cannot_be_told() -> None:
+    time = np.arange(900) * 1e-3  # the speed of this motion changes its sign later
+    time = time[motion(time)[1] > 1.0]
+    result = understood(
+        Signal("ActPos", time, motion(time)[0], "mm"), Signal("ActCurrent", time, 2.0 + 0.1 * time, "A")
+    )
+    assert any("whether it has one cannot be told" in note for note in result.notes)
+    assert "motor_current" in result.channels
+
+
 def test_following_error_and_gain() -> None:
     place, speed, _ = motion(TIME)
     result = understood(position(), Signal("SetPos", TIME, place + speed / 30.0, "mm"))
@@ -158,6 +181,22 @@ def test_two_clocks_are_said() -> None:
     first = Signal("ActPos", np.arange(30_000) * 1e-3, motion(np.arange(30_000) * 1e-3)[0], "mm")
     result = understood(first, Signal("ActCurrent", other, current(other), "A"))
     assert any("two clocks: ActCurrent is sampled +78 ppm slower than ActPos" in note for note in result.notes)
+
+
+@pytest.mark.parametrize("ppm", [78.0, -200.0])
+def test_two_clocks_under_one_time_are_found_by_the_lag(ppm: float, generator: np.random.Generator) -> None:
+    time = np.arange(30_000) * 1e-3
+    place = motion(time)[0] + 1e-3 * generator.standard_normal(time.size)
+    other = motion(time * (1.0 + ppm * 1e-6))[1] + 0.1 * generator.standard_normal(time.size)
+    result = understood(Signal("ActPos", time, place, "mm"), Signal("ActVelo", time, other, "mm/s"))
+    finding = next(one for one in result.choice.findings if one.about == "two clocks")
+    # What shows the motion of a later time runs ahead: its lag shrinks.
+    assert finding.value == pytest.approx(-ppm * 1e-6, abs=4.0 * finding.scatter)
+    one_clock = Signal("ActVelo", time, motion(time)[1] + 0.1 * generator.standard_normal(time.size), "mm/s")
+    late = Signal("ActVelo", time, motion(time - 0.002)[1], "mm/s")
+    for signal in (one_clock, late):  # a constant lag is no drift
+        other_result = understood(Signal("ActPos", time, place, "mm"), signal)
+        assert not [one for one in other_result.choice.findings if one.about == "two clocks"]
 
 
 def test_lost_samples_divide_a_recording() -> None:

@@ -28,10 +28,15 @@ def optional(module: str, package: str, what: str, where: str) -> Any:
     try:
         return importlib.import_module(module)
     except ImportError:
-        extra = {"h5py": "hdf5", "npTDMS": "tdms", "asammdf": "mdf", "pyarrow": "parquet"}[package]
-        mend = f"pip install 'feeddrive[{extra}]'"
-        mend += ", or save it in MATLAB with save(file, '-v7')" if package == "h5py" else f", or pip install {package}"
-        raise InputError(f"{what} are read with {package}, which is not installed", where, mend) from None
+        raise not_installed(package, what, where) from None
+
+
+def not_installed(package: str, what: str, where: str) -> InputError:
+    """Return the error of a library that is not installed; the line says how to install it."""
+    extra = {"h5py": "hdf5", "npTDMS": "tdms", "asammdf": "mdf", "pyarrow": "parquet"}[package]
+    mend = f"pip install 'feeddrive[{extra}]'"
+    mend += ", or save it in MATLAB with save(file, '-v7')" if package == "h5py" else f", or pip install {package}"
+    return InputError(f"{what} are read with {package}, which is not installed", where, mend)
 
 
 def refuse_bomb(values: int, content: FileContent) -> None:
@@ -90,16 +95,16 @@ def trace_of(
     for name, plain in zip(arrays, unique_names([clean(name) for name in arrays]), strict=True):
         values = arrays[name]
         clock = clocks.get(values.size)
-        if clock is not None and clock[0] == name:
-            continue
         shown, unit = _unit_of(plain, units.get(name, ""))
         if clock is not None:
             time, timed = clock[1], True
         else:
             time = np.arange(values.size, dtype=np.float64) * (sample_time or 1.0)
             timed = sample_time is not None
-        signals.append(Signal(plain, time, values, unit, axis_in(shown), shown if shown != plain else "", "", timed))
-    if not signals:
+        kind = "time" if clock is not None and clock[0] == name else ""
+        about = shown if shown != plain else ""
+        signals.append(Signal(plain, time, values, unit, axis_in(shown), about, kind, timed))
+    if all(signal.kind == "time" for signal in signals):
         raise InputError(f"this {format_} holds a time and no signal", where, "save the signals beside it")
     return Trace(format_, tuple(signals), tuple(notes))
 

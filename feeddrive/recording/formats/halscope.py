@@ -87,7 +87,8 @@ def _new(lines: list[str], where: str) -> tuple[list[str], FloatArray, tuple[str
     first = at + 1
     while first < len(lines) and lines[first].lstrip().startswith("#"):  # how it was drawn: # Position, # Scale
         first += 1
-    values, notes = number_rows(lines[first:], split, len(names), first + 1, where)
+    separator = "" if any("," in line for line in lines[first : first + 20]) else ";"
+    values, notes = number_rows(lines[first:], split, len(names), first + 1, where, separator=separator)
     return names, values, notes
 
 
@@ -108,7 +109,20 @@ def _old(lines: list[str], where: str) -> tuple[list[str], FloatArray, tuple[str
     if len(lines[at].split()) != 2 * len(names) or any(map(_is_plain, names)):
         raise InputError("names and values do not alternate", f"{where}, row {at + 1}", "save the log again")
     values, notes = number_rows(lines[at:], lambda line: _wide(split(line), len(names)), len(names), at + 1, where)
-    return names, values, (*notes, *(("the comma is read as the decimal sign",) if comma else ()))
+    if comma:
+        notes = (*notes, "the comma is read as the decimal sign")
+    if _jumps_at_the_end(values):
+        values = values[:-1]
+        notes = (*notes, "the last row is no sample: halscope writes one row behind the end of its memory; left out")
+    return names, values, notes
+
+
+def _jumps_at_the_end(values: FloatArray) -> bool:
+    """Tell whether the last step of any column is larger than twice all others together with their range."""
+    if values.shape[0] < 10:
+        return False
+    steps = np.abs(np.diff(values, axis=0))
+    return bool(np.any(steps[-1] > 2.0 * np.max(steps[:-1], axis=0) + np.ptp(values[:-1], axis=0)))
 
 
 def _wide(cells: list[str], width: int) -> list[str]:
@@ -138,10 +152,17 @@ def read_sampler(text: str, where: str, sample_time: float | None, columns: tupl
         elif line.strip():
             kept.append(line)
             rows.append(number)
-    width = len(kept[0].split())
-    values, notes = number_rows(kept, lambda line: [cell.replace(",", ".") for cell in line.split()], width, 1, where)
+    cells = kept[0].replace(",", ".").split()
+    values, notes = number_rows(
+        kept,
+        lambda line: [cell.replace(",", ".") for cell in line.split()],
+        len(cells),
+        1,
+        where,
+        separator="" if "," in kept[0] else None,
+    )
     count = values[:, 0]
-    numbered = width > 1 and bool(np.all(count == np.round(count)) and np.all(np.diff(count) >= 1)
+    numbered = len(cells) > 1 and bool(np.all(count == np.round(count)) and np.all(np.diff(count) >= 1)
                                   and np.mean(np.diff(count) == 1) > 0.5)  # fmt: skip
     data = values[:, 1:] if numbered else values
     names = _columns(columns, data.shape[1], numbered, where)
@@ -186,4 +207,4 @@ def _longest(data: FloatArray, place: FloatArray, losses: list[int]) -> tuple[Fl
 
 
 def _is_plain(cell: str) -> bool:
-    return re.fullmatch(r"[+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][+-]?\d+)?", cell) is not None
+    return re.fullmatch(r"[+-]?(?:nan|inf|\d+[.,]?\d*|[.,]\d+)(?:[eE][+-]?\d+)?", cell) is not None

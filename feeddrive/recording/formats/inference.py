@@ -16,20 +16,26 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
 
 from feeddrive.quantity import format_quantity
 from feeddrive.recording.formats.naming import MOTOR_SIDE, Candidate, conversion, known_unit
-from feeddrive.recording.formats.resampling import gaps, same_time
+from feeddrive.recording.formats.relations import (
+    FEWEST,
+    Fit,
+    at_times,
+    clock_drift,
+    explained,
+    fit,
+    smooth_slope,
+    speed_factor,
+)
 from feeddrive.recording.formats.trace import Signal
 from feeddrive.typing import FloatArray
 
 Taken = dict[str, tuple[Signal, Candidate]]
 
-_FEWEST = 50  # samples below which a regression on noise can look like a relation
 _CLOSE = 0.05  # scatter above which two signals are not the same motion
 _NEAR = 0.05  # of a factor from that of a unit; the nearest two units differ by 1.67 (mm/min and in/s apart, by 16.7)
 _COMPUTED = 0.999  # correlation of torque and current above which one is computed from the other
@@ -58,14 +64,6 @@ class Finding:
     scatter: float
 
 
-class Fit(NamedTuple):
-    """y = factor x + constant; scatter relative to the rms of y about its mean; correlation."""
-
-    factor: float
-    scatter: float
-    correlation: float
-
-
 def infer(taken: Taken, signals: Sequence[Signal], fixed: set[str]) -> tuple[tuple[Finding, ...], Taken]:
     """Find what holds between signals of an axis, and use it for what the file does not say.
 
@@ -79,6 +77,7 @@ def infer(taken: Taken, signals: Sequence[Signal], fixed: set[str]) -> tuple[tup
     """
     found: list[Finding] = []
     taken = dict(taken)
+    _encoders(taken, found)
     _speeds(taken, signals, fixed, found)
     _lead(taken, found)
     _torque_constant(taken, signals, fixed, found)
@@ -87,54 +86,6 @@ def infer(taken: Taken, signals: Sequence[Signal], fixed: set[str]) -> tuple[tup
             _sign(channel, taken, fixed, found)
     _following(taken, found)
     return tuple(found), taken
-
-
-def fit(x: FloatArray, y: FloatArray) -> Fit | None:
-    """Return the regression of y on x, (n,) each; None where one of them stands still or there are too few."""
-    kept = np.isfinite(x) & np.isfinite(y)
-    if int(kept.sum()) < _FEWEST:
-        return None
-    x, y = x[kept] - np.mean(x[kept]), y[kept] - np.mean(y[kept])
-    across, along = float(x @ x), float(y @ y)
-    if not (across > 0.0 and along > 0.0 and math.isfinite(across) and math.isfinite(along)):
-        return None
-    factor = float(x @ y) / across
-    rest = y - factor * x
-    return Fit(factor, math.sqrt(float(rest @ rest) / along), float(x @ y) / math.sqrt(across * along))
-
-
-def at_times(signal: Signal, time: FloatArray) -> FloatArray:
-    """Return the values of a signal at times, (n,); NaN outside its own."""
-    if same_time(signal.time, time):
-        return signal.values
-    return np.interp(time, signal.time, signal.values, left=np.nan, right=np.nan)
-
-
-def speed_factor(position: Signal, speed: Signal) -> Fit | None:
-    """Return a speed per derivative of a position: from the integral of the speed, which quantisation does not blur.
-
-    Only the longest stretch without a gap in either is used.
-    """
-    breaks = [position.time[i] for i, _ in gaps(position.time)] + [speed.time[i] for i, _ in gaps(speed.time)]
-    edges = sorted({float(position.time[0]), *map(float, breaks), float(position.time[-1])})
-    start, stop = max(pairwise(edges), key=lambda pair: pair[1] - pair[0], default=(0.0, 0.0))
-    inside = (position.time > start) & (position.time <= stop) if breaks else np.ones(position.time.size, bool)
-    time, place = position.time[inside], position.values[inside]
-    if time.size < _FEWEST:
-        return None
-    rate = at_times(speed, time) if not breaks else np.interp(time, speed.time, speed.values)
-    kept = np.isfinite(rate)
-    time, place, rate = time[kept], place[kept], rate[kept]
-    if time.size < _FEWEST:
-        return None
-    travelled = np.concatenate(([0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) * np.diff(time))))
-    # An offset of the speed makes a ramp of its integral, which is no part of the factor.
-    ramp = np.column_stack((time - time[0], np.ones_like(time)))
-    flat_place, flat_travel = (side - ramp @ np.linalg.lstsq(ramp, side, rcond=None)[0] for side in (place, travelled))
-    inverse = fit(flat_travel, flat_place)
-    if inverse is None or inverse.factor == 0.0:
-        return None
-    return Fit(1.0 / inverse.factor, inverse.scatter, inverse.correlation)
 
 
 def _position(taken: Taken) -> tuple[Signal, str] | None:
@@ -174,6 +125,11 @@ def _speeds(taken: Taken, signals: Sequence[Signal], fixed: set[str], found: lis
             per_turn = 60.0 / abs(one.factor)
             text += f": no unit of a velocity; {per_turn:.4g} mm/rev if it is rev/min, of a motor behind a gear or lead"
         found.append(Finding("speed", text, one.factor, f"per ({written}/s)", one.scatter))
+        drift = clock_drift(place, signal) if any(signal is measured for measured, _ in taken.values()) else None
+        if drift is not None:
+            grows = f"{drift.factor * 1e6:+.0f} ± {drift.scatter * 1e6:.0f} ppm of the time"
+            text = f"two clocks: the lag of {name} behind {place.name} grows by {grows}"
+            found.append(Finding("two clocks", text, drift.factor, "1", drift.scatter))
 
 
 def _is_speed(signal: Signal, taken: Taken) -> bool:
@@ -225,10 +181,7 @@ def _give_unit(taken: Taken, signal: Signal, unit: str, one: Fit, fixed: set[str
             if conversion(unit, needed) is not None:
                 taken[channel] = signal, _settled(candidate, channel, unit, reason)
             elif channel not in fixed:
-                del taken[channel]
-                other = "table_velocity" if channel == "motor_speed" else "motor_speed"
-                if other not in taken:
-                    taken[other] = signal, _settled(candidate, other, unit, reason)
+                del taken[channel]  # an angle of the table, not of the motor, for which there is no channel
             return
 
 
@@ -236,9 +189,19 @@ def _settled(candidate: Candidate, channel: str, unit: str, reason: str) -> Cand
     return replace(candidate, channel=channel, unit=unit, reason=f"{candidate.reason}; {reason}", told=True)
 
 
+def _encoders(taken: Taken, found: list[Finding]) -> None:
+    """Say the ratio of a motor encoder and a direct one that a control counts in the unit of the axis."""
+    table, motor = taken.get("table_position"), taken.get(MOTOR_SIDE)
+    one = fit(at_times(motor[0], table[0].time), table[0].values) if table is not None and motor is not None else None
+    if one is None or one.scatter > _CLOSE or table is None or motor is None:
+        return
+    text = f"{table[0].name} per {motor[0].name} is {one.factor:.7g}, ± {one.scatter:.1g}: two encoders in one unit"
+    found.append(Finding("encoders", text, one.factor, "1", one.scatter))
+
+
 def _lead(taken: Taken, found: list[Finding]) -> None:
-    """Say the lead where motor angle and table position are there, and the ratio of two encoders in one unit."""
-    table, motor = taken.get("table_position"), taken.get("motor_angle") or taken.get(MOTOR_SIDE)
+    """Say the lead where motor angle and table position are there."""
+    table, motor = taken.get("table_position"), taken.get("motor_angle")
     if table is None or motor is None:
         return
     one = fit(at_times(motor[0], table[0].time), table[0].values)
@@ -249,9 +212,6 @@ def _lead(taken: Taken, found: list[Finding]) -> None:
         lead = one.factor * length.factor / angle.factor * 2.0 * math.pi
         text = f"{table[0].name} moves {format_quantity(lead, 'm')} per revolution of {motor[0].name}"
         found.append(Finding("lead", f"{text}, ± {one.scatter:.1g} of it", lead, "m/rev", one.scatter))
-    elif motor[1].channel == MOTOR_SIDE:
-        text = f"{table[0].name} per {motor[0].name} is {one.factor:.7g}: two encoders in one unit"
-        found.append(Finding("encoders", f"{text}, ± {one.scatter:.1g}", one.factor, "1", one.scatter))
 
 
 def _torque_constant(taken: Taken, signals: Sequence[Signal], fixed: set[str], found: list[Finding]) -> None:
@@ -281,8 +241,8 @@ def _sign(channel: str, taken: Taken, fixed: set[str], found: list[Finding]) -> 
         return
     speed, acceleration = motion
     limit = _MOVING * float(np.nanmax(np.abs(speed)))
-    reverses = bool(np.mean(speed > limit) > 0.05 and np.mean(speed < -limit) > 0.05)
-    share, by_acceleration, by_direction = _explained(
+    reverses = bool(np.sum(speed > limit) > FEWEST and np.sum(speed < -limit) > FEWEST)
+    share, by_acceleration, by_direction = explained(
         signal.values, acceleration, np.where(np.abs(speed) > limit, np.sign(speed), 0.0)
     )
     if one_sided and reverses and share < _EXPLAINS:
@@ -292,6 +252,9 @@ def _sign(channel: str, taken: Taken, fixed: set[str], found: list[Finding]) -> 
             text += " and is not used as torque"
         found.append(Finding("magnitude", text, float(np.min(signal.values)), "", share))
         return
+    if one_sided and not reverses and not np.all(signal.values == signal.values[0]):
+        text = f"{signal.name} never changes its sign, nor does the motion reverse: whether it has one cannot be told"
+        found.append(Finding("magnitude", text, float(np.min(signal.values)), "", share))
     if share >= _EXPLAINS and by_acceleration < 0.0 and by_direction < 0.0:
         text = f"{signal.name} acts against acceleration and motion, which explain {100 * share:.0f} % of it: its sign"
         text += " is reversed"
@@ -307,36 +270,14 @@ def _speed_and_acceleration(taken: Taken, time: FloatArray) -> tuple[FloatArray,
     speed_of = taken.get("motor_speed") or taken.get("table_velocity")
     if speed_of is not None:
         speed = at_times(speed_of[0], time)
-    elif place is not None and place[0].time.size > _FEWEST:
-        speed = np.interp(time, place[0].time, _smooth_slope(place[0].values, place[0].time))
+    elif place is not None and place[0].time.size > FEWEST:
+        speed = np.interp(time, place[0].time, smooth_slope(place[0].values, place[0].time))
     else:
         return None
-    if time.size < _FEWEST or not np.any(np.isfinite(speed)):
+    if time.size < FEWEST or not np.any(np.isfinite(speed)):
         return None
     speed = np.where(np.isfinite(speed), speed, 0.0)
-    return (speed, _smooth_slope(speed, time)) if np.ptp(speed) > 0.0 else None
-
-
-def _smooth_slope(values: FloatArray, time: FloatArray) -> FloatArray:
-    """Return the slope over ten samples, (n,): differences of neighbours show the quantisation of an encoder."""
-    wide = 5
-    padded, stamps = (np.pad(side, wide, mode="edge") for side in (values, time))
-    width = stamps[2 * wide :] - stamps[: -2 * wide]
-    slope: FloatArray = (padded[2 * wide :] - padded[: -2 * wide]) / np.where(width > 0.0, width, 1.0)
-    return slope
-
-
-def _explained(torque: FloatArray, acceleration: FloatArray, direction: FloatArray) -> tuple[float, float, float]:
-    """Return the share of a torque that a (acceleration) + b (direction) + c explains, and a and b."""
-    columns = np.column_stack((acceleration, direction, np.ones_like(torque)))
-    scale = np.maximum(np.max(np.abs(columns), axis=0), 1e-300)
-    kept = np.isfinite(torque)
-    if kept.sum() < _FEWEST:
-        return 0.0, 0.0, 0.0
-    factors = np.linalg.lstsq(columns[kept] / scale, torque[kept], rcond=None)[0]
-    rest = torque[kept] - columns[kept] / scale @ factors
-    whole = float(np.var(torque[kept]))
-    return (1.0 - float(np.var(rest)) / whole if whole > 0.0 else 0.0), float(factors[0]), float(factors[1])
+    return (speed, smooth_slope(speed, time)) if np.ptp(speed) > 0.0 else None
 
 
 def _following(taken: Taken, found: list[Finding]) -> None:
@@ -344,11 +285,11 @@ def _following(taken: Taken, found: list[Finding]) -> None:
     if "setpoint" not in taken or "table_position" not in taken:
         return
     (wanted, wanted_told), (place, told) = taken["setpoint"], taken["table_position"]
-    if not told.unit or wanted_told.unit != told.unit or place.time.size < _FEWEST:
+    if not told.unit or wanted_told.unit != told.unit or place.time.size < FEWEST:
         return
     target = at_times(wanted, place.time)
     kept = np.isfinite(target)
-    if kept.sum() < _FEWEST or np.ptp(target[kept]) == 0.0:
+    if kept.sum() < FEWEST or np.ptp(target[kept]) == 0.0:
         return
     one = fit(target, place.values)
     if one is None or one.correlation < 0.9 or not 0.5 <= one.factor <= 2.0:
@@ -358,7 +299,7 @@ def _following(taken: Taken, found: list[Finding]) -> None:
     to_si = conversion(told.unit, "m")
     assert to_si is not None
     error = (target - place.values)[kept] * to_si.factor
-    speed = _smooth_slope(place.values[kept], place.time[kept]) * to_si.factor  # the position loop asks for K_v e
+    speed = smooth_slope(place.values[kept], place.time[kept]) * to_si.factor  # the position loop asks for K_v e
     gain = fit(error, speed)
     value, unit, scatter = float(np.max(np.abs(error))), "m", one.scatter
     text = f"{place.name} follows {wanted.name}: following error up to {format_quantity(value, 'm')}"

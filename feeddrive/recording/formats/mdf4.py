@@ -2,20 +2,27 @@
 
 from __future__ import annotations
 
+import importlib.util
 import io
-import logging
-import warnings
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
 
 import numpy as np
 
+import feeddrive
 from feeddrive.errors import InputError
-from feeddrive.recording.formats.container import optional
+from feeddrive.recording.formats import mdf4_worker
+from feeddrive.recording.formats.container import not_installed
 from feeddrive.recording.formats.naming import axis_in
 from feeddrive.recording.formats.trace import Signal, Trace, clean, unique_names
 from feeddrive.recording.opening import FileContent
 from feeddrive.typing import FloatArray
 
 NAME = "MDF file"
+_LONGEST = 600.0  # s; a gigabyte takes ten, so more is a damaged file whose blocks run in a circle
 
 
 def recognises(data: bytes) -> bool:
@@ -30,27 +37,46 @@ def read(content: FileContent) -> Trace:
         InputError: asammdf is not installed, a damaged file, nothing numeric.
     """
     where = str(content.path)
-    library = optional("asammdf", "asammdf", "MDF files", where)
-    logging.getLogger("asammdf").setLevel(logging.CRITICAL)
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            with library.MDF(io.BytesIO(content.data)) as file:
-                found = [(one.name, one.unit or "", one.comment or "", one.timestamps, one.samples)
-                         for one in file.iter_channels(skip_master=True)]  # fmt: skip
-    except Exception as error:  # the library meets damage with errors of every kind
-        raise InputError(f"is a damaged {NAME}", where, "copy or save it again") from error
-    kept = [row for row in found if np.ndim(row[4]) == 1 and np.size(row[4]) > 1 and row[4].dtype.kind in "fiub"]
-    if not kept:
+    if importlib.util.find_spec("asammdf") is None:
+        raise not_installed("asammdf", "MDF files", where)
+    archive = _read_apart(content, where)
+    rows = json.loads(archive["names"].tobytes())
+    if not rows:
         raise InputError(f"this {NAME} holds no numeric channel", where, "record again")
     signals: list[Signal] = []
     times: list[FloatArray] = []
-    for name, (_, unit, about, stamps, samples) in zip(unique_names([row[0] for row in kept]), kept, strict=True):
-        time = np.ascontiguousarray(stamps, dtype=np.float64)
-        if time.size != samples.size or not np.all(np.diff(time) > 0.0):
+    names = unique_names([row[0] for row in rows])
+    for number, (name, (_, unit, about)) in enumerate(zip(names, rows, strict=True)):
+        time, values = archive[f"t{number}"], archive[f"v{number}"]
+        if time.size != values.size or not np.all(np.diff(time) > 0.0):
             raise InputError(f"the time of {name} does not increase", where, "record again")
         time = next((other for other in times if np.array_equal(other, time)), time)
         times.append(time)
-        values = np.ascontiguousarray(samples, dtype=np.float64)
-        signals.append(Signal(name, time, values, str(unit), axis_in(name), clean(str(about))))
+        signals.append(Signal(name, time, values, clean(unit), axis_in(name), clean(about)))
     return Trace(NAME, tuple(signals))
+
+
+def _read_apart(content: FileContent, where: str) -> dict[str, FloatArray]:
+    """Return the arrays that the worker read.
+
+    Raises:
+        InputError: it found damage, crashed or did not end.
+    """
+    path = os.pathsep.join((str(Path(feeddrive.__file__).parents[1]), os.environ.get("PYTHONPATH", "")))
+    try:
+        done = subprocess.run(
+            [sys.executable, "-m", mdf4_worker.__name__],
+            input=content.data,
+            capture_output=True,
+            timeout=_LONGEST,
+            check=False,
+            env={**os.environ, "PYTHONPATH": path.rstrip(os.pathsep)},
+        )
+    except subprocess.TimeoutExpired:
+        raise InputError(f"is a damaged {NAME}: reading does not end", where, "copy or save it again") from None
+    if done.returncode == mdf4_worker.ABSENT:
+        raise not_installed("asammdf", "MDF files", where)
+    if done.returncode != mdf4_worker.FINISHED:
+        raise InputError(f"is a damaged {NAME}", where, "copy or save it again")
+    with np.load(io.BytesIO(done.stdout), allow_pickle=False) as archive:
+        return {name: archive[name] for name in archive.files}

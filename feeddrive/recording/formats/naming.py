@@ -109,6 +109,11 @@ _RULES = (
     _rule(r"\bid 217\b", "table_position", "", "linear encoder, debug channel id(217)", 1),
     _rule(r"\bid 222\b", "setpoint", "", "commanded position, debug channel id(222)", 1),
     _rule(r"\bid 126\b", "motor_speed", "rad/s", "motor velocity, debug channel id(126)", 0),
+    # LinuxCNC: positions of joints, also of their motors, are in machine units
+    _rule(r"^joint \d+ pos fb$", "table_position", "", "position of the joint", 0),
+    _rule(r"^joint \d+ motor pos fb$", "table_position", "", "position of the joint's motor", 1),
+    _rule(r"^joint \d+ pos cmd$", "setpoint", "", "position set-point of the joint", 0),
+    _rule(r"^joint \d+ motor pos cmd$", "setpoint", "", "position set-point of the joint's motor", 1),
     # Any program: role and quantity in either order
     _rule(rf"\b{_NOMINAL} ?{_POSITION}\b|\b{_POSITION} ?{_NOMINAL}\b", "setpoint", "", "position set-point", 6),
     _rule(r"\b(?:linear (?:scale|encoder)|direct encoder|encoder 2|load (?:pos|position))\b",

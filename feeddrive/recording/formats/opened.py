@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 
@@ -26,7 +27,7 @@ from feeddrive.recording.formats.resampling import Series, gaps, on_one_grid, pa
 from feeddrive.recording.formats.trace import Signal, Trace, clean
 from feeddrive.recording.frequency_response import FrequencyResponse, read_response, recognises_response
 from feeddrive.recording.mapping import FileMapping, Hold, Variable
-from feeddrive.recording.opening import FileContent, decode, head_of, is_hdf5
+from feeddrive.recording.opening import FileContent, decode, head_of, is_hdf5, open_file
 from feeddrive.typing import FloatArray
 
 _FEWEST_STAMPS = 100
@@ -117,6 +118,21 @@ def _mean_step(signal: Signal) -> float:
     return float(signal.time[-1] - signal.time[0]) / (signal.time.size - 1)
 
 
+def read_frequency_response(path: Path) -> FrequencyResponse | None:
+    """Read a file that holds a frequency response; None if it holds anything else.
+
+    Raises:
+        InputError: the file cannot be opened, or is a damaged frequency response.
+    """
+    head = head_of(first_bytes(path))
+    if recognises_response(head):
+        return read_response(open_file(path))
+    if not sinumerik_frf.recognises(head):
+        return None
+    content = open_file(path)
+    return sinumerik_frf.read(content, decode(content)[0])
+
+
 def _binary(content: FileContent, wishes: Wishes) -> Trace | None:
     """Read a file of a binary format; None if it is none of them."""
     data = content.data
@@ -137,7 +153,8 @@ def understand(trace: Trace, wishes: Wishes, where: str) -> Understood:
     Raises:
         InputError: what a person wishes is not there, or the signals cannot be brought together.
     """
-    choice = choose(trace, wishes, where)
+    with np.errstate(over="ignore", invalid="ignore"):  # of values that no drive has; they are refused later
+        choice = choose(trace, wishes, where)
     notes = [*trace.notes, *_timing_notes([pick.signal for pick in choice.picks] or trace.signals)]
     notes += [f"{pick.channel} from {pick.signal.name}: {pick.reason}" for pick in choice.picks]
     notes += [finding.text for finding in choice.findings]
@@ -195,9 +212,9 @@ def mapped(trace: Trace, mapping: FileMapping, where: str) -> Understood:
     series = {}
     picks: list[Pick] = []
     for channel, variable in mapping.channels.items():
-        factors = [_named(name, by_name, where) for name in variable.names]
+        factors = [_named(name, by_name, where, variable.column) for name in variable.names]
         if mapping.time is not None:
-            clock = _named(mapping.time.names[0], by_name, where)
+            clock = _named(mapping.time.names[0], by_name, where, mapping.time.column)
             factors = [replace(one, time=_clock(clock, mapping.time, one, where)) for one in factors]
         if any(not same_time(one.time, factors[0].time) for one in factors):
             what = "signals that are multiplied were not sampled together"
@@ -211,10 +228,9 @@ def mapped(trace: Trace, mapping: FileMapping, where: str) -> Understood:
             values = np.concatenate((values[1:], values[-1:]))
         series[channel] = Series(factors[0].time, values)
         factor = variable.factor * variable.conversion.factor
-        picks.append(Pick(channel, by_name[variable.names[0]], "", factor, variable.offset, "by the mapping"))
+        picks.append(Pick(channel, factors[0], "", factor, variable.offset, "by the mapping"))
     wishes = Wishes(rate=mapping.rate, part=mapping.part)
-    timed = all(by_name[name].timed for variable in mapping.channels.values() for name in variable.names)
-    if not timed and mapping.time is None and mapping.sample_time is None:
+    if not all(pick.signal.timed for pick in picks) and mapping.time is None and mapping.sample_time is None:
         raise InputError(f"this {trace.format} holds no time", where, "add sample_time or [time] to the mapping")
     time, channels, notes = _on_grid(series, wishes, where)
     timing = _timing_notes([pick.signal for pick in picks])
@@ -222,7 +238,10 @@ def mapped(trace: Trace, mapping: FileMapping, where: str) -> Understood:
     return Understood(trace, Choice("", tuple(picks), (), ()), time, channels, said)
 
 
-def _named(name: str, by_name: dict[str, Signal], where: str) -> Signal:
+def _named(name: str, by_name: dict[str, Signal], where: str, column: int) -> Signal:
+    """Return a signal, or a column of a matrix."""
+    if name not in by_name and f"{name} column {column}" in by_name:
+        return by_name[f"{name} column {column}"]
     if name not in by_name:
         near = difflib.get_close_matches(name, by_name, n=1, cutoff=0.6)
         mend = f'did you mean "{near[0]}"?' if near else f"it holds {', '.join(list(by_name)[:12])}"

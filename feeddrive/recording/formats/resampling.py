@@ -60,9 +60,16 @@ def parts_of(series: Mapping[str, Series], where: str) -> list[Part]:
         InputError: channels that share no time, or irregular sampling.
     """
     common: list[Part] | None = None
-    for time in _distinct([one.time for one in series.values()]):
+    seen: list[tuple[FloatArray, float]] = []
+    for name, one in series.items():
+        time = one.time
         if time.size < 2:
             raise InputError("a channel has fewer than two samples", where, "record again, or leave it out")
+        # A torque acts, and a temperature stands, for a step beyond its last sample.
+        beyond = usual_step(time) if name in HELD or name.endswith("_temperature") else 0.0
+        if any(beyond == other and same_time(time, known) for known, other in seen):
+            continue
+        seen.append((time, beyond))
         breaks = [i for i, _ in gaps(time)]
         if len(breaks) > max(5.0, _MOST_PARTS * time.size):
             what = (
@@ -70,7 +77,7 @@ def parts_of(series: Mapping[str, Series], where: str) -> list[Part]:
             )
             raise InputError(what, where, "record or export it with an even clock")
         edges = [-1, *breaks, time.size - 1]
-        own = [Part(float(time[a + 1]), float(time[b])) for a, b in pairwise(edges)]
+        own = [Part(float(time[a + 1]), float(time[b]) + beyond) for a, b in pairwise(edges)]
         common = own if common is None else _both(common, own)
     if not common:
         raise InputError("the channels share no time", where, "map channels that were recorded together")
@@ -92,14 +99,6 @@ def part_read(parts: Sequence[Part], wished: int | None, where: str) -> tuple[in
 def _both(first: Sequence[Part], second: Sequence[Part]) -> list[Part]:
     overlaps = (Part(max(a.start, b.start), min(a.stop, b.stop)) for a in first for b in second)
     return [part for part in overlaps if part.stop > part.start]
-
-
-def _distinct(times: Sequence[FloatArray]) -> list[FloatArray]:
-    found: list[FloatArray] = []
-    for time in times:
-        if not any(same_time(time, other) for other in found):
-            found.append(time)
-    return found
 
 
 def same_time(first: FloatArray, second: FloatArray) -> bool:

@@ -99,7 +99,8 @@ def read_table(text: str, where: str, sample_time: float | None = None) -> Trace
         return [cells[i] for i in kept] if len(cells) == len(names) else cells
 
     if len(kept) == len(names):
-        values, notes = number_rows(lines[1:], split, len(names), 2, where, gaps=True)
+        fast = "" if comma else separator
+        values, notes = number_rows(lines[1:], split, len(names), 2, where, gaps=True, separator=fast)
     else:
         # A row of another length is told with all its cells: it does not reach the width of those that are kept.
         values, notes = number_rows(

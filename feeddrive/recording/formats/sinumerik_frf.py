@@ -44,6 +44,8 @@ def read(content: FileContent, text: str) -> FrequencyResponse:
     root = parse_xml(text, where)
     nodes = [_node(element, where) for element in root.iter("PlatformSignalNode")]
     nodes = [node for node in nodes if node.spectrum is not None]
+    if not nodes and any(True for _ in root.iter("FrequencyResponseFunction")):
+        return _tuned(root, content, where)
     given, output = _sides(root, nodes, where)
     cross = next(((once.conj(), f) for id_, once, f in output.crosses if id_ == given.id), None)
     if cross is None:
@@ -56,12 +58,49 @@ def read(content: FileContent, text: str) -> FrequencyResponse:
         raise InputError("the spectra differ in length", where, "export it again")
     if not np.all(given.spectrum.real > 0.0):
         raise InputError("the input was not excited at every frequency", where, "measure again")
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         coherence = np.abs(values) ** 2 / (given.spectrum.real * output.spectrum.real)
     names, unit, said = _names(root, given, output, (values / given.spectrum.real)[frequency > 0.0])
     notes = (f"{NAME}: from {names[0]} to {names[1]}", *said, *_clock(root, frequency, given))
     return FrequencyResponse(content.path.name, *names, unit, frequency, values / given.spectrum.real, coherence,
                              notes, where, content.sha256)  # fmt: skip
+
+
+def _tuned(root: Element, content: FileContent, where: str) -> FrequencyResponse:
+    """Read the plant of the speed loop that automatic servo tuning (AST) keeps, with the coherence beside it.
+
+    The file names neither signals nor units. The speed controller turns speed into torque, so its plant is taken as
+    the way from torque to speed, and that is said.
+    """
+    found: list[tuple[ComplexArray, FloatArray, FloatArray]] = []
+    for parent in root.iter():
+        functions = {one.get("name", ""): one for one in parent if one.tag == "FrequencyResponseFunction"}
+        plant = _vectors(functions["m_pPlant"], where) if "m_pPlant" in functions else None
+        if plant is None or not plant[0].size:
+            continue
+        beside = _vectors(functions["m_pMeasCoherence"], where) if "m_pMeasCoherence" in functions else None
+        fits = beside is not None and beside[0].size == plant[0].size
+        coherence = np.abs(beside[0]) if beside is not None and fits else np.full(plant[0].size, np.nan)
+        found.append((*plant, coherence))
+    if not found:
+        raise InputError("the file holds no measured response", where, "save the measurement with it at the control")
+    values, frequency, coherence = found[0]
+    if values.size != frequency.size:
+        raise InputError("the spectra differ in length", where, "export it again")
+    notes = [f"{NAME}, of automatic servo tuning: the plant of a speed loop, taken as motor_torque to motor_speed",
+             "the file does not say the unit of the magnitude: write it in the header of the CSV"]  # fmt: skip
+    if len(found) > 1:
+        notes.append(f"{len(found)} responses are in the file; the first is read")
+    notes += [f"a speed controller of the file has K_p {gain} and T_n {time}, in its own units"
+              for gain, time in _controllers(root)]  # fmt: skip
+    return FrequencyResponse(content.path.name, "motor_torque", "motor_speed", "", frequency, values, coherence,
+                             tuple(notes), where, content.sha256)  # fmt: skip
+
+
+def _controllers(root: Element) -> list[tuple[str, str]]:
+    """Return gain and integral time of each speed controller, as written, each pair once."""
+    pairs = ((_text(one, "m_dKpGain"), _text(one, "m_dIntegralTime")) for one in root.iter())
+    return list(dict.fromkeys(pair for pair in pairs if all(pair)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,13 +130,21 @@ def _node(element: Element, where: str) -> _Node:
 
 def _spectrum(info: Element, where: str) -> tuple[ComplexArray, FloatArray] | None:
     for spectrum in info.iter("CrossSpectrum"):
-        values, frequency = (_named(spectrum, name) for name in ("m_ValueVector", "m_FrequencyVector"))
-        if values is not None and frequency is not None:
-            pairs = _numbers(values, where)
-            if pairs.size % 2:
-                raise InputError("a complex spectrum has half a number", where, "export it again")
-            return pairs[0::2] + 1j * pairs[1::2], _numbers(frequency, where)
+        found = _vectors(spectrum, where)
+        if found is not None:
+            return found
     return None
+
+
+def _vectors(element: Element, where: str) -> tuple[ComplexArray, FloatArray] | None:
+    """Return complex values and frequencies [Hz] of an object, (n,) each; None where it has none."""
+    arrays = {one.get("name"): one for one in element.iter("NumericArray")}
+    if "m_ValueVector" not in arrays or "m_FrequencyVector" not in arrays:
+        return None
+    pairs = _numbers(arrays["m_ValueVector"], where)
+    if pairs.size % 2:
+        raise InputError("a complex spectrum has half a number", where, "export it again")
+    return pairs[0::2] + 1j * pairs[1::2], _numbers(arrays["m_FrequencyVector"], where)
 
 
 def _numbers(array: Element, where: str) -> FloatArray:

@@ -16,7 +16,7 @@ from xml.etree.ElementTree import Element
 import numpy as np
 
 from feeddrive.errors import InputError
-from feeddrive.recording.formats.trace import Signal, Trace, unique_names
+from feeddrive.recording.formats.trace import Signal, Trace, clean, unique_names
 from feeddrive.recording.formats.xml_tree import parse_xml
 from feeddrive.typing import FloatArray
 
@@ -24,6 +24,7 @@ NAME = "SINUMERIK Operate trace"
 _KINDS = {"posn": "position", "velo": "velocity", "velorot": "speed", "accel": "acceleration", "current": "current",
           "torque": "torque", "force": "force", "power": "power"}  # fmt: skip
 _MOST_POINTS = 20_000_000  # a day at 4 ms; more is a damaged time
+_NOTHING = 9.2188684e18  # bits of a double that is no number, written as a whole number where there was no value yet
 _OFF_GRID = 0.01  # of the interval: stamps are written in whole µs
 
 
@@ -66,7 +67,9 @@ def read(text: str, where: str) -> Trace:
         lost = header.get("dropOuts", "0").strip()
         if lost not in ("", "0"):
             notes.append(f"the control reports {lost} drop-outs: samples are missing and were held")
-    declared = [_declared(element, where) for element in frame.iter("dataSignal")]
+    declared = [_declared(element, where) for element in frame.iter() if _tag(element) == "dataSignal"]
+    if len({one.id for one in declared}) < len(declared):
+        raise InputError("two signals have one id", where, "save the trace again at the control")
     if not declared:
         raise InputError("the trace names no signal", where, "save it with its data at the control")
     times, values = _present(frame, {one.id for one in declared}, where)
@@ -77,16 +80,26 @@ def read(text: str, where: str) -> Trace:
         stop = _number(header.get("stopInc", "0"), f"{where}, frameHeader")
         end = max(end, stop) if math.isfinite(stop) else end
     signals, held = [], 0
+    finest = sorted({one.interval for one in declared if one.interval > 0.0})[:1]
     names = unique_names([one.name for one in declared])
     for name, one in zip(names, declared, strict=True):
         if not times[one.id]:
             notes.append(f"{name} has no value in the file and is left out")
             continue
-        signal, present = _on_its_grid(name, one, times[one.id], values[one.id], end, where)
+        stamps = np.array(times[one.id])
+        index, step = _grid(stamps, [one.interval, *finest])
+        if index is None:
+            notes.append(f"values of {name} do not lie on its grid of {one.interval * 1e3:g} ms; it is left out")
+            continue
+        if step != one.interval:
+            notes.append(f"values of {name} lie on a grid of {step * 1e3:g} ms, not of {one.interval * 1e3:g} ms")
+        signal, present = _on_its_grid(name, one, stamps[0] + step * index, step, values[one.id], end, where)
         signals.append(signal)
         held += signal.values.size - present
         if one.points and signal.values.size != one.points:
             notes.append(f"{name} declares {one.points} points, the file gives {signal.values.size}")
+    if not signals:
+        raise InputError(notes[-1], where, "save the trace again at the control")
     if held:
         notes.append(f"{held} values are not written because they did not change, and are held")
     return Trace(NAME, tuple(signals), tuple(notes))
@@ -114,18 +127,25 @@ def _present(frame: Element, ids: set[str], where: str) -> tuple[dict[str, list[
     """Return times and values that are written, by the id of their signal."""
     times: dict[str, list[float]] = {id_: [] for id_ in ids}
     values: dict[str, list[float]] = {id_: [] for id_ in ids}
+    kinds = {id_.rstrip("0123456789") for id_ in ids}
     before = -math.inf
     for number, record in enumerate(_records(frame), start=1):
         place = f"{where}, record {number}"
         at = _number(record.get("time", ""), place)
-        if not at > before or not math.isfinite(at):
+        if not at >= before or not math.isfinite(at):
             raise InputError("the time does not increase", place, "save the trace again at the control")
         before = at
         for key, written in record.items():
             if key in times:
-                times[key].append(at)
-                values[key].append(_number(written, place))
-            elif key != "time":
+                value = _number(written, place)
+                if times[key] and times[key][-1] == at:
+                    raise InputError(
+                        f'"{key}" has two values at one time', place, "save the trace again at the control"
+                    )
+                if value < _NOTHING:
+                    times[key].append(at)
+                    values[key].append(value)
+            elif key != "time" and key.rstrip("0123456789") in kinds:
                 raise InputError(f'a value of the unknown signal "{key}"', place, "save the trace again at the control")
     if before == -math.inf:
         raise InputError("the trace holds no record", where, "save it with its data at the control")
@@ -143,23 +163,29 @@ def _number(written: str, place: str) -> float:
     try:
         return float(plain.replace(",", "."))
     except ValueError:
-        shown = written if len(written) <= 40 else written[:37] + "..."
+        shown = clean(written)
         raise InputError(f'"{shown}" is not a number', place, "save the trace again at the control") from None
 
 
+def _grid(stamps: FloatArray, steps: list[float]) -> tuple[FloatArray | None, float]:
+    """Return the places of stamps, (n,), on the first grid that they lie on, and its step [s]; None if on no grid.
+
+    A bit of the PLC is written when it changes, in a cycle that may be finer than the one that is declared for it.
+    """
+    for step in steps:
+        if step > 0.0:
+            places = (stamps - stamps[0]) / step
+            index = np.round(places)
+            if np.max(np.abs(places - index)) <= _OFF_GRID * max(1.0, 1e-3 / step) and np.all(np.diff(index) >= 1):
+                return index, step
+    return None, 0.0
+
+
 def _on_its_grid(
-    name: str, one: _Declared, times: list[float], values: list[float], end: float, where: str
+    name: str, one: _Declared, stamps: FloatArray, step: float, values: list[float], end: float, where: str
 ) -> tuple[Signal, int]:
     """Return a signal on its own grid, the last value held, and how many of its points are written."""
-    stamps = np.array(times)
-    step = one.interval or (float(np.min(np.diff(stamps))) if stamps.size > 1 else 0.0)
-    if step <= 0.0:
-        raise InputError(f"the interval of {name} is not known", where, "save the trace again at the control")
-    places = (stamps - stamps[0]) / step
-    index = np.round(places)
-    if np.max(np.abs(places - index)) > _OFF_GRID * max(1.0, 1e-3 / step) or np.any(np.diff(index) < 1):
-        what = f"values of {name} do not lie on its grid of {step * 1e3:g} ms"
-        raise InputError(what, where, "save the trace again at the control")
+    index = np.round((stamps - stamps[0]) / step)
     until_end = (end - stamps[0]) / step + _OFF_GRID + 1.0
     if until_end > _MOST_POINTS:
         raise InputError(f"{name} would have {until_end:.3g} points", where, "save a shorter trace")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import logging
 import warnings
 from typing import Any
 
@@ -31,6 +32,8 @@ def read(content: FileContent, sample_time: float | None) -> Trace:
     """
     where = str(content.path)
     library = optional("nptdms", "npTDMS", "TDMS files", where)
+    for name in [name for name in logging.root.manager.loggerDict if name.startswith("nptdms")]:
+        logging.getLogger(name).setLevel(logging.CRITICAL)  # each of its modules has a level of its own
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of the library, about a last segment that was cut short

@@ -13,7 +13,7 @@ import numpy as np
 
 from feeddrive.errors import InputError
 from feeddrive.recording.formats.rows import number_rows
-from feeddrive.recording.formats.trace import Signal, Trace, unique_names
+from feeddrive.recording.formats.trace import Signal, Trace, clean, unique_names
 from feeddrive.typing import FloatArray
 
 NAME = "TNCscope trace"
@@ -55,7 +55,8 @@ def read(text: str, where: str) -> Trace:
             cells.pop()
         return cells
 
-    values, notes = number_rows(lines[first:], split, width, first + 1, where)
+    separator = "" if comma else ";"
+    values, notes = number_rows(lines[first:], split, width, first + 1, where, separator=separator)
     stamps = values[:, 0]
     bad = np.flatnonzero(~(np.diff(stamps) > 0.0))
     if bad.size:
@@ -65,7 +66,7 @@ def read(text: str, where: str) -> Trace:
     names = unique_names([_name(curve) for curve in curves])
     signals = tuple(
         Signal(name, time, np.ascontiguousarray(values[:, column - 1]), _unit(curve), _axis(curve),
-               curve.keys.get("CHANNELTYPE", ""))
+               clean(f"{curve.keys.get('CHANNELTYPE', '')} {curve.keys.get('DIMENSION', '')}"))
         for name, curve, column in zip(names, curves, columns, strict=True)
     )  # fmt: skip
     notes = (*_control(keys), *notes, *_counts(curves, names, stamps.size), *_cycles(curves, names, time))

@@ -6,16 +6,18 @@ the numbers is told by the numbers: that of the header follows the language of t
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from itertools import accumulate, combinations
+import re
+from itertools import accumulate
 
 import numpy as np
 
 from feeddrive.errors import InputError
 from feeddrive.recording.formats.naming import axis_in
-from feeddrive.recording.formats.trace import Signal, Trace, unique_names
+from feeddrive.recording.formats.rows import whole_rows
+from feeddrive.recording.formats.trace import Signal, Trace, clean, unique_names
 from feeddrive.recording.formats.twincat_header import Header, read_header
-from feeddrive.typing import FloatArray
+from feeddrive.recording.formats.twincat_scaling import scaled
+from feeddrive.typing import BoolArray, FloatArray
 
 NAME = "TwinCAT 3 Scope export"
 _CHUNK = 20_000  # rows that are held as text at a time
@@ -47,7 +49,7 @@ def read(text: str, where: str) -> Trace:
         _refuse_unordered(time, header.first_line + 1, names[first], where)
         signals.extend(_signal(header, names, first + i, time, table.column(group, 1 + i))
                        for i in range(header.groups[group]))  # fmt: skip
-    signals, said = _scaled(signals, header)
+    signals, said = scaled(signals, header)
     return Trace(NAME, tuple(signals), (*header.notes, *table.notes, *said))
 
 
@@ -106,6 +108,8 @@ class _Table:
 
     def _take(self, lines: list[str], first_row: int, end: int) -> None:
         """Take rows of text; `end` is the row behind the last of the file, which may be cut short."""
+        if self._take_whole(lines):
+            return
         kept: list[list[list[str]]] = [[] for _ in self._spans]
         for row, line in enumerate(lines, start=first_row):
             cells = self._cells_of(line, row)
@@ -125,6 +129,55 @@ class _Table:
                 numbers = self._numbers(rows, first_row, group)
                 for index in range(numbers.shape[1]):
                     self._parts[group][index].append(np.ascontiguousarray(numbers[:, index]))
+
+    def _take_whole(self, lines: list[str]) -> bool:
+        """Take rows in one go where each group is whole or absent, as in any undamaged file; tell whether they were."""
+        separator = self._header.separator
+        text = "\n".join(lines)
+        if "nan" in text.lower() or '"' in text or (separator == " " and "  " in text):
+            return False
+        text = text.replace(",", ".") if self._decimal_comma else text
+        sign = re.escape(separator)
+        if separator != " ":
+            text = re.sub(rf"(?m)^ *(?={sign})", "nan", text)
+            text = re.sub(rf"(?<={sign}) *(?={sign}|$)", "nan", text, flags=re.MULTILINE)
+        rows = text.split("\n")
+        counts = [line.count(separator) for line in rows]
+        taken: list[tuple[int, FloatArray]] = []
+        ended = list(self._ended)
+        start = 0
+        while start < len(rows):
+            stop = start + 1
+            while stop < len(rows) and counts[stop] == counts[start]:
+                stop += 1
+            numbers = whole_rows(rows[start:stop], separator, counts[start] + 1)
+            if numbers is None or len(taken) > 40 * len(self._spans) or not self._fits(numbers, ended, taken):
+                return False
+            start = stop
+        for group, columns in taken:
+            for index in range(columns.shape[1]):
+                self._parts[group][index].append(np.ascontiguousarray(columns[:, index]))
+        self._ended = ended
+        return True
+
+    def _fits(self, numbers: FloatArray, ended: list[bool], taken: list[tuple[int, FloatArray]]) -> bool:
+        """Add the groups of rows of one width to those taken; tell whether every group was whole, and then absent."""
+        missing: BoolArray = np.isnan(numbers)
+        for group, (a, b) in enumerate(self._spans):
+            if a >= numbers.shape[1]:
+                ended[group] = True
+                continue
+            if b > numbers.shape[1] and not missing[:, a:].all():
+                return False
+            absent: BoolArray = np.all(missing[:, a:b], axis=1)
+            there: BoolArray = ~np.any(missing[:, a:b], axis=1)
+            rows = int(np.sum(there))
+            if not np.all(absent | there) or not there[:rows].all() or (rows and ended[group]):
+                return False
+            ended[group] = rows < there.size
+            if rows:
+                taken.append((group, numbers[:rows, a:b]))
+        return bool(np.all(missing[:, self._spans[-1][1] :])) and not bool(missing.all(axis=1).any())
 
     def _present(self, cells: list[str], row: int) -> list[bool]:
         place = f"{self._where}, row {row}"
@@ -189,7 +242,7 @@ class _Table:
         try:
             return float(_NO_NUMBERS.get(cell.lower(), cell))
         except ValueError:
-            shown = cell if len(cell) <= 40 else cell[:37] + "..."
+            shown = clean(cell)
             place = f"{self._where}, row {row}"
             raise InputError(f'"{shown}" is not a number', place, "export it again, or correct the cell") from None
 
@@ -221,69 +274,3 @@ def _signal(header: Header, names: list[str], index: int, time: FloatArray, valu
     unit = cell("Unit").split(" ")[0]
     symbol = cell("SymbolName")
     return Signal(names[index], time, values, "" if unit == "(None)" else unit, axis_in(symbol, names[index]), symbol)
-
-
-@dataclass(frozen=True)
-class _Scaling:
-    """What the Scope shows of a raw value: (raw factor + offset) unit_factor + unit_offset."""
-
-    factor: float
-    offset: float
-    unit_factor: float
-    unit_offset: float
-
-    def apply(self, raw: FloatArray) -> FloatArray:
-        """Return what is shown of raw values, (n,)."""
-        return (raw * self.factor + self.offset) * self.unit_factor + self.unit_offset
-
-    @property
-    def neutral(self) -> bool:
-        return self == _Scaling(1.0, 0.0, 1.0, 0.0)
-
-
-def _scalings(header: Header, count: int) -> list[_Scaling]:
-    columns = []
-    for key, neutral in (("ScaleFactor", "1"), ("Offset", "0"), ("Unit ScaleFactor", "1"), ("Unit Offset", "0")):
-        cells = header.attributes.get(key, [neutral] * count)
-        columns.append([_float(cell or neutral) for cell in cells])
-    return [_Scaling(*row) for row in zip(*columns, strict=True)]
-
-
-def _scaled(signals: list[Signal], header: Header) -> tuple[list[Signal], tuple[str, ...]]:
-    """Apply the scaling of the header if the export left it out, which no line of the file says.
-
-    The option `Scale values before export` decides it. Two channels of one symbol tell: raw they are equal, scaled they
-    are as their scalings. Without such a pair the scaling is taken as applied, which is the usual export, and said.
-    """
-    scalings = _scalings(header, len(signals))
-    shown = ", ".join(s.name for s, scaling in zip(signals, scalings, strict=True) if not scaling.neutral)
-    if not shown:
-        return signals, ()
-    votes = set()
-    for i, j in combinations(range(len(signals)), 2):
-        first, second = signals[i], signals[j]
-        same = first.about and first.about == second.about and np.array_equal(first.time, second.time)
-        if not same or scalings[i] == scalings[j]:
-            continue
-        # Times a scaling that has an inverse, only where one of the two is neutral: nothing is divided by zero.
-        if scalings[i].neutral or scalings[j].neutral:
-            plain, other = (i, j) if scalings[i].neutral else (j, i)
-            expected = scalings[other].apply(signals[plain].values)
-            if np.array_equal(first.values, second.values):
-                votes.add(False)
-            elif np.allclose(signals[other].values, expected, rtol=1e-6, atol=0.0):  # REAL32 has seven digits
-                votes.add(True)
-    if votes == {False}:
-        made = [replace(s, values=scaling.apply(s.values)) for s, scaling in zip(signals, scalings, strict=True)]
-        return made, (f"exported without scaling, as channels of one symbol show; applied by the header to {shown}",)
-    how = "applied in the export, as channels of one symbol show" if votes == {True} else (
-        "taken as applied (the option Scale values before export); if it was off, give factor and offset in a mapping"
-    )  # fmt: skip
-    return signals, (f"scale factors or offsets stand in the header for {shown}: {how}",)
-
-
-def _float(cell: str) -> float:
-    try:
-        return float(cell.replace(",", "."))
-    except ValueError:
-        return float("nan")

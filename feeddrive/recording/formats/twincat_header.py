@@ -14,8 +14,11 @@ from math import comb
 
 from feeddrive.errors import InputError
 
-_STRUCTURE = "Data-Type"  # one word for every channel, without blank or comma: it shows the columns whatever separates
-_ATTRIBUTES = ("Name", "SymbolComment", _STRUCTURE, "SampleTime[ms]", "VariableSize", "SymbolBased", "IndexGroup",
+_STRUCTURES = ("Data-Type", "VariableSize", "SymbolBased", "IndexGroup", "IndexOffset", "Port", "ScaleFactor",
+               "BitMask", "Offset")  # fmt: skip
+"""Rows of one word for every channel, without blank or comma: they show the columns whatever separates. An export may
+leave some of them out."""
+_ATTRIBUTES = ("Name", "SymbolComment", "Data-Type", "SampleTime[ms]", "VariableSize", "SymbolBased", "IndexGroup",
                "IndexOffset", "SymbolName", "NetID", "Port", "Offset", "ScaleFactor", "BitMask", "Unit",
                "Unit ScaleFactor", "Unit Offset")  # fmt: skip
 _UNIT_CELL = re.compile(r"\(None\)|\S+(?: \((?!None\))[^()]*\))?")
@@ -50,13 +53,11 @@ def read_header(lines: list[str], where: str) -> Header:
         InputError: no second block, or rows of it that do not fit each other.
     """
     separator = lines[0][4:5]
-    structure = next((i for i, line in enumerate(lines[:200]) if line.startswith(_STRUCTURE + separator)), None)
-    if structure is None:
-        raise InputError('the row "Data-Type" of the channels is missing', where, "export it again, with its header")
-    top = max(i for i in range(structure) if lines[i].startswith("Name" + separator))
+    structure, mark = _structure(lines[:200], separator, where)
+    top = max((i for i in range(structure + 1) if lines[i].startswith("Name" + separator)), default=structure)
     blank = (i for i in range(structure, len(lines)) if not lines[i].strip(separator + " "))
     end = next(blank, len(lines))
-    marks = [cell == _STRUCTURE for cell in _cells(lines[structure], separator)]
+    marks = [cell == mark for cell in _cells(lines[structure], separator)]
     groups = _widths(marks)
     if any(width == 0 for width in groups):
         raise InputError("a time column has no channel", f"{where}, row {structure + 1}", "export it again")
@@ -64,7 +65,19 @@ def read_header(lines: list[str], where: str) -> Header:
     attributes = {name: cells for name, number in rows.items() if name not in ("Name", "SymbolComment")
                   if (cells := _attribute_cells(lines[number], name, separator, groups)) is not None}  # fmt: skip
     names, said = _names(lines[top], separator, groups, attributes.get("SymbolName"), f"{where}, row {top + 1}")
-    return Header(separator, groups, {**attributes, "Name": names}, _start(lines[:top], separator), end + 1, said)
+    first = end
+    while first < len(lines) and not lines[first].strip(separator + " "):  # an export may add an empty line
+        first += 1
+    return Header(separator, groups, {**attributes, "Name": names}, _start(lines[:top], separator), first, said)
+
+
+def _structure(lines: list[str], separator: str, where: str) -> tuple[int, str]:
+    """Return the index of the row that shows the columns, and the word that stands in it above every time."""
+    for mark in (*_STRUCTURES, *(() if separator == " " else ("Name",))):
+        found = [i for i, line in enumerate(lines) if line.startswith(mark + separator)]
+        if found and (mark != "Name" or any(line.startswith("Starttime of export") for line in lines[: found[-1]])):
+            return found[-1] if mark == "Name" else found[0], mark
+    raise InputError("the rows that tell the channels are missing", where, "export it again, with its whole header")
 
 
 def _attribute(line: str, separator: str) -> str:
