@@ -9,7 +9,9 @@ An effect that the search took is not reported as found where
   effect worsens it most.
 
 One name goes at a time, that with the least gain of those that are denied: of two that say the same the other may then
-stand. Effects that differ between recordings are left to those who compare the recordings.
+stand. An effect that differs between the fitted recordings may be absent from the judged one, and is denied by the last
+alone. Where the judged recording is known to differ in a level from the fitted ones (`judged_changes`), gain and
+worsening are asked with that level allowed for.
 """
 
 from __future__ import annotations
@@ -26,6 +28,7 @@ from feeddrive.diagnose.coordinates import absent_coordinates, coordinate_ends, 
 from feeddrive.diagnose.cross_validation import compare_left_out
 from feeddrive.diagnose.fit import Fit, Problem, fit
 from feeddrive.diagnose.judge import Judged, Share, error_series, judged_channels, share_of
+from feeddrive.diagnose.recordings.judged_changes import judged_changes
 from feeddrive.diagnose.recordings.recordings import RecordingShift, is_shift, without_shifts
 from feeddrive.diagnose.search import Search
 from feeddrive.effects.base import Effect
@@ -58,7 +61,7 @@ def without_denied(
     while (denied := _first_denied(found, judged)) is not None:
         effects = found.fit.effects
         gone = effects[denied.place]
-        rest = tuple(effect for i, effect in enumerate(effects) if i != denied.place)
+        rest = _without_lost_shifts([effect for i, effect in enumerate(effects) if i != denied.place])
         still_named = any(effect.name == gone.name for effect in rest)
         reasons = found.impossible if still_named else {**found.impossible, gone.name: denied.reason}
         found = replace(found, fit=fit(found.problem, rest), impossible=reasons)
@@ -68,20 +71,37 @@ def without_denied(
 
 def _first_denied(found: Search, judged: Sequence[Judged]) -> Denied | None:
     """The denied effect with the least gain on data not fitted; None where there is none."""
-    effects = found.fit.effects
-    named = [i for i in range(len(without_shifts(effects))) if not _differs(effects, i)]
+    effects, problem = found.fit.effects, found.problem
+    named = range(len(without_shifts(effects)))
     if not named:
         return None
-    shares = {i: share_of(found.problem, judged, effects, i) for i in named}
-    at_end, around_none = ends_reached(found.problem, found.fit), sizes_around_none(found.problem, found.fit)
-    denied = []
-    for i in named:
-        reason = at_end[i] or _no_gain(shares[i]) or around_none[i]
-        if reason:
-            denied.append(Denied(i, shares[i].comparison.gain, reason))
-    if not denied:
-        denied = _worsening(found.problem, judged, shares)
+    shares = [share_of(problem, judged, effects, i) for i in named]
+    idle, worst = [_no_gain(share) for share in shares], _worst_channel(problem, judged)
+    other = judged_changes(found, judged) if worst or any(idle) else None
+    if other is not None and other.carries:
+        idle = ["" if carries else reason for reason, carries in zip(idle, other.carries, strict=True)]
+        worst = _worst_channel(other.problem, other.allowed)
+    at_end, around_none = ends_reached(problem, found.fit), sizes_around_none(problem, found.fit)
+    denied = [
+        Denied(i, shares[i].comparison.gain, at_end[i] or idle[i] or around_none[i])
+        for i in named
+        if (at_end[i] or idle[i] or around_none[i]) and not _differs(effects, i)
+    ]
+    if worst and not denied:
+        place = min(named, key=lambda i: shares[i].explains[worst])
+        reason = f"with it {worst} is predicted worse than as declared on data not fitted, by more than its scatter"
+        denied = [Denied(place, shares[place].comparison.gain, reason)]
     return min(denied, key=lambda one: one.gain, default=None)
+
+
+def _without_lost_shifts(effects: Sequence[Effect]) -> tuple[Effect, ...]:
+    """The effects without differences of recordings that belong to none of them."""
+    machine = without_shifts(effects)
+    return tuple(
+        effect
+        for effect in effects
+        if not isinstance(effect, RecordingShift) or any(effect.target.meets(one) for one in machine)
+    )
 
 
 def _differs(effects: Sequence[Effect], place: int) -> bool:
@@ -165,15 +185,11 @@ def _is_told(covariance: FloatArray, beyond: FloatArray, half: FloatArray, group
     return square > float(chi2.ppf(0.95, len(group)))
 
 
-def _worsening(problem: Problem, judged: Sequence[Judged], shares: dict[int, Share]) -> list[Denied]:
-    """For the channel that is worse than declared by the most, the effect that worsens it most."""
-    worst = max(judged_channels(judged), key=lambda name: worse_by(problem, judged, name))
-    by = worse_by(problem, judged, worst)
-    if by <= 0:
-        return []
-    place = min(shares, key=lambda i: shares[i].explains[worst])
-    reason = f"with it {worst} is predicted worse than as declared on data not fitted, by more than its scatter"
-    return [Denied(place, shares[place].comparison.gain, reason)]
+def _worst_channel(problem: Problem, judged: Sequence[Judged]) -> str:
+    """The channel that is worse than declared by the most, beyond its scatter; empty where none is."""
+    worse = {name: worse_by(problem, judged, name) for name in judged_channels(judged)}
+    name = max(worse, key=lambda one: worse[one])
+    return name if worse[name] > 0 else ""
 
 
 def worse_by(problem: Problem, judged: Sequence[Judged], name: str) -> float:
