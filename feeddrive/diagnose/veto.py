@@ -3,7 +3,8 @@
 An effect that the search took is not reported as found where
 
 - a value of it ran to the end of what is physical: the end is no estimate;
-- it does not lower the error on the judged data, or by less than its scatter where they could show it;
+- it does not lower the error on the judged data by more than its scatter; where they could hardly show it, the
+  gain on blocks left out of the fit must be three times its scatter instead;
 - the intervals of all its sizes hold the absent effect (no amplitude, a factor of one);
 - a channel is predicted worse with what was found than as declared, by more than the scatter of its rms, and this
   effect worsens it most.
@@ -25,8 +26,9 @@ from scipy.stats import chi2
 
 from feeddrive.diagnose.certainty.uncertainty import certainty
 from feeddrive.diagnose.coordinates import absent_coordinates, coordinate_ends, read_coordinates
-from feeddrive.diagnose.cross_validation import compare_left_out
+from feeddrive.diagnose.cross_validation import Comparison, compare_left_out, left_out_residual
 from feeddrive.diagnose.fit import Fit, Problem, fit
+from feeddrive.diagnose.folds import block_numbers
 from feeddrive.diagnose.judge import Judged, Share, error_series, judged_channels, share_of
 from feeddrive.diagnose.recordings.judged_changes import judged_changes
 from feeddrive.diagnose.recordings.recordings import RecordingShift, is_shift, without_shifts
@@ -37,6 +39,10 @@ from feeddrive.typing import FloatArray, IntegerArray
 
 SCATTER = 2.0
 """Standard deviations by which a channel must be worse: one of forty by chance."""
+
+SURE = 3.0
+"""Gain over its standard error, on blocks left out, of what the judged data cannot confirm: one of 700 by chance,
+as some hundred candidates and starts are tried."""
 
 
 @dataclass(frozen=True)
@@ -76,7 +82,7 @@ def _first_denied(found: Search, judged: Sequence[Judged]) -> Denied | None:
     if not named:
         return None
     shares = [share_of(problem, judged, effects, i) for i in named]
-    idle, worst = [_no_gain(share) for share in shares], _worst_channel(problem, judged)
+    idle, worst = [_no_gain(found, i, share) for i, share in enumerate(shares)], _worst_channel(problem, judged)
     other = judged_changes(found, judged) if worst or any(idle) else None
     if other is not None and other.carries:
         idle = ["" if carries else reason for reason, carries in zip(idle, other.carries, strict=True)]
@@ -108,13 +114,30 @@ def _differs(effects: Sequence[Effect], place: int) -> bool:
     return any(isinstance(one, RecordingShift) and one.target.meets(effects[place]) for one in effects)
 
 
-def _no_gain(share: Share) -> str:
-    gain = share.comparison.gain
-    if gain <= max(share.comparison.least, 0.0):
-        return f"it was taken on the fitted data, but does not lower the error on data not fitted ({-gain:+.2%})"
-    if not share.carries and share.shows:
-        return f"on data not fitted it lowers the squared error by {gain:.2%}, less than its scatter"
-    return ""
+def _no_gain(found: Search, place: int, share: Share) -> str:
+    """Why data not fitted deny an effect; empty where they do not."""
+    comparison = share.comparison
+    if share.carries:
+        return ""
+    if share.shows:
+        scatter = max(comparison.standard_error, comparison.least)
+        return f"on the judged data it lowers the squared error by {comparison.gain:.2%}, scatter {scatter:.2%}"
+    inside = _left_out_gain(found, place)
+    if inside.gain > SURE * inside.standard_error:
+        return ""
+    return (
+        f"the judged data hardly show it, and on blocks left out of the fit it lowers the squared error by "
+        f"{inside.gain:.2%}, scatter {inside.standard_error:.2%}"
+    )
+
+
+def _left_out_gain(found: Search, place: int) -> Comparison:
+    """What an effect brings on blocks left out of the fit, the others refitted without it."""
+    problem, effects = found.problem, found.fit.effects
+    rest = fit(problem, [*effects[:place], *effects[place + 1 :]], iterations=2)
+    blocks = block_numbers(problem)
+    without, having = (left_out_residual(problem, one, blocks) for one in (rest, found.fit))
+    return compare_left_out(without, having, blocks)
 
 
 def ends_reached(problem: Problem, fitted: Fit) -> list[str]:
