@@ -25,14 +25,14 @@ import numpy as np
 from scipy.stats import chi2
 
 from feeddrive.diagnose.certainty.uncertainty import certainty
-from feeddrive.diagnose.coordinates import absent_coordinates, coordinate_ends, read_coordinates
+from feeddrive.diagnose.coordinates import absent_coordinates, coordinate_ends, read_coordinates, write_coordinates
 from feeddrive.diagnose.cross_validation import Comparison, compare_left_out, left_out_residual
-from feeddrive.diagnose.fit import Fit, Problem, fit
+from feeddrive.diagnose.fit import Fit, Problem, fit, linear_step
 from feeddrive.diagnose.folds import block_numbers
-from feeddrive.diagnose.judge import Judged, Share, error_series, judged_channels, share_of
+from feeddrive.diagnose.judge import Judged, Share, error_series, judged_channels, share_beyond, share_of
 from feeddrive.diagnose.recordings.judged_changes import judged_changes
 from feeddrive.diagnose.recordings.recordings import RecordingShift, is_shift, without_shifts
-from feeddrive.diagnose.search import Search
+from feeddrive.diagnose.search import CLEARLY_NEEDED, Search
 from feeddrive.effects.base import Effect
 from feeddrive.quantity import format_quantity
 from feeddrive.typing import FloatArray, IntegerArray
@@ -81,7 +81,7 @@ def _first_denied(found: Search, judged: Sequence[Judged]) -> Denied | None:
     named = range(len(without_shifts(effects)))
     if not named:
         return None
-    shares = [share_of(problem, judged, effects, i) for i in named]
+    shares = [_share(found, judged, i) for i in named]
     idle, worst = [_no_gain(found, i, share) for i, share in enumerate(shares)], _worst_channel(problem, judged)
     other = judged_changes(found, judged) if worst or any(idle) else None
     if other is not None and other.carries:
@@ -98,6 +98,19 @@ def _first_denied(found: Search, judged: Sequence[Judged]) -> Denied | None:
         reason = f"with it {worst} is predicted worse than as declared on data not fitted, by more than its scatter"
         denied = [Denied(place, shares[place].comparison.gain, reason)]
     return min(denied, key=lambda one: one.gain, default=None)
+
+
+def _share(found: Search, judged: Sequence[Judged], place: int) -> Share:
+    """What an effect explains; where that is much, the others are moved by one linear step only, not refitted."""
+    problem, effects = found.problem, found.fit.effects
+    rest = (*effects[:place], *effects[place + 1 :])
+    counts = [len(read_coordinates([effect], problem.plant)) for effect in effects]
+    columns = slice(sum(counts[:place]), sum(counts[: place + 1]))
+    step = linear_step(np.delete(found.fit.jacobian, columns, axis=1), problem.residual(rest))
+    moved = write_coordinates(rest, problem.plant, np.delete(found.fit.coordinates, columns) + step)
+    share = share_beyond(problem, judged, moved)
+    clear = share.comparison.gain > max(CLEARLY_NEEDED, SURE * share.comparison.standard_error)
+    return share if clear else share_of(problem, judged, effects, place)
 
 
 def _without_lost_shifts(effects: Sequence[Effect]) -> tuple[Effect, ...]:
