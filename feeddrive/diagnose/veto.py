@@ -25,7 +25,13 @@ import numpy as np
 from scipy.stats import chi2
 
 from feeddrive.diagnose.certainty.uncertainty import certainty
-from feeddrive.diagnose.coordinates import absent_coordinates, coordinate_ends, read_coordinates, write_coordinates
+from feeddrive.diagnose.coordinates import (
+    LEFT,
+    absent_coordinates,
+    coordinate_ends,
+    read_coordinates,
+    write_coordinates,
+)
 from feeddrive.diagnose.cross_validation import Comparison, compare_left_out, left_out_residual
 from feeddrive.diagnose.fit import Fit, Problem, fit, linear_step
 from feeddrive.diagnose.folds import block_numbers
@@ -33,7 +39,8 @@ from feeddrive.diagnose.judge import Judged, Share, error_series, judged_channel
 from feeddrive.diagnose.recordings.judged_changes import judged_changes
 from feeddrive.diagnose.recordings.recordings import RecordingShift, is_shift, without_shifts
 from feeddrive.diagnose.search import CLEARLY_NEEDED, Search
-from feeddrive.effects.base import Effect
+from feeddrive.effects.base import ChainEffect, Effect
+from feeddrive.plant.plant import Plant
 from feeddrive.quantity import format_quantity
 from feeddrive.typing import FloatArray, IntegerArray
 
@@ -159,6 +166,7 @@ def ends_reached(problem: Problem, fitted: Fit) -> list[str]:
     Where the end is the absent effect, or a default, it is a value as any other: a damper of nothing, a share of none.
     """
     result = []
+    too_little = _leaves_too_little(problem, fitted.effects)
     for effect in fitted.effects:
         vector = read_coordinates([effect], problem.plant)
         low, high = coordinate_ends([effect], problem.plant)
@@ -167,8 +175,20 @@ def ends_reached(problem: Problem, fitted: Fit) -> list[str]:
         # a coordinate is not resolved below the step of the slopes
         near = np.minimum(np.abs(vector - low), np.abs(high - vector)) < 1e-4 * np.maximum(1.0, np.abs(vector))
         plain = np.isclose(vector, absent) | (np.isclose(vector, defaults) & np.isnan(absent))
-        result.append(_end_sentence(effect) if np.any(near & ~plain) and not is_shift(effect) else "")
+        ended = np.any(near & ~plain) or (too_little and isinstance(effect, ChainEffect))
+        result.append(_end_sentence(effect) if ended and not is_shift(effect) else "")
     return result
+
+
+def _leaves_too_little(problem: Problem, effects: Sequence[Effect]) -> bool:
+    """Whether several effects together leave less of a mass, an inertia or a stiffness than one may."""
+    if not isinstance(problem.plant, Plant):
+        return False
+    declared = problem.plant.chain_values()
+    after = problem.plant.with_effects(*without_shifts(effects)).chain_values()
+    kinds = ("mass", "inertia", "stiffness")
+    # rounding of the sum aside
+    return any(after[key] < LEFT * declared[key] * (1 - 1e-9) for key in declared if key.endswith(kinds))
 
 
 def _defaults(effect: Effect) -> dict[str, float]:

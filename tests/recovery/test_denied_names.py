@@ -76,6 +76,8 @@ def test_value_at_the_end_of_what_is_physical_is_no_estimate(rigid: Plant) -> No
     fitted = fit(problem, [Payload.of(mass=-0.95 * 60.0)], iterations=0)
     assert "end of what is physical" in ends_reached(problem, fitted)[0]
     assert ends_reached(problem, fit(problem, [Payload.of(mass=3.0)], iterations=0)) == [""]
+    both = fit(problem, [Payload.of(mass=-40.0), Payload.of(mass=-30.0)], iterations=0)  # together less than nothing
+    assert all(ends_reached(problem, both))
 
 
 def test_fit_of_a_torque_of_the_other_sign_leaves_a_mass(rigid: Plant) -> None:
