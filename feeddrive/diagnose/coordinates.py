@@ -79,7 +79,8 @@ class Sine:
     def write(self, effect: Effect, coordinates: Sequence[float]) -> dict[str, Value]:
         """Values of the coordinates."""
         a, b = coordinates
-        return {"amplitude": self.size * math.hypot(a, b), "phase": math.atan2(b, a)}
+        most = effect.parameter("amplitude").maximum
+        return {"amplitude": min(self.size * math.hypot(a, b), most), "phase": math.atan2(b, a)}
 
 
 @dataclass(frozen=True)

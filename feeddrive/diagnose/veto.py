@@ -173,9 +173,12 @@ def ends_reached(problem: Problem, fitted: Fit) -> list[str]:
         absent, _ = absent_coordinates([effect], problem.plant)
         defaults = read_coordinates([effect.with_values(**_defaults(effect))], problem.plant)
         # a coordinate is not resolved below the step of the slopes
+        # a sine has no end in either component, and one in both
+        tops = [p for p in effect.parameters if p.key == "amplitude" and np.isfinite(p.maximum)]
+        topped = any(float(effect.values[p.key]) >= p.maximum for p in tops if "phase" in effect.values)  # type: ignore[arg-type]
         near = np.minimum(np.abs(vector - low), np.abs(high - vector)) < 1e-4 * np.maximum(1.0, np.abs(vector))
         plain = np.isclose(vector, absent) | (np.isclose(vector, defaults) & np.isnan(absent))
-        ended = np.any(near & ~plain) or (too_little and isinstance(effect, ChainEffect))
+        ended = topped or np.any(near & ~plain) or (too_little and isinstance(effect, ChainEffect))
         result.append(_end_sentence(effect) if ended and not is_shift(effect) else "")
     return result
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from feeddrive.diagnose.coordinates import read_coordinates, write_coordinates
 from feeddrive.diagnose.diagnosis import diagnose
 from feeddrive.diagnose.evidence import Evidence
 from feeddrive.diagnose.fit import fit
@@ -14,6 +15,7 @@ from feeddrive.diagnose.preparation import prepared
 from feeddrive.diagnose.search import Search
 from feeddrive.diagnose.veto import ends_reached, without_denied, worse_by
 from feeddrive.effects.base import Effect
+from feeddrive.effects.catalogue import find_effect
 from feeddrive.effects.coulomb_asymmetry import CoulombAsymmetry
 from feeddrive.effects.payload import Payload
 from feeddrive.effects.stribeck import Stribeck
@@ -76,6 +78,9 @@ def test_value_at_the_end_of_what_is_physical_is_no_estimate(rigid: Plant) -> No
     fitted = fit(problem, [Payload.of(mass=-0.95 * 60.0)], iterations=0)
     assert "end of what is physical" in ends_reached(problem, fitted)[0]
     assert ends_reached(problem, fit(problem, [Payload.of(mass=3.0)], iterations=0)) == [""]
+    lead = find_effect("lead_error_periodic").of(amplitude=9e-4, order=1.0, phase=0.3)
+    far = write_coordinates([lead], rigid, read_coordinates([lead], rigid) * 5.0)
+    assert far[0].values["amplitude"] == 1e-3 and ends_reached(problem, fit(problem, far, iterations=0))[0]
     both = fit(problem, [Payload.of(mass=-40.0), Payload.of(mass=-30.0)], iterations=0)  # together less than nothing
     assert all(ends_reached(problem, both))
 
