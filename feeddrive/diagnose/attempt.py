@@ -67,7 +67,11 @@ def started(scene: Scene, candidate: Candidate) -> list[Attempt]:
     of a law that jumps.
     """
     attempts: list[Attempt] = []
-    for starts in candidate.forms(scene):
+    try:
+        forms = candidate.forms(scene)
+    except InputError:  # what the residual starts it from is not physical
+        return []
+    for starts in forms:
         if candidate.scanned and attempts and attempts[0].comparison.gain < LEAST_GAIN:
             break  # another form of a law that does not pay at all is not worth its simulations
         try:

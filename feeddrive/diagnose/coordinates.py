@@ -79,7 +79,8 @@ class Sine:
     def write(self, effect: Effect, coordinates: Sequence[float]) -> dict[str, Value]:
         """Values of the coordinates."""
         a, b = coordinates
-        return {"amplitude": self.size * math.hypot(a, b), "phase": math.atan2(b, a)}
+        most = effect.parameter("amplitude").maximum
+        return {"amplitude": min(self.size * math.hypot(a, b), most), "phase": math.atan2(b, a)}
 
 
 @dataclass(frozen=True)
@@ -151,6 +152,10 @@ FORM = {"centre", "order", "zero", "damping", "start"}
 FACTORS = {"factor", "coulomb_factor", "viscous_factor", "ratio"}
 """Parameters that are 1 where the effect is absent; other sizes are 0."""
 
+GROWS_WITH = {("sensor_lag", "time_constant"): 1, ("heat_sink", "conductance"): 1, ("presliding", "stiffness"): -1}
+"""Sizes known to a factor, and the power of them that the effect grows with: its slope over their logarithm is then the
+effect itself, and a step of one takes it away."""
+
 LEAST = {("drive_delay", "delay"): 0.0}
 """Ends of a search inside the physical range: a torque that acts before it is recorded is one recorded late, and that
 is `channel_delay`."""
@@ -210,7 +215,8 @@ def absent_coordinates(effects: Sequence[Effect], plant: Machine) -> tuple[Float
         for coordinate in coordinates_of(effect, plant):
             count = len(coordinate.read(effect))
             groups += [groups[-1] + 1 if groups else 0] * count
-            absent += [_absent(coordinate)] * count
+            power = GROWS_WITH.get((effect.name, coordinate.key)) if isinstance(coordinate, Logarithmic) else None
+            absent += [_absent(coordinate)] * count if power is None else [coordinate.read(effect)[0] - power]
     return np.array(absent, dtype=float), np.array(groups, dtype=np.int64)
 
 

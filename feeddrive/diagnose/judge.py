@@ -138,7 +138,11 @@ class Share:
 def share_of(problem: Problem, judged: Sequence[Judged], effects: Sequence[Effect], index: int) -> Share:
     """What the effect at `index` explains, all other effects refitted without it."""
     rest = [*effects[:index], *effects[index + 1 :]]
-    refitted = fit(problem, rest, iterations=2).effects if rest else ()
+    return share_beyond(problem, judged, fit(problem, rest, iterations=2).effects if rest else ())
+
+
+def share_beyond(problem: Problem, judged: Sequence[Judged], refitted: Sequence[Effect]) -> Share:
+    """What the plants after explain beyond a plant with these effects, which lacks one of theirs."""
     lacking = [(j.with_effects(problem, refitted), j.evidence) for j in judged]
     having = [(j.after, j.evidence) for j in judged]
     explains = {

@@ -15,7 +15,7 @@ def physical_reading(effect: Effect) -> str:
     """The physical reading of an effect's sign and size."""
     if effect.name in READINGS_AT:
         return READINGS_AT[effect.name](effect.place, effect.values)
-    return READINGS[effect.name](effect.values) if effect.name in READINGS else ""
+    return READINGS[effect.name](effect.values)
 
 
 def _signed(value: Value, positive: str, negative: str) -> str:
@@ -70,6 +70,21 @@ def _friction_deviation(v: Mapping[str, Value]) -> str:
         "The declared Coulomb friction is too low for this machine: more preload, drier seals, or a cold start.",
         "The declared Coulomb friction is too high for this machine: run in, less preload, or warm.",
     )
+
+
+def _load_dependent_friction(v: Mapping[str, Value]) -> str:
+    return (
+        f"The screw loses {_one(v['coefficient']):.2%} of the torque that the load takes: sliding in the nut, which an "
+        "efficiency declared too high leaves out."
+    )
+
+
+def _declared_friction(v: Mapping[str, Value]) -> str:
+    return "Friction that the plant itself declares."
+
+
+def _table(v: Mapping[str, Value]) -> str:
+    return "What no named effect explains, carried as a table: look for what follows its variable."
 
 
 def _torque_ripple(v: Mapping[str, Value]) -> str:
@@ -280,6 +295,9 @@ READINGS: dict[str, Callable[[Mapping[str, Value]], str]] = {
     "presliding": _presliding,
     "friction_vs_position": _friction_vs_position,
     "friction_deviation": _friction_deviation,
+    "load_dependent_friction": _load_dependent_friction,
+    **dict.fromkeys(("guide_friction", "nut_drag", "bearing_drag", "nut_friction"), _declared_friction),
+    **dict.fromkeys(("tabulated_force", "tabulated_torque", "tabulated_friction", "tabulated_travel"), _table),
     "torque_ripple": _torque_ripple,
     "constant_force": _constant_force,
     "backlash": _backlash,

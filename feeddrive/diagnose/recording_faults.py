@@ -208,10 +208,10 @@ def clocks(problem: Problem, plant: Plant, evidence: AxisEvidence) -> list[Fault
         step = recording.sample_time / clock
         corrected = replace(recording, time=recording.time / clock, sample_time=step)
         try:
-            again = replace(prepare(corrected, plant, 1.0), scaled_from=evidence.scaled_from)
+            again = prepare(corrected, plant, 1.0)
         except InputError:
             continue
-        seen = torque_parts(problem, plant, again)
+        seen = torque_parts(replace(problem, predictor=AxisPredictor()), plant, again)
         if seen is not None:
             g = seen.factor if evidence.scaled_from else 1.0
             what = f"the time stamps are {clock:g} times what the motion of this machine needs"

@@ -153,7 +153,10 @@ def _greedy(problem: Problem, said: Callable[[str], None], turn: _Turn | None = 
         trials += [_trial(len(rounds), attempt, attempt.name == taken) for attempt in attempts]
         if winner is None:
             break
-        problem, found = winner.problem, _without_idle(winner.problem, winner.fit, 0 if pair is not None else 1)
+        problem, found = winner.problem, winner.fit
+        if found.held:  # fitted while the others stayed: the slopes of all are needed from here on
+            found = fit(problem, found.effects, iterations=0)
+        found = _without_idle(problem, found, 0 if pair is not None else 1)
         said(f"found so far: {', '.join(effect.name for effect in found.effects)}")
         names = tuple(sorted(effect.name for effect in found.effects))
         if names in met or _is_behind(found, len(rounds), turn):  # the new ones only take each other's place

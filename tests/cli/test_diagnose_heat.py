@@ -13,6 +13,7 @@ import pytest
 from feeddrive.cli.main import main
 from feeddrive.diagnose.heat.evidence import prepare_heat
 from feeddrive.diagnose.heat.prediction import heat_predictor
+from feeddrive.diagnose.ledger.continued import earlier_run
 from feeddrive.files import plants_folder
 from feeddrive.recording import read_recording
 from feeddrive.thermal.files import read_thermal_plant
@@ -26,7 +27,7 @@ CHANNELS = (
 BETA = 0.02
 
 # Short runs: the command, its files and its words are tested here, the findings in tests/recovery.
-RUNS = {"train": ((750, 90), (0, 40)), "validate": ((500, 70), (0, 30))}
+RUNS = {"train": ((750, 90), (0, 40)), "validate": ((500, 70), (0, 30)), "later": ((600, 80), (0, 40))}
 
 
 def _write(path: Path, part: str, channels: tuple[str, ...] = CHANNELS, drop: str = "", rename: str = "") -> Path:
@@ -58,7 +59,7 @@ def _preload_growth():
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The files of one run of the command."""
     folder = tmp_path_factory.mktemp("heat")
-    train, validate = (str(_write(folder / f"{part}.csv", part)) for part in RUNS)
+    train, validate, _ = (str(_write(folder / f"{part}.csv", part)) for part in RUNS)
     assert main(["diagnose", "thermal_bench", train, "--validate", validate, "--out", str(folder / "out")]) == 0
     return folder
 
@@ -171,3 +172,22 @@ def test_check_and_show_of_heat_alone(capsys: pytest.CaptureFixture[str]) -> Non
     assert content["structure"] == "heat alone"
     # The declared film: 0.29033 N^(2/3) at 750 rev/min, and the torques of the rig times 0.609 ω.
     assert content["speeds"][2]["screw_film"] == pytest.approx(0.29033 * 750 ** (2 / 3), rel=1e-4)
+
+
+@pytest.mark.slow
+def test_a_recording_is_added_to_a_heat_diagnosis(folder: Path, tmp_path: Path) -> None:
+    words = ["diagnose", str(folder / "later.csv"), "--continue", str(folder / "out"), "--out", str(tmp_path / "out")]
+    assert main(words) == 0
+    runs = json.loads((tmp_path / "out" / "ledger.json").read_text(encoding="utf-8"))["runs"]
+    assert [run["continues"] for run in runs] == [None, 1]
+    assert [Path(one["path"]).name for one in runs[1]["fit"]] == ["train.csv", "later.csv"]
+    assert "preload_growth" in [effect["name"] for effect in runs[1]["effects"]]
+    assert any("preload_growth is confirmed" in sentence for sentence in runs[1]["since"])
+
+
+def test_effects_of_a_heat_ledger_are_read(folder: Path) -> None:
+    earlier = earlier_run(folder / "out")
+    assert [effect.name for effect in earlier.effects] == ["preload_growth"]
+    record = json.loads((folder / "out" / "diagnosis.json").read_text(encoding="utf-8"))
+    found = record["effects"][0]["parameters"]["coefficient"]["value"]
+    assert earlier.effects[0].values["coefficient"] == pytest.approx(found, rel=1e-12)

@@ -10,7 +10,7 @@ from typing import Any
 from feeddrive.diagnose.ledger.ledger import NAME, FileUse, checksum, runs_of
 from feeddrive.diagnose.result import EffectResult, ParameterResult
 from feeddrive.effects.base import Effect, Port
-from feeddrive.effects.catalogue import find_effect
+from feeddrive.effects.catalogue import THERMAL_EFFECTS, find_effect
 from feeddrive.errors import InputError
 from feeddrive.quantity import format_quantity
 
@@ -77,7 +77,8 @@ def _unchanged(use: FileUse) -> None:
 
 
 def _effect(entry: dict[str, Any]) -> Effect:
-    kind = find_effect(entry["name"])
+    name = entry["name"]
+    kind = THERMAL_EFFECTS[name] if name in THERMAL_EFFECTS else find_effect(name, NAME)
     values = {key: tuple(value) if isinstance(value, list) else value for key, value in entry["values"].items()}
     known = {parameter.key for parameter in kind.parameters}
     return kind.of(Port(entry["port"]), entry["place"], **{k: v for k, v in values.items() if k in known})

@@ -28,10 +28,13 @@ def _tried(found: Search) -> tuple[Tried, ...]:
         for attempt in attempts:
             effect, comparison = attempt.fit.effects[-1], attempt.comparison
             is_taken = attempt.name in taken.split(" with ")
+            reason = _reason(comparison, is_taken, taken)
+            if is_taken and attempt.name in found.impossible:
+                reason = f"taken, and refused in the end: {found.impossible[attempt.name]}"
             result.append(
                 Tried(
                     number, attempt.name, str(effect.port), effect.place, dict(effect.values), comparison.gain,
-                    comparison.standard_error, comparison.least, is_taken, _reason(comparison, is_taken, taken),
+                    comparison.standard_error, comparison.least, is_taken, reason,
                 )
             )  # fmt: skip
     return tuple(result)

@@ -35,12 +35,16 @@ class JudgedChanges:
         stated: the clear ones.
         carries: whether each effect of the machine carries with them allowed for; empty where nothing differs.
         explains: channel to the share of the squared error after that the differences are.
+        problem: whose predictor knows the differences.
+        allowed: the judged recordings with the differences in the plant after.
     """
 
     changes: Changes
     stated: tuple[ParameterChange, ...]
     carries: tuple[bool, ...]
     explains: dict[str, float]
+    problem: Problem
+    allowed: tuple[Judged, ...]
 
 
 def judged_changes(found: Search, judged: Sequence[Judged]) -> JudgedChanges | None:
@@ -57,7 +61,7 @@ def judged_changes(found: Search, judged: Sequence[Judged]) -> JudgedChanges | N
     first = len(found.problem.evidence)
     changes = find_changes(problem, found.fit.effects, range(first, first + len(apart)))
     if not changes.targets:
-        return JudgedChanges(changes, (), (), {})
+        return JudgedChanges(changes, (), (), {}, problem, tuple(judged))
     names = [evidence.recording.name for evidence in found.problem.evidence]
     against = names[-1] if len(names) == 1 or len(set(names)) < len(names) else f"{names[-1]}, the last one fitted"
     questions = [
@@ -72,7 +76,7 @@ def judged_changes(found: Search, judged: Sequence[Judged]) -> JudgedChanges | N
     count = len(without_shifts(found.fit.effects))
     numbers = [question.here for question in questions]
     carries = tuple(_carries(carrying, judged, changes.fit.effects, i, numbers) for i in range(count))
-    return JudgedChanges(changes, stated, carries, _explained(carrying, judged, allowed))
+    return JudgedChanges(changes, stated, carries, _explained(carrying, judged, allowed), carrying, tuple(allowed))
 
 
 def _together(problem: Problem, apart: Sequence[Judged]) -> Problem:

@@ -46,12 +46,12 @@ def tried(
         return no_effect()
     before = [*effects, *(judgement.effect for _, judgement in carried)]
     options = []
-    for start in [one for form in forms for one in effects_of(form, channel.name, channel.unit, problem.plant)]:
-        try:
+    try:
+        for start in [one for form in forms for one in effects_of(form, channel.name, channel.unit, problem.plant)]:
             fitted, error = fitted_step(problem, before, start)
-        except InputError as wrong:  # nothing there to act on, as friction that is not declared
-            return f"not carried: {wrong.what}"
-        options.append((fitted, error + DEAR * len(fitted.breakpoints)))
+            options.append((fitted, error + DEAR * len(fitted.breakpoints)))
+    except InputError as wrong:  # nothing there to act on, as friction that is not declared, or beyond what is physical
+        return f"not carried: {wrong.what}"
     if not options:
         return no_effect()
     best, _ = min(options, key=lambda option: option[1])

@@ -27,7 +27,7 @@ from feeddrive.recording.formats.resampling import Series, gaps, on_one_grid, pa
 from feeddrive.recording.formats.trace import Signal, Trace, clean
 from feeddrive.recording.frequency_response import FrequencyResponse, read_response, recognises_response
 from feeddrive.recording.mapping import FileMapping, Hold, Variable
-from feeddrive.recording.opening import FileContent, decode, head_of, is_hdf5, open_file
+from feeddrive.recording.opening import FileContent, decode, first_bytes, head_of, is_hdf5, open_file
 from feeddrive.typing import FloatArray
 
 _FEWEST_STAMPS = 100

@@ -1,0 +1,98 @@
+"""Names that their own evidence denies are taken away, and what remains is refitted: recordings in closed form."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from feeddrive.diagnose.coordinates import read_coordinates, write_coordinates
+from feeddrive.diagnose.diagnosis import diagnose
+from feeddrive.diagnose.evidence import Evidence
+from feeddrive.diagnose.fit import fit
+from feeddrive.diagnose.judge import Judged, prepared_for_judging
+from feeddrive.diagnose.preparation import prepared
+from feeddrive.diagnose.search import Search
+from feeddrive.diagnose.veto import ends_reached, without_denied, worse_by
+from feeddrive.effects.base import Effect
+from feeddrive.effects.catalogue import find_effect
+from feeddrive.effects.coulomb_asymmetry import CoulombAsymmetry
+from feeddrive.effects.payload import Payload
+from feeddrive.effects.stribeck import Stribeck
+from feeddrive.effects.torque_ripple import TorqueRipple
+from feeddrive.plant.files import read_plant
+from feeddrive.plant.plant import Plant
+from tests.recovery.rigid_runs import PLANT, Truth, rigid_run
+
+RIPPLE, BOGUS = (
+    TorqueRipple.of(amplitude=0.01, order=3.0, phase=0.0),
+    TorqueRipple.of(amplitude=1e-4, order=3.7, phase=0.4),
+)
+
+
+@pytest.fixture(scope="module")
+def rigid(tmp_path_factory: pytest.TempPathFactory) -> Plant:
+    """The declared rigid axis."""
+    path = tmp_path_factory.mktemp("plant") / "rigid.toml"
+    path.write_text(PLANT, encoding="utf-8")
+    return read_plant(path)
+
+
+def judging(found: Search, kept: list[Evidence]) -> list[Judged]:
+    """The recordings judged on, with what was found."""
+    plant = found.problem.plant
+    after = plant.with_effects(*found.fit.effects)
+    return [prepared_for_judging(found.problem, one, plant, after) for one in kept]
+
+
+def kept_of(plant: Plant, truth: Truth, *effects: Effect, iterations: int = 12) -> tuple[Search, list[Judged]]:
+    """What is kept of effects that a search is said to have taken."""
+    problem, evidence, _ = prepared(plant, [rigid_run("a", truth)], [rigid_run("b", truth, slow=1.3)], 0.75)
+    found = Search(problem, fit(problem, effects, iterations=iterations), (), (), {})
+    return without_denied(found, judging(found, evidence), lambda other: judging(other, evidence))
+
+
+def test_real_one_stays_and_one_that_is_not_there_goes(rigid: Plant) -> None:
+    found, _ = kept_of(rigid, Truth(ripple=0.01), RIPPLE, BOGUS, Stribeck.of(delta_force=0.2, velocity=0.02))
+    (ripple,) = found.fit.effects
+    assert ripple.values["amplitude"] == pytest.approx(0.01, rel=0.1)
+    assert list(found.impossible) == ["stribeck"]  # of the ripples one is named still
+    assert "data" in found.impossible["stribeck"] or "interval" in found.impossible["stribeck"]
+
+
+@pytest.mark.parametrize("effect", [BOGUS, Payload.of(mass=0.05), CoulombAsymmetry.of(delta_force=0.1)])
+def test_nothing_is_kept_of_a_recording_in_which_nothing_lacks(rigid: Plant, effect: Effect) -> None:
+    found, _ = kept_of(rigid, Truth(seed=5), effect)
+    assert found.fit.effects == () and list(found.impossible) == [effect.name]
+
+
+def test_channel_made_worse_is_given_back(rigid: Plant) -> None:
+    """A value that no fit has moved, and that is wrong: worse than declared, and gone."""
+    found, judged = kept_of(rigid, Truth(), Payload.of(mass=15.0), iterations=0)
+    assert found.fit.effects == () and "payload" in found.impossible
+    assert worse_by(found.problem, judged, "motor_torque") < 0
+
+
+def test_value_at_the_end_of_what_is_physical_is_no_estimate(rigid: Plant) -> None:
+    problem, _, _ = prepared(rigid, [rigid_run("a", Truth())], [], 0.75)
+    fitted = fit(problem, [Payload.of(mass=-0.95 * 60.0)], iterations=0)
+    assert "end of what is physical" in ends_reached(problem, fitted)[0]
+    assert ends_reached(problem, fit(problem, [Payload.of(mass=3.0)], iterations=0)) == [""]
+    lead = find_effect("lead_error_periodic").of(amplitude=9e-4, order=1.0, phase=0.3)
+    far = write_coordinates([lead], rigid, read_coordinates([lead], rigid) * 5.0)
+    assert far[0].values["amplitude"] == 1e-3 and ends_reached(problem, fit(problem, far, iterations=0))[0]
+    both = fit(problem, [Payload.of(mass=-40.0), Payload.of(mass=-30.0)], iterations=0)  # together less than nothing
+    assert all(ends_reached(problem, both))
+
+
+def test_fit_of_a_torque_of_the_other_sign_leaves_a_mass(rigid: Plant) -> None:
+    """Before: a moving mass of less than nothing."""
+    problem, _, _ = prepared(rigid, [rigid_run("a", Truth(mass=-115.0))], [], 0.75)
+    (payload,) = fit(problem, [Payload.of(mass=0.0)]).effects
+    assert payload.values["mass"] == pytest.approx(-0.95 * 60.0)
+
+
+def test_diagnosis_lists_what_was_denied_as_refused(rigid: Plant, tmp_path: Path) -> None:
+    result, _ = diagnose(rigid, [rigid_run("a", Truth(ripple=0.01))], [rigid_run("b", Truth(ripple=0.01), slow=1.3)])
+    assert [effect.name for effect in result.effects] == ["torque_ripple"]
+    assert all(effect.carries for effect in result.effects)
