@@ -21,6 +21,12 @@ def test_recommendation_is_written_and_runs(tmp_path: Path, capsys: pytest.Captu
     assert names == {"controller.toml", "tune.json", "bode_velocity_open.png", "bode_position_open.png"}
     content = json.loads((out / "tune.json").read_text(encoding="utf-8"))
     assert content["format"] == "feeddrive-tune/1"
+    points = content["operating_points"]
+    assert points["velocity [m/s]"] == [0.0, pytest.approx(0.05)] and points["payload [kg]"] == [0.0, 50.0]
+    assert len(content["reached"]) == 4
+    assert points["text"] == "table at 0 mm, payloads 0 kg and 50 kg, at 3 m/min and at rest"
+    assert points["text"] in " ".join(shown.out.split())
+    assert points["text"] in (out / "controller.toml").read_text(encoding="utf-8")
     for one in content["reached"]:
         for loop in ("velocity_loop", "position_loop"):
             assert one[loop]["phase_deg"] >= 45 and one[loop]["gain_db"] >= 8 and one[loop]["stable"]
