@@ -168,7 +168,7 @@ WITH_KINKS = {
     ],
 )
 def test_solver_stops_at_kinks(name: str, tolerance: float, most: float, tmp_path: Path) -> None:
-    """CVode at a coarse and a fine tolerance against the engine at a hundredth of its own, 8 nm from a tenth of that."""
+    """CVode at a coarse and a fine tolerance against the engine at a hundredth of its own, itself 8 nm right."""
     plant = WITH_KINKS[name]
     path = tmp_path / "model.fmu"
     path.write_bytes(fmu_bytes(model_of(plant, Point(START, 0.05)), find_compiler()))
