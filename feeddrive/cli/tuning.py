@@ -25,8 +25,9 @@ from feeddrive.servo.response_family import open_family
 from feeddrive.servo.response_json import margins_content
 from feeddrive.simulate.controller_file import read_controller
 from feeddrive.thermal.whole_file import read_drive_plant
-from feeddrive.tuning.demand import Demand, cases_of
+from feeddrive.tuning.demand import Demand, operating_points
 from feeddrive.tuning.reasons import controller_text, describe, rules, settings
+from feeddrive.tuning.reasons import operating_points as points_in_words
 from feeddrive.tuning.recommendation import Recommendation, recommend
 
 FORMAT = "feeddrive-tune/1"
@@ -71,7 +72,7 @@ def run(wanted: Wanted, as_json: bool, out: Path | None) -> None:
         drive = drive_of(plant, wanted.drive)
         places = quantities(wanted.positions, "m", "--positions")
         loads = quantities(wanted.payload, "kg", "--payload")
-        cases = cases_of(plant, places, loads, parse(wanted.velocity, "m/s", "--velocity"))
+        cases = operating_points(plant, places, loads, parse(wanted.velocity, "m/s", "--velocity"))
         found = recommend(plant, drive, cases, demand)
     content = _content(plant, found)
     if out is not None:
@@ -131,6 +132,12 @@ def _content(plant: Plant, found: Recommendation) -> dict[str, Any]:
         "version": __version__,
         "name": plant.name,
         "asked": {"phase_deg": found.demand.phase, "gain_db": found.demand.gain},
+        "operating_points": {
+            "text": points_in_words(found),
+            "position [m]": sorted({one.case.position for one in found.reached}),
+            "velocity [m/s]": sorted({one.case.velocity for one in found.reached}),
+            "payload [kg]": sorted({one.case.payload for one in found.reached}),
+        },
         "velocity_gain": {"N m s/rad": cascade.velocity_gain},
         "reset_time": {"s": cascade.reset_time},
         "position_gain": {"1/s": cascade.position_gain, "(m/min)/mm": cascade.position_gain / KV_UNIT},
@@ -172,6 +179,7 @@ def _tables(plant: Plant, found: Recommendation) -> list[Table | str]:
     return [
         table(f"{plant.name}: recommended cascade", ("setting", "value", "why"), rows),
         table("Margins reached", ("case", "velocity loop", "position loop", "peaks of sensitivity"), _reached(found)),
+        f"Margins hold at these operating points: {points_in_words(found)}. Between them they are not looked at.",
         f"Drive: {_drive(found.cascade)}.",
         *(f"Rule: {text}." for text in rules(plant, found)),
         "\nController file:\n\n" + controller_text(found, _name(plant)),

@@ -334,6 +334,10 @@ class BristleEffect(FrictionEffect):
         """Friction force of the bristle [N]."""
         raise NotImplementedError
 
+    def energy(self, z: Expression, p: Mapping[str, Expression]) -> Expression:
+        """Energy in the bristle [J]."""
+        raise NotImplementedError
+
 
 class SourceEffect(Effect):
     """An effect that adds a force or torque, positive when it resists + motion."""

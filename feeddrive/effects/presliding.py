@@ -54,6 +54,10 @@ class Presliding(BristleEffect):
         """Friction force [N]."""
         return p["stiffness"] * z + p["damping"] * rate
 
+    def energy(self, z: Expression, p: Mapping[str, Expression]) -> Expression:
+        """s0 z^2 / 2 [J]."""
+        return 0.5 * p["stiffness"] * z**2
+
 
 def _slipping(share: Expression, agreement: Expression, break_away: Expression) -> Expression:
     """alpha: share of the motion that slips, from |z|/z_ss, the sign of z v, and where slip begins."""

@@ -59,8 +59,8 @@ def source_text(model: Model) -> str:
         f'#include "{name}.h"',
         generator.dump(),
         *(line for group, rows in _groups(model).items() for line in _tables(name, group, rows)),
-        *_call(functions[0], f"{name}_ode", ("rate", "y")),
-        *_call(functions[1], f"{name}_slopes", ("a", "b", "c", "d")),
+        *call(functions[0], f"{name}_ode", ("rate", "y")),
+        *call(functions[1], f"{name}_slopes", ("a", "b", "c", "d")),
     ]
     return "\n".join(lines)
 
@@ -126,21 +126,21 @@ def _tables(name: str, group: str, rows: Sequence[Quantity]) -> list[str]:
     return lines
 
 
-def _call(function: ca.Function, name: str, results: Sequence[str]) -> list[str]:
+def call(function: ca.Function, name: str, results: Sequence[str], given: Sequence[str] = ("x", "u", "p")) -> list[str]:
     """A function with arrays as arguments around a generated one; work memory lies on the stack."""
     arguments = ", ".join(f"double {result}[]" for result in results)
-    given, wanted = ["&time", "x", "u", "p"], list(results)
+    arrays = ", ".join(f"const double {array}[]" for array in given)
     sizes = function.sz_arg(), function.sz_res(), function.sz_iw() or 1, function.sz_w() or 1
     lines = [
         "",
-        f"int {name}(double time, const double x[], const double u[], const double p[],",
+        f"int {name}(double time, {arrays},",
         f"    {arguments}) {{",
         f"  const casadi_real *arg[{sizes[0]}];",
         f"  casadi_real *res[{sizes[1]}];",
         f"  casadi_int iw[{sizes[2]}];",
         f"  casadi_real w[{sizes[3]}];",
-        *(f"  arg[{index}] = {text};" for index, text in enumerate(given)),
-        *(f"  res[{index}] = {text};" for index, text in enumerate(wanted)),
+        *(f"  arg[{index}] = {text};" for index, text in enumerate(["&time", *given])),
+        *(f"  res[{index}] = {text};" for index, text in enumerate(results)),
         f"  return {function.name()}(arg, res, iw, w, 0);",
         "}",
     ]

@@ -1,11 +1,14 @@
 /* FMI 2.0 for model exchange around exported equations of motion. Needs nothing but the C library.
  *
  * fmu_model.h says: MODEL_GUID, MODEL_STATES, MODEL_INPUTS, MODEL_OUTPUTS, MODEL_PARAMETERS, MODEL_FIXED (how many of
- * the parameters, the first ones, may be set before the start alone), MODEL_ODE, MODEL_SLOPES, and the tables
- * MODEL_STATE_DEFAULTS, MODEL_INPUT_DEFAULTS, MODEL_PARAMETER_DEFAULTS, MODEL_NOMINALS.
+ * the parameters, the first ones, may be set before the start alone), MODEL_INDICATORS, MODEL_HELD, MODEL_HELD_SLOPES,
+ * MODEL_INDICATE, and the tables MODEL_STATE_DEFAULTS, MODEL_INPUT_DEFAULTS, MODEL_PARAMETER_DEFAULTS, MODEL_NOMINALS,
+ * MODEL_HYSTERESIS.
  *
  * Value references: states, their derivatives, inputs, outputs, parameters, each in the order of the tables.
- * There are no events: free play and bristles are continuous, with kinks that the solver's error control finds.
+ * Every kink of the equations (flanks of a free play, break-away of a bristle, directions, points of tables) has an
+ * indicator g. Between events its branch m is held, 1 where g was above 0, so that the equations are smooth; what is
+ * told of it is g shifted by the hysteresis to the side that it is on, which is beyond zero where m has to change.
  */
 #include <stdlib.h>
 #include <string.h>
@@ -65,6 +68,7 @@ typedef struct {
   fmi2Real x[MODEL_STATES];
   fmi2Real u[MODEL_INPUTS];
   fmi2Real p[MODEL_PARAMETERS];
+  fmi2Real m[MODEL_INDICATORS + 1];
   fmi2CallbackFunctions callbacks;
   char *name;
 } Instance;
@@ -81,6 +85,18 @@ static void set_defaults(Instance *instance) {
   memcpy(instance->x, MODEL_STATE_DEFAULTS, sizeof instance->x);
   memcpy(instance->u, MODEL_INPUT_DEFAULTS, sizeof instance->u);
   memcpy(instance->p, MODEL_PARAMETER_DEFAULTS, sizeof instance->p);
+}
+
+/* Branches as the indicators say: all of them anew, or those that have passed their hysteresis. */
+static void take_branches(Instance *instance, int anew) {
+  fmi2Real g[MODEL_INDICATORS + 1];
+  size_t i;
+  MODEL_INDICATE(instance->time, instance->x, instance->u, instance->p, g);
+  for (i = 0; i < MODEL_INDICATORS; ++i) {
+    fmi2Real beyond = instance->m[i] > 0 ? -g[i] : g[i];
+    if (anew) instance->m[i] = g[i] > 0 ? 1 : 0;
+    else if (beyond > 0) instance->m[i] = 1 - instance->m[i];
+  }
 }
 
 FMI2_EXPORT const char *fmi2GetTypesPlatform(void) { return "default"; }
@@ -143,6 +159,7 @@ FMI2_EXPORT fmi2Status fmi2EnterInitializationMode(fmi2Component component) {
 }
 
 FMI2_EXPORT fmi2Status fmi2ExitInitializationMode(fmi2Component component) {
+  take_branches(component, 1);
   return go(component, ((Instance *)component)->mode == INITIALIZING, EVENT, "not in initialization mode");
 }
 
@@ -163,7 +180,7 @@ FMI2_EXPORT fmi2Status fmi2Reset(fmi2Component component) {
 }
 
 FMI2_EXPORT fmi2Status fmi2NewDiscreteStates(fmi2Component component, fmi2EventInfo *info) {
-  (void)component;
+  take_branches(component, 0);
   memset(info, 0, sizeof *info);
   return fmi2OK;
 }
@@ -177,8 +194,9 @@ FMI2_EXPORT fmi2Status fmi2CompletedIntegratorStep(fmi2Component component, fmi2
   return fmi2OK;
 }
 
-static void evaluate(const Instance *instance, fmi2Real *rate, fmi2Real *y) {
-  MODEL_ODE(instance->time, instance->x, instance->u, instance->p, rate, y);
+static void evaluate(Instance *instance, fmi2Real *rate, fmi2Real *y) {
+  if (instance->mode == INSTANTIATED || instance->mode == INITIALIZING) take_branches(instance, 1);
+  MODEL_HELD(instance->time, instance->x, instance->u, instance->p, instance->m, rate, y);
 }
 
 FMI2_EXPORT fmi2Status fmi2GetReal(fmi2Component component, const fmi2ValueReference references[], size_t count,
@@ -259,8 +277,14 @@ FMI2_EXPORT fmi2Status fmi2GetDerivatives(fmi2Component component, fmi2Real rate
 }
 
 FMI2_EXPORT fmi2Status fmi2GetEventIndicators(fmi2Component component, fmi2Real indicators[], size_t count) {
-  (void)indicators;
-  return count == 0 ? fmi2OK : refuse(component, "there are no event indicators");
+  Instance *instance = component;
+  fmi2Real g[MODEL_INDICATORS + 1];
+  size_t i;
+  if (count != MODEL_INDICATORS) return refuse(component, "another number of event indicators");
+  MODEL_INDICATE(instance->time, instance->x, instance->u, instance->p, g);
+  for (i = 0; i < count; ++i)
+    indicators[i] = instance->m[i] > 0 ? g[i] + MODEL_HYSTERESIS[i] : g[i] - MODEL_HYSTERESIS[i];
+  return fmi2OK;
 }
 
 /* Sum of slope times seed; the slopes of row `of` with states and inputs lie side by side in two matrices. */
@@ -271,7 +295,8 @@ FMI2_EXPORT fmi2Status fmi2GetDirectionalDerivative(fmi2Component component, con
   fmi2Real a[MODEL_STATES * MODEL_STATES], b[MODEL_STATES * MODEL_INPUTS];
   fmi2Real c[MODEL_OUTPUTS * MODEL_STATES], d[MODEL_OUTPUTS * MODEL_INPUTS];
   size_t i, j;
-  MODEL_SLOPES(instance->time, instance->x, instance->u, instance->p, a, b, c, d);
+  if (instance->mode == INSTANTIATED || instance->mode == INITIALIZING) take_branches(instance, 1);
+  MODEL_HELD_SLOPES(instance->time, instance->x, instance->u, instance->p, instance->m, a, b, c, d);
   for (i = 0; i < unknowns; ++i) {
     fmi2ValueReference of = unknown[i];
     int rate = of >= FIRST_DERIVATIVE && of < FIRST_INPUT, output = of >= FIRST_OUTPUT && of < FIRST_PARAMETER;

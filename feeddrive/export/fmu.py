@@ -2,6 +2,8 @@
 
     fmpy.simulate_fmu("bench_axis.fmu", stop_time=0.1, start_values={"motor_torque": 1.5})
 
+Its states are the table's position and velocity and what shafts and nut have beside them (`export.beside_table`).
+
 The binary is compiled from the generated C and needs nothing but the C library: no Python, no feeddrive. It runs on
 the platform that exported it; the sources inside the FMU are whole, so that a tool can compile them for another. Where
 no compiler is found the FMU holds the sources alone.
@@ -20,11 +22,16 @@ import tempfile
 import zipfile
 from pathlib import Path
 
+import casadi as ca
+
 from feeddrive.compiler import CompilerError, run_compiler
 from feeddrive.errors import InputError
-from feeddrive.export.c_source import header_text, numbers, source_text
-from feeddrive.export.fmu_description import description_text, fixed_parameters, nominals
+from feeddrive.export.beside_table import beside_table
+from feeddrive.export.c_source import call, comment, header_text, numbers, source_text
+from feeddrive.export.events import Kinks, kinks_of
+from feeddrive.export.fmu_description import description_text, fixed_parameters
 from feeddrive.export.model import Model
+from feeddrive.export.nominals import nominals
 
 _WRAPPER = "fmi2_model_exchange.c"
 _FLAGS = ("-O1", "-ffp-contract=off", "-fPIC", "-shared", "-fvisibility=hidden")
@@ -35,18 +42,20 @@ def fmu_bytes(model: Model, compiler: str | None) -> bytes:
     """The FMU.
 
     Args:
-        model: the equations.
+        model: the equations, in the plant's own states.
         compiler: C compiler for the binary of this platform; None for the sources alone.
 
     Raises:
         InputError: the compiler fails.
     """
-    name = model.identifier
+    model = beside_table(model)
+    name, kinks = model.identifier, kinks_of(model)
     sources = {f"{name}.h": header_text(model), f"{name}.c": source_text(model), _WRAPPER: _wrapper()}
+    sources[f"{name}_events.c"] = _events_text(name, kinks)
     guid = hashlib.sha256("".join([*sources.values(), *model.heading]).encode()).hexdigest()[:32]
-    sources["fmu_model.h"] = _sizes(model, guid)
-    compiled = (f"{name}.c", _WRAPPER)
-    files = {"modelDescription.xml": description_text(model, guid, compiled).encode()}
+    sources["fmu_model.h"] = _sizes(model, guid, kinks)
+    compiled = (f"{name}.c", f"{name}_events.c", _WRAPPER)
+    files = {"modelDescription.xml": description_text(model, guid, compiled, kinks.count).encode()}
     if compiler is not None:
         folder, suffix = binary_platform()
         files[f"binaries/{folder}/{name}{suffix}"] = _compiled(sources, compiled, compiler)
@@ -67,20 +76,52 @@ def _wrapper() -> str:
     return (Path(__file__).parent / _WRAPPER).read_text(encoding="utf-8")
 
 
-def _sizes(model: Model, guid: str) -> str:
+def _sizes(model: Model, guid: str, kinks: Kinks) -> str:
     """fmu_model.h: what the wrapper asks for."""
     name, upper = model.identifier, model.identifier.upper()
+    given = "double time, const double x[], const double u[], const double p[]"
     lines = [
         f'#include "{name}.h"',
         f'#define MODEL_GUID "{guid}"',
         *(f"#define MODEL_{of} {upper}_{of}" for of in ("STATES", "INPUTS", "OUTPUTS", "PARAMETERS")),
         f"#define MODEL_FIXED {fixed_parameters(model)}",
-        f"#define MODEL_ODE {name}_ode",
-        f"#define MODEL_SLOPES {name}_slopes",
+        f"#define MODEL_INDICATORS {kinks.count}",
+        f"#define MODEL_HELD {name}_held",
+        f"#define MODEL_HELD_SLOPES {name}_held_slopes",
+        f"#define MODEL_INDICATE {name}_indicators",
+        f"int MODEL_HELD({given}, const double m[], double rate[], double y[]);",
+        f"int MODEL_HELD_SLOPES({given}, const double m[], double a[], double b[], double c[], double d[]);",
+        f"int MODEL_INDICATE({given}, double g[]);",
         *(f"#define MODEL_{of.upper()}_DEFAULTS {name}_{of}_defaults" for of in ("state", "input", "parameter")),
         f"static const double MODEL_NOMINALS[] = {numbers(nominals(model).tolist())};",
+        f"static const double MODEL_HYSTERESIS[] = {numbers([*kinks.hysteresis.tolist(), 0.0])};",
     ]
     return "\n".join(lines) + "\n"
+
+
+def _events_text(name: str, kinks: Kinks) -> str:
+    """The equations with held branches, their slopes, and the event indicators, in C."""
+    arguments = [ca.SX.sym(of, kinks.held.size1_in(of)) for of in kinks.held.name_in()]
+    _, x, u, _, _ = arguments
+    shown = kinks.held(*arguments)
+    slopes = [ca.densify(ca.jacobian(of, to).T) for of in shown for to in (x, u)]
+    functions = {
+        "held": ca.Function(f"{name}_function_held", arguments, list(shown)),
+        "held_slopes": ca.Function(f"{name}_function_held_slopes", arguments, slopes),
+        "indicators": ca.Function(f"{name}_function_indicators", arguments[:4], [kinks.indicators(*arguments[:4])]),
+    }
+    generator = ca.CodeGenerator(f"{name}_events_functions.c", {"with_header": False, "with_export": False})
+    for function in functions.values():
+        generator.add(function)
+    given = ("x", "u", "p", "m")
+    lines = [
+        *comment((f"{name}: equations between events, and event indicators.",)),
+        generator.dump(),
+        *call(functions["held"], f"{name}_held", ("rate", "y"), given),
+        *call(functions["held_slopes"], f"{name}_held_slopes", ("a", "b", "c", "d"), given),
+        *call(functions["indicators"], f"{name}_indicators", ("g",)),
+    ]
+    return "\n".join(lines)
 
 
 def _compiled(sources: dict[str, str], units: tuple[str, ...], compiler: str) -> bytes:

@@ -1,8 +1,8 @@
 """modelDescription.xml of an exported model, FMI 2.0 for model exchange.
 
-Variables in the order of their value references: states `state.NAME`, their derivatives `der(state.NAME)`, inputs,
-outputs, parameters. Values of inertias and springs are fixed once the simulation starts, since the states hang on
-them; those of effects can be tuned.
+States are told beside the table (`feeddrive.export.beside_table`). Variables in the order of their value references:
+states `state.NAME`, their derivatives `der(state.NAME)`, inputs, outputs, parameters. Values of inertias and springs
+are fixed once the simulation starts, since the states hang on them; those of effects can be tuned.
 """
 
 from __future__ import annotations
@@ -10,36 +10,33 @@ from __future__ import annotations
 from xml.etree import ElementTree as Tree
 
 import casadi as ca
-import numpy as np
 
 from feeddrive import __version__
 from feeddrive.errors import printable
 from feeddrive.export.fmu_units import exponents
 from feeddrive.export.model import Model
+from feeddrive.export.nominals import nominals
 from feeddrive.export.quantities import Quantity
 from feeddrive.plant.symbolic_turn import SYMBOLS
-from feeddrive.typing import FloatArray
 
 TOLERANCE = 1e-8
 """Relative, asked of the solver: of a shaft that has turned 100 rad it leaves a microradian, nanometres of travel."""
 
-_TRAVEL, _STRETCH, _VELOCITY = 1e-3, 1e-6, 0.1
-"""Nominal table travel [m], axial stretch and bristle deflection [m], velocity [m/s]; shafts turn in proportion."""
 
-
-def description_text(model: Model, guid: str, sources: tuple[str, ...]) -> str:
+def description_text(model: Model, guid: str, sources: tuple[str, ...], indicators: int) -> str:
     """The XML text.
 
     Args:
         model: what is described.
         guid: that of the binary.
         sources: names of the C files in the folder `sources` that are compiled.
+        indicators: number of event indicators.
     """
     root = Tree.Element("fmiModelDescription", {
         "fmiVersion": "2.0", "modelName": _one_line(model.plant.name), "guid": guid,
         "description": " | ".join(map(_one_line, model.heading)),
         "generationTool": f"feeddrive {__version__}", "variableNamingConvention": "structured",
-        "numberOfEventIndicators": "0",
+        "numberOfEventIndicators": str(indicators),
     })  # fmt: skip
     exchange = Tree.SubElement(root, "ModelExchange", {
         "modelIdentifier": model.identifier, "canNotUseMemoryManagementFunctions": "true",
@@ -55,15 +52,6 @@ def description_text(model: Model, guid: str, sources: tuple[str, ...]) -> str:
     Tree.indent(root)
     text: str = Tree.tostring(root, encoding="utf-8", xml_declaration=True).decode()
     return text + "\n"
-
-
-def nominals(model: Model) -> FloatArray:
-    """Typical size of every state, from which a solver takes its absolute tolerance, shape (nx,)."""
-    motion = np.array(model.plant.chain.rigid_motion(model.plant.chain_values()), dtype=float)
-    turning = np.abs(motion)
-    positions = np.where(turning == 0, _STRETCH, _TRAVEL * turning)
-    rates = np.where(turning == 0, _VELOCITY, _VELOCITY * turning)
-    return np.concatenate([positions, rates, np.full(len(model.states) - 2 * len(motion), _STRETCH)])
 
 
 def fixed_parameters(model: Model) -> int:

@@ -26,10 +26,7 @@ def resisting_force(
         level = friction_level(plant, symbols, port, motion)
         rates = [bristle.deflection_rate(z[0], motion, level, values)]
         force += bristle.force(z[0], rates[0], motion, level, values)
-    for effect in plant.effects:
-        if isinstance(effect, SourceEffect) and effect.port == port:
-            force += effect.force(motion, symbols.effects[effect.label])
-    return force, rates
+    return force + source_force(plant, symbols, port, motion), rates
 
 
 def friction_force(plant: Plant, symbols: Symbols, port: Port, motion: Motion) -> Expression:
@@ -37,24 +34,55 @@ def friction_force(plant: Plant, symbols: Symbols, port: Port, motion: Motion) -
 
     Positive when it resists + motion [N, or N m at a shaft].
     """
+    force: Expression = 0.0
+    for part in friction_parts(plant, symbols, port, motion).values():
+        force += part
+    return force
+
+
+def friction_parts(plant: Plant, symbols: Symbols, port: Port, motion: Motion) -> dict[str, Expression]:
+    """What each friction effect of a port has of `friction_force`, by label [N, or N m at a shaft].
+
+    Declared friction has its own level and viscous force with the factors of the others, which have what they add.
+    """
     effects = _friction_effects(plant, port)
-    declared = [effect for effect in effects if effect.declared]
     others = [effect for effect in effects if not effect.declared]
     factor: Expression = 1.0
     for effect in others:
         factor *= effect.viscous_factor(motion, symbols.effects[effect.label])
-    force: Expression = 0.0
-    for effect in declared:
-        force += factor * effect.viscous(motion, symbols.effects[effect.label])
-    for effect in others:
-        force += effect.viscous(motion, symbols.effects[effect.label])
+    parts: dict[str, Expression] = {}
+    for effect in effects:
+        viscous = effect.viscous(motion, symbols.effects[effect.label])
+        parts[effect.label] = factor * viscous if effect.declared else viscous
     if any(isinstance(effect, BristleEffect) for effect in effects):
-        return force
-    shapes = [effect.shape(motion, symbols.effects[effect.label]) for effect in declared]
-    for effect, shape in zip(declared, shapes, strict=True):
-        force += _level_factor(others, motion, symbols) * effect.level(motion, symbols.effects[effect.label]) * shape
-    if shapes:
-        force += _level_increment(others, motion, symbols) * shapes[0]
+        return parts
+    shapes = {
+        effect.label: effect.shape(motion, symbols.effects[effect.label]) for effect in effects if effect.declared
+    }
+    for effect in effects:
+        level = effect.level(motion, symbols.effects[effect.label])
+        if effect.declared:
+            parts[effect.label] += _level_factor(others, motion, symbols) * level * shapes[effect.label]
+        elif shapes:
+            parts[effect.label] += level * next(iter(shapes.values()))
+    return parts
+
+
+def bristle_energy(plant: Plant, symbols: Symbols, port: Port, z: Expression) -> Expression:
+    """Energy in the bristle of a port [J]; 0 where none is."""
+    energy: Expression = 0.0
+    for effect in plant.effects:
+        if isinstance(effect, BristleEffect) and effect.port == port:
+            energy += effect.energy(z[0], symbols.effects[effect.label])
+    return energy
+
+
+def source_force(plant: Plant, symbols: Symbols, port: Port, motion: Motion) -> Expression:
+    """Sum of the sources of a port, positive when it resists + motion [N, or N m at a shaft]."""
+    force: Expression = 0.0
+    for effect in plant.effects:
+        if isinstance(effect, SourceEffect) and effect.port == port:
+            force += effect.force(motion, symbols.effects[effect.label])
     return force
 
 

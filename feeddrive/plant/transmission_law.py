@@ -42,10 +42,14 @@ class NutForce:
     Attributes:
         force: F on the table [N].
         beyond_linear: force on the coordinates beyond the chain's -w' (k w q + c w q'), shape (n, 1) [N or N m].
+        energy: U that the spring holds [J].
+        damped: power that the damper takes [W].
     """
 
     force: Expression
     beyond_linear: Expression
+    energy: Expression
+    damped: Expression
 
 
 def nut_force(
@@ -66,15 +70,18 @@ def nut_force(
     stretch, stretch_rate = ca.mtimes(stretch_row, q), ca.mtimes(stretch_row, rate)
     linear = nut.stiffness * stretch + nut.damping * stretch_rate
     if not plant.has_travel and not plant.effects_of(TransmissionEffect):
-        return NutForce(linear, ca.SX.zeros(q.numel(), 1))
+        energy, damped = 0.5 * nut.stiffness * stretch * stretch, nut.damping * stretch_rate * stretch_rate
+        return NutForce(linear, ca.SX.zeros(q.numel(), 1), energy, damped)
     screw, table = rows
     delta, by_angle, by_position = _travel(plant, symbols, ca.mtimes(screw, q), ca.mtimes(table, q), time)
     stretch += delta
     stretch_rate += by_angle * ca.mtimes(screw, rate) + by_position * ca.mtimes(table, rate)
     spring = spring_law(plant, symbols, nut, stretch, ca.mtimes(table, q))
-    force = spring.force + spring.contact * nut.damping * stretch_rate
+    damper = spring.contact * nut.damping * stretch_rate
+    force = spring.force + damper
     along = stretch_row + by_angle * screw + by_position * table
-    return NutForce(force, stretch_row.T * linear - along.T * force + table.T * spring.pull)
+    beyond = stretch_row.T * linear - along.T * force + table.T * spring.pull
+    return NutForce(force, beyond, spring.energy, damper * stretch_rate)
 
 
 def travel_deviation(plant: Plant, symbols: Symbols, phi: Expression, x: Expression, time: Expression) -> Expression:

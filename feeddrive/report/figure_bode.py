@@ -157,6 +157,8 @@ def _label(case: Case, family: Family) -> str:
         parts.append(f"x = {format_quantity(case.position, 'm')}")
     if len({one.payload for one in cases}) > 1:
         parts.append(f"{case.payload:+g} kg")
+    if len({one.velocity for one in cases}) > 1:
+        parts.append(f"at {format_quantity(case.velocity, 'm/s')}" if case.velocity else "at rest")
     return ", ".join(parts) or "linear"
 
 
@@ -174,8 +176,11 @@ def _logarithmic(axes: Axes, family: Family) -> None:
 
 
 def _caption(family: Family, measured: Measured | None) -> str:
-    case = family.curves[0].case
-    said = [f"Linear about motion at {format_quantity(case.velocity, 'm/s')}; friction at rest is not in it."]
+    velocities = {curve.case.velocity for curve in family.curves}
+    moving = ", ".join(format_quantity(velocity, "m/s") for velocity in sorted(velocities) if velocity)
+    about = [f"motion at {moving}"] if moving else []
+    about += ["rest, where friction holds"] if 0.0 in velocities else []
+    said = [f"Linear about {' and '.join(about)}{'.' if 0.0 in velocities else '; friction at rest is not in it.'}"]
     if family.curves[0].margins is not None:
         said.append("Marked are the least gain margin and the least phase margin of the curves.")
     if measured is not None:

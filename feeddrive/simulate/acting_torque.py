@@ -13,6 +13,7 @@ Both are exact. A delay that the plant declares beyond the current loop is not s
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import accumulate
 
@@ -44,17 +45,43 @@ class ActingTorque:
         _, part = _late(cascade)
         waiting = np.concatenate([self.state[1:], command])
         older, newer = waiting[: len(command)], waiting[1 : 1 + len(command)]
-        entered = part * older + (1 - part) * newer
+        acting = entered(waiting, (part, 1 - part), len(command))
         after = waiting[len(command) :]
         if not cascade.current_lag:
-            return entered, ActingTorque(np.concatenate([entered[-1:], after]))
+            return acting, ActingTorque(np.concatenate([acting[-1:], after]))
         h = cascade.sample_time / cascade.current_lag
         driven = math.exp(-(1 - part) * h) * -math.expm1(-part * h) * older - math.expm1(-(1 - part) * h) * newer
         decay = math.exp(-h)
         lagged = accumulate(driven.tolist(), lambda torque, new: decay * torque + new, initial=float(self.state[0]))
         torques = np.fromiter(lagged, dtype=float, count=len(driven) + 1)
-        starts, ends = torques[:-1], torques[1:]
-        return entered - (ends - starts) / h, ActingTorque(np.concatenate([ends[-1:], after]))
+        means = mean_torque(acting, torques, cascade.current_lag, cascade.sample_time)
+        return means, ActingTorque(np.concatenate([torques[-1:], after]))
+
+
+def entered(asked: FloatArray, parts: Sequence[float], count: int) -> FloatArray:
+    """Command that enters the current loop over each tick, averaged over it [N m], shape (count,).
+
+    Args:
+        asked: commands, the oldest that still acts in the first tick first [N m].
+        parts: of a tick in which the older and the newer ones act; their sum is 1.
+        count: of ticks.
+    """
+    acting: FloatArray = np.zeros(count)
+    for i, part in enumerate(parts):
+        acting = acting + part * asked[i : i + count]
+    return acting
+
+
+def mean_torque(acting: FloatArray, ends: FloatArray, lag: float, tick: float) -> FloatArray:
+    """Torque averaged over each tick [N m], shape (n,): lag ΔT = ∫ (u - T) dt.
+
+    Args:
+        acting: command that enters, averaged over the tick [N m], shape (n,).
+        ends: torque at the ends of the ticks [N m], shape (n + 1,).
+        lag: of the current loop [s].
+        tick: [s].
+    """
+    return acting - lag / tick * np.diff(ends)
 
 
 def _late(cascade: Cascade) -> tuple[int, float]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -65,6 +65,20 @@ def cases_of(
     for place in places:
         refuse_off_stroke(plant, place)
     return tuple(Case(place, velocity, mass) for place, mass in itertools.product(places, tuple(payloads) or (0.0,)))
+
+
+def operating_points(
+    plant: Plant, positions: Sequence[float] = (), payloads: Sequence[float] = (), velocity: float = MOVING
+) -> tuple[Case, ...]:
+    """Where the margins of a tuned cascade have to hold: every position with every payload, in motion and at rest.
+
+    In motion friction acts by its small slope over the speed. At rest it holds the table: by the stiffness of its
+    bristle, or by the slope of tanh, which nearly clamps it, and the motor then turns against the screw alone.
+
+    Args, raises: as `cases_of`.
+    """
+    moving = cases_of(plant, positions, payloads, velocity)
+    return (*moving, *(replace(case, velocity=0.0) for case in moving)) if velocity else moving
 
 
 def refuse_off_stroke(plant: Plant, position: float) -> None:

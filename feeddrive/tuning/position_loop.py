@@ -7,7 +7,8 @@
 | L | open position loop at K_v = 1/s, the velocity loop closed | 1 |
 | G_x | from the position error to a position, at K_v = 1/s | 1 |
 
-A loop of its margins alone may overshoot a contour; a machine tool's may not. Feed-forward is not in it.
+A loop of its margins alone may overshoot a contour; a machine tool's may not. Feed-forward is not in it. A contour is
+run in motion, so that magnification is looked at there; the margins hold at rest too.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ from feeddrive.servo.margins import frequency_response
 from feeddrive.servo.resonances import Resonance, resonances
 from feeddrive.tuning.demand import Demand
 from feeddrive.tuning.largest_gain import GainLimit, Limit, largest_gain
-from feeddrive.typing import ComplexArray, FloatArray
+from feeddrive.typing import BoolArray, ComplexArray, FloatArray
 
 _LOWEST = 0.05
 """[Hz]; far below any position loop."""
@@ -35,11 +36,15 @@ _BISECTIONS = 24
 
 @dataclass(frozen=True)
 class _Loops:
-    """Grid [Hz] (n,), open loops L and paths G_x to what is measured and to the table (cases, n), at K_v = 1/s."""
+    """Grid [Hz] (n,), open loops L and paths G_x to what is measured and to the table (cases, n), at K_v = 1/s.
+
+    `moving` tells the cases in which a contour is run (cases,); all where none moves.
+    """
 
     frequency: FloatArray
     open: ComplexArray
     paths: tuple[ComplexArray, ComplexArray]
+    moving: BoolArray
 
 
 def position_gain(plant: Plant, cascade: Cascade, cases: Sequence[Case], demand: Demand) -> GainLimit:
@@ -87,12 +92,13 @@ def _loops(plant: Plant, cascade: Cascade, cases: Sequence[Case]) -> _Loops:
         opened.append(own / (1 - own))
         measured.append(own / (1 - own))
         table.append(there / (1 - own))
-    return _Loops(frequency, np.array(opened), (np.array(measured), np.array(table)))
+    moving = np.array([case.velocity != 0 for case in cases])
+    return _Loops(frequency, np.array(opened), (np.array(measured), np.array(table)), moving | ~moving.any())
 
 
 def _magnified(loops: _Loops, gain: float) -> tuple[float, int, float]:
     """Largest magnification of the set-point [dB], in which case, at which frequency [Hz]."""
     closed = [np.abs(gain * path / (1 + gain * loops.open)) for path in loops.paths]
-    worst = np.maximum(*closed)
+    worst = np.where(loops.moving[:, None], np.maximum(*closed), 0.0)
     case, place = np.unravel_index(int(np.argmax(worst)), worst.shape)
     return float(20 * np.log10(worst[case, place])), int(case), float(loops.frequency[place])

@@ -82,6 +82,7 @@ def controller_text(found: Recommendation, name: str) -> str:
         'format = "feeddrive-controller/1"',
         f"name = {json.dumps(printable(name), ensure_ascii=False)}",
         f"# least margins over {_cases(len(found.reached))}: {worst}, position loop {gain.position.gain:.1f} dB",
+        f"# the cases: {operating_points(found)}",
         f'velocity_rate = "{_exact(1 / cascade.sample_time)} Hz"',
         f'position_rate = "{_exact(1 / (cascade.sample_time * cascade.position_divider))} Hz"',
         f'position_gain = "{_exact(cascade.position_gain)} 1/s"    # K_v, {_kv(cascade)}',
@@ -101,7 +102,25 @@ def controller_text(found: Recommendation, name: str) -> str:
 def describe(case: Case) -> str:
     """A case in words."""
     load = f", payload {case.payload:g} kg" if case.payload else ""
-    return f"table at {format_quantity(case.position, 'm')}{load}"
+    return f"table at {format_quantity(case.position, 'm')}{load}, {_motion(case)}"
+
+
+def operating_points(found: Recommendation) -> str:
+    """The operating points at which the margins hold, in words."""
+    cases = [one.case for one in found.reached]
+    places = list(dict.fromkeys(format_quantity(case.position, "m") for case in cases))
+    loads = list(dict.fromkeys(f"{case.payload:g} kg" for case in cases))
+    motions = list(dict.fromkeys(_motion(case) for case in cases))
+    load = f", payloads {_listed(loads)}" if loads != ["0 kg"] else ""
+    return f"table at {_listed(places)}{load}, {_listed(motions)}"
+
+
+def _motion(case: Case) -> str:
+    return f"at {format_quantity(case.velocity, 'm/s')}" if case.velocity else "at rest"
+
+
+def _listed(words: list[str]) -> str:
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
 
 
 def _cases(count: int) -> str:

@@ -2,7 +2,8 @@
 
 Order: velocity loop with its notches, then the position loop around it. Gains are rounded as they will be written and
 lowered until every case holds, by the margins and eigenvalues of `servo.linear_loop`. Feed-forward is that of the plant
-and changes no margin. Valid for small motion about a moving table: limits, reversals and stiction are not in it.
+and changes no margin. Valid for small motion about a moving table and about one that friction holds: limits and
+reversals are not in it.
 """
 
 from __future__ import annotations

@@ -96,12 +96,16 @@ class VelocityGains:
 
 @dataclass(frozen=True)
 class _Task:
-    """Grid [Hz], loops at K_p = 1 without integrator (cases, n), resonances by case, greatest inertia [kg m^2]."""
+    """Grid [Hz], loops at K_p = 1 without integrator (cases, n), resonances by case, greatest inertia [kg m^2].
+
+    `velocities` of the cases [m/s]: a table that friction holds has other resonances than one that moves.
+    """
 
     tick: float
     frequency: FloatArray
     loops: ComplexArray
     resonances: tuple[tuple[Resonance, ...], ...]
+    velocities: tuple[float, ...]
     inertia: float
     demand: Demand
 
@@ -142,7 +146,8 @@ def _task(plant: Plant, drive: Cascade, cases: Sequence[Case], demand: Demand) -
         for case in cases
     ]
     inertia = max(inertia_at_motor(case.on(plant)) for case in cases)
-    return _Task(drive.sample_time, frequency, np.array(loops), roots, inertia, demand)
+    velocities = tuple(case.velocity for case in cases)
+    return _Task(drive.sample_time, frequency, np.array(loops), roots, velocities, inertia, demand)
 
 
 def _best(task: _Task, notches: tuple[NotchChoice, ...], reset_times: FloatArray) -> VelocityGains:
@@ -196,8 +201,9 @@ def _notches(spread: tuple[float, float]) -> list[NotchChoice]:
 
 def _limiting_resonance(task: _Task, found: VelocityGains) -> tuple[float, float] | None:
     """Least and greatest natural frequency over the cases of the resonance that limits; None where none does."""
-    poles = [[root.frequency for root in some if root.kind is Kind.RESONANCE] for some in task.resonances]
-    own = poles[found.limit.case]
+    every = [[root.frequency for root in some if root.kind is Kind.RESONANCE] for some in task.resonances]
+    own, velocity = every[found.limit.case], task.velocities[found.limit.case]
+    poles = [some for some, other in zip(every, task.velocities, strict=True) if other == velocity]
     taken = [choice.frequency for choice in found.notches]
     near = [f for f in own if abs(f / found.limit.frequency - 1) < _NEAR]
     if not near:

@@ -27,7 +27,7 @@ MANY = (
     EFFECTS["stribeck"].of(delta_force=-22.0, velocity=0.05),
     EFFECTS["load_dependent_friction"].of(coefficient=0.05),
     EFFECTS["constant_force"].of(force=200.0),
-    EFFECTS["friction_vs_position"].of(position=(0.0, 0.1, 0.2), delta_force=(0.0, 5.0, 1.0)),
+    EFFECTS["friction_vs_position"].of(position=(0.0, 0.13, 0.2), delta_force=(0.0, 5.0, 1.0)),
     EFFECTS["payload"].of(mass=20.0),
     EFFECTS["drive_delay"].of(delay=3e-4),
 )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
 
@@ -10,6 +11,7 @@ import casadi as ca
 import numpy as np
 import pytest
 
+from feeddrive.diagnose.fit import Problem, fit
 from feeddrive.effects.base import Effect, FrictionEffect, Motion, Port, Value, listed
 from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.errors import InputError
@@ -21,6 +23,7 @@ from feeddrive.plant.passive_friction import is_passive, least_friction, refuse_
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.symbols import parameter_symbols, parameter_values
 from feeddrive.simulate.scenario_file import read_scenario
+from feeddrive.typing import FloatArray
 from tests.analytic.test_energy import free_run, stored
 
 BENCH_FILE = plants_folder() / "bench_axis.toml"
@@ -253,9 +256,21 @@ def test_refused_friction_gives_energy_and_allowed_friction_takes_it() -> None:
             assert energy[-1] > 1.5 * energy[0]
 
 
-def test_fit_stays_where_friction_takes_power() -> None:
-    from feeddrive.diagnose.fit import Problem
+class _Drop(Problem):
+    """A recording that asks for a Stribeck drop of 80 N, more than the 60 N that there are."""
 
-    problem = Problem(BENCH, (), None)  # type: ignore[arg-type]
-    assert problem.possible([_effect("stribeck", delta_force=-50.0, velocity=0.02)])
-    assert not problem.possible([_effect("stribeck", delta_force=-70.0, velocity=0.02)])
+    def predicted(self, effects: Sequence[Effect]) -> FloatArray:
+        return np.full(3, effects[0].values["delta_force"], dtype=float)
+
+    def measured(self) -> FloatArray:
+        return np.full(3, -80.0)
+
+
+def test_fit_stays_where_friction_takes_power() -> None:
+    problem = _Drop(BENCH, (), None)  # type: ignore[arg-type]
+    start = _effect("stribeck", delta_force=-30.0, velocity=0.02)
+    found = fit(problem, [start]).effects
+    assert problem.possible(found)
+    assert -60.0 < found[0].values["delta_force"] < -45.0  # type: ignore[operator]
+    # A start outside is no plant that a file may hold; the search gives it up (`attempt.started`).
+    assert not problem.possible([start.with_values(delta_force=-70.0)])

@@ -21,6 +21,12 @@ def test_recommendation_is_written_and_runs(tmp_path: Path, capsys: pytest.Captu
     assert names == {"controller.toml", "tune.json", "bode_velocity_open.png", "bode_position_open.png"}
     content = json.loads((out / "tune.json").read_text(encoding="utf-8"))
     assert content["format"] == "feeddrive-tune/1"
+    points = content["operating_points"]
+    assert points["velocity [m/s]"] == [0.0, pytest.approx(0.05)] and points["payload [kg]"] == [0.0, 50.0]
+    assert len(content["reached"]) == 4
+    assert points["text"] == "table at 0 mm, payloads 0 kg and 50 kg, at 3 m/min and at rest"
+    assert points["text"] in " ".join(shown.out.split())
+    assert points["text"] in (out / "controller.toml").read_text(encoding="utf-8")
     for one in content["reached"]:
         for loop in ("velocity_loop", "position_loop"):
             assert one[loop]["phase_deg"] >= 45 and one[loop]["gain_db"] >= 8 and one[loop]["stable"]
@@ -44,7 +50,7 @@ def test_drive_of_a_scenario_and_json_alone(capsys: pytest.CaptureFixture[str]) 
     [
         (["--margin-phase", "45"], "45 is a bare number"),
         (["--margin-phase", "120deg"], "a phase margin of 120° is not between 0° and 90°"),
-        (["--margin-phase", "89deg"], "is of no use"),
+        (["--margin-phase", "89deg"], "no position gain keeps 89° and 8 dB in every case"),
         (["--margin-gain", "-3dB"], "a gain margin of -3 dB is not between 0 dB and 60 dB"),
         (["--position-rate", "3kHz"], "8000 Hz is no integer multiple of 3000 Hz; write 2666.67 Hz"),
         (["--velocity-rate", "0 Hz"], "0 Hz is not above zero"),
