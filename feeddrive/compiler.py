@@ -1,7 +1,8 @@
 """C code compiled into a shared library and kept: where a compiler is found, slow loops run in it.
 
-The cache is written atomically, so that processes that start together do not meet half a file; where the home is
-read-only a temporary folder of the same person serves. Nothing is compiled when a module is imported.
+The cache is written atomically, so that processes that start together do not meet half a file, and pruned
+(`library_cache`); where the home is read-only a temporary folder of the same person serves. Nothing is compiled when a
+module is imported.
 """
 
 from __future__ import annotations
@@ -15,6 +16,8 @@ import subprocess
 import tempfile
 from functools import lru_cache
 from pathlib import Path
+
+from feeddrive.library_cache import prune_once, used
 
 FLAGS = ("-O3", "-ffp-contract=off", "-fPIC", "-shared")
 """No fused or reordered arithmetic: the same numbers on every computer."""
@@ -50,12 +53,24 @@ def compiled_library(source: str, flags: tuple[str, ...] = FLAGS, made_for: str 
         library = folder / f"{key}.so"
         try:
             _make_private(folder)
-            if not library.exists():
-                _compile(source, compiler, flags, library)
-            return ctypes.CDLL(str(library))
+            return _loaded(source, compiler, flags, library)
         except (OSError, subprocess.CalledProcessError):
             continue
     return None
+
+
+def _loaded(source: str, compiler: str, flags: tuple[str, ...], library: Path) -> ctypes.CDLL:
+    """The library of that path, compiled where it is not there."""
+    if used(library):
+        try:
+            return ctypes.CDLL(str(library))
+        except OSError:
+            if library.exists():
+                raise
+            # another process has pruned it since
+    _compile(source, compiler, flags, library)
+    prune_once(library.parent)
+    return ctypes.CDLL(str(library))
 
 
 def cache_folders() -> list[Path]:

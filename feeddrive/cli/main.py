@@ -20,6 +20,7 @@ from typer.core import TyperGroup
 from typer.main import get_command
 
 from feeddrive import __version__
+from feeddrive.blas_threads import one_thread_from_now_on
 from feeddrive.errors import InputError
 
 FINISHED, INTERNAL_ERROR, INPUT_ERROR, INTERRUPTED = 0, 1, 2, 130
@@ -110,6 +111,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Returns:
         Exit status: 0 finished, 1 an error of feeddrive itself, 2 unusable input, 130 interrupted.
     """
+    one_thread_from_now_on()  # before a command imports numpy
     try:
         application().main(args=arguments, prog_name="feeddrive")
     except SystemExit as ending:
