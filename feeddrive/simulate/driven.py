@@ -140,7 +140,11 @@ def simulate_driven(plant: Plant, motion: MotorMotion, tolerance: float = TOLERA
         place = outcome.position
         reports.append(outcome.report)
     at = motion.samples
-    return LoadMotion(motion.time[at], motion.angle[at], motion.speed[at], *shown, joined(reports))
+    phi, screw_speed, x, velocity, torque, force = shown
+    return LoadMotion(
+        motion.time[at], motion.angle[at], motion.speed[at], phi, screw_speed, x, velocity, torque, force,
+        joined(reports),
+    )  # fmt: skip
 
 
 def _fed(motion: MotorMotion, sample: int, count: int) -> FloatArray:
