@@ -64,9 +64,11 @@ def _most_together(usable: Sequence[Attempt], found: Fit) -> Iterator[tuple[Atte
     """Every pair and a bound of its gain: what one linear step takes away of the samples that it is fitted to."""
     if len(usable) < 2:
         return
-    own = [_scaled(_own_columns(attempt)) for attempt in usable]
-    ends = np.cumsum([found.jacobian.shape[1], *(part.shape[1] for part in own)])
-    columns = np.hstack([_scaled(found.jacobian), *own])
+    parts = [found.jacobian, *(_own_columns(attempt) for attempt in usable)]
+    ends = np.cumsum([part.shape[1] for part in parts])
+    columns = np.empty((len(found.residual), ends[-1]))
+    for part, end in zip(parts, ends, strict=True):
+        columns[:, end - part.shape[1] : end] = _scaled(part)
     normal = columns.T @ columns
     shared = np.arange(ends[0])
     left_out = left_out_residual(found.residual, found.jacobian, block_numbers(usable[0].problem))
