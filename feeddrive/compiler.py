@@ -1,7 +1,8 @@
 """C code compiled into a shared library and kept: where a compiler is found, slow loops run in it.
 
-The cache is written atomically, so that processes that start together do not meet half a file; where the home is
-read-only a temporary folder of the same person serves. Nothing is compiled when a module is imported.
+The cache is written atomically, so that processes that start together do not meet half a file, and pruned
+(`library_cache`); where the home is read-only a temporary folder of the same person serves. Nothing is compiled when a
+module is imported.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from feeddrive.errors import ValidityWarning
+from feeddrive.library_cache import prune_once, used
 
 FLAGS = ("-O3", "-ffp-contract=off", "-fPIC", "-shared")
 """No fused or reordered arithmetic: the same numbers on every computer."""
@@ -70,9 +72,7 @@ def compiled_library(source: str, flags: tuple[str, ...] = FLAGS, made_for: str 
         library = folder / f"{key}.so"
         try:
             _make_private(folder)
-            if not library.exists():
-                _compile(source, compiler, flags, library)
-            return ctypes.CDLL(str(library))
+            return _loaded(source, compiler, flags, library)
         except CompilerError as failure:
             if compiler in _hung:
                 mend = "it is done without, which is slower; FEEDDRIVE_COMPILER=none does not wait"
@@ -120,6 +120,20 @@ def _end(started: subprocess.Popen[str]) -> None:
     started.wait()
     if started.stderr is not None:
         started.stderr.close()
+
+
+def _loaded(source: str, compiler: str, flags: tuple[str, ...], library: Path) -> ctypes.CDLL:
+    """The library of that path, compiled where it is not there."""
+    if used(library):
+        try:
+            return ctypes.CDLL(str(library))
+        except OSError:
+            if library.exists():
+                raise
+            # another process has pruned it since
+    _compile(source, compiler, flags, library)
+    prune_once(library.parent)
+    return ctypes.CDLL(str(library))
 
 
 def cache_folders() -> list[Path]:

@@ -23,6 +23,7 @@ from typer.core import TyperGroup
 from typer.main import get_command
 
 from feeddrive import __version__
+from feeddrive.blas_threads import one_thread_from_now_on
 from feeddrive.errors import InputError, quoted
 
 FINISHED, INTERNAL_ERROR, INPUT_ERROR, INTERRUPTED = 0, 1, 2, 130
@@ -121,6 +122,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Returns:
         Exit status: 0 finished, 1 an error of feeddrive itself, 2 unusable input, 130 interrupted.
     """
+    one_thread_from_now_on()  # before a command imports numpy
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):  # letters that a terminal or a pipe cannot take are written as escapes
             stream.reconfigure(errors="backslashreplace")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import Annotated
 
@@ -30,9 +29,6 @@ def command(
     out: Annotated[Path | None, typer.Option("--out", help="Folder for table and figure; resumes a sweep.")] = None,
 ) -> None:
     """Run a scenario over varied values: one table and one figure; a stopped sweep resumes with the same --out."""
-    # before numpy is imported: on small matrices several threads are slower than one
-    for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS"):
-        os.environ[name] = "1"
     from feeddrive.cli.sweeping import Wanted, sweep_and_tell
 
     wanted = Wanted(

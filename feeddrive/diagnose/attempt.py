@@ -59,6 +59,12 @@ class Attempt:
     problem: Problem
     errors: FloatArray
 
+    def for_the_record(self) -> Attempt:
+        """The attempt without series and slopes, which its round alone needs: those of all rounds fill gigabytes."""
+        none = np.zeros(0)
+        slopes = np.zeros((0, self.fit.jacobian.shape[1]))
+        return replace(self, fit=replace(self.fit, residual=none, jacobian=slopes), errors=none)
+
 
 def started(scene: Scene, candidate: Candidate) -> list[Attempt]:
     """The best start of each form of a candidate, as one linear step leaves it; what was found before stays as it is.

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from feeddrive.blas_threads import one_thread
 from feeddrive.diagnose.certainty.ambiguity import Rival, ambiguous_sets, other_places, rivals_of
 from feeddrive.diagnose.certainty.correlation import correlation
 from feeddrive.diagnose.certainty.next_experiment import next_experiments
@@ -46,6 +47,7 @@ from feeddrive.thermal.plant import ThermalPlant
 Said = Callable[[str], None]
 
 
+@one_thread()
 def diagnose(
     plant: Plant | ThermalPlant,
     recordings: Sequence[Recording],
@@ -216,8 +218,8 @@ def _judged(found: Search, evidence: Sequence[Evidence]) -> tuple[list[Judged], 
 
 
 def _notes(fitted: Sequence[Evidence], judged: Sequence[Evidence], found: Search) -> tuple[str, ...]:
-    ready = {id(evidence): evidence.recording for evidence in (*fitted, *judged)}
-    notes = [f"{recording.name}: {note}" for recording in ready.values() for note in recording.notes]
+    ready = dict.fromkeys((*fitted, *judged))  # a recording may be both
+    notes = [f"{evidence.recording.name}: {note}" for evidence in ready for note in evidence.recording.notes]
     declared = found.problem.plant
     notes += found.problem.predictor.told(declared, declared.with_effects(*found.fit.effects))
     unseen = {name for name, reason in found.impossible.items() if reason == WITHOUT_TORQUE}

@@ -29,9 +29,9 @@ BLOCK = 0.5
 """Length of a block of cross-validation [s]: many correlation times of the band, and short against a stroke."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Evidence:
-    """One recording, ready for comparison.
+    """One recording, ready for comparison; each is a key of its own.
 
     Attributes:
         recording: as read.
@@ -106,7 +106,7 @@ class Evidence:
         return replace(self, counted=self.counted & predictable)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class AxisEvidence(Evidence):
     """A recording of motion and torque.
 

@@ -64,9 +64,11 @@ def _most_together(usable: Sequence[Attempt], found: Fit) -> Iterator[tuple[Atte
     """Every pair and a bound of its gain: what one linear step takes away of the samples that it is fitted to."""
     if len(usable) < 2:
         return
-    own = [unit_columns(_own_columns(attempt))[0] for attempt in usable]
-    ends = np.cumsum([found.jacobian.shape[1], *(part.shape[1] for part in own)])
-    columns = np.hstack([unit_columns(found.jacobian)[0], *own])
+    parts = [found.jacobian, *(_own_columns(attempt) for attempt in usable)]
+    ends = np.cumsum([part.shape[1] for part in parts])
+    columns = np.empty((len(found.residual), ends[-1]))
+    for part, end in zip(parts, ends, strict=True):
+        columns[:, end - part.shape[1] : end] = unit_columns(part)[0]
     normal = columns.T @ columns
     shared = np.arange(ends[0])
     left_out = left_out_residual(usable[0].problem, found, block_numbers(usable[0].problem))

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections import OrderedDict
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from threading import Lock
 from typing import ClassVar
 
 import numpy as np
@@ -16,6 +14,7 @@ from feeddrive.diagnose.fit import Problem
 from feeddrive.diagnose.materiality import is_material
 from feeddrive.diagnose.predictability import predictable_samples, samples_to_fit
 from feeddrive.diagnose.predictor import Predictor
+from feeddrive.diagnose.remembered import Remembered
 from feeddrive.diagnose.scene import AxisScene, Candidate
 from feeddrive.diagnose.timing import lag_of, lagging
 from feeddrive.diagnose.torque_channel import scale_of, scale_sentence
@@ -25,9 +24,6 @@ from feeddrive.plant.plant import Plant
 from feeddrive.simulate.driven import LoadMotion, simulate_driven, unfollowed
 from feeddrive.simulate.step_constants import SimulationError
 from feeddrive.typing import BoolArray, FloatArray
-
-REMEMBERED = 48
-"""Load-side simulations kept; effects at the motor alone need none of their own."""
 
 
 @dataclass
@@ -45,24 +41,13 @@ class AxisPredictor(Predictor[Plant, AxisEvidence]):
 
     scaled: tuple[AxisEvidence, ...] = ()
     declared_scale: float = 1.0
-    _scales: OrderedDict[object, float] = field(default_factory=OrderedDict)
-    _runs: OrderedDict[object, LoadMotion] = field(default_factory=OrderedDict)
-    _lock: Lock = field(default_factory=Lock)
+    _scales: dict[object, float] = field(default_factory=dict)
+    _runs: Remembered[LoadMotion] = field(default_factory=lambda: Remembered(lambda run: run.size))
 
     def load_motion(self, plant: Plant, evidence: AxisEvidence) -> LoadMotion:
         """Motion of the load side, without what acts at the motor alone."""
         bare = _load_side(plant)
-        key = (id(evidence.motion), _values_key(bare))
-        with self._lock:
-            if key in self._runs:
-                self._runs.move_to_end(key)
-                return self._runs[key]
-        run = _simulated(bare, evidence)
-        with self._lock:
-            self._runs[key] = run
-            while len(self._runs) > REMEMBERED:
-                self._runs.popitem(last=False)
-        return run
+        return self._runs.found(evidence.motion, _values_key(bare), lambda: _simulated(bare, evidence))
 
     def predict(self, plant: Plant, evidence: AxisEvidence) -> dict[str, FloatArray]:
         """Channel to predicted series in the band, shape (n,), SI."""
@@ -78,22 +63,18 @@ class AxisPredictor(Predictor[Plant, AxisEvidence]):
     def scale(self, plant: Plant) -> float:
         """Factor on the predicted torque that fits the recordings in `scaled` best."""
         key = _values_key(plant)
-        with self._lock:
-            known = self._scales.get(key)
-        if known is not None:
-            return known
+        if key not in self._scales:
+            self._scales[key] = self._fitted_scale(plant)
+        return self._scales[key]
+
+    def _fitted_scale(self, plant: Plant) -> float:
         measured, predicted = [], []
         for evidence in self.scaled:
             rows = evidence.thinned(evidence.fit_rows)
             unscaled = self.predict(plant, replace(evidence, scaled_from=""))
             predicted.append(unscaled["motor_torque"][rows])
             measured.append(evidence.measured["motor_torque"][rows])
-        scale = scale_of(np.concatenate(measured), np.concatenate(predicted))
-        with self._lock:
-            self._scales[key] = scale
-            while len(self._scales) > REMEMBERED:
-                self._scales.popitem(last=False)
-        return scale
+        return scale_of(np.concatenate(measured), np.concatenate(predicted))
 
     def told(self, before: Plant, after: Plant) -> tuple[str, ...]:
         """The scale of the torque, where it is fitted."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -72,9 +72,9 @@ def _scaled(plant: Plant, fitted: tuple[AxisEvidence, ...], judged: list[Evidenc
     for one in unknown:
         predicted = predictor.predict(plant, replace(one, scaled_from=""))["motor_torque"]
         refuse_what_is_no_torque(one.scaled_from, one.measured["motor_torque"], predicted, one.recording.name)
-    known = {id(one): one.with_scale(scale) if one.scaled_from else one for one in fitted}
+    known = {one: one.with_scale(scale) if one.scaled_from else one for one in fitted}
     others = [_known(one, known, scale) for one in judged]
-    inside = tuple(known[id(one)] for one in fitted)
+    inside = tuple(known[one] for one in fitted)
     predictor = AxisPredictor(tuple(one for one in inside if one.scaled_from), scale)
     return Problem(plant, inside, predictor), others, ()
 
@@ -83,12 +83,12 @@ def _has_torque(evidence: AxisEvidence) -> bool:
     return "motor_torque" in evidence.channels and not evidence.scaled_from
 
 
-def _known(evidence: Evidence, known: dict[int, AxisEvidence], scale: float) -> Evidence:
-    if id(evidence) in known:
-        return known[id(evidence)]
-    if isinstance(evidence, AxisEvidence) and evidence.scaled_from:
-        return evidence.with_scale(scale)
-    return evidence
+def _known(evidence: Evidence, known: Mapping[AxisEvidence, AxisEvidence], scale: float) -> Evidence:
+    if not isinstance(evidence, AxisEvidence):
+        return evidence
+    if evidence in known:
+        return known[evidence]
+    return evidence.with_scale(scale) if evidence.scaled_from else evidence
 
 
 def _prepared_heat(

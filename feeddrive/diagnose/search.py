@@ -149,8 +149,10 @@ def _greedy(problem: Problem, said: Callable[[str], None], turn: _Turn | None = 
             pair = masked_pair(attempts, found, winner)
         if pair is not None:
             winner, attempts = pair, [pair, *attempts]
+        rounds[-1] = tuple(attempt.for_the_record() for attempt in rounds[-1])
         taken = winner.name if winner is not None else ""
         trials += [_trial(len(rounds), attempt, attempt.name == taken) for attempt in attempts]
+        attempts = []  # their series do not stay through the next round
         if winner is None:
             break
         problem, found = winner.problem, winner.fit

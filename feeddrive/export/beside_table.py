@@ -21,12 +21,14 @@ import numpy as np
 
 from feeddrive.export.model import Model
 from feeddrive.plant.equations import chain_symbols, parameter_symbols
+from feeddrive.plant.symbolic_turn import SYMBOLS
 from feeddrive.typing import Expression
 
 BESIDE = "beside_table"
 """Ends the name of a state that is told beside the table."""
 
 
+@SYMBOLS.taken()
 def beside_table(model: Model) -> Model:
     """The model with its states, their start and its equations beside the table; results and parameters as they are."""
     plant = model.plant

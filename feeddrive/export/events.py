@@ -19,6 +19,7 @@ import numpy as np
 
 from feeddrive.export.model import Model
 from feeddrive.export.nominals import nominals
+from feeddrive.plant.symbolic_turn import SYMBOLS
 from feeddrive.typing import Expression, FloatArray
 
 HYSTERESIS = 1e-8
@@ -48,6 +49,7 @@ class Kinks:
         return len(self.hysteresis)
 
 
+@SYMBOLS.taken()
 def kinks_of(model: Model) -> Kinks:
     """The kinks of a model that states, inputs or time can pass; those that values alone decide stay as they are."""
     function = model.function

@@ -32,6 +32,7 @@ from feeddrive.export.events import Kinks, kinks_of
 from feeddrive.export.fmu_description import description_text, fixed_parameters
 from feeddrive.export.model import Model
 from feeddrive.export.nominals import nominals
+from feeddrive.plant.symbolic_turn import SYMBOLS
 
 _WRAPPER = "fmi2_model_exchange.c"
 _FLAGS = ("-O1", "-ffp-contract=off", "-fPIC", "-shared", "-fvisibility=hidden")
@@ -99,6 +100,7 @@ def _sizes(model: Model, guid: str, kinks: Kinks) -> str:
     return "\n".join(lines) + "\n"
 
 
+@SYMBOLS.taken()
 def _events_text(name: str, kinks: Kinks) -> str:
     """The equations with held branches, their slopes, and the event indicators, in C."""
     arguments = [ca.SX.sym(of, kinks.held.size1_in(of)) for of in kinks.held.name_in()]

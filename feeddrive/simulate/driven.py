@@ -20,7 +20,7 @@ from feeddrive.plant.equations import (
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.structure import per_structure
 from feeddrive.simulate.engine import Feed, Machine, machine_of, rested, run_machine
-from feeddrive.simulate.program import Program, StepReport
+from feeddrive.simulate.program import Program, StepReport, joined
 from feeddrive.simulate.step import driven_step
 from feeddrive.simulate.step_constants import Layout
 from feeddrive.typing import FloatArray
@@ -28,13 +28,17 @@ from feeddrive.typing import FloatArray
 TOLERANCE = 1e-10
 """Error of the table position that one step may make [m]: the springs to the motor forget it within milliseconds."""
 
+STRETCH = 2**16
+"""Grid steps that are run at a time, about: what the engine is fed and shows takes several times the room of what is
+kept of it."""
+
 PASSES = 3
 """For the table position at the start; travel per length is below 1e-3, so each gains three digits."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class MotorMotion:
-    """Motor motion on a grid with `substeps` steps per sample.
+    """Motor motion on a grid with `substeps` steps per sample; each is a key of its own.
 
     Attributes:
         time: grid [s], shape (m,).
@@ -79,6 +83,12 @@ class LoadMotion:
     force: FloatArray
     report: StepReport
 
+    @property
+    def size(self) -> int:
+        """Bytes of what the run has computed."""
+        own = (self.screw_angle, self.screw_speed, self.table_position, self.table_velocity, self.torque, self.force)
+        return sum(series.nbytes for series in own)
+
 
 def motor_motion(time: FloatArray, angle: FloatArray, substeps: int = 1) -> MotorMotion:
     """Speed and acceleration of a sampled angle by a quintic spline through the samples.
@@ -116,23 +126,36 @@ def simulate_driven(plant: Plant, motion: MotorMotion, tolerance: float = TOLERA
     states = np.zeros(0)
     if machine.program.step.layout.coordinates:
         states = np.array(beginning(motion.angle[0], motion.speed[0], values)).ravel()
-    start = rested(machine, states, np.zeros(0))
-    step = motion.time[1] - motion.time[0]
-    # the acceleration is known at the samples only, and only there is the torque read
-    acceleration = np.zeros(len(motion.time))
-    acceleration[motion.samples] = motion.acceleration
-    fed = np.column_stack(
-        [motion.angle[:-1], motion.speed[:-1], motion.angle[1:], motion.speed[1:], acceleration[1:], motion.time[:-1]]
-    )
-    outcome = run_machine(machine, plant, Feed(fed, np.array([step]), np.array([step])), start, tolerance)
-    first = outputs(start.memory, motion.angle[0], motion.speed[0], acceleration[0], 0.0, values)
-    read = np.vstack([np.array(first).ravel(), outcome.seen])[motion.samples]
-    phi, screw_speed, x, velocity, torque, force = np.ascontiguousarray(read.T)
+    place = rested(machine, states, np.zeros(0))
+    step = np.array([motion.time[1] - motion.time[0]])
+    shown = np.empty((6, len(motion.acceleration)))
+    first = outputs(place.memory, motion.angle[0], motion.speed[0], motion.acceleration[0], 0.0, values)
+    shown[:, 0] = np.array(first).ravel()
+    length = max(1, STRETCH // motion.substeps)
+    reports = []
+    for sample in range(0, len(motion.acceleration) - 1, length):
+        fed = _fed(motion, sample, length)
+        outcome = run_machine(machine, plant, Feed(fed, step, step), place, tolerance)
+        shown[:, sample + 1 : sample + 1 + length] = outcome.seen[motion.substeps - 1 :: motion.substeps].T
+        place = outcome.position
+        reports.append(outcome.report)
     at = motion.samples
+    phi, screw_speed, x, velocity, torque, force = shown
     return LoadMotion(
         motion.time[at], motion.angle[at], motion.speed[at], phi, screw_speed, x, velocity, torque, force,
-        outcome.report,
+        joined(reports),
     )  # fmt: skip
+
+
+def _fed(motion: MotorMotion, sample: int, count: int) -> FloatArray:
+    """What the engine is fed from a sample on, for so many samples or what there are."""
+    steps = slice(sample * motion.substeps, (sample + count) * motion.substeps)
+    # the acceleration is known at the samples only, and only there is the torque read
+    angle, speed = (series[steps.start : steps.stop + 1] for series in (motion.angle, motion.speed))
+    acceleration = np.zeros(len(angle) - 1)
+    acceleration[motion.substeps - 1 :: motion.substeps] = motion.acceleration[sample + 1 : sample + 1 + count]
+    time = motion.time[steps.start : steps.stop + 1]
+    return np.column_stack([angle[:-1], speed[:-1], angle[1:], speed[1:], acceleration, time[:-1]])
 
 
 def unfollowed(motion: MotorMotion) -> LoadMotion:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 from functools import cached_property
@@ -136,6 +136,16 @@ class StepReport:
         )
         told = "; ".join(part for part in (finer, jumps) if part) or "one step a sample was enough"
         return f"finished: {self.steps} steps for {self.samples} samples; {told}"
+
+
+def joined(reports: Sequence[StepReport]) -> StepReport:
+    """The report of runs that follow one another."""
+    samples, steps, refused, sweeps, over, excess = (
+        sum(getattr(report, name) for report in reports)
+        for name in ("samples", "steps", "refused", "sweeps", "over", "excess")
+    )
+    finest, last_sweep = max(r.finest for r in reports), max(r.last_sweep for r in reports)
+    return StepReport(samples, steps, refused, sweeps, finest, last_sweep, over, excess, reports[0].tolerance)
 
 
 REPORTS = 9

@@ -19,11 +19,9 @@ from dataclasses import dataclass
 from multiprocessing.connection import wait
 from pathlib import Path
 
+from feeddrive.blas_threads import VARIABLES, one_thread_from_now_on
 from feeddrive.errors import InputError
 from feeddrive.simulate.sweep_unit import Measure, UnitTask, write_unit
-
-THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
-"""Threads of linear algebra: on small matrices several are ten times slower than one."""
 
 
 @dataclass(frozen=True)
@@ -101,8 +99,8 @@ def _context(measure: Measure) -> multiprocessing.context.BaseContext:
 @contextmanager
 def _one_thread_each() -> Iterator[None]:
     """The environment that new processes inherit."""
-    before = {name: os.environ.get(name) for name in THREADS}
-    os.environ.update(dict.fromkeys(THREADS, "1"))
+    before = {name: os.environ.get(name) for name in VARIABLES}
+    one_thread_from_now_on()
     try:
         yield
     finally:

@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from feeddrive.compiler import find_compiler
 from feeddrive.effects.guide_friction import GuideFriction
 from feeddrive.effects.presliding import Presliding
 from feeddrive.effects.shaft_drag import NutDrag
@@ -20,8 +19,6 @@ from feeddrive.simulate.recorded_run import RecordedRun, with_values
 from feeddrive.typing import FloatArray
 from tests.convergence.test_controlled import SAMPLE, cascade
 from tests.convergence.test_simulate import BENCH
-
-pytestmark = pytest.mark.skipif(find_compiler() is None, reason="no C compiler here")
 
 TRUE = {
     "table_mass": 134.0, "motor_inertia": 2.6e-3, "torsional_stiffness": 11_982.4, "axial_stiffness": 244.7e6,

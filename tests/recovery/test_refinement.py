@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from feeddrive.compiler import find_compiler
 from feeddrive.diagnose.evidence import Evidence
 from feeddrive.diagnose.fit import fit
 from feeddrive.diagnose.judge import Judged, prepared_for_judging
@@ -29,8 +28,6 @@ from feeddrive.recording import Recording
 from feeddrive.typing import FloatArray
 from tests.recovery.declared_controller import controlled_plant
 from tests.recovery.planted import pair
-
-pytestmark = pytest.mark.skipif(find_compiler() is None, reason="no C compiler here")
 
 PLANTED = 22.0
 

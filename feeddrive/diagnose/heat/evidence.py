@@ -47,7 +47,7 @@ SAME_SPEED = 0.005
 """Speeds within this share are one: a measured speed is never twice the same, and each costs a propagator."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class HeatEvidence(Evidence):
     """A recording of temperatures and growth.
 

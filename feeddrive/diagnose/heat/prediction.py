@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections import OrderedDict
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from threading import Lock
 from typing import ClassVar
 
 import numpy as np
@@ -15,6 +13,7 @@ from feeddrive.diagnose.heat.candidates import HEAT_CANDIDATES
 from feeddrive.diagnose.heat.evidence import HeatEvidence
 from feeddrive.diagnose.heat.materiality import is_material_heat
 from feeddrive.diagnose.predictor import Predictor
+from feeddrive.diagnose.remembered import Remembered
 from feeddrive.diagnose.scene import Candidate, Scene
 from feeddrive.effects.base import Effect
 from feeddrive.thermal.model import HeatModel, Path
@@ -28,9 +27,6 @@ ORDER = 48
 
 WIDEST_FILM, WIDEST_CONTACT, MOST_COOLING = 5.0, 10.0, 5.0
 """Factors beyond the declared conductances, and coolant's conductance [W/K], for which the reduced model is made."""
-
-REMEMBERED = 256
-"""Predictions kept; a fit comes back to the same values."""
 
 
 @dataclass
@@ -50,8 +46,7 @@ class HeatPredictor(Predictor[ThermalPlant, HeatEvidence]):
 
     declared: ThermalPlant
     model: HeatModel
-    _known: OrderedDict[object, dict[str, FloatArray]] = field(default_factory=OrderedDict)
-    _lock: Lock = field(default_factory=Lock)
+    _known: Remembered[dict[str, FloatArray]] = field(default_factory=lambda: Remembered(_size))
 
     @property
     def candidates(self) -> tuple[Candidate, ...]:
@@ -60,17 +55,8 @@ class HeatPredictor(Predictor[ThermalPlant, HeatEvidence]):
 
     def predict(self, plant: ThermalPlant, evidence: HeatEvidence) -> dict[str, FloatArray]:
         """Channel to its prediction, (n,) [degC, m]."""
-        key = (id(evidence.speed), tuple((e.name, e.place, tuple(e.values.items())) for e in plant.effects))
-        with self._lock:
-            if key in self._known:
-                self._known.move_to_end(key)
-                return self._known[key]
-        found = self._simulated(plant, evidence)
-        with self._lock:
-            self._known[key] = found
-            while len(self._known) > REMEMBERED:
-                self._known.popitem(last=False)
-        return found
+        values = tuple((e.name, e.place, tuple(e.values.items())) for e in plant.effects)
+        return self._known.found(evidence.recording, values, lambda: self._simulated(plant, evidence))
 
     def scene(self, problem: Problem, found: Sequence[Effect]) -> Scene:
         """Residuals with the effects found so far."""
@@ -129,6 +115,11 @@ def heat_predictor(plant: ThermalPlant) -> HeatPredictor:
     reduced = reduce_model([plant.full_model()], limits, ORDER)[0]
     # a fit may pass through values outside; what it ends at is inside the physical range of its effect
     return HeatPredictor(plant, replace(reduced, limits={}))
+
+
+def _size(prediction: dict[str, FloatArray]) -> int:
+    """Bytes of a prediction."""
+    return sum(series.nbytes for series in prediction.values())
 
 
 def _from_start(values: FloatArray, start: float, count: int) -> FloatArray:

@@ -61,7 +61,7 @@ def recording_of_rows(problem: Problem) -> IntegerArray:
     parts = []
     for evidence in problem.evidence:
         count = int(evidence.thinned(evidence.fit_rows).sum()) * len(evidence.channels)
-        parts.append(np.full(count, predictor.numbers[id(evidence.recording)]))
+        parts.append(np.full(count, predictor.numbers[evidence.recording]))
     return np.concatenate(parts).astype(np.int64)
 
 

@@ -18,6 +18,7 @@ from feeddrive.diagnose.predictor import Predictor
 from feeddrive.diagnose.scene import AxisScene, Candidate, Scene
 from feeddrive.effects.base import Effect, Kind, Parameter, Port, Signature
 from feeddrive.effects.thermal.base import ThermalEffect
+from feeddrive.recording import Recording
 from feeddrive.typing import BoolArray, FloatArray
 
 SAME_ORDER = 0.02
@@ -129,17 +130,17 @@ class RecordingPredictor(Predictor[Any, Any]):
 
     Attributes:
         inner: predicts one kind of machine.
-        numbers: id of a recording to its number; a recording that is not there has no shifts.
+        numbers: recording to its number; a recording that is not there has no shifts.
     """
 
     inner: Predictor[Any, Any]
-    numbers: Mapping[int, int]
+    numbers: Mapping[Recording, int]
 
     def machine(self, plant: Any, evidence: Evidence) -> Any:
         """The plant as it is in this recording, without shifts."""
         if not any(is_shift(effect) for effect in plant.effects):
             return plant
-        number = self.numbers.get(id(evidence.recording))
+        number = self.numbers.get(evidence.recording)
         return replace(plant, effects=in_recording(plant.effects, plant, number))
 
     @property

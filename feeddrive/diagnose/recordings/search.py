@@ -132,7 +132,7 @@ def numbered(problem: Problem, more: Sequence[Evidence] = ()) -> Problem:
     inner = problem.predictor
     inner = inner.inner if isinstance(inner, RecordingPredictor) else inner
     everything = (*problem.evidence, *more)
-    numbers = {id(evidence.recording): number for number, evidence in enumerate(everything)}
+    numbers = {evidence.recording: number for number, evidence in enumerate(everything)}
     return replace(problem, predictor=RecordingPredictor(inner, numbers))
 
 

@@ -42,9 +42,12 @@ def preload_loss(scene: AxisScene) -> list[list[Effect]]:
     if lag is None:
         return [[PreloadLoss.of(ratio=0.3, force=float(share * np.std(force))) for share in (0.3, 1.0)]]
     limits = np.abs(force).max() * np.geomspace(LEAST_FORCE, 1.0, FORCES)
-    columns = _in_band(scene, np.column_stack([np.clip(force, -limit, limit) / stiffness for limit in limits]))
-    slopes = columns.T @ lag / np.sum(columns**2, axis=0)
-    shares = slopes**2 * np.sum(columns**2, axis=0) / float(lag @ lag)
+    slopes, shares = np.zeros(FORCES), np.zeros(FORCES)
+    for i, limit in enumerate(limits):  # one after the other: all at once are four times the recording
+        stretch = _in_band(scene, np.clip(force, -limit, limit) / stiffness)
+        energy = float(stretch @ stretch)
+        slopes[i] = float(stretch @ lag) / energy
+        shares[i] = slopes[i] ** 2 * energy / float(lag @ lag)
     best = int(np.argmax(np.where(slopes > 0, shares, 0.0)))
     if slopes[best] <= 0 or shares[best] < LEAST_LAG:
         return []
@@ -84,7 +87,7 @@ def _transmitted(scene: AxisScene) -> FloatArray:
 
 
 def _in_band(scene: AxisScene, series: FloatArray) -> FloatArray:
-    """Columns as they show in the comparison, about their means; all samples in, fitted ones out."""
+    """Series, or columns, as they show in the comparison, about their means; all samples in, fitted ones out."""
     evidence = scene.problem.evidence[scene.longest]
     assert isinstance(evidence, AxisEvidence)
     seen = evidence.band.filter(series)[evidence.fit_rows]
