@@ -51,7 +51,7 @@ class AxisPredictor(Predictor[Plant, AxisEvidence]):
 
     def load_motion(self, plant: Plant, evidence: AxisEvidence) -> LoadMotion:
         """Motion of the load side, without what acts at the motor alone."""
-        bare = _load_side(plant)
+        bare = evidence.placed(_load_side(plant))
         key = (id(evidence.motion), _values_key(bare))
         with self._lock:
             if key in self._runs:
