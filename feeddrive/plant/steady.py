@@ -106,7 +106,8 @@ def _moving_state(plant: Plant, velocity: float, position: float, unknown: Expre
 
 
 def _start(plant: Plant, velocity: float, position: float, flank: float) -> FloatArray:
-    play = float(sum(effect.free_play(effect.values) for effect in plant.effects_of(TransmissionEffect)))
+    slots = [effect for effect in plant.effects if isinstance(effect, TransmissionEffect)]
+    play = float(sum(effect.free_play(effect.values) for effect in slots))
     travel = position + flank * (0.5 * play + _START_STRETCH)
     rigid = [travel * rate for rate in plant.chain.rigid_motion(plant.chain_values())]
     bristles = [_sliding_deflection(plant, bristle, velocity, position) for bristle in plant.effects_of(BristleEffect)]
