@@ -117,6 +117,10 @@ class AxisPredictor(Predictor[Plant, AxisEvidence]):
             runs.append(self.load_motion(plant, evidence))
         return AxisScene(problem, tuple(found), tuple(residuals), tuple(runs))
 
+    def smooth(self, plant: Plant) -> bool:
+        """A chain that varies with the table's position is simulated from cell to cell."""
+        return not plant.chain.varies
+
     def predictable(self, plant: Plant, evidence: AxisEvidence) -> BoolArray:
         """Samples without chaos."""
         return predictable_samples(plant, evidence)

@@ -11,8 +11,10 @@ import pytest
 
 from feeddrive.diagnose.diagnosis import diagnose
 from feeddrive.diagnose.evidence import prepare
+from feeddrive.diagnose.fit import Problem, fit
 from feeddrive.diagnose.prediction import AxisPredictor
 from feeddrive.diagnose.result import Diagnosis
+from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant
 from feeddrive.plant.files import read_plant
@@ -75,6 +77,25 @@ def test_a_nut_off_the_screw_is_refused() -> None:
     far = {**recording.channels, "table_position": recording["table_position"] + 2.0}
     with pytest.raises(InputError, match=r"the nut is not on the screw.*zero and unit of table_position"):
         diagnose(plant, [replace(recording, channels=far)])
+
+
+@pytest.mark.parametrize(("part", "planted", "place", "factor"), [
+    ("nut", 0.8, "nut", 0.8),
+    ("near", 0.7, "bearing", 0.7),
+    # shaft of 69930 and coupling of 27000 N m/rad in series, the coupling at three quarters
+    ("coupling", 0.75, "drive", (1 / 69930 + 1 / 27000) / (1 / 69930 + 1 / 20250)),
+])  # fmt: skip
+def test_a_fit_of_the_part_reaches_the_noise(part: str, planted: float, place: str, factor: float) -> None:
+    plant = read_plant(find_plant("kimm_testbed"))
+    recording = made("kimm_testbed", SECONDS, False, 1, softer(drive_of(find_plant("kimm_testbed")), part, planted))
+    evidence, predictor = prepare(recording, plant, 1.0), AxisPredictor()
+    start = EFFECTS["stiffness_deviation"].of(place=place, factor=1.0)
+    found = fit(Problem(plant, (evidence,), predictor), [start]).effects[0]
+    # Asked for are 5 %; dampers go with the stiffness in the elements and stay in the plant.
+    assert found.values["factor"] == pytest.approx(factor, rel=0.02)
+    predicted = predictor.predict(plant.with_effects(found), evidence)["table_position"]
+    left = float(np.std((evidence.measured["table_position"] - predicted)[evidence.counted]))
+    assert left < TABLE * math.hypot(Recorder().scale_noise, Recorder().scale_step / 12**0.5) * evidence.band.noise_gain
 
 
 @cache
