@@ -55,7 +55,7 @@ COMMANDS: dict[str, Entry] = {
     "show": Entry("show", "Show a machine: stiffness budget, inertias, friction, modes."),
     "modes": Entry("modes", "Natural frequencies of a machine along its stroke."),
     "bode": Entry("bode", "Frequency response of machine or loop; resonances, margins."),
-    "lump": Entry("lump", "Write a machine of parts as three inertias, and how near they are."),
+    "lump": Entry("lump", "Write a machine of parts as the nearest three inertias."),
     "tune": Entry("tune", "Recommend gains and filters of a cascade, and say why."),
     "thermal": Entry("thermal", "Warm a machine up: temperatures, error, time constants."),
     "check": Entry("check", "Check a machine against rules of plausibility."),

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import signal
 
+from feeddrive.plant.modes import screw_frequency
 from feeddrive.plant.plant import Plant
 from feeddrive.recording.findings import quantisation_step
 from feeddrive.typing import FloatArray
@@ -65,11 +66,7 @@ class Band:
 def comparison_band(plant: Plant, sample_rate: float) -> Band:
     """The band in which this plant and a recording at this rate [Hz] are compared."""
     edge = min(WIDEST_BAND, SHARE_OF_SAMPLE_RATE * sample_rate)
-    values = plant.chain_values()
-    if plant.chain.elastic:
-        antiresonance = math.sqrt(values["torsional_stiffness"] / values["screw_inertia"]) / (2 * math.pi)
-        edge = min(edge, SHARE_OF_ANTIRESONANCE * antiresonance)
-    return Band(edge, sample_rate)
+    return Band(min(edge, SHARE_OF_ANTIRESONANCE * screw_frequency(plant, plant.middle)), sample_rate)
 
 
 def held(series: FloatArray) -> FloatArray:

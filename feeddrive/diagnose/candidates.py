@@ -13,7 +13,6 @@ from feeddrive.effects.coulomb_asymmetry import CoulombAsymmetry
 from feeddrive.effects.lead_error_cumulative import LeadErrorCumulative
 from feeddrive.effects.load_dependent_friction import LoadDependentFriction
 from feeddrive.effects.payload import Payload
-from feeddrive.effects.stiffness_deviation import StiffnessDeviation
 from feeddrive.effects.viscous_asymmetry import ViscousAsymmetry
 
 CANDIDATES: tuple[Candidate, ...] = (
@@ -32,8 +31,8 @@ CANDIDATES: tuple[Candidate, ...] = (
     Candidate("lead_error_periodic", starts.lead_error, needs.lead),
     Candidate("lead_error_cumulative", starts.plain(LeadErrorCumulative.of(slope=0.0)), needs.scale),
     Candidate("thermal_growth", drift.thermal_growth, needs.scale_duration),
-    Candidate("stiffness_deviation", starts.plain(StiffnessDeviation.of(factor=1.0)), needs.elastic),
-    Candidate("stiffness_vs_position", transmission.stiffness_vs_position, needs.elastic_stroke),
+    Candidate("stiffness_deviation", transmission.stiffness, needs.elastic),
+    Candidate("stiffness_vs_position", transmission.stiffness_vs_position, needs.stiffness_along_stroke),
     Candidate("preload_loss", transmission.preload_loss, needs.elastic, scanned=True),
     Candidate("backlash", starts.backlash, needs.gap, scanned=True),
     Candidate("payload", starts.plain(Payload.of(mass=0.0)), needs.force),

@@ -39,7 +39,7 @@ def _parameters(effect: Effect, known: dict[str, list[Interval] | None]) -> dict
     result: dict[str, ParameterResult] = {}
     if effect.name == "friction_deviation":
         result["port"] = ParameterResult(str(effect.port), "")
-    if effect.place_key:
+    if effect.place != effect.default_place:
         result[effect.place_key] = ParameterResult(effect.place, "")
     for key, value in effect.values.items():
         unit, ends = effect.parameter(key).unit, known[key]

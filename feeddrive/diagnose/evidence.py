@@ -25,6 +25,9 @@ SHORTEST = 3.0
 """Shortest recording [s] that leaves something between the cut ends."""
 
 
+LEAST_ZERO = 1e-4
+"""Difference [m] of the zeros of table and motor that moves the nut: 0.1 mm of screw give way 0.5 nm per kilonewton."""
+
 BLOCK = 0.5
 """Length of a block of cross-validation [s]: many correlation times of the band, and short against a stroke."""
 
@@ -114,11 +117,20 @@ class AxisEvidence(Evidence):
         motion: of the motor.
         band: of the comparison.
         scaled_from: channel that the motor torque is only proportional to; empty where the torque is known.
+        zero: table position where the motor angle is zero [m], for a chain that depends on it; 0 where it is not known.
     """
 
     motion: MotorMotion
     band: Band
     scaled_from: str = ""
+    zero: float = 0.0
+
+    def placed(self, plant: Plant) -> Plant:
+        """The plant with its nut where it stood: simulated positions count from the zero of the motor angle."""
+        if not self.zero:
+            return plant
+        values = {**plant.chain.values, "first_nut_position": plant.chain.values["first_nut_position"] + self.zero}
+        return replace(plant, chain=replace(plant.chain, values=values))
 
     @property
     def motion_speed(self) -> FloatArray:
@@ -187,7 +199,30 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
         motor_motion(time, recording["motor_angle"]),
         band,
         scaled_from,
+        _zero_of_angle(recording, plant),
     )
+
+
+def _zero_of_angle(recording: Recording, plant: Plant) -> float:
+    """Table position where the motor angle is zero [m], for a chain that depends on where the table stands.
+
+    Raises:
+        InputError: the nut would not be on the screw.
+    """
+    if not plant.chain.varies:
+        return 0.0
+    turned = plant.chain.motor_radius * recording["motor_angle"]
+    measured = "table_position" in recording
+    zero = float(np.median(recording["table_position"] - turned)) if measured else 0.0
+    for position in (float(np.min(turned)) + zero, float(np.max(turned)) + zero):
+        try:
+            plant.chain.refuse_off_screw(position, recording.name)
+        except InputError as error:
+            mend = "record table_position, or shift motor_angle so that it is zero where the table is at 0"
+            if measured:
+                mend = "check zero and unit of table_position, and first_nut_position of the plant"
+            raise InputError(error.what, recording.name, mend) from None
+    return zero if abs(zero) > LEAST_ZERO else 0.0
 
 
 def _with_motor_angle(recording: Recording, plant: Plant) -> Recording:

@@ -27,6 +27,10 @@ from feeddrive.typing import FloatArray
 DIFFERENCE = 1e-4
 """Step of the differences in coordinates of size one."""
 
+COARSE = 1e-2
+"""The step where a prediction is smooth only beyond 1e-12 m: a simulation that goes from cell to cell of positions ends
+one step earlier or later. What has the size one moves the table by nanometres, a hundredth of it by 30 times that."""
+
 ENOUGH = 1e-4
 """A step that lowers the squared error by less than this share ends the fit."""
 
@@ -99,6 +103,11 @@ class Problem:
         """Weighted residual at the fitted samples of all recordings."""
         return self.measured() - self.predicted(effects)
 
+    @property
+    def difference(self) -> float:
+        """Step of the differences in coordinates of size one."""
+        return DIFFERENCE if self.predictor.smooth(self.plant) else COARSE
+
     def jacobian(self, effects: Sequence[Effect], free: Sequence[bool], base: FloatArray) -> FloatArray:
         """Slope of the prediction with the coordinates of the free effects."""
         moved = [effect for effect, is_free in zip(effects, free, strict=True) if is_free]
@@ -107,7 +116,7 @@ class Problem:
         columns = []
         for i in range(len(vector)):
             step = np.zeros(len(vector))
-            step[i] = DIFFERENCE if vector[i] + DIFFERENCE <= high[i] else -DIFFERENCE
+            step[i] = self.difference if vector[i] + self.difference <= high[i] else -self.difference
             changed = _placed(effects, free, write_coordinates(moved, self.plant, vector + step))
             columns.append((self.predicted(changed) - base) / step[i])
         return np.column_stack(columns) if columns else np.zeros((len(base), 0))

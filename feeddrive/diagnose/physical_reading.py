@@ -146,12 +146,29 @@ def _viscous_warmup(v: Mapping[str, Value]) -> str:
     )
 
 
-def _stiffness_deviation(v: Mapping[str, Value]) -> str:
+def _stiffness_deviation(place: str, v: Mapping[str, Value]) -> str:
+    factor = _one(v["factor"])
+    if place in _SOFT_PARTS:
+        part, cause = _SOFT_PARTS[place]
+        told = f"The {part} has {factor:.0%} of the declared stiffness"
+        if place == "nut":  # Hertz: the stiffness of a preloaded nut goes with the cube root of its preload
+            cause += f" (by preload alone, {factor**3:.0%} of it)"
+        return f"{told}{f': {cause}' if factor < 1 else ''}."
     return _signed(
         _one(v["factor"]) - 1,
         "The drive is stiffer along its axis than declared.",
         "The drive is softer along its axis than declared: bearing, bracket or nut, or less preload.",
     )
+
+
+_SOFT_PARTS = {
+    "nut": ("nut", "worn balls or grooves, less preload"),
+    "bearing": ("bearing at the motor's end", "less preload, a loose bracket"),
+    "far_bearing": ("bearing at the far end", "less preload or stretch of the screw, a loose bracket"),
+    "drive": ("drive between motor and screw", "coupling or belt, a loose hub"),
+    "screw": ("screw", "another diameter"),
+}
+"""Part to what it is called, and what makes it softer."""
 
 
 def _stiffness_vs_position(v: Mapping[str, Value]) -> str:
@@ -285,6 +302,7 @@ def _torque_constant_droop(v: Mapping[str, Value]) -> str:
 READINGS_AT: dict[str, Callable[[str, Mapping[str, Value]], str]] = {
     "channel_delay": _channel_delay,
     "inertia_deviation": _inertia_deviation,
+    "stiffness_deviation": _stiffness_deviation,
 }
 """Effect name to the reading of its place and values."""
 
@@ -310,7 +328,6 @@ READINGS: dict[str, Callable[[Mapping[str, Value]], str]] = {
     "lead_error_cumulative": _lead_error_cumulative,
     "thermal_growth": _thermal_growth,
     "viscous_warmup": _viscous_warmup,
-    "stiffness_deviation": _stiffness_deviation,
     "stiffness_vs_position": _stiffness_vs_position,
     "preload_loss": _preload_loss,
     "structural_mode": _structural_mode,

@@ -79,6 +79,7 @@ def _predictable(growth: FloatArray, evidence: AxisEvidence) -> BoolArray:
 def _growth(plant: Plant, evidence: AxisEvidence) -> FloatArray:
     """Motion of the table in the band over that of the encoder's noise that caused it, shape (n,)."""
     generator = np.random.default_rng(20240501)
+    plant = evidence.placed(plant)
     base = simulate_driven(plant, evidence.motion).table_position.copy()  # not with all else that was simulated
     squares = np.zeros(len(base))
     for _ in range(DRAWS):

@@ -46,7 +46,7 @@ class AxisPredictor(Predictor[Plant, AxisEvidence]):
 
     def load_motion(self, plant: Plant, evidence: AxisEvidence) -> LoadMotion:
         """Motion of the load side, without what acts at the motor alone."""
-        bare = _load_side(plant)
+        bare = evidence.placed(_load_side(plant))
         return self._runs.found(evidence.motion, _values_key(bare), lambda: _simulated(bare, evidence))
 
     def predict(self, plant: Plant, evidence: AxisEvidence) -> dict[str, FloatArray]:
@@ -97,6 +97,10 @@ class AxisPredictor(Predictor[Plant, AxisEvidence]):
             residuals.append({name: evidence.measured[name] - predicted[name] for name in evidence.channels})
             runs.append(self.load_motion(plant, evidence))
         return AxisScene(problem, tuple(found), tuple(residuals), tuple(runs))
+
+    def smooth(self, plant: Plant) -> bool:
+        """A chain that varies with the table's position is simulated from cell to cell."""
+        return not plant.chain.varies
 
     def predictable(self, plant: Plant, evidence: AxisEvidence) -> BoolArray:
         """Samples without chaos."""

@@ -79,6 +79,10 @@ class Predictor(ABC, Generic[M, E]):
         """What is to be said of this way to predict, with the declared plant and with what was found."""
         return ()
 
+    def smooth(self, plant: M) -> bool:
+        """Whether a prediction follows the smallest changes of its values."""
+        return True
+
     def predictable(self, plant: M, evidence: E) -> BoolArray:
         """Samples that can be predicted at all, (n,)."""
         return evidence.counted | True

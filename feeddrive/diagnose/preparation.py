@@ -44,7 +44,6 @@ def prepared(
     """
     if isinstance(plant, ThermalPlant):
         return _prepared_heat(plant, recordings, validation, split)
-    _refuse_parts(plant)
     lead = 2 * np.pi * plant.chain.motor_radius
     for recording in (*recordings, *validation):
         _refuse_heat(recording)
@@ -107,10 +106,3 @@ def _refuse_heat(recording: Recording) -> None:
     if not moving and "screw_speed" in recording:
         mend = "name a plant that declares heat alone, such as thermal_bench"
         raise InputError("a recording of temperatures, and the plant declares motion", recording.name, mend)
-
-
-def _refuse_parts(plant: Plant) -> None:
-    """Band and starts are those of inertias on two springs."""
-    if plant.chain.elastic and "torsional_stiffness" not in plant.chain.values:
-        mend = 'declare structure = "three_inertias", with the combined torsional and axial stiffness, in a plant file'
-        raise InputError("recordings are not compared with a screw described by its parts", plant.name, mend)

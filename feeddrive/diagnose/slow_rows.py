@@ -4,7 +4,7 @@ A drive holds its torque for one cycle, so that a recording with one row a cycle
 apart, a row is the torque of that instant, and between two rows the motor may have done anything. Where it was smooth,
 the fourth difference of its angle is small:
 
-    delta a = |D4 theta| / (12 h^2),    delta T = J delta a,    delta x = m r delta a / k_XS
+    delta a = |D4 theta| / (12 h^2),    delta T = J delta a,    delta x = s delta a
 
 | symbol | meaning | unit |
 |---|---|---|
@@ -12,8 +12,8 @@ the fourth difference of its angle is small:
 | h | time between rows | s |
 | delta a | error of the acceleration, that of the second difference | rad/s^2 |
 | delta T, delta x | what it misses of the torque, of the table position | N m, m |
-| J, m | inertia of all that moves, at the motor; table mass | kg m^2, kg |
-| r, k_XS | lead / 2 pi, axial stiffness | m/rad, N/m |
+| J | inertia of all that moves, at the motor | kg m^2 |
+| s | how far the table stays behind per acceleration (`feeddrive.plant.moving_inertia`) | m s^2/rad |
 
 Rows at which either is more than the noise of its sensor are left out, and those at which the torque jumps from row to
 row. Valid where what the drive does between rows shows at the rows; a vibration at a multiple of their rate does not.
@@ -26,6 +26,7 @@ from scipy.ndimage import binary_dilation, uniform_filter1d
 
 from feeddrive.diagnose.band import Band, white_noise
 from feeddrive.errors import InputError
+from feeddrive.plant.moving_inertia import inertia_at_motor, lag_per_acceleration
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 from feeddrive.typing import BoolArray, FloatArray
@@ -79,14 +80,12 @@ def _vibrating(torque: FloatArray, rate: float, reach: int) -> BoolArray:
 
 def _least_acceleration(recording: Recording, plant: Plant) -> float:
     """Error of the acceleration that shows in a channel [rad/s²]; infinite where none shows it."""
-    values, rate = plant.chain_values(), 1 / recording.sample_time
-    r, mass = plant.chain.motor_radius, values["table_mass"]
+    rate = 1 / recording.sample_time
     shown = [np.inf]
     if "motor_torque" in recording:
-        inertia = values["motor_inertia"] + values["screw_inertia"] + mass * r**2
-        shown.append(white_noise(recording["motor_torque"], rate) / inertia)
+        shown.append(white_noise(recording["motor_torque"], rate) / inertia_at_motor(plant))
     if "table_position" in recording and plant.chain.elastic:
-        shown.append(white_noise(recording["table_position"], rate) * values["axial_stiffness"] / (mass * r))
+        shown.append(white_noise(recording["table_position"], rate) / lag_per_acceleration(plant))
     return float(min(shown))
 
 

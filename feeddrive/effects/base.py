@@ -132,6 +132,7 @@ class Effect:
         place: the word under `place_key` that says where it acts, as "nut"; empty where the port says all.
         place_key: key of that word in plant files and reports; empty where there is none.
         places: words that it may be; any word that the machine knows where there are none.
+        default_place: word that is meant where none is given; empty where one must be.
     """
 
     name: ClassVar[str] = ""
@@ -144,6 +145,7 @@ class Effect:
     reads_force: ClassVar[bool] = False
     place_key: ClassVar[str] = ""
     places: ClassVar[tuple[str, ...]] = ()
+    default_place: ClassVar[str] = ""
 
     values: Mapping[str, Value] = field(default_factory=dict)
     port: Port = Port.TABLE
@@ -163,6 +165,7 @@ class Effect:
             InputError: unknown or missing key, a value outside its range, or a port or place it cannot act at.
         """
         chosen = cls.ports[0] if port is None else port
+        place = place or cls.default_place
         if chosen not in cls.ports:
             raise InputError(f"{cls.name} cannot act at port {chosen}", cls.name, f"use one of {', '.join(cls.ports)}")
         if bool(place) != bool(cls.place_key) or (cls.places and place not in cls.places):

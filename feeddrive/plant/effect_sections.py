@@ -61,7 +61,7 @@ def _effect(table: Table, label: str, catalogue: Mapping[str, type[Effect]], top
     }
     values |= {key: end for key, end in along.items() if key not in table.entries}
     port = Port(table.choice("port", effect.ports)) if "port" in table.entries else None
-    place = table.text(effect.place_key) if effect.place_key else ""
+    place = table.text(effect.place_key, effect.default_place or None) if effect.place_key else ""
     try:
         made = effect.of(port, place, **values)
     except InputError as error:

@@ -39,7 +39,7 @@ def _block(effect: Effect, remark: str) -> str:
     effect.complete(effect.values)
     lines = [f"# {' '.join(_printable(remark).split())}"] if remark.strip() else []
     lines += ["[[effect]]", f'name = "{effect.name}"', f'port = "{effect.port}"']
-    lines += [f'{effect.place_key} = "{effect.place}"'] if effect.place_key else []
+    lines += [f'{effect.place_key} = "{effect.place}"'] if effect.place != effect.default_place else []
     given = [p for p in effect.parameters if p.key in effect.values]
     lines += [f"{p.key} = {_written(effect.values[p.key], p.unit)}" for p in given]
     return "\n".join(lines) + "\n"

@@ -54,7 +54,7 @@ from feeddrive.plant.modes import braked_modes, free_modes
 from feeddrive.plant.moving_inertia import inertia_at_motor
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.resolution import resolved_modes
-from feeddrive.plant.stiffness_budget import stiffness_budget
+from feeddrive.plant.stiffness_budget import nut_stiffness, stiffness_budget
 from feeddrive.typing import FloatArray
 
 LEAST_SHARE = 1e-3
@@ -223,7 +223,7 @@ def _compared(machine: Plant, model: Plant, position: float) -> tuple[Compared, 
 
 def _effects(plant: Plant, values: Mapping[str, float]) -> tuple[tuple[Effect, ...], tuple[str, ...]]:
     """The effects that stay effects, and where their values come from."""
-    nut = float(plant.chain.nut(plant.chain_values()).stiffness)
+    nut = nut_stiffness(plant)
     kept, remarks = [], []
     for effect in plant.effects:
         if isinstance(effect, ChainEffect) and not effect.adds_coordinate:

@@ -60,6 +60,31 @@ def braked_modes(plant: Plant, position: float = 0.0) -> Modes:
     return _modes(plant, np.eye(motor.shape[1]), position, brake.stiffness * motor.T @ motor)
 
 
+def screw_frequency(plant: Plant, position: float = 0.0) -> float:
+    """The lowest natural frequency of the screw alone [Hz]: motor held, nut open; infinite in a rigid structure.
+
+    Above it the screw has a motion of its own between motor and table. With three inertias it is
+    sqrt(k_TS / J_s) / 2 pi.
+
+    Args:
+        plant: the machine.
+        position: of the table [m].
+
+    Raises:
+        InputError: the nut would not be on the screw.
+    """
+    plant.chain.refuse_off_screw(position, plant.name)
+    chain, values = plant.chain.without_modes, plant.chain_values()
+    if not chain.elastic:
+        return math.inf
+    screw = slice(1, -1)  # between the motor and the table
+    M, K = (np.array(matrix(values, position), dtype=float) for matrix in (chain.mass, chain.stiffness))
+    nut = chain.nut(values)
+    row = np.array(nut.row, dtype=float)
+    opened = K - float(nut.stiffness) * np.outer(row, row)
+    return float(np.sqrt(np.min(eigh(opened[screw, screw], M[screw, screw], eigvals_only=True)))) / (2 * math.pi)
+
+
 def _modes(plant: Plant, basis: FloatArray, position: float, held: FloatArray | float = 0.0) -> Modes:
     """Modes of the motions q = S B eta, with S from table travel to coordinates, B a basis, `held` added to K."""
     plant.chain.refuse_off_screw(position, plant.name)

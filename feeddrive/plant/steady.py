@@ -9,8 +9,7 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 
-from feeddrive.effects.backlash import Backlash
-from feeddrive.effects.base import BristleEffect, Effect, Motion
+from feeddrive.effects.base import BristleEffect, Effect, Motion, TransmissionEffect
 from feeddrive.errors import InputError
 from feeddrive.plant.chain import symbolic
 from feeddrive.plant.equations import bristle_count, friction_level, parameter_symbols, parameter_values
@@ -109,8 +108,8 @@ def _moving_state(plant: Plant, velocity: float, position: float, unknown: Expre
 
 
 def _start(plant: Plant, velocity: float, position: float, flank: float) -> FloatArray:
-    widths = [effect.values["width"] for effect in plant.effects if isinstance(effect, Backlash)]
-    play = float(np.sum(np.array(widths, dtype=float)))
+    slots = [effect for effect in plant.effects if isinstance(effect, TransmissionEffect)]
+    play = float(sum(effect.free_play(effect.values) for effect in slots))
     travel = position + flank * (0.5 * play + _START_STRETCH)
     rigid = [travel * rate for rate in plant.chain.rigid_motion(plant.chain_values())]
     bristles = [_sliding_deflection(plant, bristle, velocity, position) for bristle in plant.effects_of(BristleEffect)]

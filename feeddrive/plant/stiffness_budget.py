@@ -10,7 +10,8 @@ Source: paper 004, eqs. (5) to (8): axial and torsional spring chain act in seri
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -86,6 +87,25 @@ def static_shape(plant: Plant, position: float) -> FloatArray:
     load[-1] = size[-1]
     scaled = size[:, None] * K[1:, 1:] * size
     return np.concatenate([[0.0], size * np.linalg.solve(scaled, load)])
+
+
+def static_stiffness(plant: Plant, position: float) -> float:
+    """Force per travel of the table with the motor held ideally [N/m]; infinite in a rigid structure."""
+    return float(1 / static_shape(plant, position)[-1]) if plant.chain.elastic else float("inf")
+
+
+def participation(plant: Plant, key: str, position: float) -> float:
+    """Share of a chain value in the compliance at the table, motor held ideally: -d ln(1/k) / d ln(value) [1]."""
+    step = 1e-4
+    values = {**plant.chain.values, key: plant.chain.values[key] * (1 + step)}
+    stiffer = replace(plant, chain=replace(plant.chain, values=values))
+    ratio = static_stiffness(stiffer, position) / static_stiffness(plant, position)
+    return math.log(ratio) / math.log(1 + step)
+
+
+def nut_stiffness(plant: Plant) -> float:
+    """Stiffness of the spring on which gap and laws of the transmission act, of an elastic structure [N/m]."""
+    return float(plant.chain.nut(plant.chain_values()).stiffness)
 
 
 def _of_springs(plant: Plant, position: float) -> list[tuple[str, str, float]]:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from feeddrive.plant.moving_inertia import inertia_at_motor
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.resolution import ResolvedModes, resolved_modes
 from feeddrive.plant.steady import steady_motions
@@ -79,7 +80,7 @@ def summarise(plant: Plant, position: float | None = None) -> Summary:
     inertias = _inertias(plant, at)
     return Summary(
         position=at,
-        inertia_at_motor=sum(row.at_motor for row in inertias),
+        inertia_at_motor=inertia_at_motor(plant, at),
         mass_at_table=sum(row.at_table for row in inertias),
         inertias=inertias,
         stiffness=stiffness_budget(plant, at) if plant.chain.elastic else None,

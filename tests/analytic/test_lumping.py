@@ -92,8 +92,8 @@ def test_what_does_not_bend_moves_alike(name: str) -> None:
         one, other = (steady_motion(machine, velocity, plant.middle) for machine in (plant, lumped))
         # Newton ends where the springs' rounding begins: 1e-12 of forces of 1e9 N/m over 0.5 m, some mN.
         assert other.torque == pytest.approx(one.torque, rel=1e-4)
-        # The motor stands as far ahead of the table; rounding of angles of 100 rad beside microns of stretch.
-        assert other.state[0] == pytest.approx(one.state[0], rel=1e-12)
+        # The motor stands as far ahead of the table, by some 1e-4 rad; what Newton leaves, as above.
+        assert other.state[0] == pytest.approx(one.state[0], abs=1e-6)
     assert lumped.torque_limit == plant.torque_limit
     assert lumped.stroke == pytest.approx(plant.stroke)
     assert lumped.sensors == plant.sensors

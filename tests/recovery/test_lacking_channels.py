@@ -12,8 +12,6 @@ import pytest
 from feeddrive.diagnose.diagnosis import diagnose
 from feeddrive.diagnose.result import Diagnosis
 from feeddrive.errors import InputError
-from feeddrive.files import plants_folder
-from feeddrive.plant.files import read_plant
 from feeddrive.recording import Recording
 from tests.generator.axis import AXES
 from tests.generator.effects import Effect, FrictionDeviation, TorqueRipple
@@ -142,10 +140,3 @@ def test_motor_torque_share_is_read_from_a_file(tmp_path: Path) -> None:
     result = diagnose(PLANT, [read])[0]
     assert any(note.startswith("motor_torque_share: its torque per unit") for note in result.notes)
     assert names(result) == []
-
-
-def test_machine_described_by_parts_is_refused_in_one_line() -> None:
-    plant = read_plant(plants_folder() / "hsr_axis.toml")
-    rows = channels(None)[0]
-    with pytest.raises(InputError, match="a screw described by its parts"):
-        diagnose(plant, [recording("parts", rows)])

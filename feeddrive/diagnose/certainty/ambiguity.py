@@ -24,7 +24,10 @@ from feeddrive.diagnose.fit import Fit, fit
 from feeddrive.diagnose.judge import Judged
 from feeddrive.diagnose.search import Search
 from feeddrive.effects.base import Effect
+from feeddrive.effects.stiffness_deviation import PARTS, StiffnessDeviation, parts_of
 from feeddrive.errors import InputError
+from feeddrive.plant.plant import Plant
+from feeddrive.plant.stiffness_budget import participation
 
 SAME_ERROR = 1.05
 """Ratio of validation errors (rms) within which two effects count as the same."""
@@ -41,7 +44,7 @@ NEAR = 0.5
 MOST_RIVALS = 4
 """Rivals tried for one effect; each costs a joint fit."""
 
-PLACED = ("inertia_deviation", "channel_delay")
+PLACED = ("inertia_deviation", "channel_delay", "stiffness_deviation")
 """Effects whose place is put to the question."""
 
 NEAR_END = 0.02
@@ -134,14 +137,32 @@ def other_places(found: Search, judged: Sequence[Judged]) -> tuple[str, ...]:
         taken = {e.place for e in found.fit.effects if e.name == effect.name}
         tried = [
             _in_place(found, judged, index, type(effect).of(None, place, **effect.values), mine)
-            for place in effect.places
+            for place in _possible(effect, found)
             if place not in taken
         ]
         alike = [rival.effect.place for rival in tried if rival is not None and rival.as_good]
         if alike:
             where = f"{effect.place_key} = {joined(alike)} does as well as {effect.place}"
-            told.append(f"{effect.name}: {where}; these recordings cannot tell")
+            told.append(f"{effect.name}: {where}; these recordings cannot tell{_shares(effect, alike, found)}")
     return tuple(told)
+
+
+def _shares(effect: Effect, alike: Sequence[str], found: Search) -> str:
+    """How much of the compliance at the table parts that cannot be told apart have; empty for other effects."""
+    plant = found.problem.plant
+    if not isinstance(effect, StiffnessDeviation) or not isinstance(plant, Plant) or effect.place not in PARTS:
+        return ""
+    parts = [part for part in (effect.place, *alike) if part in PARTS]
+    shares = [f"{part} {participation(plant, PARTS[part], plant.middle):.0%}" for part in parts]
+    return f". Of the compliance at the table they have in mid-stroke: {', '.join(shares)}"
+
+
+def _possible(effect: Effect, found: Search) -> tuple[str, ...]:
+    """Places that the effect may have on this machine."""
+    plant = found.problem.plant
+    if isinstance(effect, StiffnessDeviation) and isinstance(plant, Plant):
+        return parts_of(plant.chain.values)
+    return effect.places
 
 
 def at_its_limit(effect: Effect) -> bool:

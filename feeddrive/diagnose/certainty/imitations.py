@@ -9,7 +9,7 @@ below F1 the two are one; a search that starts at forces which can be seen does 
 |---|---|---|
 | w | free play | m |
 | a, F1 | stiffness around zero force over the declared one, and the force up to which it is soft | 1, N |
-| k | declared stiffness | N/m |
+| k | declared stiffness of the nut's spring | N/m |
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from feeddrive.effects.backlash import Backlash
 from feeddrive.effects.base import Effect
 from feeddrive.effects.preload_loss import PreloadLoss
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.stiffness_budget import stiffness_budget
+from feeddrive.plant.stiffness_budget import nut_stiffness
 
 SOFTENED = 0.1
 """Ratio a of the start: far from both ends of its range, 0.01 (free play) and 1 (no loss)."""
@@ -37,5 +37,5 @@ def imitations_of(effect: Effect, plant: Machine) -> tuple[Effect, ...]:
     width = effect.values["width"]
     if not isinstance(width, float) or width <= 0:
         return ()
-    stiffness = stiffness_budget(plant, plant.middle).axial
+    stiffness = nut_stiffness(plant)
     return (PreloadLoss.of(ratio=SOFTENED, force=0.5 * width * stiffness * SOFTENED / (1 - SOFTENED)),)

@@ -30,7 +30,7 @@ from feeddrive.diagnose.certainty.information import inverse_information
 from feeddrive.diagnose.certainty.noise_colour import fitted_away, score_covariance, spectral_freedom
 from feeddrive.diagnose.coordinates import LOGARITHMIC, spread_to_values, write_coordinates
 from feeddrive.diagnose.cross_validation import model_error_rows
-from feeddrive.diagnose.fit import DIFFERENCE, Fit, Problem
+from feeddrive.diagnose.fit import Fit, Problem
 from feeddrive.diagnose.folds import blocks_in_time
 from feeddrive.effects.base import Effect
 from feeddrive.typing import FloatArray, IntegerArray
@@ -93,9 +93,9 @@ def slopes(problem: Problem, fitted: Fit) -> FloatArray:
     jacobian, base = fitted.jacobian.copy(), problem.predicted(fitted.effects)
     for i in still:
         step = np.zeros(jacobian.shape[1])
-        step[i] = -DIFFERENCE
+        step[i] = -problem.difference
         moved = write_coordinates(fitted.effects, problem.plant, fitted.coordinates + step)
-        jacobian[:, i] = (base - problem.predicted(moved)) / DIFFERENCE
+        jacobian[:, i] = (base - problem.predicted(moved)) / problem.difference
     return jacobian
 
 

@@ -135,6 +135,13 @@ def elastic_stroke(scene: AxisScene) -> str:
     return elastic(scene) or stroke(scene)
 
 
+def stiffness_along_stroke(scene: AxisScene) -> str:
+    """A stiffness along the stroke that is no part of the chain itself."""
+    if scene.plant.chain.varies:
+        return "the chain has its stiffness along the stroke from its parts; ask for that of a part"
+    return elastic_stroke(scene)
+
+
 def duration(scene: AxisScene) -> str:
     """What changes slowly needs time."""
     evidence = scene.problem.evidence[scene.longest]

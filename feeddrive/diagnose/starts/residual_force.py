@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from feeddrive.diagnose.scene import AxisScene
-from feeddrive.plant.plant import Plant
+from feeddrive.plant.stiffness_budget import static_stiffness
 from feeddrive.typing import FloatArray
 
 
@@ -26,13 +24,5 @@ def residual_forces(scene: AxisScene, at: int) -> list[FloatArray]:
     if "motor_torque" in residual:
         forces.append(residual["motor_torque"] / scene.plant.chain.motor_radius)
     if "table_position" in residual and scene.plant.chain.elastic:
-        forces.append(-static_stiffness(scene.plant) * residual["table_position"])
+        forces.append(-static_stiffness(scene.plant, scene.plant.middle) * residual["table_position"])
     return forces
-
-
-def static_stiffness(plant: Plant) -> float:
-    """Force per travel of the table with the motor held, at the middle of the stroke [N/m]; infinite where rigid."""
-    if not plant.chain.elastic:
-        return float("inf")
-    K = np.array(plant.chain.stiffness(plant.chain_values(), plant.middle), dtype=float)[1:, 1:]
-    return float(1 / np.linalg.inv(K)[-1, -1])

@@ -18,8 +18,9 @@ from feeddrive.diagnose.materiality import is_material
 from feeddrive.diagnose.scene import AxisScene
 from feeddrive.effects.base import Effect
 from feeddrive.effects.preload_loss import PreloadLoss
+from feeddrive.effects.stiffness_deviation import StiffnessDeviation, parts_of
 from feeddrive.effects.stiffness_vs_position import StiffnessVsPosition
-from feeddrive.plant.stiffness_budget import stiffness_budget
+from feeddrive.plant.stiffness_budget import nut_stiffness
 from feeddrive.typing import FloatArray
 
 LEAST_LAG = 0.004
@@ -38,7 +39,7 @@ def preload_loss(scene: AxisScene) -> list[list[Effect]]:
     lag, force = _lag(scene), _transmitted(scene)
     if not np.any(force):
         return []
-    stiffness = stiffness_budget(scene.plant, scene.plant.middle).axial
+    stiffness = nut_stiffness(scene.plant)
     if lag is None:
         return [[PreloadLoss.of(ratio=0.3, force=float(share * np.std(force))) for share in (0.3, 1.0)]]
     limits = np.abs(force).max() * np.geomspace(LEAST_FORCE, 1.0, FORCES)
@@ -55,13 +56,20 @@ def preload_loss(scene: AxisScene) -> list[list[Effect]]:
     return [[start]] if is_material(start, scene.plant) else []
 
 
+def stiffness(scene: AxisScene) -> list[list[Effect]]:
+    """The declared stiffness, of every part that the chain knows apart and that has no other one yet."""
+    taken = {effect.place for effect in scene.found if effect.name == StiffnessDeviation.name}
+    parts = [part for part in parts_of(scene.plant.chain.values) if part not in taken]
+    return [[StiffnessDeviation.of(place=part, factor=1.0)] for part in parts]
+
+
 def stiffness_vs_position(scene: AxisScene) -> list[list[Effect]]:
     """The slope over the stroke: the declared one, or where none is declared that of the recordings."""
     low, high = scene.plant.stroke or _travelled(scene)
     lag, force = _lag(scene), _transmitted(scene)
     if lag is None:
         return [[StiffnessVsPosition.of(share_over_stroke=0.0, low=low, high=high)]]
-    stretch = force / stiffness_budget(scene.plant, scene.plant.middle).axial
+    stretch = force / nut_stiffness(scene.plant)
     along = (scene.runs[scene.longest].table_position - low) / (high - low)
     everywhere, growing = _in_band(scene, np.column_stack([stretch, stretch * along])).T
     growing = growing - everywhere * float(growing @ everywhere) / float(everywhere @ everywhere)
