@@ -15,8 +15,8 @@ from pathlib import Path
 
 import numpy as np
 
-from feeddrive.diagnose.stiffness.candidates import Candidate, DriveAt
-from feeddrive.diagnose.stiffness.gap import Explanation, Solved, explain_both, explain_stiffness, frequency_of
+from feeddrive.diagnosis.stiffness.candidates import Candidate, DriveAt
+from feeddrive.diagnosis.stiffness.gap import Explanation, Solved, explain_both, explain_stiffness, frequency_of
 from feeddrive.files import write_bytes_atomically
 from feeddrive.parts.ball_screw import ScrewShaft
 from feeddrive.parts.bearing import SupportBearing

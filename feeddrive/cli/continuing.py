@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from feeddrive.cli.diagnosing import Job, Options, Source
-from feeddrive.diagnose.ledger.continued import Earlier, earlier_run
-from feeddrive.diagnose.ledger.ledger import FileUse, checksum
+from feeddrive.diagnosis.ledger.continued import Earlier, earlier_run
+from feeddrive.diagnosis.ledger.ledger import FileUse, checksum
 from feeddrive.effects.tabulated import Tabulated
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant

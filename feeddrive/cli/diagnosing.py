@@ -13,11 +13,11 @@ from rich.table import Table
 
 from feeddrive.cli.machine import read_machine
 from feeddrive.cli.output import escaped
-from feeddrive.diagnose.diagnosis import diagnose
-from feeddrive.diagnose.ledger.continued import Earlier, changed_since
-from feeddrive.diagnose.ledger.ledger import FileUse, RunFiles, runs_of, write_ledger, written_earlier
-from feeddrive.diagnose.outputs import diagnosis_json, write_outputs
-from feeddrive.diagnose.result import Diagnosis
+from feeddrive.diagnosis.diagnose import diagnose
+from feeddrive.diagnosis.ledger.continued import Earlier, changed_since
+from feeddrive.diagnosis.ledger.ledger import FileUse, RunFiles, runs_of, write_ledger, written_earlier
+from feeddrive.diagnosis.outputs import diagnosis_json, write_outputs
+from feeddrive.diagnosis.result import Diagnosis
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError, printable
 from feeddrive.output_folder import output_folder, refuse_unusable, take_away

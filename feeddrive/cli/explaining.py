@@ -8,7 +8,7 @@ from pathlib import Path
 from rich.console import Console
 
 from feeddrive.cli.output import table, warnings_as_lines
-from feeddrive.diagnose.numbers.measured_file import holds_measured_numbers
+from feeddrive.diagnosis.numbers.measured_file import holds_measured_numbers
 from feeddrive.errors import InputError, printable
 from feeddrive.interface.axis import load
 from feeddrive.interface.explaining import explain, read_response_file

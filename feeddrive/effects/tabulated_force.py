@@ -11,7 +11,7 @@
 | P | period | of a periodic table | m |
 
 Over position conservative, with the energy of its integral; over velocity or time a source: it may feed power in.
-Source: no law, what was left of a recording (`feeddrive.diagnose.unexplained.unexplained`).
+Source: no law, what was left of a recording (`feeddrive.diagnosis.unexplained.unexplained`).
 """
 
 from __future__ import annotations

@@ -11,7 +11,7 @@
 | P | period | of a periodic table | m |
 
 Either of the tables may be left out. Dissipative while level and coefficient stay positive.
-Source: no law, what was left of a recording (`feeddrive.diagnose.unexplained.unexplained`).
+Source: no law, what was left of a recording (`feeddrive.diagnosis.unexplained.unexplained`).
 """
 
 from __future__ import annotations

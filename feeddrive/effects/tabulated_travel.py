@@ -11,7 +11,7 @@
 
 Over position conservative: it changes the geometry, and its reaction on the screw is F d(delta)/d(phi); over time a
 source.
-Source: no law, what was left of a recording (`feeddrive.diagnose.unexplained.unexplained`).
+Source: no law, what was left of a recording (`feeddrive.diagnosis.unexplained.unexplained`).
 """
 
 from __future__ import annotations

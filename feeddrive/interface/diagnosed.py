@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
-from feeddrive.diagnose.diagnosis import diagnose as find_what_lacks
-from feeddrive.diagnose.outputs import diagnosis_record, write_outputs
-from feeddrive.diagnose.result import Diagnosis
+from feeddrive.diagnosis.diagnose import diagnose as find_what_lacks
+from feeddrive.diagnosis.outputs import diagnosis_record, write_outputs
+from feeddrive.diagnosis.result import Diagnosis
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 from feeddrive.interface.axis import Axis, axis_of_text

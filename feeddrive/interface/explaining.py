@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from feeddrive.diagnose.numbers.measured_file import read_measured_numbers
-from feeddrive.diagnose.numbers.numbers_result import diagnose_numbers
-from feeddrive.diagnose.responses.response_result import diagnose_response
+from feeddrive.diagnosis.numbers.measured_file import read_measured_numbers
+from feeddrive.diagnosis.numbers.numbers_result import diagnose_numbers
+from feeddrive.diagnosis.responses.response_result import diagnose_response
 from feeddrive.errors import InputError
 from feeddrive.export.point import export_point
 from feeddrive.interface.axis import Axis

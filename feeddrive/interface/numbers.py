@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from feeddrive.diagnose.numbers.numbers_result import (
+from feeddrive.diagnosis.numbers.numbers_result import (
     NumbersResult,
     numbers_json,
     numbers_record,

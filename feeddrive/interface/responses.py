@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from feeddrive.diagnose.responses.response_result import (
+from feeddrive.diagnosis.responses.response_result import (
     ResponseResult,
     response_json,
     response_plant_text,

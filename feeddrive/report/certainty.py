@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from feeddrive.diagnose.certainty.certainty_result import Ambiguity, Correlation, NextExperiment
-from feeddrive.diagnose.result import Diagnosis
+from feeddrive.diagnosis.certainty.certainty_result import Ambiguity, Correlation, NextExperiment
+from feeddrive.diagnosis.result import Diagnosis
 from feeddrive.report.markup import Cell, bullets, number, paragraph, section, table, text, words
 from feeddrive.report.people import DASH, significant
 from feeddrive.report.words import effect_words, joined, plain

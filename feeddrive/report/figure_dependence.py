@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from feeddrive.diagnose.result import ChannelResult, ChannelSeries, Diagnosis, JudgedRecording
+from feeddrive.diagnosis.result import ChannelResult, ChannelSeries, Diagnosis, JudgedRecording
 from feeddrive.report.drawing import NOISE, ReportFigure, dress, legend_above, new_figure
 from feeddrive.report.people import Scale, axis_label, fixed, scale_for_error, scale_for_signal
 from feeddrive.report.reduction import Bins, balanced, binned, thin

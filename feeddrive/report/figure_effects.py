@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from feeddrive.diagnose.result import Diagnosis, EffectResult, Trial
+from feeddrive.diagnosis.result import Diagnosis, EffectResult, Trial
 from feeddrive.report.drawing import AFTER, NOISE, ReportFigure, dress, new_figure
 from feeddrive.report.people import axis_label, fixed, scale_for_value, share_text
 from feeddrive.report.selection import stem_of

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from feeddrive.diagnose.numbers.numbers_result import NumbersResult
+from feeddrive.diagnosis.numbers.numbers_result import NumbersResult
 from feeddrive.report.drawing import AFTER, BEFORE, NOISE, ReportFigure, dress, new_figure
 from feeddrive.report.numbers_words import value_text
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from feeddrive.diagnose.responses.response_result import ResponseResult
+from feeddrive.diagnosis.responses.response_result import ResponseResult
 from feeddrive.report.drawing import AFTER, BEFORE, MEASURED, ReportFigure, dress, new_figure
 
 _HEIGHT = 6.2

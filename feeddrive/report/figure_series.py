@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from feeddrive.diagnose.result import ChannelResult, ChannelSeries, Diagnosis, JudgedRecording
+from feeddrive.diagnosis.result import ChannelResult, ChannelSeries, Diagnosis, JudgedRecording
 from feeddrive.report.drawing import (
     LEFT_OUT,
     MEASURED,

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from feeddrive.diagnose.result import ChannelResult, Diagnosis
+from feeddrive.diagnosis.result import ChannelResult, Diagnosis
 from feeddrive.report.drawing import NOISE, ReportFigure, dress, legend_above, new_figure
 from feeddrive.report.people import axis_label, scale_for_error, significant, with_unit
 from feeddrive.report.selection import residuals, series_of, stem_of, with_variable

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from feeddrive.diagnose.stiffness.candidates import DriveAt
-from feeddrive.diagnose.stiffness.gap import Solved, frequency_of
+from feeddrive.diagnosis.stiffness.candidates import DriveAt
+from feeddrive.diagnosis.stiffness.gap import Solved, frequency_of
 from feeddrive.parts.combined_stiffness import natural_frequency, stiffness_along
 from feeddrive.report.drawing import AFTER, BEFORE, MEASURED, ReportFigure, dress, new_figure
 from feeddrive.typing import FloatArray

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from feeddrive.diagnose.result import ChannelResult, Diagnosis
-from feeddrive.diagnose.unexplained.result import Dependence
+from feeddrive.diagnosis.result import ChannelResult, Diagnosis
+from feeddrive.diagnosis.unexplained.result import Dependence
 from feeddrive.report.drawing import AFTER, MEASURED, NOISE, ReportFigure, dress, legend_above, new_figure
 from feeddrive.report.people import axis_label, scale_for_signal, scale_for_value
 from feeddrive.report.selection import stem_of

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from feeddrive.diagnose.result import Diagnosis
+from feeddrive.diagnosis.result import Diagnosis
 from feeddrive.files import write_bytes_atomically
 from feeddrive.report.drawing import RenderedFigure, ReportFigure, render
 from feeddrive.report.figure_dependence import dependence_figure

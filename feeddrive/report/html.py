@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from feeddrive.diagnose.result import Diagnosis
+from feeddrive.diagnosis.result import Diagnosis
 from feeddrive.files import write_text_atomically
 from feeddrive.report.certainty import ambiguous_section, correlation_section, experiments_section
 from feeddrive.report.drawing import RenderedFigure

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
-from feeddrive.diagnose.numbers.numbers_result import NumbersResult
+from feeddrive.diagnosis.numbers.numbers_result import NumbersResult
 from feeddrive.files import write_text_atomically
 from feeddrive.quantity import format_quantity
 from feeddrive.report.drawing import RenderedFigure

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from feeddrive.diagnose.numbers.declared_values import DeclaredValue
-from feeddrive.diagnose.numbers.numbers_result import Beyond, NumbersResult
+from feeddrive.diagnosis.numbers.declared_values import DeclaredValue
+from feeddrive.diagnosis.numbers.numbers_result import Beyond, NumbersResult
 from feeddrive.quantity import format_quantity
 
 _ALSO_MEETS = 5

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from feeddrive.diagnose.result import EffectResult, ParameterResult
+from feeddrive.diagnosis.result import EffectResult, ParameterResult
 from feeddrive.report.people import Scale, decimals_for, fixed, scale_for_value, significant, unit_name, with_unit
 from feeddrive.report.words import effect_words, headline_parameters, plain
 

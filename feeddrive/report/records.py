@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from feeddrive import __version__
-from feeddrive.diagnose.result import Diagnosis, FileStamp, JudgedRecording, Trial
+from feeddrive.diagnosis.result import Diagnosis, FileStamp, JudgedRecording, Trial
 from feeddrive.report.markup import Cell, bullets, catalogue_name, number, paragraph, section, table, text, words
 from feeddrive.report.people import fixed, share_text, significant, with_unit
 from feeddrive.report.words import effect_words, plain

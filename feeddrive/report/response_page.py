@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from feeddrive.diagnose.responses.response_result import ResponseResult
+from feeddrive.diagnosis.responses.response_result import ResponseResult
 from feeddrive.files import write_text_atomically
 from feeddrive.quantity import format_quantity
 from feeddrive.report.drawing import RenderedFigure

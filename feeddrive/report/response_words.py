@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from feeddrive.diagnose.responses.response_result import Found, Parameter, ResponseResult
+from feeddrive.diagnosis.responses.response_result import Found, Parameter, ResponseResult
 from feeddrive.quantity import format_quantity
 from feeddrive.report.numbers_words import odds_text
 from feeddrive.report.words import joined

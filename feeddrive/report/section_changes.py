@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from feeddrive.diagnose.recordings.change_result import CommonTrial, Measure, ParameterChange, PerRecording
-from feeddrive.diagnose.result import Diagnosis, ParameterResult
+from feeddrive.diagnosis.recordings.change_result import CommonTrial, Measure, ParameterChange, PerRecording
+from feeddrive.diagnosis.result import Diagnosis, ParameterResult
 from feeddrive.report.markup import bullets, number, paragraph, section, table, words
 from feeddrive.report.parameters import parameter_text
 from feeddrive.report.people import fixed, share_text, with_unit

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from feeddrive.diagnose.result import ChannelResult, Diagnosis
-from feeddrive.diagnose.unexplained.result import Carried, Dependence, Unexplained
+from feeddrive.diagnosis.result import ChannelResult, Diagnosis
+from feeddrive.diagnosis.unexplained.result import Carried, Dependence, Unexplained
 from feeddrive.report.markup import Cell, bullets, catalogue_name, number, paragraph, section, table, words
 from feeddrive.report.people import DASH, error_text, fixed, share_text
 from feeddrive.report.words import joined, plain, variable_words

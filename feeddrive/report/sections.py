@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from feeddrive.diagnose.result import ChannelResult, Diagnosis, EffectResult, ErrorFigures
+from feeddrive.diagnosis.result import ChannelResult, Diagnosis, EffectResult, ErrorFigures
 from feeddrive.report.markup import (
     Cell,
     catalogue_name,

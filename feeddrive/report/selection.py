@@ -6,7 +6,7 @@ import re
 
 import numpy as np
 
-from feeddrive.diagnose.result import ChannelResult, ChannelSeries, Diagnosis, JudgedRecording
+from feeddrive.diagnosis.result import ChannelResult, ChannelSeries, Diagnosis, JudgedRecording
 from feeddrive.report.drawing import AFTER, BEFORE
 from feeddrive.typing import FloatArray
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from feeddrive.diagnose.result import Diagnosis, ParameterResult
-from feeddrive.diagnose.simulated.simulation_result import ErrorFigure, RefinedValue, SimulationResult
+from feeddrive.diagnosis.result import Diagnosis, ParameterResult
+from feeddrive.diagnosis.simulated.simulation_result import ErrorFigure, RefinedValue, SimulationResult
 from feeddrive.effects.base import Value
 from feeddrive.report.markup import Cell, bullets, number, paragraph, section, table, words
 from feeddrive.report.parameters import parameter_text

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feeddrive.diagnose.result import JudgedRecording
+from feeddrive.diagnosis.result import JudgedRecording
 from feeddrive.report.reduction import runs
 from feeddrive.typing import FloatArray
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from feeddrive.diagnose.result import ChannelResult, Diagnosis
+from feeddrive.diagnosis.result import ChannelResult, Diagnosis
 from feeddrive.report.parameters import effect_sentence
 from feeddrive.report.people import error_text, share_text, significant
 from feeddrive.report.section_changes import change_sentences

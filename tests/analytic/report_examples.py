@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.signal import butter, sosfiltfilt
 
-from feeddrive.diagnose.result import (
+from feeddrive.diagnosis.result import (
     ChannelResult,
     ChannelSeries,
     Dependence,

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 
-from feeddrive.diagnose.coordinates import (
+from feeddrive.diagnosis.coordinates import (
     absent_coordinates,
     coordinate_ends,
     coordinates_of,
     read_coordinates,
     write_coordinates,
 )
-from feeddrive.diagnose.fit import inside_step, linear_step
+from feeddrive.diagnosis.fit import inside_step, linear_step
 from feeddrive.effects.base import Effect
 from feeddrive.effects.catalogue import EFFECTS, THERMAL_EFFECTS
 from feeddrive.effects.drive_delay import DriveDelay

@@ -13,8 +13,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from feeddrive.diagnose.evidence import AxisEvidence, prepare
-from feeddrive.diagnose.prediction import AxisPredictor
+from feeddrive.diagnosis.evidence import AxisEvidence, prepare
+from feeddrive.diagnosis.prediction import AxisPredictor
 from feeddrive.effects.base import Effect, Port
 from feeddrive.effects.channel_delay import ChannelDelay
 from feeddrive.effects.drive_delay import DriveDelay

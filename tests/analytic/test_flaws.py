@@ -9,9 +9,9 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from feeddrive.diagnose.band import Band
-from feeddrive.diagnose.flawed_rows import refuse_little_left, sound_rows, without_copied_position
-from feeddrive.diagnose.preparation import prepared
+from feeddrive.diagnosis.band import Band
+from feeddrive.diagnosis.flawed_rows import refuse_little_left, sound_rows, without_copied_position
+from feeddrive.diagnosis.preparation import prepared
 from feeddrive.errors import InputError
 from feeddrive.files import plants_folder
 from feeddrive.plant.files import read_plant

@@ -7,11 +7,11 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from feeddrive.diagnose.unexplained.floor import Floor, excess
-from feeddrive.diagnose.unexplained.functional_anova import Decomposition, decompose
-from feeddrive.diagnose.unexplained.functional_sums import Sample
-from feeddrive.diagnose.unexplained.term import Form, Term, hats
-from feeddrive.diagnose.unexplained.view import travel_since_reversal
+from feeddrive.diagnosis.unexplained.floor import Floor, excess
+from feeddrive.diagnosis.unexplained.functional_anova import Decomposition, decompose
+from feeddrive.diagnosis.unexplained.functional_sums import Sample
+from feeddrive.diagnosis.unexplained.term import Form, Term, hats
+from feeddrive.diagnosis.unexplained.view import travel_since_reversal
 from feeddrive.typing import FloatArray
 
 RATE, SECONDS, BLOCK = 200.0, 24.0, 0.5

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from feeddrive.diagnose.certainty.imitations import imitations_of
+from feeddrive.diagnosis.certainty.imitations import imitations_of
 from feeddrive.effects.backlash import Backlash
 from feeddrive.effects.constant_force import ConstantForce
 from feeddrive.plant.plant import Plant

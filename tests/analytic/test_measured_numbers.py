@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 
 import feeddrive as fd
-from feeddrive.diagnose.numbers.explanations import explanations, inclusion, numbers_problem
-from feeddrive.diagnose.numbers.measurable import MEASURABLE, Setting
-from feeddrive.diagnose.numbers.measured_file import read_measured_numbers
-from feeddrive.diagnose.numbers.next_number import mixed, next_numbers
-from feeddrive.diagnose.numbers.numbers_result import diagnose_numbers
-from feeddrive.diagnose.numbers.plant_text import with_written_values
+from feeddrive.diagnosis.numbers.explanations import explanations, inclusion, numbers_problem
+from feeddrive.diagnosis.numbers.measurable import MEASURABLE, Setting
+from feeddrive.diagnosis.numbers.measured_file import read_measured_numbers
+from feeddrive.diagnosis.numbers.next_number import mixed, next_numbers
+from feeddrive.diagnosis.numbers.numbers_result import diagnose_numbers
+from feeddrive.diagnosis.numbers.plant_text import with_written_values
 
 HEAD = 'format = "feeddrive-measured/1"\n'
 

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from feeddrive.diagnose.cross_validation import gain_of_model_error, model_error_rows
-from feeddrive.diagnose.heat.evidence import GAIN_ERROR, MODEL_ERROR, HeatEvidence, prepare_heat
+from feeddrive.diagnosis.cross_validation import gain_of_model_error, model_error_rows
+from feeddrive.diagnosis.heat.evidence import GAIN_ERROR, MODEL_ERROR, HeatEvidence, prepare_heat
 from feeddrive.files import plants_folder
 from feeddrive.recording import Recording
 from feeddrive.thermal.files import read_thermal_plant

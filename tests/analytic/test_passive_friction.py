@@ -11,7 +11,7 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from feeddrive.diagnose.fit import Problem, fit
+from feeddrive.diagnosis.fit import Problem, fit
 from feeddrive.effects.base import Effect, FrictionEffect, Motion, Port, Value, listed
 from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.errors import InputError

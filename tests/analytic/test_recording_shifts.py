@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from feeddrive.diagnose.recordings.change_words import Moved, change_reading, change_statement
-from feeddrive.diagnose.recordings.recordings import (
+from feeddrive.diagnosis.recordings.change_words import Moved, change_reading, change_statement
+from feeddrive.diagnosis.recordings.recordings import (
     RecordingShift,
     in_recording,
     is_shift,

@@ -7,12 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from feeddrive.diagnose.evidence import prepare
-from feeddrive.diagnose.heat.evidence import prepare_heat
-from feeddrive.diagnose.heat.prediction import heat_predictor
-from feeddrive.diagnose.prediction import AxisPredictor
-from feeddrive.diagnose.recordings.recordings import RecordingPredictor
-from feeddrive.diagnose.remembered import LEAST, Remembered
+from feeddrive.diagnosis.evidence import prepare
+from feeddrive.diagnosis.heat.evidence import prepare_heat
+from feeddrive.diagnosis.heat.prediction import heat_predictor
+from feeddrive.diagnosis.prediction import AxisPredictor
+from feeddrive.diagnosis.recordings.recordings import RecordingPredictor
+from feeddrive.diagnosis.remembered import LEAST, Remembered
 from feeddrive.files import plants_folder
 from feeddrive.plant.files import read_plant
 from feeddrive.recording import Recording

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from feeddrive.diagnose.result import (
+from feeddrive.diagnosis.result import (
     ChannelSeries,
     Diagnosis,
     EffectResult,

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from feeddrive.diagnose.result import EffectResult, JudgedRecording, ParameterResult
+from feeddrive.diagnosis.result import EffectResult, JudgedRecording, ParameterResult
 from feeddrive.report.parameters import effect_sentence, parameter_text
 from feeddrive.report.people import fixed, scale_for_error, share_text, significant
 from feeddrive.report.reduction import balanced, binned, envelope, left_out_stretches

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import feeddrive as fd
-from feeddrive.diagnose.responses.response_result import diagnose_response
+from feeddrive.diagnosis.responses.response_result import diagnose_response
 from feeddrive.recording.frequency_response import FrequencyResponse, write_response
 from feeddrive.servo.frequency_response import Case
 

@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from feeddrive.diagnose.attempt import Attempt
-from feeddrive.diagnose.cross_validation import compare_left_out, least_gain, left_out_residual
-from feeddrive.diagnose.fit import Fit
-from feeddrive.diagnose.folds import block_numbers
-from feeddrive.diagnose.round import simplest_of_the_best
+from feeddrive.diagnosis.attempt import Attempt
+from feeddrive.diagnosis.cross_validation import compare_left_out, least_gain, left_out_residual
+from feeddrive.diagnosis.fit import Fit
+from feeddrive.diagnosis.folds import block_numbers
+from feeddrive.diagnosis.round import simplest_of_the_best
 from feeddrive.effects.base import Effect
 from feeddrive.effects.constant_force import ConstantForce
 from feeddrive.effects.lead_error_cumulative import LeadErrorCumulative

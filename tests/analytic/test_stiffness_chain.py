@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from feeddrive.diagnose.stiffness.candidates import DriveAt
-from feeddrive.diagnose.stiffness.gap import explain_both
+from feeddrive.diagnosis.stiffness.candidates import DriveAt
+from feeddrive.diagnosis.stiffness.gap import explain_both
 from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.parts.effective_mass import rayleigh_frequency
 from feeddrive.parts.motor import HoldingBrake, Motor

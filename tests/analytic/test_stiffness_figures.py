@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from feeddrive.diagnose.stiffness.candidates import DriveAt
-from feeddrive.diagnose.stiffness.gap import explain_stiffness
+from feeddrive.diagnosis.stiffness.candidates import DriveAt
+from feeddrive.diagnosis.stiffness.gap import explain_stiffness
 from feeddrive.errors import InputError
 from feeddrive.files import plants_folder
 from feeddrive.parts.combined_stiffness import combined_stiffness, stiffness_along

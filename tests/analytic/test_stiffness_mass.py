@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from feeddrive.diagnose.stiffness.candidates import DriveAt
-from feeddrive.diagnose.stiffness.gap import explain_both, explain_frequency, explain_stiffness, frequency_of
+from feeddrive.diagnosis.stiffness.candidates import DriveAt
+from feeddrive.diagnosis.stiffness.gap import explain_both, explain_frequency, explain_stiffness, frequency_of
 from feeddrive.errors import InputError
 from feeddrive.parts.combined_stiffness import combined_stiffness, natural_frequency
 from feeddrive.parts.effective_mass import added_mass, rayleigh_frequency

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from feeddrive.diagnose.physical_reading import READINGS
+from feeddrive.diagnosis.physical_reading import READINGS
 from feeddrive.effects.base import Parameter
 from feeddrive.effects.catalogue import EFFECTS, THERMAL_EFFECTS
 from feeddrive.effects.thermal.base import Operation, ThermalEffect

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 from feeddrive.cli.main import main
-from feeddrive.diagnose.heat.evidence import prepare_heat
-from feeddrive.diagnose.heat.prediction import heat_predictor
-from feeddrive.diagnose.ledger.continued import earlier_run
+from feeddrive.diagnosis.heat.evidence import prepare_heat
+from feeddrive.diagnosis.heat.prediction import heat_predictor
+from feeddrive.diagnosis.ledger.continued import earlier_run
 from feeddrive.files import plants_folder
 from feeddrive.recording import read_recording
 from feeddrive.thermal.files import read_thermal_plant

@@ -163,7 +163,7 @@ def test_damaged_ledger(content: str, tmp_path: Path, capsys: pytest.CaptureFixt
     '{"plant": {"path": "PLANT", "sha256": "SHA"}, "fit": [], "validate": [], "values": [[]], "effects": []}',
 ])  # fmt: skip
 def test_ledger_that_lacks_entries(run: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    from feeddrive.diagnose.ledger.ledger import checksum
+    from feeddrive.diagnosis.ledger.ledger import checksum
 
     plant = plants_folder() / "bench_axis.toml"
     run = run.replace("PLANT", str(plant)).replace("SHA", checksum(plant))

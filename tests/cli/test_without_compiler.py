@@ -12,7 +12,7 @@ import pytest
 
 from feeddrive.cli.main import main
 from feeddrive.compiler import find_compiler
-from feeddrive.diagnose.diagnosis import diagnose
+from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.effects.payload import Payload
 from feeddrive.files import plants_folder
 from feeddrive.plant.files import read_plant

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from feeddrive.diagnose.preparation import prepared
-from feeddrive.diagnose.search import search
+from feeddrive.diagnosis.preparation import prepared
+from feeddrive.diagnosis.search import search
 from feeddrive.effects.backlash import Backlash
 from feeddrive.effects.base import Effect
 from feeddrive.plant.files import read_plant

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from scipy.io import savemat
 
-from feeddrive.diagnose.preparation import prepared
+from feeddrive.diagnosis.preparation import prepared
 from feeddrive.files import plants_folder
 from feeddrive.plant.files import read_plant
 from feeddrive.plant.plant import Plant

@@ -13,8 +13,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from feeddrive.diagnose.stiffness.candidates import DriveAt
-from feeddrive.diagnose.stiffness.gap import explain_frequency, explain_stiffness
+from feeddrive.diagnosis.stiffness.candidates import DriveAt
+from feeddrive.diagnosis.stiffness.gap import explain_frequency, explain_stiffness
 from feeddrive.parts.ball_screw import ScrewShaft
 from feeddrive.parts.combined_stiffness import (
     Deformation,

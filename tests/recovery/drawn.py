@@ -7,13 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from feeddrive.diagnose.attempt import compared
-from feeddrive.diagnose.evidence import AxisEvidence, prepare
-from feeddrive.diagnose.fit import Problem, fit
-from feeddrive.diagnose.judge import Judged, prepared_for_judging
-from feeddrive.diagnose.prediction import AxisPredictor
-from feeddrive.diagnose.result import Trial
-from feeddrive.diagnose.search import Search
+from feeddrive.diagnosis.attempt import compared
+from feeddrive.diagnosis.evidence import AxisEvidence, prepare
+from feeddrive.diagnosis.fit import Problem, fit
+from feeddrive.diagnosis.judge import Judged, prepared_for_judging
+from feeddrive.diagnosis.prediction import AxisPredictor
+from feeddrive.diagnosis.result import Trial
+from feeddrive.diagnosis.search import Search
 from feeddrive.effects.base import Effect
 from feeddrive.plant.plant import Plant
 from tests.recovery.planted import axis_plant, pair

@@ -10,12 +10,12 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from feeddrive.diagnose.diagnosis import diagnose
-from feeddrive.diagnose.evidence import prepare
-from feeddrive.diagnose.fit import Problem
-from feeddrive.diagnose.judge import channel_results, prepared_for_judging
-from feeddrive.diagnose.prediction import AxisPredictor
-from feeddrive.diagnose.result import ChannelResult, Diagnosis, EffectResult
+from feeddrive.diagnosis.diagnose import diagnose
+from feeddrive.diagnosis.evidence import prepare
+from feeddrive.diagnosis.fit import Problem
+from feeddrive.diagnosis.judge import channel_results, prepared_for_judging
+from feeddrive.diagnosis.prediction import AxisPredictor
+from feeddrive.diagnosis.result import ChannelResult, Diagnosis, EffectResult
 from feeddrive.effects.base import Effect
 from feeddrive.files import plants_folder
 from feeddrive.plant.files import read_plant

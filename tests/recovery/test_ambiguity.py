@@ -7,16 +7,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from feeddrive.diagnose.certainty.ambiguity import ambiguous_sets, at_its_limit, rivals_of
-from feeddrive.diagnose.certainty.next_experiment import distance, hardly_known, next_experiments
-from feeddrive.diagnose.certainty.noise_colour import independent_share
-from feeddrive.diagnose.certainty.preferred import with_the_preferred
-from feeddrive.diagnose.certainty.rehearsal import Rehearsal, rehearsals
-from feeddrive.diagnose.cross_validation import compare_left_out
-from feeddrive.diagnose.evidence import AxisEvidence, prepare
-from feeddrive.diagnose.fit import Problem, fit
-from feeddrive.diagnose.judge import share_of
-from feeddrive.diagnose.prediction import AxisPredictor
+from feeddrive.diagnosis.certainty.ambiguity import ambiguous_sets, at_its_limit, rivals_of
+from feeddrive.diagnosis.certainty.next_experiment import distance, hardly_known, next_experiments
+from feeddrive.diagnosis.certainty.noise_colour import independent_share
+from feeddrive.diagnosis.certainty.preferred import with_the_preferred
+from feeddrive.diagnosis.certainty.rehearsal import Rehearsal, rehearsals
+from feeddrive.diagnosis.cross_validation import compare_left_out
+from feeddrive.diagnosis.evidence import AxisEvidence, prepare
+from feeddrive.diagnosis.fit import Problem, fit
+from feeddrive.diagnosis.judge import share_of
+from feeddrive.diagnosis.prediction import AxisPredictor
 from feeddrive.effects.base import Effect, Port
 from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.plant.moving_inertia import inertia_at_motor

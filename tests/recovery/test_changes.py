@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from feeddrive.diagnose.diagnosis import diagnose
-from feeddrive.diagnose.result import Diagnosis
+from feeddrive.diagnosis.diagnose import diagnose
+from feeddrive.diagnosis.result import Diagnosis
 from feeddrive.files import plants_folder
 from feeddrive.plant.files import read_plant
 from feeddrive.plant.plant import Plant

@@ -6,14 +6,14 @@ from pathlib import Path
 
 import pytest
 
-from feeddrive.diagnose.coordinates import read_coordinates, write_coordinates
-from feeddrive.diagnose.diagnosis import diagnose
-from feeddrive.diagnose.evidence import Evidence
-from feeddrive.diagnose.fit import fit
-from feeddrive.diagnose.judge import Judged, prepared_for_judging
-from feeddrive.diagnose.preparation import prepared
-from feeddrive.diagnose.search import Search
-from feeddrive.diagnose.veto import ends_reached, without_denied, worse_by
+from feeddrive.diagnosis.coordinates import read_coordinates, write_coordinates
+from feeddrive.diagnosis.diagnose import diagnose
+from feeddrive.diagnosis.evidence import Evidence
+from feeddrive.diagnosis.fit import fit
+from feeddrive.diagnosis.judge import Judged, prepared_for_judging
+from feeddrive.diagnosis.preparation import prepared
+from feeddrive.diagnosis.search import Search
+from feeddrive.diagnosis.veto import ends_reached, without_denied, worse_by
 from feeddrive.effects.base import Effect
 from feeddrive.effects.catalogue import find_effect
 from feeddrive.effects.coulomb_asymmetry import CoulombAsymmetry

@@ -14,8 +14,8 @@ from typing import Any
 
 import pytest
 
-from feeddrive.diagnose.diagnosis import diagnose
-from feeddrive.diagnose.result import Diagnosis
+from feeddrive.diagnosis.diagnose import diagnose
+from feeddrive.diagnosis.result import Diagnosis
 from feeddrive.recording import Recording
 from tests.generator import effects as planted
 from tests.generator import recording_pair

@@ -15,12 +15,12 @@ import numpy as np
 import pytest
 from scipy import signal
 
-from feeddrive.diagnose.certainty.information import cramer_rao
-from feeddrive.diagnose.certainty.uncertainty import certainty, intervals
-from feeddrive.diagnose.coordinates import read_coordinates
-from feeddrive.diagnose.evidence import AxisEvidence, prepare
-from feeddrive.diagnose.fit import Fit, Problem, fit
-from feeddrive.diagnose.prediction import AxisPredictor
+from feeddrive.diagnosis.certainty.information import cramer_rao
+from feeddrive.diagnosis.certainty.uncertainty import certainty, intervals
+from feeddrive.diagnosis.coordinates import read_coordinates
+from feeddrive.diagnosis.evidence import AxisEvidence, prepare
+from feeddrive.diagnosis.fit import Fit, Problem, fit
+from feeddrive.diagnosis.prediction import AxisPredictor
 from feeddrive.effects.base import Effect
 from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.typing import FloatArray

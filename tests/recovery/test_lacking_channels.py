@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from feeddrive.diagnose.diagnosis import diagnose
-from feeddrive.diagnose.result import Diagnosis
+from feeddrive.diagnosis.diagnose import diagnose
+from feeddrive.diagnosis.result import Diagnosis
 from feeddrive.errors import InputError
 from feeddrive.recording import Recording
 from tests.generator.axis import AXES

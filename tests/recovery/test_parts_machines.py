@@ -9,11 +9,11 @@ from functools import cache
 import numpy as np
 import pytest
 
-from feeddrive.diagnose.diagnosis import diagnose
-from feeddrive.diagnose.evidence import prepare
-from feeddrive.diagnose.fit import Problem, fit
-from feeddrive.diagnose.prediction import AxisPredictor
-from feeddrive.diagnose.result import Diagnosis
+from feeddrive.diagnosis.diagnose import diagnose
+from feeddrive.diagnosis.evidence import prepare
+from feeddrive.diagnosis.fit import Problem, fit
+from feeddrive.diagnosis.prediction import AxisPredictor
+from feeddrive.diagnosis.result import Diagnosis
 from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant

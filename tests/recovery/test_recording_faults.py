@@ -10,8 +10,8 @@ from functools import cache
 import numpy as np
 import pytest
 
-from feeddrive.diagnose.preparation import prepared
-from feeddrive.diagnose.recording_faults import refuse_faulty
+from feeddrive.diagnosis.preparation import prepared
+from feeddrive.diagnosis.recording_faults import refuse_faulty
 from feeddrive.effects.base import Effect, Port
 from feeddrive.effects.catalogue import find_effect
 from feeddrive.effects.constant_force import ConstantForce

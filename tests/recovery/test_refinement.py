@@ -9,17 +9,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from feeddrive.diagnose.evidence import Evidence
-from feeddrive.diagnose.fit import fit
-from feeddrive.diagnose.judge import Judged, prepared_for_judging
-from feeddrive.diagnose.preparation import prepared
-from feeddrive.diagnose.search import Search
-from feeddrive.diagnose.simulated.loop_evidence import loop_evidence
-from feeddrive.diagnose.simulated.loop_fit import LoopProblem, alike, foretold, loop_problem
-from feeddrive.diagnose.simulated.refinement import DELAYED, Outcome, Refinement, refined, why_not_kept
-from feeddrive.diagnose.simulated.simulation import before_and_after
-from feeddrive.diagnose.simulated.simulation_record import simulation_record
-from feeddrive.diagnose.simulated.simulation_result import ErrorFigure
+from feeddrive.diagnosis.evidence import Evidence
+from feeddrive.diagnosis.fit import fit
+from feeddrive.diagnosis.judge import Judged, prepared_for_judging
+from feeddrive.diagnosis.preparation import prepared
+from feeddrive.diagnosis.search import Search
+from feeddrive.diagnosis.simulated.loop_evidence import loop_evidence
+from feeddrive.diagnosis.simulated.loop_fit import LoopProblem, alike, foretold, loop_problem
+from feeddrive.diagnosis.simulated.refinement import DELAYED, Outcome, Refinement, refined, why_not_kept
+from feeddrive.diagnosis.simulated.simulation import before_and_after
+from feeddrive.diagnosis.simulated.simulation_record import simulation_record
+from feeddrive.diagnosis.simulated.simulation_result import ErrorFigure
 from feeddrive.effects.base import Effect
 from feeddrive.effects.drive_delay import DriveDelay
 from feeddrive.effects.payload import Payload

@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from feeddrive.diagnose.diagnosis import diagnose
+from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.files import plants_folder
 from feeddrive.plant.files import read_plant
 from feeddrive.recording import read_recording

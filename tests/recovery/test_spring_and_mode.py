@@ -11,11 +11,11 @@ import dataclasses
 import numpy as np
 import pytest
 
-from feeddrive.diagnose.diagnosis import diagnose
-from feeddrive.diagnose.evidence import prepare
-from feeddrive.diagnose.fit import Problem, fit
-from feeddrive.diagnose.prediction import AxisPredictor
-from feeddrive.diagnose.starts import mode, transmission
+from feeddrive.diagnosis.diagnose import diagnose
+from feeddrive.diagnosis.evidence import prepare
+from feeddrive.diagnosis.fit import Problem, fit
+from feeddrive.diagnosis.prediction import AxisPredictor
+from feeddrive.diagnosis.starts import mode, transmission
 from feeddrive.effects.base import Effect
 from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.recording import Recording

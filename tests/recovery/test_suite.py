@@ -165,7 +165,7 @@ def test_a_run_goes_on_where_it_was_stopped(tmp_path: Path, monkeypatch: pytest.
 
 def test_state_changes_with_all_that_can_change_a_record(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     names = {path.relative_to(store.ROOT).as_posix() for path in store.state_files()}
-    folders = (*(f"feeddrive/{part}" for part in ("diagnose/", "servo/", "simulate/", "unit")), "tests/generator/",
+    folders = (*(f"feeddrive/{part}" for part in ("diagnosis/", "servo/", "simulate/", "unit")), "tests/generator/",
                "tests/recovery/suite/", "plants/")  # fmt: skip
     for folder in folders:
         assert any(name.startswith(folder) for name in names), folder

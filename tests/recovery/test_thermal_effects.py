@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from feeddrive.diagnose.diagnosis import diagnose
-from feeddrive.diagnose.result import Diagnosis
+from feeddrive.diagnosis.diagnose import diagnose
+from feeddrive.diagnosis.result import Diagnosis
 from feeddrive.files import plants_folder
 from feeddrive.recording import Recording, read_recording
 from feeddrive.thermal.files import read_thermal_plant

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from feeddrive.diagnose.diagnosis import diagnose
-from feeddrive.diagnose.result import Diagnosis
+from feeddrive.diagnosis.diagnose import diagnose
+from feeddrive.diagnosis.result import Diagnosis
 from feeddrive.errors import InputError
 from feeddrive.recording import Recording
 from tests.recovery.planted import axis_plant, pair

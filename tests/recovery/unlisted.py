@@ -7,13 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feeddrive.diagnose.evidence import prepare
-from feeddrive.diagnose.fit import Problem
-from feeddrive.diagnose.judge import Judged, channel_results, prepared_for_judging
-from feeddrive.diagnose.prediction import AxisPredictor
-from feeddrive.diagnose.result import ChannelResult
-from feeddrive.diagnose.unexplained.result import Dependence
-from feeddrive.diagnose.unexplained.unexplained import Rest, explain_rest
+from feeddrive.diagnosis.evidence import prepare
+from feeddrive.diagnosis.fit import Problem
+from feeddrive.diagnosis.judge import Judged, channel_results, prepared_for_judging
+from feeddrive.diagnosis.prediction import AxisPredictor
+from feeddrive.diagnosis.result import ChannelResult
+from feeddrive.diagnosis.unexplained.result import Dependence
+from feeddrive.diagnosis.unexplained.unexplained import Rest, explain_rest
 from feeddrive.recording import Recording
 from tests.generator.axis import AXES
 from tests.generator.effects import Effect

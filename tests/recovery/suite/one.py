@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any, cast
 
-from feeddrive.diagnose.diagnosis import diagnose
-from feeddrive.diagnose.result import Diagnosis
+from feeddrive.diagnosis.diagnose import diagnose
+from feeddrive.diagnosis.result import Diagnosis
 from feeddrive.effects.base import Effect as PackageEffect
 from feeddrive.recording import Recording
 from tests.generator.axis import AXES

@@ -1,0 +1,240 @@
+"""Effects that cannot be told apart: a rival in an effect's place, with the same error on data not fitted.
+
+A rival is in the set where the data give less than 20 to 1 against it (`rival_odds`). The true effect is left out of a
+set in less than one of a hundred cases, however near the rival is, and a rival five standard deviations away comes into
+a set in one of thirty. The contract's bound holds beside it: the same validation error within 5 %. Alone it would fill
+the sets of all small effects, since to leave such an effect away altogether costs less.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import log
+
+import numpy as np
+
+from feeddrive.diagnosis.attempt import Attempt
+from feeddrive.diagnosis.certainty.certainty_result import Ambiguity
+from feeddrive.diagnosis.certainty.imitations import imitations_of
+from feeddrive.diagnosis.certainty.rival_odds import Residuals, odds_and_distance
+from feeddrive.diagnosis.certainty.same_by_law import twins_of
+from feeddrive.diagnosis.coordinates import LOGARITHMIC
+from feeddrive.diagnosis.fit import Fit, fit
+from feeddrive.diagnosis.judge import Judged
+from feeddrive.diagnosis.search import Search
+from feeddrive.effects.base import Effect
+from feeddrive.effects.stiffness_deviation import PARTS, StiffnessDeviation, parts_of
+from feeddrive.errors import InputError
+from feeddrive.plant.plant import Plant
+from feeddrive.plant.stiffness_budget import participation
+
+SAME_ERROR = 1.05
+"""Ratio of validation errors (rms) within which two effects count as the same."""
+
+LARGEST_SET = 3
+"""Names in an ambiguous set."""
+
+AGAINST = 2 * log(20.0)
+"""Twice the logarithm of the odds from which a rival is refused."""
+
+NEAR = 0.5
+"""Gain of a candidate over that of the one taken in the same round, from which it is tried in its place."""
+
+MOST_RIVALS = 4
+"""Rivals tried for one effect; each costs a joint fit."""
+
+PLACED = ("inertia_deviation", "channel_delay", "stiffness_deviation")
+"""Effects whose place is put to the question."""
+
+NEAR_END = 0.02
+"""Share of an end of a parameter's range within which it is said to stand there."""
+
+ITERATIONS = 12
+"""Steps of that fit at most; it starts from values that were fitted in the round of the search, others with it."""
+
+
+@dataclass(frozen=True)
+class Rival:
+    """An effect in the place of one that was taken.
+
+    Attributes:
+        place: number of the effect taken.
+        fit: of all effects, the rival last but in its place.
+        odds: Lambda of the module's docstring.
+        distance: between the two predictions, in standard deviations of the noise.
+        error_ratio: of the validation errors (rms), the rival's over that of what was taken.
+    """
+
+    place: int
+    fit: Fit
+    odds: float
+    distance: float
+    error_ratio: float
+
+    @property
+    def effect(self) -> Effect:
+        """The rival."""
+        return self.fit.effects[self.place]
+
+    @property
+    def as_good(self) -> bool:
+        """Whether the data cannot tell it from what was taken."""
+        return self.odds < AGAINST and self.error_ratio <= SAME_ERROR
+
+
+def rivals_of(found: Search, judged: Sequence[Judged]) -> list[list[Rival]]:
+    """Per effect found, the rivals that do as well in its place, the best first; at most two each.
+
+    Args:
+        found: what the search took and tried.
+        judged: recordings with the found effects in.
+    """
+    mine = Residuals.of(found.problem, found.fit, [(j.after, j) for j in judged])
+    result = []
+    for place in range(len(found.fit.effects)):
+        near = [attempt.fit.effects[-1] for attempt in _near(found, place)]
+        like = [
+            other for other in imitations_of(found.fit.effects[place], found.problem.plant) if _is_free(found, other)
+        ]
+        tried = [_in_place(found, judged, place, rival, mine) for rival in (*near, *like)]
+        good = [rival for rival in tried if rival is not None and rival.as_good and not at_its_limit(rival.effect)]
+        best: dict[str, Rival] = {}
+        for rival in sorted(good, key=lambda rival: rival.odds):
+            best.setdefault(rival.effect.name, rival)
+        result.append([*best.values()][: LARGEST_SET - 1])
+    return result
+
+
+def ambiguous_sets(found: Search, rivals: Sequence[list[Rival]]) -> tuple[Ambiguity, ...]:
+    """The sets of names, the effect taken first, with the reason."""
+    sets = []
+    for effect, alike in zip(found.fit.effects, rivals, strict=True):
+        twins = twins_of(effect, found.problem.plant, found.problem.evidence)
+        apart = {rival.effect.name: rival.distance for rival in alike}
+        others = list((apart | {twin.name: 0.0 for twin in twins}).items())
+        others.sort(key=lambda other: other[1])
+        if others:
+            names, distances = zip(*others[: LARGEST_SET - 1], strict=True)
+            told = [*(twin.reason for twin in twins), *([_reason(effect, alike)] if alike else [])]
+            sets.append(Ambiguity((effect.name, *names), distances, "; ".join(told)))
+    return tuple(sets)
+
+
+def other_places(found: Search, judged: Sequence[Judged]) -> tuple[str, ...]:
+    """Sentences about effects whose place the data cannot tell: at motor or screw, which channel.
+
+    Args:
+        found: what the search took.
+        judged: recordings with the found effects in.
+    """
+    placed = [(i, effect) for i, effect in enumerate(found.fit.effects) if effect.name in PLACED]
+    if not placed:
+        return ()
+    mine = Residuals.of(found.problem, found.fit, [(j.after, j) for j in judged])
+    told = []
+    for index, effect in placed:
+        taken = {e.place for e in found.fit.effects if e.name == effect.name}
+        tried = [
+            _in_place(found, judged, index, type(effect).of(None, place, **effect.values), mine)
+            for place in _possible(effect, found)
+            if place not in taken
+        ]
+        alike = [rival.effect.place for rival in tried if rival is not None and rival.as_good]
+        if alike:
+            where = f"{effect.place_key} = {joined(alike)} does as well as {effect.place}"
+            told.append(f"{effect.name}: {where}; these recordings cannot tell{_shares(effect, alike, found)}")
+    return tuple(told)
+
+
+def _shares(effect: Effect, alike: Sequence[str], found: Search) -> str:
+    """How much of the compliance at the table parts that cannot be told apart have; empty for other effects."""
+    plant = found.problem.plant
+    if not isinstance(effect, StiffnessDeviation) or not isinstance(plant, Plant) or effect.place not in PARTS:
+        return ""
+    parts = [part for part in (effect.place, *alike) if part in PARTS]
+    shares = [f"{part} {participation(plant, PARTS[part], plant.middle):.0%}" for part in parts]
+    return f". Of the compliance at the table they have in mid-stroke: {', '.join(shares)}"
+
+
+def _possible(effect: Effect, found: Search) -> tuple[str, ...]:
+    """Places that the effect may have on this machine."""
+    plant = found.problem.plant
+    if isinstance(effect, StiffnessDeviation) and isinstance(plant, Plant):
+        return parts_of(plant.chain.values)
+    return effect.places
+
+
+def at_its_limit(effect: Effect) -> bool:
+    """Whether a parameter that is known to a factor has run to an end of its range, where the law is another one.
+
+    A Stribeck velocity beyond all speeds is a level, growth within no time another lead, a mode above all frequencies
+    a mass. Such a rival says nothing that the simpler law does not.
+    """
+    for key, value in effect.values.items():
+        if (effect.name, key) in LOGARITHMIC and isinstance(value, float | int):
+            parameter = effect.parameter(key)
+            if value <= parameter.minimum * (1 + NEAR_END) or value >= parameter.maximum * (1 - NEAR_END):
+                return True
+    return False
+
+
+def _near(found: Search, place: int) -> list[Attempt]:
+    """Candidates that came near when the effect was taken, and those that its signature names, the best first."""
+    effect = found.fit.effects[place]
+    present = {e.name for e in found.fit.effects}
+    for number, attempts in enumerate(found.rounds):
+        taken = next((t for t in found.trials if t.round == number + 1 and t.taken), None)
+        if taken is None or effect.name not in taken.name.split(" with "):
+            continue
+        # one that gains more and scatters too much to be taken may yet be what it is
+        able = [a for a in attempts if a.comparison.pays or a.comparison.gain > taken.gain]
+        others = [a for a in able if a.name != effect.name and " with " not in a.name]
+        near = [a for a in others if a.comparison.gain > NEAR * taken.gain or a.name in effect.signature.confused_with]
+        free = [a for a in near if a.name not in present or a.fit.effects[-1].repeatable]
+        return sorted(free, key=lambda a: -a.comparison.gain)[:MOST_RIVALS]
+    return []
+
+
+def _is_free(found: Search, effect: Effect) -> bool:
+    """Whether an effect can be put in: asked of these recordings, and not in yet."""
+    asked = {candidate.name for candidate in found.problem.predictor.candidates} - set(found.impossible)
+    return effect.name in asked and (effect.repeatable or effect.name not in {e.name for e in found.fit.effects})
+
+
+def _in_place(found: Search, judged: Sequence[Judged], place: int, rival: Effect, mine: Residuals) -> Rival | None:
+    """A rival in the place of an effect, all refitted; None where the plant cannot hold or follow it."""
+    effects = [*found.fit.effects]
+    effects[place] = rival
+    try:
+        swapped = fit(found.problem, effects, iterations=ITERATIONS)
+        its = Residuals.of(
+            found.problem, swapped, [(j.with_effects(found.problem, swapped.effects), j) for j in judged]
+        )
+    except InputError:
+        return None
+    if not np.all(np.isfinite(its.fitted)):
+        return None
+    odds, distance = odds_and_distance(found.problem, judged, mine, its)
+    return Rival(place, swapped, odds, distance, float(np.linalg.norm(its.judged) / np.linalg.norm(mine.judged)))
+
+
+def _reason(effect: Effect, alike: Sequence[Rival]) -> str:
+    """How alike the members are, and what each follows."""
+    apart = joined([f"{rival.effect.name} by {rival.distance:.1f}" for rival in alike])
+    members = (effect, *(rival.effect for rival in alike))
+    variables = list(dict.fromkeys(one.signature.variable for one in members))
+    if len(variables) == 1:
+        part = f"All follow {variables[0]}: only a larger motion or less noise shows how their shapes differ."
+    else:
+        follows = "; ".join(f"{one.name} with {one.signature.variable}" for one in members)
+        part = f"They part where these vary differently: {follows}."
+    return (
+        f"the same signature in these data: when all else is refitted, the prediction with {effect.name} differs from "
+        f"that with {apart} standard deviations of the noise, all samples together. {part}"
+    )
+
+
+def joined(words: Sequence[str]) -> str:
+    """Words as in a sentence."""
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"

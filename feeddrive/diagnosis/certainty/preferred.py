@@ -1,0 +1,53 @@
+"""Which of two effects that can stand in each other's place is named.
+
+The search takes the best of a round; once all effects are in, another can be more likely, or as likely and simpler.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from feeddrive.diagnosis.certainty.ambiguity import AGAINST, Rival, at_its_limit
+from feeddrive.diagnosis.coordinates import read_coordinates
+from feeddrive.diagnosis.fit import Problem, fit
+from feeddrive.diagnosis.predictor import Machine
+from feeddrive.diagnosis.recordings.recordings import is_shift
+from feeddrive.diagnosis.search import Search
+from feeddrive.effects.base import Effect
+
+
+def with_the_preferred(found: Search, rivals: Sequence[list[Rival]]) -> tuple[Search, list[list[Rival]]]:
+    """The search and its rivals with the first effect replaced that has a rival to be preferred; else the same.
+
+    Args:
+        found: what the search took.
+        rivals: per effect those that do as well in its place, see `rivals_of`.
+    """
+    if any(is_shift(effect) for effect in found.fit.effects):
+        return found, list(rivals)  # what one recording has otherwise belongs to the effect taken
+    for place, alike in enumerate(rivals):
+        taken = _preferred(found.problem, found.fit.effects[place], alike)
+        if taken is not None:
+            ousted = Rival(place, found.fit, -taken.odds, taken.distance, 1 / taken.error_ratio)
+            others = [replace(rival, odds=rival.odds - taken.odds) for rival in alike if rival is not taken]
+            rest = [rival for rival in (ousted, *others) if rival.as_good and not at_its_limit(rival.effect)]
+            refitted = fit(found.problem, taken.fit.effects)
+            return replace(found, fit=refitted), [*rivals[:place], rest, *rivals[place + 1 :]]
+    return found, list(rivals)
+
+
+def _preferred(problem: Problem, effect: Effect, alike: Sequence[Rival]) -> Rival | None:
+    """The rival for which the data speak by as much as refuses one, else the simplest that is simpler."""
+    material = [rival for rival in alike if problem.predictor.is_material(rival.effect, problem.plant)]
+    likeliest = min(material, key=lambda rival: rival.odds, default=None)
+    if likeliest is not None and likeliest.odds < -AGAINST:
+        return likeliest
+    own = _simplicity(effect, problem.plant)
+    simpler = [rival for rival in material if _simplicity(rival.effect, problem.plant) < own]
+    return min(simpler, key=lambda rival: _simplicity(rival.effect, problem.plant), default=None)
+
+
+def _simplicity(effect: Effect, plant: Machine) -> tuple[int, bool]:
+    """What comes first in a tie: fewest parameters, and none at an end of its range."""
+    return len(read_coordinates([effect], plant)), at_its_limit(effect)

@@ -1,0 +1,50 @@
+"""Effects that say the same of these recordings by their laws alone, whatever the noise: named without a trial.
+
+    drive_delay d = channel_delay d of motor_angle               where no table position is recorded
+    payload m = inertia_deviation m r^2, at motor or screw       in a rigid structure
+
+Without a table position the motor angle is compared with the torque alone, and a torque that acts later than recorded
+is an angle that is recorded late. The drive is named, since every drive acts late, and the angle is listed with it. In
+a rigid structure one mass moves, (J_m + J_s) / r^2 + m; the mass on the table is named, as it is what people change.
+
+| symbol | meaning | unit |
+|---|---|---|
+| r | table travel per motor angle | m/rad |
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from feeddrive.diagnosis.evidence import Evidence
+from feeddrive.effects.base import Effect
+from feeddrive.plant.plant import Plant
+
+
+@dataclass(frozen=True)
+class Twin:
+    """Another effect that says the same: its name, and why the recordings cannot tell."""
+
+    name: str
+    reason: str
+
+
+def twins_of(effect: Effect, plant: object, evidence: Sequence[Evidence]) -> tuple[Twin, ...]:
+    """The effects that say the same as one that was found; none for most.
+
+    Args:
+        effect: found.
+        plant: as declared.
+        evidence: recordings.
+    """
+    if not isinstance(plant, Plant):
+        return ()
+    if effect.name == "drive_delay" and not any("table_position" in e.channels for e in evidence):
+        reason = "without a table position a torque that acts late is a motor angle that is recorded late"
+        return (Twin("channel_delay", f"{reason}; record the table position to tell them apart"),)
+    if effect.name == "payload" and not plant.chain.elastic:
+        reason = "in a rigid structure an inertia of motor or screw is a mass on the table"
+        mend = 'use structure = "three_inertias" and record the table position to tell them apart'
+        return (Twin("inertia_deviation", f"{reason}; {mend}"),)
+    return ()

@@ -1,0 +1,156 @@
+"""Intervals of fitted parameters that hold where the residual is coloured.
+
+    cov = (J'J)^-1 S (J'J)^-1
+
+S, the covariance of J'r, comes from the spectrum of the residual (`noise_colour`). Two things that a spectrum cannot
+see widen a coordinate's interval:
+
+- where the residual is larger at the samples that tell of the coordinate than elsewhere (misfit at reversals), by the
+  ratio of the two;
+- where sums over blocks of time scatter more than the spectrum says, beyond chance, the blocks are believed instead:
+  they count correlation of any form, but are few, so that alone they would make every interval wide and uncertain.
+
+Intervals use Student's t with the degrees of freedom of whichever is used. What the model itself may miss (thermal
+plants) is added as the worst it can do to a coordinate: in every channel an error of that rms along the one direction
+of the residual that moves it, taken as a bound of 95 %; errors of two channels are independent. Logarithmic
+coordinates give intervals that are a factor to either side; all end at the parameter's physical range.
+Source: Priestley, Spectral Analysis and Time Series (1981), section 7.8; Liang and Zeger, Biometrika 73 (1986) 13 and
+Newey and West, Econometrica 55 (1987) 703 (blocks).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import chi2
+from scipy.stats import t as student
+
+from feeddrive.diagnosis.certainty.information import inverse_information
+from feeddrive.diagnosis.certainty.noise_colour import fitted_away, score_covariance, spectral_freedom
+from feeddrive.diagnosis.coordinates import LOGARITHMIC, spread_to_values, write_coordinates
+from feeddrive.diagnosis.cross_validation import model_error_rows
+from feeddrive.diagnosis.fit import Fit, Problem
+from feeddrive.diagnosis.folds import blocks_in_time
+from feeddrive.effects.base import Effect
+from feeddrive.typing import FloatArray, IntegerArray
+
+BEYOND_CHANCE = 0.99
+"""Quantile of the blocks' scatter from which they are believed rather than the spectrum."""
+
+Interval = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Certainty:
+    """How well the coordinates of a fit are known.
+
+    Attributes:
+        covariance: of the coordinates, shape (k, k).
+        reach: half width of the 95 % interval over the standard deviation, shape (k,).
+    """
+
+    covariance: FloatArray
+    reach: FloatArray
+
+    @property
+    def half_covariance(self) -> FloatArray:
+        """Covariance scaled so that standard deviations become half widths of 95 % intervals."""
+        scaled: FloatArray = self.covariance * np.outer(self.reach, self.reach)
+        return scaled
+
+
+def certainty(problem: Problem, fitted: Fit) -> Certainty:
+    """How well the coordinates of a fit of all effects are known; k is 0 where nothing was fitted."""
+    if not fitted.jacobian.shape[1]:
+        return Certainty(np.zeros((0, 0)), np.zeros(0))
+    if not fitted.effects:
+        return Certainty(np.zeros((0, 0)), np.zeros(0))
+    jacobian = slopes(problem, fitted)
+    inverse = inverse_information(jacobian.T @ jacobian)
+    rows = [evidence.fit_rows for evidence in problem.evidence]
+    middle = score_covariance(problem.evidence, rows, fitted.residual, jacobian)
+    influence = jacobian @ inverse
+    model = model_error_rows(problem.evidence, [e.thinned(e.fit_rows) for e in problem.evidence])
+    covariance = inverse @ middle @ inverse
+    missed = np.diag(inverse @ fitted_away(problem.evidence, rows, jacobian, inverse) @ inverse)
+    widened = np.sqrt(_where_it_matters(problem, fitted.residual, influence) / _left(missed, np.diag(inverse)))
+    covariance = covariance * np.outer(widened, widened)
+    blocks, freedom = _by_blocks(fitted.residual, influence, blocks_in_time(problem))
+    spread = np.diag(covariance)
+    believed = blocks > spread * chi2.ppf(BEYOND_CHANCE, freedom) / freedom
+    more = np.sqrt(np.where(believed & (spread > 0), blocks / np.where(spread > 0, spread, 1.0), 1.0))
+    covariance = covariance * np.outer(more, more) + influence.T @ (model[:, None] * influence) / 1.96**2
+    reach = student.ppf(0.975, np.where(believed, freedom, max(spectral_freedom(problem.evidence, rows), 2.0)))
+    return Certainty(covariance, reach)
+
+
+def slopes(problem: Problem, fitted: Fit) -> FloatArray:
+    """The fit's Jacobian; a coordinate that stands at the upper end of its range is moved downwards. Shape (m, k)."""
+    still = np.flatnonzero(~fitted.jacobian.any(axis=0))
+    if not len(still):
+        return fitted.jacobian
+    jacobian, base = fitted.jacobian.copy(), problem.predicted(fitted.effects)
+    for i in still:
+        step = np.zeros(jacobian.shape[1])
+        step[i] = -problem.difference
+        moved = write_coordinates(fitted.effects, problem.plant, fitted.coordinates + step)
+        jacobian[:, i] = (base - problem.predicted(moved)) / problem.difference
+    return jacobian
+
+
+def _left(missed: FloatArray, whole: FloatArray) -> FloatArray:
+    """Share of each variance that the residual still shows after the fit, at least a quarter; shape (k,)."""
+    share: FloatArray = 1 - missed / np.where(whole > 0, whole, 1.0)
+    return np.maximum(share, 0.25)
+
+
+def _where_it_matters(problem: Problem, residual: FloatArray, influence: FloatArray) -> FloatArray:
+    """Residual square where a coordinate is told from, over that of the same channels at large, at least 1; (k,)."""
+    weight, level = influence**2, np.empty_like(residual)
+    first = 0
+    for evidence in problem.evidence:
+        count = int(evidence.thinned(evidence.fit_rows).sum())
+        for _ in evidence.channels:
+            level[first : first + count] = np.mean(residual[first : first + count] ** 2)
+            first += count
+    usual = weight.T @ level
+    there: FloatArray = weight.T @ residual**2 / np.where(usual > 0, usual, 1.0)
+    return np.maximum(there, 1.0)
+
+
+def _by_blocks(residual: FloatArray, influence: FloatArray, blocks: IntegerArray) -> tuple[FloatArray, FloatArray]:
+    """Variance of each coordinate from its sums over blocks and half the products of neighbours, and its freedom."""
+    count = int(blocks.max(initial=0)) + 1
+    sums, told = np.zeros((count, influence.shape[1])), np.zeros((count, influence.shape[1]))
+    np.add.at(sums, blocks, influence * residual[:, None])
+    np.add.at(told, blocks, influence**2)
+    # the neighbours may take variance away by chance; blocks alone are then the safer count
+    variance = np.sum(sums**2, axis=0) + np.maximum(np.sum(sums[1:] * sums[:-1], axis=0), 0.0)
+    squares = np.sum(told**2, axis=0)
+    informed = np.sum(told, axis=0) ** 2 / np.where(squares > 0, squares, 1.0)
+    return variance, np.maximum(informed - 1, 2.0)
+
+
+def intervals(problem: Problem, fitted: Fit, known: Certainty) -> list[dict[str, list[Interval] | None]]:
+    """95 % intervals per effect and key, SI, one per number of the value; None for parameters that were not fitted."""
+    if not fitted.effects:
+        return []
+    half = spread_to_values(fitted.effects, problem.plant, fitted.coordinates, known.half_covariance)
+    return [
+        {key: _ends(effect, key, widths) if np.any(widths) else None for key, widths in spans.items()}
+        for effect, spans in zip(fitted.effects, half, strict=True)
+    ]
+
+
+def _ends(effect: Effect, key: str, widths: FloatArray) -> list[Interval]:
+    """The ends of one parameter's intervals, inside its physical range."""
+    parameter, value = effect.parameter(key), effect.values[key]
+    numbers = np.atleast_1d(np.asarray(value, dtype=float))
+    low, high = numbers - widths, numbers + widths
+    if (effect.name, key) in LOGARITHMIC:
+        # a factor of e^30 either way is "not known"; more would overflow
+        factor = np.exp(np.minimum(widths / numbers, 30.0))
+        low, high = numbers / factor, numbers * factor
+    low, high = np.maximum(low, parameter.minimum), np.minimum(high, parameter.maximum)
+    return [(float(a), float(b)) for a, b in zip(low, high, strict=True)]

@@ -1,0 +1,238 @@
+"""The main job: from a plant and recordings to the effects that the plant lacks, judged on data not fitted."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from feeddrive.blas_threads import one_thread
+from feeddrive.diagnosis.certainty.ambiguity import Rival, ambiguous_sets, other_places, rivals_of
+from feeddrive.diagnosis.certainty.correlation import correlation
+from feeddrive.diagnosis.certainty.next_experiment import next_experiments
+from feeddrive.diagnosis.certainty.preferred import with_the_preferred
+from feeddrive.diagnosis.certainty.uncertainty import certainty, intervals
+from feeddrive.diagnosis.effect_results import effect_results, refused_effects
+from feeddrive.diagnosis.evidence import Evidence
+from feeddrive.diagnosis.fit import Problem
+from feeddrive.diagnosis.judge import Judged, channel_results, judged_recordings, prepared_for_judging, share_of
+from feeddrive.diagnosis.ledger.entry import kept_of
+from feeddrive.diagnosis.logged import declared_hold, declared_sentence, hold_of, may_be_logged, open_lag
+from feeddrive.diagnosis.logged import sentence as held_for
+from feeddrive.diagnosis.preparation import prepared
+from feeddrive.diagnosis.recording_faults import refuse_faulty
+from feeddrive.diagnosis.recordings.compared import compared_recordings, last_state, machine_as_last, with_carrying
+from feeddrive.diagnosis.recordings.recordings import without_shifts
+from feeddrive.diagnosis.recordings.rehoming import rehomed_plant
+from feeddrive.diagnosis.recordings.search import Searched, search_recordings
+from feeddrive.diagnosis.result import (
+    Diagnosis,
+    FileStamp,
+)
+from feeddrive.diagnosis.search import Search
+from feeddrive.diagnosis.simulated.loop_evidence import refuse_unfit_loop
+from feeddrive.diagnosis.simulated.refinement import Refinement, refined
+from feeddrive.diagnosis.starts.needs import WITHOUT_TORQUE
+from feeddrive.diagnosis.torque_channel import without_torque_sentence
+from feeddrive.diagnosis.unexplained.instead import without_stand_ins
+from feeddrive.diagnosis.unexplained.unexplained import explain_rest
+from feeddrive.diagnosis.veto import without_denied
+from feeddrive.effects.base import Effect
+from feeddrive.errors import InputError
+from feeddrive.plant.plant import Plant
+from feeddrive.recording import Recording
+from feeddrive.thermal.plant import ThermalPlant
+
+Said = Callable[[str], None]
+
+
+@one_thread()
+def diagnose(
+    plant: Plant | ThermalPlant,
+    recordings: Sequence[Recording],
+    validation: Sequence[Recording] = (),
+    split: float = 0.75,
+    simulate: bool = False,
+    said: Said = lambda text: None,
+    start: Sequence[Effect] = (),
+) -> tuple[Diagnosis, tuple[Effect, ...]]:
+    """Find what the plant lacks.
+
+    Args:
+        plant: as declared.
+        recordings: fitted; without `validation` their last part is kept for judging.
+        validation: judged only.
+        split: share of each recording that is fitted where there is no `validation`.
+        simulate: simulate the closed loop and refine what was found in it, where the controller is declared.
+        said: told what is going on.
+        start: effects found earlier, asked again before others are searched.
+
+    Returns:
+        The diagnosis, and the effects to add to the plant: the named ones, then tables of what no name explains.
+
+    Raises:
+        InputError: recordings that cannot be used with this plant.
+    """
+    if not 0.2 <= split <= 0.95:
+        raise InputError(f"--split is {split:g}", "", "use a share between 0.2 and 0.95, such as 0.75")
+    if simulate and isinstance(plant, Plant):
+        refuse_unfit_loop(plant, (*recordings, *validation))
+    every = (*recordings, *validation)
+    declared = declared_hold(plant, every)
+    begun = _begun(plant, recordings, validation, split, declared, declared_sentence)
+    in_the_loop = simulate and isinstance(plant, Plant)
+    settled = _settled(begun.problem, begun.judged, in_the_loop, said, start)
+    hold = _logged_hold(settled.searched.search, every) if declared is None else declared
+    if hold is not None and declared is None:
+        said("the torque is logged more slowly than the drive holds it: again")
+        begun = _begun(plant, recordings, validation, split, hold, held_for)
+        settled = _settled(begun.problem, begun.judged, in_the_loop, said, start)
+    searched, judged, refinement = settled.searched, settled.judged, settled.refinement
+    found = searched.search
+    said("looking at what is left")
+    alike = ambiguous_sets(found, settled.rivals)
+    rest = explain_rest(found.problem, found.fit.effects, judged, channel_results(found.problem, judged))
+    compared, known = compared_recordings(searched, judged), certainty(found.problem, found.fit)
+    spans = intervals(found.problem, found.fit, known)
+    effects = machine_as_last(searched, compared.listed)
+    count = len(without_shifts(found.fit.effects))
+    shares = [share_of(found.problem, judged, found.fit.effects, i) for i in range(count)]
+    said("looking for what would settle doubts")
+    result = Diagnosis(
+        plant=plant.name,
+        fit=_stamps(recordings),
+        validate=_stamps(validation or recordings),
+        channels=channel_results(found.problem, rest.judged),
+        effects=with_carrying(effect_results(found, shares, spans), compared),
+        refused=refused_effects(found),
+        ambiguous=tuple(one.names for one in alike),
+        rehomed=settled.rehomed,
+        unexplained=rest.unexplained,
+        trials=found.trials,
+        recordings=judged_recordings(found.problem, rest.judged),
+        simulation=refinement.reported(rest.judged if rest.effects else judged),
+        changes=compared.changes,
+        kept=kept_of(found, known),
+        alike=alike,
+        next_experiments=next_experiments(found, settled.rivals, spans),
+        correlation=correlation(found.problem, found.fit, known),
+        notes=(
+            *begun.told,
+            *(open_lag(found.fit.effects, every) if hold is None else ()),
+            *other_places(found, judged),
+            *last_state(searched),
+            *_notes(begun.problem.evidence, begun.judged, found),
+            *refinement.notes,
+        ),
+    )
+    return result, (*effects, *rest.effects)
+
+
+def _logged_hold(found: Search, recordings: Sequence[Recording]) -> float | None:
+    if not may_be_logged(recordings):
+        return None
+    spans = intervals(found.problem, found.fit, certainty(found.problem, found.fit))
+    return hold_of(found.fit.effects, spans, recordings)
+
+
+@dataclass(frozen=True)
+class _Begun:
+    """The problem, the recordings judged on, and what is to be said of them."""
+
+    problem: Problem
+    judged: list[Evidence]
+    told: tuple[str, ...]
+
+
+def _begun(
+    plant: Plant | ThermalPlant, recordings: Sequence[Recording], validation: Sequence[Recording], split: float,
+    hold: float | None, sentence: Callable[[float, float], str],
+) -> _Begun:  # fmt: skip
+    problem, judged, told = prepared(plant, recordings, validation, split, hold)
+    refuse_faulty(problem, (*problem.evidence, *judged))
+    also = () if hold is None else (sentence(hold, recordings[0].sample_time),)
+    return _Begun(problem, judged, (*told, *also))
+
+
+@dataclass(frozen=True)
+class _Settled:
+    """What was found, once data not fitted have had their say.
+
+    Attributes:
+        searched: the search, without effects that stand in for others, refined in simulation where that was asked.
+        rivals: per effect, those that would do as well.
+        judged, rehomed: the recordings judged on, and what was said of their zeros.
+        refinement: in closed-loop simulation.
+    """
+
+    searched: Searched
+    rivals: list[list[Rival]]
+    judged: list[Judged]
+    rehomed: tuple[str, ...]
+    refinement: Refinement
+
+
+def _settled(
+    problem: Problem, evidence: Sequence[Evidence], simulate: bool, said: Said, start: Sequence[Effect]
+) -> _Settled:
+    searched = search_recordings(problem, said, start)
+    found = searched.search
+    said("judging on data not fitted")
+    judged, rehomed = _judged(found, evidence)
+    if (fewer := without_stand_ins(found, judged)) is not found:
+        found = fewer
+        judged, rehomed = _judged(found, evidence)
+
+    def judge(other: Search) -> list[Judged]:
+        return _judged(other, evidence)[0]
+
+    found, judged = without_denied(found, judged, judge)
+    preferred, rivals = with_the_preferred(found, rivals_of(found, judged))
+    if preferred is not found:
+        kept, judged = without_denied(preferred, judge(preferred), judge)
+        rivals = rivals if kept is preferred else rivals_of(kept, judged)
+        found = kept
+    judged, rehomed = _judged(found, evidence)
+    refinement = Refinement(found, (judged, rehomed))
+    if simulate:
+        said("simulating the closed loop, and refining in simulation")
+        refinement = refined(found, refinement.outcome, lambda other: _judged(other, evidence))
+        found, (judged, rehomed) = refinement.found, refinement.outcome
+    return _Settled(replace(searched, search=found), rivals, judged, rehomed, refinement)
+
+
+def _judged(found: Search, evidence: Sequence[Evidence]) -> tuple[list[Judged], tuple[str, ...]]:
+    """The recordings to judge on, their position-locked effects re-homed where the encoder's zero differs."""
+    declared = found.problem.plant
+    after = declared.with_effects(*found.fit.effects)
+    judged, rehomed = [], []
+    for one in evidence:
+        homed = rehomed_plant(found.problem, found.fit.effects, one)
+        if homed is None:
+            judged.append(prepared_for_judging(found.problem, one, declared, after))
+        else:
+            judged.append(prepared_for_judging(found.problem, homed.evidence, declared, homed.plant, homed.shift))
+            rehomed.append(f"{one.recording.name}: {homed.statement}")
+    return judged, tuple(rehomed)
+
+
+def _notes(fitted: Sequence[Evidence], judged: Sequence[Evidence], found: Search) -> tuple[str, ...]:
+    ready = dict.fromkeys((*fitted, *judged))  # a recording may be both
+    notes = [f"{evidence.recording.name}: {note}" for evidence in ready for note in evidence.recording.notes]
+    declared = found.problem.plant
+    notes += found.problem.predictor.told(declared, declared.with_effects(*found.fit.effects))
+    unseen = {name for name, reason in found.impossible.items() if reason == WITHOUT_TORQUE}
+    if unseen:
+        notes.append(without_torque_sentence(unseen))
+    for before, after in zip(fitted, found.problem.evidence, strict=True):
+        lost = float(np.sum(before.counted & ~after.counted)) * before.recording.sample_time
+        if lost > 0:
+            notes.append(
+                f"{before.recording.name}: {lost:.1f} s are not fitted: free play magnifies the encoder's noise there"
+            )
+    return tuple(notes)
+
+
+def _stamps(recordings: Sequence[Recording]) -> tuple[FileStamp, ...]:
+    return tuple(FileStamp(recording.source or recording.name, recording.sha256) for recording in recordings)

@@ -1,0 +1,128 @@
+"""What a thermal plant predicts for a recording: temperatures and growth from speed and surroundings alone."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import ClassVar
+
+import numpy as np
+
+from feeddrive.diagnosis.fit import Problem
+from feeddrive.diagnosis.heat.candidates import HEAT_CANDIDATES
+from feeddrive.diagnosis.heat.evidence import HeatEvidence
+from feeddrive.diagnosis.heat.materiality import is_material_heat
+from feeddrive.diagnosis.predictor import Predictor
+from feeddrive.diagnosis.remembered import Remembered
+from feeddrive.diagnosis.scene import Candidate, Scene
+from feeddrive.effects.base import Effect
+from feeddrive.thermal.model import HeatModel, Path
+from feeddrive.thermal.plant import ThermalPlant
+from feeddrive.thermal.reduction import reduce_model
+from feeddrive.thermal.warm_up import channel_of, simulate
+from feeddrive.typing import FloatArray
+
+ORDER = 48
+"""States of the reduced model, for a range wide enough for every effect."""
+
+WIDEST_FILM, WIDEST_CONTACT, MOST_COOLING = 5.0, 10.0, 5.0
+"""Factors beyond the declared conductances, and coolant's conductance [W/K], for which the reduced model is made."""
+
+
+@dataclass
+class HeatPredictor(Predictor[ThermalPlant, HeatEvidence]):
+    """Predicts recordings with one reduced model; bodies that effects attach are added to it.
+
+    Not a frozen record: it remembers.
+
+    Attributes:
+        declared: plant that the model was made for.
+        model: its reduced model.
+    """
+
+    retries: ClassVar[int] = 4
+    many: ClassVar[int] = 4  # a second search is cheap, and heats do much alike
+    chance: ClassVar[float] = 18.0  # as that of motion, of some hundred starts
+
+    declared: ThermalPlant
+    model: HeatModel
+    _known: Remembered[dict[str, FloatArray]] = field(default_factory=lambda: Remembered(_size))
+
+    @property
+    def candidates(self) -> tuple[Candidate, ...]:
+        """Effects on temperatures and growth."""
+        return HEAT_CANDIDATES
+
+    def predict(self, plant: ThermalPlant, evidence: HeatEvidence) -> dict[str, FloatArray]:
+        """Channel to its prediction, (n,) [degC, m]."""
+        values = tuple((e.name, e.place, tuple(e.values.items())) for e in plant.effects)
+        return self._known.found(evidence.recording, values, lambda: self._simulated(plant, evidence))
+
+    def scene(self, problem: Problem, found: Sequence[Effect]) -> Scene:
+        """Residuals with the effects found so far."""
+        plant = problem.plant.with_effects(*found)
+        residuals = []
+        for evidence in problem.evidence:
+            predicted = problem.predictor.predict(plant, evidence)
+            residuals.append({name: evidence.measured[name] - predicted[name] for name in evidence.channels})
+        return Scene(problem, tuple(found), tuple(residuals))
+
+    def variables(self, plant: ThermalPlant, evidence: HeatEvidence) -> dict[str, FloatArray]:
+        """Speed, surroundings, time, and the predicted rise of the nut."""
+        n = len(evidence.recording)
+        run = self._all_channels(plant, evidence)
+        nut = {sensor.output: sensor.channel for sensor in plant.sensors}.get("nut", channel_of("nut"))
+        return {
+            "screw_speed": _from_start(evidence.speed, 0.0, n),
+            "time": np.arange(n, dtype=np.float64) * evidence.recording.sample_time,
+            "ambient_temperature": _from_start(evidence.ambient, float(evidence.ambient[0]), n),
+            "nut_rise": _from_start(run[nut] - float(evidence.ambient[0]), 0.0, n),
+        }
+
+    def reference(self, name: str, plant: ThermalPlant, evidence: HeatEvidence) -> FloatArray:
+        """The measured channel itself, a temperature in degC."""
+        measured: FloatArray = evidence.measured[name][evidence.judged_rows]
+        return measured
+
+    def is_material(self, effect: Effect, plant: ThermalPlant) -> bool:
+        """The physical minimum of heats, factors and times."""
+        return is_material_heat(effect, plant)
+
+    def _all_channels(self, plant: ThermalPlant, evidence: HeatEvidence) -> dict[str, FloatArray]:
+        model = self.model
+        own = {body.name for body in self.declared.attached}
+        for body in plant.attached:
+            if body.name not in own:
+                model = model.with_body(body)
+        step = evidence.recording.sample_time
+        return simulate(plant, model, step, evidence.speed, evidence.ambient)
+
+    def _simulated(self, plant: ThermalPlant, evidence: HeatEvidence) -> dict[str, FloatArray]:
+        """The compared channels of `_all_channels`, (n,) each."""
+        run, n = self._all_channels(plant, evidence), len(evidence.recording)
+        first = float(evidence.ambient[0])
+        return {
+            name: _from_start(run[name], 0.0 if name.startswith("table_growth") else first, n)
+            for name in evidence.channels
+        }
+
+
+def heat_predictor(plant: ThermalPlant) -> HeatPredictor:
+    """The predictor of a plant: its model reduced once, wide enough for every effect."""
+    limits = dict(plant.limits(WIDEST_FILM))
+    limits[Path.CONTACT] = (plant.contact / WIDEST_CONTACT, plant.contact * WIDEST_CONTACT)
+    limits[Path.COOLING] = (0.0, MOST_COOLING)
+    reduced = reduce_model([plant.full_model()], limits, ORDER)[0]
+    # a fit may pass through values outside; what it ends at is inside the physical range of its effect
+    return HeatPredictor(plant, replace(reduced, limits={}))
+
+
+def _size(prediction: dict[str, FloatArray]) -> int:
+    """Bytes of a prediction."""
+    return sum(series.nbytes for series in prediction.values())
+
+
+def _from_start(values: FloatArray, start: float, count: int) -> FloatArray:
+    """Values with the start in front where the recording has a row for it, (count,)."""
+    whole: FloatArray = np.concatenate([np.full(count - len(values), start), values])
+    return whole

@@ -1,0 +1,161 @@
+"""The ledger of a diagnosis: every run with its files, what was tried, what was kept and why; runs are only added.
+
+ledger.json
+{ "format": "feeddrive-ledger/1", "runs": [ { "run": 1, "continues": null, "plant": {...}, "fit": [...],
+  "validate": [...], "split": 0.75, "channels": [...], "tried": [...], "effects": [...], "refused": [...],
+  "values": [...], "covariance": {...}, "changes": [...], "since": [...] } ] }
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from feeddrive import __version__
+from feeddrive.diagnosis.outputs import diagnosis_record
+from feeddrive.diagnosis.result import Diagnosis
+from feeddrive.effects.base import Effect
+from feeddrive.errors import InputError
+from feeddrive.files import write_text_atomically
+
+FORMAT = "feeddrive-ledger/1"
+NAME = "ledger.json"
+
+COPIED = ("channels", "effects", "refused", "ambiguous", "rehomed", "changes", "per_recording", "shared",
+          "changes_tried", "notes")  # fmt: skip
+"""Keys of `diagnosis.json` that a run of the ledger keeps as they are."""
+
+
+@dataclass(frozen=True)
+class FileUse:
+    """A recording file with what is needed to read it again.
+
+    Attributes:
+        path: absolute.
+        sha256: of its content.
+        mapping: mapping file that it was read with, absolute; None where there was none.
+        decimal: decimal sign that it was read with; None where the file tells.
+    """
+
+    path: Path
+    sha256: str
+    mapping: Path | None = None
+    decimal: str | None = None
+
+
+@dataclass(frozen=True)
+class RunFiles:
+    """Files and options of one run."""
+
+    plant: FileUse
+    fit: tuple[FileUse, ...]
+    validate: tuple[FileUse, ...]
+    split: float
+    continues: int | None = None
+
+
+def checksum(path: Path) -> str:
+    """SHA-256 of a file.
+
+    Raises:
+        InputError: it cannot be read.
+    """
+    try:
+        return hashlib.sha256(path.read_bytes()).hexdigest()
+    except OSError as error:
+        raise InputError(f"cannot be read ({error.strerror})", str(path), "put it back, or diagnose anew") from None
+
+
+def runs_of(folder: Path) -> list[dict[str, Any]]:
+    """The runs that the ledger of a folder holds; none where there is no ledger.
+
+    Raises:
+        InputError: a file of that name that is no ledger.
+    """
+    path = folder / NAME
+    if not path.exists():
+        return []
+    mend = "move it away, or give another folder by --out"
+    try:
+        record = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError):
+        raise InputError("the ledger cannot be read", str(path), mend) from None
+    if not isinstance(record, dict) or record.get("format") != FORMAT or not _are_runs(record.get("runs")):
+        raise InputError(f"not a ledger of format {FORMAT}", str(path), mend)
+    runs: list[dict[str, Any]] = record["runs"]
+    return runs
+
+
+def _are_runs(runs: Any) -> bool:
+    return isinstance(runs, list) and all(isinstance(run, dict) for run in runs)
+
+
+def write_ledger(folder: Path, runs: Sequence[dict[str, Any]], result: Diagnosis, effects: Sequence[Effect],
+                 files: RunFiles) -> None:  # fmt: skip
+    """Write the ledger with one more run, at once or not at all.
+
+    Args:
+        folder: of the diagnosis, with the other files of the new run.
+        runs: that were before.
+        result: of the new run.
+        effects: of the machine as it was in the last recording.
+        files: of the new run.
+    """
+    written = [path.name for path in folder.iterdir()]
+    record = {"format": FORMAT, "runs": [*runs, _run(len(runs) + 1, result, effects, files, written)]}
+    text = json.dumps(record, indent=1, ensure_ascii=False, allow_nan=False)
+    write_text_atomically(folder / NAME, text + "\n")
+
+
+def written_earlier(runs: Sequence[dict[str, Any]]) -> tuple[str, ...]:
+    """Names of the files that the last run has written into the folder of its ledger."""
+    names = runs[-1].get("written", []) if runs else []
+    return tuple(name for name in names if isinstance(name, str)) if isinstance(names, list) else ()
+
+
+def _run(
+    number: int, result: Diagnosis, effects: Sequence[Effect], files: RunFiles, written: Sequence[str]
+) -> dict[str, Any]:
+    told = diagnosis_record(result)
+    return {
+        "run": number,
+        "continues": files.continues,
+        "version": __version__,
+        "plant": {"name": result.plant, "path": str(files.plant.path), "sha256": files.plant.sha256},
+        "fit": [_file(one) for one in files.fit],
+        "validate": [_file(one) for one in files.validate],
+        "split": files.split,
+        **{key: told[key] for key in COPIED},
+        "tried": [_plain(vars(one)) for one in result.kept.tried],
+        "values": [_effect(effect) for effect in effects],
+        "covariance": {"values": list(result.kept.covariance.names),
+                       "matrix": [list(row) for row in result.kept.covariance.matrix]},
+        "since": list(result.kept.since),
+        "written": sorted([NAME, *written]),
+    }  # fmt: skip
+
+
+def _file(one: FileUse) -> dict[str, Any]:
+    mapping = None if one.mapping is None else str(one.mapping)
+    return {"path": str(one.path), "sha256": one.sha256, "mapping": mapping, "decimal": one.decimal}
+
+
+def _effect(effect: Effect) -> dict[str, Any]:
+    return {"name": effect.name, "port": str(effect.port), "place": effect.place, "values": _plain(effect.values)}
+
+
+def _plain(values: Any) -> dict[str, Any]:
+    """Values as JSON has them: tables as lists, numbers that are none as null."""
+    return {key: _number(value) for key, value in dict(values).items()}
+
+
+def _number(value: Any) -> Any:
+    if isinstance(value, dict):
+        return _plain(value)
+    if isinstance(value, list | tuple):
+        return [_number(one) for one in value]
+    return None if isinstance(value, float) and not abs(value) < float("inf") else value

@@ -1,0 +1,108 @@
+"""Recordings made ready for the plant that they are of: motion and torque, or temperatures and growth."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from feeddrive.diagnosis.evidence import AxisEvidence, Evidence, prepare
+from feeddrive.diagnosis.fit import Problem
+from feeddrive.diagnosis.heat.evidence import left_out_channels, prepare_heat, within_range
+from feeddrive.diagnosis.heat.prediction import heat_predictor
+from feeddrive.diagnosis.prediction import AxisPredictor
+from feeddrive.diagnosis.torque_channel import refuse_what_is_no_torque
+from feeddrive.errors import InputError
+from feeddrive.plant.plant import Plant
+from feeddrive.recording import Recording, check_against_lead, without_unfollowed_setpoint
+from feeddrive.recording.copies import refuse_copied_setpoint
+from feeddrive.thermal.plant import ThermalPlant
+
+Prepared = tuple[Problem, list[Evidence], tuple[str, ...]]
+"""The problem, what is judged, and what is to be said."""
+
+
+def prepared(
+    plant: Plant | ThermalPlant,
+    recordings: Sequence[Recording],
+    validation: Sequence[Recording],
+    split: float,
+    hold: float | None = None,
+) -> Prepared:
+    """The problem, and what it is judged on.
+
+    Args:
+        plant: as declared.
+        recordings: fitted; without `validation` their last part is judged.
+        validation: judged only.
+        split: share that is fitted where there is no `validation`.
+        hold: how long the drive holds a torque [s]; None for a whole row.
+
+    Raises:
+        InputError: recordings that cannot be used with this plant.
+    """
+    if isinstance(plant, ThermalPlant):
+        return _prepared_heat(plant, recordings, validation, split)
+    lead = 2 * np.pi * plant.chain.motor_radius
+    for recording in (*recordings, *validation):
+        _refuse_heat(recording)
+        refuse_copied_setpoint(recording.channels, recording.name)
+        check_against_lead(recording, lead, recording.name)
+    recordings, validation = (
+        [without_unfollowed_setpoint(one, lead) for one in ones] for ones in (recordings, validation)
+    )
+    fitted = tuple(prepare(recording, plant, 1.0 if validation else split, hold) for recording in recordings)
+    judged: list[Evidence] = [prepare(recording, plant, 0.0, hold) for recording in validation] or list(fitted)
+    return _scaled(plant, fitted, judged)
+
+
+def _scaled(plant: Plant, fitted: tuple[AxisEvidence, ...], judged: list[Evidence]) -> Prepared:
+    """The recordings with a torque of unknown scale brought to that of the declared plant."""
+    unknown = tuple(evidence for evidence in fitted if evidence.scaled_from)
+    if not unknown:
+        for evidence in judged:
+            if isinstance(evidence, AxisEvidence) and evidence.scaled_from and any(map(_has_torque, fitted)):
+                what = f"only {evidence.scaled_from}, and what is fitted has a torque"
+                raise InputError(what, evidence.recording.name, "declare torque_constant in [motor] of the plant")
+        return Problem(plant, fitted, AxisPredictor()), judged, ()
+    predictor = AxisPredictor(unknown)
+    scale = 1 / predictor.scale(plant)
+    for one in unknown:
+        predicted = predictor.predict(plant, replace(one, scaled_from=""))["motor_torque"]
+        refuse_what_is_no_torque(one.scaled_from, one.measured["motor_torque"], predicted, one.recording.name)
+    known = {one: one.with_scale(scale) if one.scaled_from else one for one in fitted}
+    others = [_known(one, known, scale) for one in judged]
+    inside = tuple(known[one] for one in fitted)
+    predictor = AxisPredictor(tuple(one for one in inside if one.scaled_from), scale)
+    return Problem(plant, inside, predictor), others, ()
+
+
+def _has_torque(evidence: AxisEvidence) -> bool:
+    return "motor_torque" in evidence.channels and not evidence.scaled_from
+
+
+def _known(evidence: Evidence, known: Mapping[AxisEvidence, AxisEvidence], scale: float) -> Evidence:
+    if not isinstance(evidence, AxisEvidence):
+        return evidence
+    if evidence in known:
+        return known[evidence]
+    return evidence.with_scale(scale) if evidence.scaled_from else evidence
+
+
+def _prepared_heat(
+    plant: ThermalPlant, recordings: Sequence[Recording], validation: Sequence[Recording], split: float
+) -> Prepared:
+    fitted = tuple(prepare_heat(recording, plant, 1.0 if validation else split) for recording in recordings)
+    others = [prepare_heat(recording, plant, 0.0) for recording in validation]
+    wide, told = within_range(plant, (*fitted, *others))
+    lost = [f"{r.name}: {c} is not predicted" for r in (*recordings, *validation) for c in left_out_channels(r, plant)]
+    judged: list[Evidence] = [*others] or [*fitted]
+    return Problem(wide, fitted, heat_predictor(wide)), judged, (*told, *lost)
+
+
+def _refuse_heat(recording: Recording) -> None:
+    moving = any(name in recording for name in ("motor_torque", "motor_current", "motor_angle", "table_position"))
+    if not moving and "screw_speed" in recording:
+        mend = "name a plant that declares heat alone, such as thermal_bench"
+        raise InputError("a recording of temperatures, and the plant declares motion", recording.name, mend)

@@ -1,0 +1,169 @@
+"""What changed between recordings: parameters that must differ by recording for the blocks left out to be met.
+
+The reference has every fitted parameter and every level in common. One parameter after the other is set free in the
+recordings asked about: ranked by one linear step (`change_offers`), fitted, and taken if it pays by the rule of the
+search, more strictly by the number that was tried. Levels that did not differ are then taken out, and what no longer
+pays or is too small to matter is put back.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from scipy.stats import norm
+
+from feeddrive.diagnosis.cross_validation import Comparison
+from feeddrive.diagnosis.fit import Fit, Problem, fit
+from feeddrive.diagnosis.recordings.change_candidates import levels, movables
+from feeddrive.diagnosis.recordings.change_fits import (
+    JOINT_STEPS,
+    REFERENCE_STEPS,
+    belongs,
+    compared_fits,
+    in_common,
+    machine_first,
+    set_free,
+)
+from feeddrive.diagnosis.recordings.change_offers import Offer, offers
+from feeddrive.diagnosis.recordings.change_values import material_difference
+from feeddrive.diagnosis.recordings.recordings import Target
+from feeddrive.effects.base import Effect
+from feeddrive.effects.friction_deviation import FrictionDeviation
+
+FALSE_ALARMS = 0.05
+"""Chance of one false change in a whole diagnosis, shared out among all parameters that are tried."""
+
+OFFERS = 2
+"""Parameters that are fitted before the recordings are said to share the rest."""
+
+MOST_CHANGES = 6
+"""Parameters that may differ; a machine on which more did is another machine."""
+
+
+@dataclass(frozen=True)
+class ChangeTrial:
+    """One parameter set free by recording: what it brings on blocks left out, and whether it was taken."""
+
+    target: Target
+    parameter: str
+    comparison: Comparison
+    taken: bool
+    reason: str
+
+
+@dataclass(frozen=True)
+class Changes:
+    """The fit with what differs by recording.
+
+    Attributes:
+        fit: effects of the machine, then the shifts of what differs.
+        targets: what differs, in the order found.
+        trials: all that was tried.
+    """
+
+    fit: Fit
+    targets: tuple[Target, ...]
+    trials: tuple[ChangeTrial, ...]
+
+
+def find_changes(problem: Problem, effects: Sequence[Effect], recordings: Sequence[int]) -> Changes:
+    """Find the parameters that differ in some recordings.
+
+    Args:
+        problem: recordings, with a predictor that knows their numbers.
+        effects: found, with the shifts that are known already.
+        recordings: numbers of those that may differ; the others share their values.
+
+    Returns:
+        The fit of the effects as they are given, followed by levels and shifts that pay.
+    """
+    common = fit(problem, effects, iterations=REFERENCE_STEPS)
+    if not recordings:
+        return Changes(common, (), ())
+    ranked: dict[Target, Offer] = {}
+    current, kept = _forward(problem, common, recordings, ranked)
+    while kept:
+        worst = _worst(problem, current, kept, recordings, len(ranked))
+        if not worst:
+            return Changes(machine_first(problem, current), tuple(kept), _trials(ranked, kept))
+        kept = [target for target in kept if target not in worst]
+        current = in_common(problem, common, current, worst, recordings)
+    return Changes(common, (), _trials(ranked, ()))
+
+
+def _forward(
+    problem: Problem, common: Fit, recordings: Sequence[int], ranked: dict[Target, Offer]
+) -> tuple[Fit, list[Target]]:
+    """Parameters that pay when set free, the likeliest first; what each brings is noted in `ranked`."""
+    taken: list[Target] = []
+    current = common
+    while len(taken) < MOST_CHANGES:
+        at_rest = fit(problem, [*current.effects, *levels(problem, current.effects)], iterations=0)
+        free = [one for one in movables(at_rest.effects, problem) if one.target not in taken]
+        offered = offers(problem, at_rest, free, recordings)
+        for one, comparison in offered:
+            if one.target not in ranked or comparison.gain > ranked[one.target][1].gain:
+                ranked[one.target] = one, comparison
+        likely = [one for one, c in offered if c.gain > max(c.least, c.standard_error)]
+        for one in likely[:OFFERS]:
+            group = [other for other in free if other is one or _partners(one.target, other.target)]
+            wider, comparison = set_free(problem, current, at_rest.effects[one.effect], group, recordings)
+            ranked[one.target] = one, comparison
+            if _pays(comparison, len(free) + len(taken)) and _material(problem, wider, one.target, recordings):
+                taken += [other.target for other in group]
+                current = wider
+                break
+        else:
+            break
+    return current, taken
+
+
+def _partners(one: Target, other: Target) -> bool:
+    """Whether two are the parts of one friction: each is known only with the other free, so they are freed together."""
+    return one.name == FrictionDeviation.name and (one.name, one.port) == (other.name, other.port)
+
+
+def _material(problem: Problem, shifted: Fit, target: Target, recordings: Sequence[int]) -> bool:
+    return any(material_difference(problem, shifted.effects, target, number) for number in recordings)
+
+
+def _pays(comparison: Comparison, tried: int) -> bool:
+    """The rule of the search, its scatter as many times as so many tries ask for."""
+    times = float(norm.ppf(1 - FALSE_ALARMS / max(tried, 1)))
+    return comparison.pays and comparison.gain > times * comparison.standard_error
+
+
+def _worst(
+    problem: Problem, shifted: Fit, kept: Sequence[Target], recordings: Sequence[int], tried: int
+) -> list[Target]:
+    """What is immaterial, or pays least and not enough; nothing where all are to stay."""
+    for target in kept:
+        if not _material(problem, shifted, target, recordings):
+            return [target]
+    groups = [[other for other in kept if other is one or _partners(one, other)] for one in kept]
+    if all(len(group) == len(kept) for group in groups):
+        return []  # they were compared when they were taken
+    compared = []
+    for group in groups:
+        # what is left out keeps its level in common, so that only the difference is judged
+        removed = [effect for effect in shifted.effects if not belongs(effect, group, recordings)]
+        compared.append((compared_fits(problem, fit(problem, removed, iterations=JOINT_STEPS), shifted), group))
+    comparison, group = min(compared, key=lambda pair: pair[0].gain)
+    return [] if _pays(comparison, tried) else group
+
+
+def _trials(ranked: dict[Target, Offer], kept: Sequence[Target]) -> tuple[ChangeTrial, ...]:
+    result = []
+    for target, (one, comparison) in ranked.items():
+        taken = target in kept
+        reason = "it must differ for blocks left out to be met" if taken else _why_common(comparison)
+        result.append(ChangeTrial(target, one.parameter, comparison, taken, reason))
+    return tuple(sorted(result, key=lambda trial: -trial.comparison.gain))
+
+
+def _why_common(comparison: Comparison) -> str:
+    if comparison.gain <= 0:
+        return "a value of its own in every recording does not lower the error on blocks left out"
+    scatter = f"{comparison.standard_error:.2%} scatter"
+    return f"a value of its own lowers the squared error by {comparison.gain:.2%} ({scatter}), or others say it better"

@@ -1,0 +1,201 @@
+"""Parameters that are other in one recording than in the others, and the predictor that applies them.
+
+A shift is a difference in the coordinates in which an effect is fitted, bound to one recording. It stands in the list
+of effects, so that fits, intervals and cross-validation treat it like any other unknown; before anything is simulated
+the predictor takes it out and moves the effect that it is about. Recordings without a shift keep the effect as it is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from feeddrive.diagnosis.coordinates import coordinates_of, read_coordinates, write_coordinates
+from feeddrive.diagnosis.evidence import Evidence
+from feeddrive.diagnosis.fit import Problem
+from feeddrive.diagnosis.predictor import Predictor
+from feeddrive.diagnosis.scene import AxisScene, Candidate, Scene
+from feeddrive.effects.base import Effect, Kind, Parameter, Port, Signature
+from feeddrive.effects.thermal.base import ThermalEffect
+from feeddrive.recording import Recording
+from feeddrive.typing import BoolArray, FloatArray
+
+SAME_ORDER = 0.02
+"""Relative difference of two orders that are taken for one sine."""
+
+
+@dataclass(frozen=True)
+class Target:
+    """The part of an effect that a shift moves.
+
+    Attributes:
+        name: of the effect.
+        port: where it acts.
+        place: the word that says where it acts, or an empty text.
+        coordinate: number of the coordinate, in the order of `coordinates_of`.
+        order: of a sine, by which it is told from others of its name; None elsewhere.
+    """
+
+    name: str
+    port: Port
+    place: str
+    coordinate: int
+    order: float | None = None
+
+    def meets(self, effect: Effect) -> bool:
+        """Whether this effect is the one."""
+        if (effect.name, effect.port, effect.place) != (self.name, self.port, self.place):
+            return False
+        order = effect.values.get("order")
+        if self.order is None or not isinstance(order, float | int):
+            return True
+        return abs(order - self.order) <= SAME_ORDER * self.order
+
+
+def target_of(effect: Effect, coordinate: int) -> Target:
+    """The target for one coordinate of an effect."""
+    order = effect.values.get("order")
+    return Target(effect.name, effect.port, effect.place, coordinate, order if isinstance(order, float) else None)
+
+
+@dataclass(frozen=True)
+class RecordingShift(Effect):
+    """What one recording has otherwise: coordinate = that of the effect + shift.
+
+    Attributes:
+        target: what is moved.
+        recording: number of the recording that it belongs to.
+    """
+
+    name = "recording_shift"
+    kind = Kind.SOURCE
+    ports = (Port.TABLE,)
+    parameters = (Parameter("shift", "1", table=True),)
+    signature = Signature((), "recording")
+    repeatable = True
+    additive = True
+
+    target: Target = Target("", Port.TABLE, "", 0)
+    recording: int = -1
+
+
+@dataclass(frozen=True)
+class ThermalRecordingShift(RecordingShift, ThermalEffect):
+    """The same on a plant of temperatures."""
+
+    ports = (Port.THERMAL,)
+
+
+def is_shift(effect: Effect) -> bool:
+    """Whether this is no effect of the machine but the difference of one recording."""
+    return isinstance(effect, RecordingShift)
+
+
+def without_shifts(effects: Sequence[Effect]) -> tuple[Effect, ...]:
+    """The effects of the machine alone, as they are in the recordings that have no shift."""
+    return tuple(effect for effect in effects if not is_shift(effect))
+
+
+def in_recording(effects: Sequence[Effect], plant: Any, number: int | None) -> tuple[Effect, ...]:
+    """The effects as they are in one recording, the shifts taken out.
+
+    Args:
+        effects: with shifts.
+        plant: that the coordinates belong to.
+        number: of the recording; None for one without shifts.
+    """
+    result = list(without_shifts(effects))
+    for shift in effects:
+        if isinstance(shift, RecordingShift) and shift.recording == number:
+            at = [i for i, effect in enumerate(result) if shift.target.meets(effect)]
+            if at:  # what was found comes after what is declared
+                result[at[-1]] = _moved(result[at[-1]], plant, shift)
+    return tuple(result)
+
+
+def _moved(effect: Effect, plant: Any, shift: RecordingShift) -> Effect:
+    coordinates = coordinates_of(effect, plant)
+    by = shift.values["shift"]
+    steps = by if isinstance(by, tuple) else (by,)
+    start = sum(len(coordinate.read(effect)) for coordinate in coordinates[: shift.target.coordinate])
+    vector = read_coordinates([effect], plant)
+    vector[start : start + len(steps)] += steps
+    return write_coordinates([effect], plant, vector)[0]
+
+
+@dataclass
+class RecordingPredictor(Predictor[Any, Any]):
+    """Predicts each recording with its own shifts.
+
+    Attributes:
+        inner: predicts one kind of machine.
+        numbers: recording to its number; a recording that is not there has no shifts.
+    """
+
+    inner: Predictor[Any, Any]
+    numbers: Mapping[Recording, int]
+
+    def machine(self, plant: Any, evidence: Evidence) -> Any:
+        """The plant as it is in this recording, without shifts."""
+        if not any(is_shift(effect) for effect in plant.effects):
+            return plant
+        number = self.numbers.get(evidence.recording)
+        return replace(plant, effects=in_recording(plant.effects, plant, number))
+
+    @property
+    def candidates(self) -> tuple[Candidate, ...]:
+        """Effects that are tried."""
+        return self.inner.candidates
+
+    def predict(self, plant: Any, evidence: Any) -> dict[str, FloatArray]:
+        """Channel to its prediction, (n,), SI."""
+        return self.inner.predict(self.machine(plant, evidence), evidence)
+
+    def scene(self, problem: Problem, found: Sequence[Effect]) -> Scene:
+        """What starts are read from, every recording with its own machine."""
+        parts = []
+        for evidence in problem.evidence:
+            own = self.machine(problem.plant.with_effects(*found), evidence)
+            count = len(own.effects) - len(without_shifts(found))
+            declared = replace(own, effects=own.effects[:count])
+            parts.append(self.inner.scene(Problem(declared, (evidence,), self.inner), own.effects[count:]))
+        residuals = tuple(residual for part in parts for residual in part.residuals)
+        whole = replace(parts[0], problem=problem, found=tuple(found), residuals=residuals)
+        if isinstance(whole, AxisScene):
+            runs = tuple(run for part in parts if isinstance(part, AxisScene) for run in part.runs)
+            return replace(whole, runs=runs)
+        return whole
+
+    def variables(self, plant: Any, evidence: Any) -> dict[str, FloatArray]:
+        """Variables that a residual may depend on."""
+        return self.inner.variables(self.machine(plant, evidence), evidence)
+
+    def reference(self, name: str, plant: Any, evidence: Any) -> FloatArray:
+        """Series that a relative error refers to."""
+        return self.inner.reference(name, plant, evidence)
+
+    def is_material(self, effect: Effect, plant: Any) -> bool:
+        """Whether an effect is of a size that matters."""
+        return self.inner.is_material(effect, plant)
+
+    def told(self, before: Any, after: Any) -> tuple[str, ...]:
+        """What is to be said of the way to predict, recordings without shifts."""
+        plain = [replace(plant, effects=without_shifts(plant.effects)) for plant in (before, after)]
+        return self.inner.told(*plain)
+
+    def predictable(self, plant: Any, evidence: Any) -> BoolArray:
+        """Samples that can be predicted."""
+        return self.inner.predictable(self.machine(plant, evidence), evidence)
+
+    def to_fit(self, plant: Any, evidence: Any) -> BoolArray:
+        """Samples that a fit can learn from."""
+        return self.inner.to_fit(self.machine(plant, evidence), evidence)
+
+
+def shift_of(target: Target, recording: int, count: int, thermal: bool) -> RecordingShift:
+    """A shift of nothing yet, of as many coordinates as the target has."""
+    kind, port = (ThermalRecordingShift, Port.THERMAL) if thermal else (RecordingShift, Port.TABLE)
+    return kind(
+        values={"shift": (0.0,) * count}, port=port, label=RecordingShift.name, target=target, recording=recording
+    )

@@ -1,0 +1,168 @@
+"""The search over several recordings: what the plant lacks in all of them, and what differs from one to the next.
+
+A level that is other in one recording looks, to effects held in common, like a handful of effects that are not there;
+and an effect that is not yet found looks, in recordings of other motions, like levels that differ. So both orders are
+followed: differences first, held while the effects are searched; and effects first, the differences asked after them.
+In either the differences are asked again with the effects in, and effects that then no longer pay are dropped. The
+second order is spared where the first leaves no more than noise, or ends with the differences that it held.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+from feeddrive.diagnosis.attempt import with_predictable
+from feeddrive.diagnosis.evidence import Evidence
+from feeddrive.diagnosis.fit import Problem, fit
+from feeddrive.diagnosis.recordings.change_candidates import levels
+from feeddrive.diagnosis.recordings.change_words import FACTORS
+from feeddrive.diagnosis.recordings.changes import Changes, find_changes
+from feeddrive.diagnosis.recordings.drift_table import normalised
+from feeddrive.diagnosis.recordings.recordings import (
+    RecordingPredictor,
+    RecordingShift,
+    Target,
+    is_shift,
+    without_shifts,
+)
+from feeddrive.diagnosis.recordings.still_needed import still_needed
+from feeddrive.diagnosis.search import UNEXPLAINED, Search, search
+from feeddrive.effects.base import Effect
+
+SAME = 0.01
+"""Relative difference of squared errors that counts as none."""
+
+LEAST_FACTOR = 0.3
+"""Least factor on declared friction or stiffness that is believed with no effect found yet; its inverse is the most."""
+
+
+@dataclass(frozen=True)
+class Searched:
+    """A search over recordings.
+
+    Attributes:
+        search: with the effects as they are in the last recording, then the shifts of the earlier ones.
+        changes: what differs between the fitted recordings; None where there is one recording.
+    """
+
+    search: Search
+    changes: Changes | None
+
+
+def search_recordings(
+    problem: Problem, said: Callable[[str], None] = lambda text: None, start: Sequence[Effect] = ()
+) -> Searched:
+    """Find the effects that the plant lacks, and the parameters that differ between the recordings.
+
+    Args:
+        problem: declared plant and recordings; the last one is the machine as it is now.
+        said: told what is going on.
+        start: effects found earlier; they are asked again with all recordings before others are searched.
+    """
+    if start:
+        continued = _continued(numbered(problem), start, said)
+        kept = {(effect.name, effect.port, effect.place) for effect in continued.search.fit.effects}
+        if _explained(continued) or all((effect.name, effect.port, effect.place) in kept for effect in start):
+            return continued
+        return _better(continued, search_recordings(problem, said))
+    if len(problem.evidence) < 2:
+        return Searched(normalised(search(problem, said)), None)
+    problem = numbered(problem)
+    earlier = range(len(problem.evidence) - 1)
+    said("comparing the recordings")
+    held = find_changes(problem, (), earlier)
+    best = _followed(problem, held if _plausible(held) else _nothing(problem), earlier, said)
+    assert best.changes is not None
+    confirmed = _levels_of(problem, best.changes) == (_levels_of(problem, held) if _plausible(held) else set())
+    if confirmed or _explained(best):
+        return best
+    other = _nothing(problem) if _plausible(held) and held.targets else _levels_alone(problem, best.changes, earlier)
+    return _better(best, _followed(problem, other, earlier, said))
+
+
+def _followed(problem: Problem, held: Changes, earlier: Sequence[int], said: Callable[[str], None]) -> Searched:
+    """Effects searched while some differences are held; then all differences, and the effects that still pay."""
+    found = normalised(_searched(problem, held, said))
+    said("comparing the recordings with the effects found")
+    changes = find_changes(found.problem, found.fit.effects, earlier)
+    if changes.targets:
+        changes = replace(changes, fit=still_needed(found.problem, changes.fit))
+    return Searched(replace(found, fit=changes.fit), changes)
+
+
+def _continued(problem: Problem, start: Sequence[Effect], said: Callable[[str], None]) -> Searched:
+    """The effects found earlier, those that still pay; then what else is lacking, and what differs."""
+    said("asking again for the effects found earlier")
+    problem = with_predictable(problem, start)
+    earlier = range(len(problem.evidence) - 1)
+    again = find_changes(problem, fit(problem, start).effects, earlier)
+    again = replace(again, fit=still_needed(problem, again.fit))
+    more = _searched(problem, again, said)
+    effects = (*without_shifts(again.fit.effects), *more.fit.effects)
+    changes = find_changes(more.problem, effects, earlier)
+    together = still_needed(more.problem, fit(more.problem, changes.fit.effects))
+    return Searched(replace(more, fit=together), replace(changes, fit=together))
+
+
+def _better(first: Searched, second: Searched) -> Searched:
+    """The one with the lower error at the same samples; the one with fewer unknowns where that is a tie."""
+    errors = [one.search.fit.squared_error / len(one.search.fit.residual) for one in (first, second)]
+    if abs(errors[0] - errors[1]) > SAME * min(errors):
+        return first if errors[0] < errors[1] else second
+    return min((first, second), key=lambda one: len(one.search.fit.coordinates))
+
+
+def _explained(one: Searched) -> bool:
+    return one.search.fit.squared_error < UNEXPLAINED * len(one.search.fit.residual)
+
+
+def _nothing(problem: Problem) -> Changes:
+    return Changes(fit(problem, (), iterations=0), (), ())
+
+
+def _plausible(held: Changes) -> bool:
+    """Whether factors of what differs are such as a machine has; others stand for an effect that is not found yet."""
+    factors = [effect.values.get(key, 1.0) for effect in held.fit.effects for key in FACTORS]
+    return all(LEAST_FACTOR <= float(f) <= 1 / LEAST_FACTOR for f in factors if isinstance(f, float))
+
+
+def numbered(problem: Problem, more: Sequence[Evidence] = ()) -> Problem:
+    """The problem with its recordings numbered in their order, and further ones after them."""
+    inner = problem.predictor
+    inner = inner.inner if isinstance(inner, RecordingPredictor) else inner
+    everything = (*problem.evidence, *more)
+    numbers = {evidence.recording: number for number, evidence in enumerate(everything)}
+    return replace(problem, predictor=RecordingPredictor(inner, numbers))
+
+
+def _searched(problem: Problem, held: Changes, said: Callable[[str], None]) -> Search:
+    """The search on the declared plant with what differs held; its result on the declared plant."""
+    if not held.fit.effects:
+        return search(problem, said)
+    nuisance = problem.plant.with_effects(*held.fit.effects)
+    found = search(replace(problem, plant=nuisance), said)
+    declared = replace(found.problem, plant=problem.plant)
+    return replace(found, problem=declared, fit=fit(declared, found.fit.effects, iterations=0))
+
+
+def _levels_of(problem: Problem, changes: Changes) -> set[tuple[str, str]]:
+    """Of what differs, name and port of what differs without an effect that would have to be found first."""
+    known = {(effect.name, effect.port) for effect in levels(problem, ())}
+    return {(t.name, t.port) for t in changes.targets if (t.name, t.port) in known}
+
+
+def _levels_alone(problem: Problem, changes: Changes, earlier: Sequence[int]) -> Changes:
+    """What differs of the levels, fitted with nothing found."""
+    wanted = [target for target in changes.targets if _levels_of(problem, replace(changes, targets=(target,)))]
+    if not wanted:
+        return _nothing(problem)
+    kept = [effect for effect in changes.fit.effects if _belongs(effect, wanted)]
+    return Changes(fit(problem, kept), tuple(wanted), ())
+
+
+def _belongs(effect: Effect, targets: Sequence[Target]) -> bool:
+    if is_shift(effect):
+        assert isinstance(effect, RecordingShift)
+        return effect.target in targets
+    return any(target.meets(effect) for target in targets)

@@ -1,0 +1,186 @@
+"""A measured frequency response and a plant file: what may be other, and how the plant's response follows from it.
+
+    r_k = ln(H_measured(f_k) / H(f_k; θ)),   complex: relative error of the magnitude, error of the phase in rad
+
+| symbol | meaning | unit |
+|---|---|---|
+| H | response of the plant linearised about the operating point, with as many waves of the screw as f needs | SI |
+| θ | logarithms of declared values over what is declared; dead time; mass, frequency, damping of a further mode | 1 |
+
+The logarithm weighs a line by its relative error, as coherence tells it, at a resonance as in a valley.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from feeddrive.diagnosis.numbers.declared_values import DeclaredValue, declared_values
+from feeddrive.effects.base import Effect
+from feeddrive.effects.drive_delay import DriveDelay
+from feeddrive.effects.structural_mode import StructuralMode
+from feeddrive.errors import InputError, ValidityWarning
+from feeddrive.plant.files import plant_from_entries
+from feeddrive.plant.linear import INPUTS, OUTPUTS
+from feeddrive.plant.plant import Plant
+from feeddrive.plant.resolution import resolved
+from feeddrive.plant.stiffness_budget import stiffness_budget
+from feeddrive.recording.frequency_response import FrequencyResponse
+from feeddrive.servo.frequency_response import Case, delay_of, transfer
+from feeddrive.servo.margins import frequency_response
+from feeddrive.simulate.scenario_overrides import with_overrides
+from feeddrive.typing import ComplexArray, FloatArray
+
+FEWEST_LINES = 20
+"""Lines that a fit of some ten values needs."""
+
+DELAY_SIZE = 1e-3
+"""Standard deviation of a dead time before anything is measured [s]: some cycles of a drive."""
+
+MODE_SHARE, MODE_SHARE_SPREAD = 0.1, 1.2
+"""Mass of a further mode over the table's: a tenth, known to a factor of three (one standard deviation)."""
+
+MODE_DAMPING, MODE_DAMPING_SPREAD = 0.02, 1.0
+"""Damping ratio of a further mode: bolted steel and iron, known to a factor of three."""
+
+
+@dataclass(frozen=True)
+class Lines:
+    """What is added to the plant beside its declared values.
+
+    Attributes:
+        delay: whether the torque has a dead time of its own.
+        modes: starting frequencies of further modes [Hz].
+    """
+
+    delay: bool = False
+    modes: tuple[float, ...] = ()
+
+    @property
+    def count(self) -> int:
+        """Coordinates of the additions."""
+        return int(self.delay) + 3 * len(self.modes)
+
+
+@dataclass(frozen=True, eq=False)
+class ResponseProblem:
+    """A plant file and a frequency response measured on the machine.
+
+    Attributes:
+        entries: of the plant file.
+        path: of it.
+        plant: as declared.
+        response: as measured, frequencies above zero.
+        case: operating point.
+        values: what may be other than declared.
+    """
+
+    entries: Mapping[str, Any]
+    path: Path
+    plant: Plant
+    response: FrequencyResponse
+    case: Case
+    values: tuple[DeclaredValue, ...]
+    _known: dict[bytes, ComplexArray] = field(default_factory=dict, init=False)
+
+    @property
+    def log_range(self) -> float:
+        """Natural logarithm of the highest over the lowest frequency."""
+        return math.log(float(self.response.frequency[-1] / self.response.frequency[0]))
+
+    def spreads(self, beyond: Sequence[int], lines: Lines, wide: float) -> FloatArray:
+        """Standard deviations of the coordinates before anything is measured, (k,)."""
+        own = np.array([one.deviation for one in self.values])
+        own[list(beyond)] = wide
+        more = [1.0] * int(lines.delay)
+        for _ in lines.modes:
+            # an even density over the logarithm of the frequency has this standard deviation
+            more += [MODE_SHARE_SPREAD, self.log_range / math.sqrt(12), MODE_DAMPING_SPREAD]
+        return np.concatenate([own, more])
+
+    def effects(self, extra: FloatArray, lines: Lines) -> tuple[Effect, ...]:
+        """The additions at their coordinates."""
+        found: list[Effect] = []
+        rest = list(map(float, extra))
+        if lines.delay:
+            found.append(DriveDelay.of(delay=max(rest.pop(0), 0.0) * DELAY_SIZE))
+        table = self.plant.chain_values()["table_mass"]
+        for start in lines.modes:
+            share, place, damping = rest[:3]
+            rest = rest[3:]
+            mass = MODE_SHARE * math.exp(_bounded(share, 5.0)) * table
+            ratio = min(MODE_DAMPING * math.exp(_bounded(damping, 4.0)), 1.0)
+            found.append(StructuralMode.of(mass=mass, frequency=start * math.exp(_bounded(place, 5.0)), damping=ratio))
+        return tuple(found)
+
+    def plant_at(self, coordinates: FloatArray, lines: Lines) -> Plant:
+        """The plant at coordinates, (k,)."""
+        count = len(self.values)
+        pairs = zip(self.values, coordinates[:count], strict=True)
+        texts = {one.key: one.at(_bounded(float(c), 5.0)) for one, c in pairs if c != 0.0}
+        written = {key: text for key, text in texts.items() if text is not None}
+        plant = plant_from_entries(with_overrides(self.entries, written), self.path)
+        return plant.with_effects(*self.effects(coordinates[count:], lines))
+
+    def predicted(self, coordinates: FloatArray, lines: Lines) -> ComplexArray:
+        """Response at the measured frequencies, (n,) SI; each is computed once."""
+        key = coordinates.tobytes() + repr(lines).encode()
+        if key not in self._known:
+            if len(self._known) > 200:  # some iterations' worth
+                self._known.clear()
+            self._known[key] = self._computed(coordinates, lines)
+        return self._known[key]
+
+    def _computed(self, coordinates: FloatArray, lines: Lines) -> ComplexArray:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", ValidityWarning)  # values that no part has are tried on the way
+            plant = self.plant_at(coordinates, lines)
+            frequency = self.response.frequency
+            fine = resolved(self.case.on(plant), float(frequency[-1]), [self.case.position])
+            system = transfer(
+                fine, self.response.given, self.response.output, Case(self.case.position, self.case.velocity)
+            )
+        late = delay_of(plant) if self.response.given == "motor_torque" else 0.0
+        found: ComplexArray = frequency_response(system, frequency) * np.exp(-2j * math.pi * frequency * late)
+        return found
+
+    def residual(self, coordinates: FloatArray, lines: Lines) -> FloatArray:
+        """Real parts of all r_k, then imaginary parts, (2 n,)."""
+        ratio = np.log(self.response.values / self.predicted(coordinates, lines))
+        return np.concatenate([ratio.real, ratio.imag])
+
+
+def response_problem(
+    entries: Mapping[str, Any], path: Path, plant: Plant, response: FrequencyResponse, case: Case
+) -> ResponseProblem:
+    """The problem of a plant file and a measured frequency response.
+
+    Raises:
+        InputError: channels that the mechanics does not have, too few lines, values of zero, or a file that declares
+            nothing that could be other.
+    """
+    where = response.source or response.name
+    for name, known, word in ((response.given, INPUTS, "from"), (response.output, OUTPUTS, "to")):
+        if name not in known:
+            mend = f"responses of the mechanics are compared; {word} is one of {', '.join(known)}"
+            raise InputError(f"a response {word} {name} is not compared", where, mend)
+    used = response.positive
+    if len(used.frequency) < FEWEST_LINES:
+        raise InputError(f"{len(used.frequency)} lines above 0 Hz", where, f"measure at least {FEWEST_LINES}")
+    if np.any(used.values == 0):
+        raise InputError("a value of the response is zero", where, "leave that line out")
+    whole = stiffness_budget(plant, case.position).total if plant.chain.elastic else None
+    values = declared_values(entries, whole)
+    if not values:
+        raise InputError("declares nothing that could be other", str(path), "declare its parts")
+    return ResponseProblem(entries, path, plant, used, case, values)
+
+
+def _bounded(value: float, most: float) -> float:
+    return min(max(value, -most), most)

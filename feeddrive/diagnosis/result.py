@@ -1,0 +1,183 @@
+"""What a diagnosis found: the plain records behind `diagnosis.json`, `prediction.csv` and the report."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from feeddrive.diagnosis.certainty.certainty_result import Ambiguity, Correlation, NextExperiment
+from feeddrive.diagnosis.ledger.result import Kept
+from feeddrive.diagnosis.recordings.change_result import RecordingChanges
+from feeddrive.diagnosis.simulated.simulation_result import SimulationResult as SimulationResult
+from feeddrive.diagnosis.unexplained.result import Dependence as Dependence
+from feeddrive.diagnosis.unexplained.result import Unexplained as Unexplained
+from feeddrive.typing import FloatArray
+
+
+@dataclass(frozen=True)
+class ErrorFigures:
+    """Error of one channel over the judged samples: rms and max in the channel's SI unit, relative without unit."""
+
+    rms: float
+    max: float
+    relative: float
+
+
+@dataclass(frozen=True)
+class ChannelResult:
+    """One predicted channel, judged on data that were not fitted.
+
+    Attributes:
+        name: canonical channel name.
+        unit: SI unit of the channel.
+        band_hz: pass band of the zero-phase filter, lower and upper edge [Hz].
+        noise_rms: estimated sensor noise inside the band [unit].
+        before: error of the declared plant.
+        after: error with the found effects.
+    """
+
+    name: str
+    unit: str
+    band_hz: tuple[float, float]
+    noise_rms: float
+    before: ErrorFigures
+    after: ErrorFigures
+
+
+@dataclass(frozen=True)
+class ParameterResult:
+    """A fitted parameter: SI value (a number, or a list for a tabulated curve), unit and 95 % interval."""
+
+    value: float | list[float] | str
+    unit: str
+    ci95: tuple[float, float] | list[tuple[float, float]] | None = None
+
+
+@dataclass(frozen=True)
+class EffectResult:
+    """One effect that was found.
+
+    Attributes:
+        name: effect name of the catalogue.
+        parameters: parameter key to value.
+        explains: channel name to 1 - (rms with / rms without)^2 on the judged data, the other effects refitted.
+        carries: whether it also lowers the error on the judged data.
+        evidence: one or two sentences for a person: where it shows, how strongly.
+        reading: the physical reading of its sign and size.
+    """
+
+    name: str
+    parameters: dict[str, ParameterResult]
+    explains: dict[str, float]
+    carries: bool
+    evidence: str
+    reading: str = ""
+
+
+@dataclass(frozen=True)
+class RefusedEffect:
+    """A candidate that was not taken, and why."""
+
+    name: str
+    reason: str
+
+
+@dataclass(frozen=True)
+class ChannelSeries:
+    """Band-limited series of one channel over one judged recording; left-out samples are NaN. Arrays: shape (n,)."""
+
+    name: str
+    unit: str
+    measured: FloatArray
+    before: FloatArray
+    after: FloatArray
+
+
+@dataclass(frozen=True)
+class JudgedRecording:
+    """The series that the figures and `prediction.csv` come from.
+
+    Attributes:
+        name: file name of the recording.
+        time: sample times [s], shape (n,).
+        channels: one series per predicted channel.
+        variables: signals a residual is plotted against, SI: `table_velocity`, `table_position`, `motor_angle`.
+    """
+
+    name: str
+    time: FloatArray
+    channels: tuple[ChannelSeries, ...]
+    variables: dict[str, FloatArray] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class FileStamp:
+    """A file that took part, with its SHA-256, so that the result can be reproduced."""
+
+    file: str
+    sha256: str
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One candidate in one round of the search, for the table of what was tried.
+
+    Attributes:
+        round: 1 for the first effect searched.
+        name: effect name.
+        gain: share by which it lowers the cross-validated, noise-weighted squared error.
+        standard_error: of the gain, from the blocks.
+        taken: whether it was the one taken in this round.
+    """
+
+    round: int
+    name: str
+    gain: float
+    standard_error: float
+    taken: bool
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """Everything `feeddrive diagnose` has to say."""
+
+    plant: str
+    fit: tuple[FileStamp, ...]
+    validate: tuple[FileStamp, ...]
+    channels: tuple[ChannelResult, ...]
+    effects: tuple[EffectResult, ...]
+    refused: tuple[RefusedEffect, ...]
+    ambiguous: tuple[tuple[str, ...], ...]
+    rehomed: tuple[str, ...]
+    unexplained: dict[str, Unexplained]
+    trials: tuple[Trial, ...]
+    recordings: tuple[JudgedRecording, ...]
+    simulation: SimulationResult | None = None
+    notes: tuple[str, ...] = ()
+    correlation: Correlation | None = None
+    alike: tuple[Ambiguity, ...] = ()
+    next_experiments: tuple[NextExperiment, ...] = ()
+    changes: RecordingChanges = field(default_factory=RecordingChanges)
+    kept: Kept = field(default_factory=Kept)
+
+    @property
+    def nothing_missing(self) -> bool:
+        """True when the declared plant is enough, or all that is known of it."""
+        differs = any(change.fitted for change in self.changes.changes)
+        return not self.effects and not differs and not any(left.carried for left in self.unexplained.values())
+
+
+def error_figures(error: FloatArray, reference_rms: float) -> ErrorFigures:
+    """Rms, maximum and relative size of an error series; NaN samples are left out.
+
+    Args:
+        error: shape (n,), SI unit of the channel.
+        reference_rms: rms that the relative error refers to, same unit.
+
+    Returns:
+        The three figures.
+    """
+    kept = error[np.isfinite(error)]
+    rms = float(np.sqrt(np.mean(kept**2)))
+    return ErrorFigures(rms=rms, max=float(np.max(np.abs(kept))), relative=rms / reference_rms)

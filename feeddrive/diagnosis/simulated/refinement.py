@@ -1,0 +1,214 @@
+"""Refinement in simulation: the effects found keep their names, their values are fitted to the closed loop.
+
+The values found by equation error are the start and, with their covariance, the prior (`loop_fit`). The same samples
+are fitted as before. Refined values are kept only where, on data not fitted,
+
+- the closed loop is simulated better: the mean square error of its channels, each in shares of what it was, falls, and
+  no channel's rms rises by more than one percent;
+- no predicted channel's rms rises by more than two percent.
+
+Otherwise the values of the attribution stay, and the result says so.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from feeddrive.diagnosis.certainty.uncertainty import certainty
+from feeddrive.diagnosis.coordinates import write_coordinates
+from feeddrive.diagnosis.fit import fit
+from feeddrive.diagnosis.judge import Judged, channel_results
+from feeddrive.diagnosis.recordings.recordings import is_shift
+from feeddrive.diagnosis.search import Search
+from feeddrive.diagnosis.simulated.loop_evidence import LoopEvidence, loop_evidence
+from feeddrive.diagnosis.simulated.loop_fit import LoopProblem, coordinate_count, fit_loop, foretold, loop_problem
+from feeddrive.diagnosis.simulated.simulation import LoopErrors, before_and_after, loop_errors, machine_in
+from feeddrive.diagnosis.simulated.simulation_result import RefinedValue, SimulatedChannel, SimulationResult
+from feeddrive.effects.base import Effect, Kind
+from feeddrive.errors import InputError
+from feeddrive.plant.plant import Plant
+from feeddrive.recording.channels import channel_unit
+from feeddrive.typing import BoolArray
+
+CHANNEL_MARGIN = 0.01
+"""Share by which the rms of one simulated channel may rise where the others gain."""
+
+PREDICTION_MARGIN = 0.02
+"""Share by which the rms of a predicted channel, on data not fitted, may rise for the simulation's sake."""
+
+DELAYED = "a delay moves the instants at which the torque switches, and has no derivative"
+CHAOTIC = "the simulated loop does not follow a small change of it in proportion: free play, or a jump"
+
+Outcome = tuple[list[Judged], tuple[str, ...]]
+"""Judged recordings, and what was re-homed."""
+
+Judge = Callable[[Search], Outcome]
+
+
+@dataclass(frozen=True)
+class Refinement:
+    """The search with the values that are reported, how it is judged, and what the simulation says.
+
+    Attributes:
+        found: with refined values where they were kept.
+        outcome: of judging it.
+        simulation: None where the loop could not be simulated.
+        notes: why not.
+        loops: judged recordings under their controller.
+    """
+
+    found: Search
+    outcome: Outcome
+    simulation: SimulationResult | None = None
+    notes: tuple[str, ...] = ()
+    loops: tuple[LoopEvidence, ...] = ()
+
+    def saying(self, statement: str, kept_back: Mapping[str, str] | None = None) -> Refinement:
+        """The same, with a statement and the effects that could not be moved."""
+        assert self.simulation is not None
+        told = replace(self.simulation, statement=statement, not_refined=kept_back or {})
+        return replace(self, simulation=told)
+
+    def reported(self, judged: Sequence[Judged]) -> SimulationResult | None:
+        """The result with `after` of these judged recordings, which may have more than the effects that were found."""
+        told = self.simulation
+        if told is None or all(new is old for new, old in zip(judged, self.outcome[0], strict=True)):
+            return told
+        after = _errors(self.found, self.loops, judged)
+        if not _finite(after):
+            return told
+        channels = tuple(replace(channel, after=after[channel.name]) for channel in told.channels)
+        return replace(told, after=channels[0].after.relative, channels=channels)
+
+
+def refined(found: Search, outcome: Outcome, judge: Judge) -> Refinement:
+    """Simulate the closed loop, and refine the values of the effects found.
+
+    Args:
+        found: effects with the values of the equation error.
+        outcome: of judging them.
+        judge: judges other values of them.
+    """
+    plant, judged = found.problem.plant, outcome[0]
+    assert isinstance(plant, Plant)
+    try:
+        loops = tuple(loop_evidence(plant, j.evidence) for j in judged)
+    except InputError as refusal:
+        return Refinement(found, outcome, notes=(f"no closed-loop simulation: {refusal.what} ({refusal.mend})",))
+    before, attributed = before_and_after(found.problem, judged, loops)
+    if not before or not _finite(before, attributed):
+        return Refinement(found, outcome, notes=("no closed-loop simulation: the loop cannot be followed",))
+    plain = Refinement(found, outcome, _result(before, attributed, None, False), loops=loops)
+    if not found.fit.effects:
+        return plain.saying("Nothing to refine: no effect was found.")
+    if any(is_shift(effect) for effect in found.fit.effects):
+        return plain.saying("Not refined: the recordings differ, and have values of their own.")
+    try:
+        problem = _problem(found)
+        effects = tuple(write_coordinates(found.fit.effects, plant, fit_loop(problem)))
+    except InputError as refusal:  # a loop that cannot be simulated, or no compiler
+        return plain.saying(f"Not refined: {refusal.what}.")
+    kept_back = _kept_back(problem)
+    if effects == found.fit.effects:
+        return plain.saying("Refinement in simulation left every value where it was.", kept_back)
+    other = replace(found, fit=fit(found.problem, effects, iterations=0))
+    judged_other = judge(other)
+    after = _errors(other, loops, judged_other[0])
+    reason = why_not_kept(found, attributed, after, judged, judged_other[0])
+    result = replace(
+        _result(before, attributed, after, not reason),
+        statement=_statement(reason),
+        refined=_values(found.fit.effects, effects),
+        not_refined=kept_back,
+    )
+    return replace(plain, simulation=result) if reason else Refinement(other, judged_other, result, loops=loops)
+
+
+def _errors(found: Search, loops: Sequence[LoopEvidence], judged: Sequence[Judged]) -> LoopErrors:
+    """Simulation errors of the plants after, on the samples of the loops."""
+    return loop_errors(loops, [machine_in(found.problem, j.after, j.evidence) for j in judged])
+
+
+def _problem(found: Search) -> LoopProblem:
+    plant = found.problem.plant
+    assert isinstance(plant, Plant)
+    loops = [loop_evidence(plant, evidence) for evidence in found.problem.evidence]
+    fitted = [loop for loop in loops if loop.fit_rows.any()]
+    if not fitted:
+        raise InputError("the declared controller commanded none of the fitted samples", plant.name)
+    covariance = certainty(found.problem, found.fit).covariance
+    problem = loop_problem(plant, found.fit.effects, fitted, covariance)
+    return replace(problem, free=foretold(problem))
+
+
+def why_not_kept(
+    found: Search, attributed: LoopErrors, after: LoopErrors, old: Sequence[Judged], new: Sequence[Judged]
+) -> str:
+    """Why refined values are not kept; an empty text where they are.
+
+    Args:
+        found: the search.
+        attributed, after: simulation errors before and after the refinement, on data not fitted.
+        old, new: judged recordings before and after.
+    """
+    if not _finite(after):
+        return "the loop cannot be followed with them"
+    ratios = {name: after[name].rms / attributed[name].rms for name in attributed}
+    gain = 1 - float(np.mean([ratio**2 for ratio in ratios.values()]))
+    if not gain > 0:
+        return f"they raise the simulated squared error on data not fitted by {-gain:.2%}"
+    for name, ratio in ratios.items():
+        if ratio > 1 + CHANNEL_MARGIN:
+            return f"the simulated {name} would be worse by {ratio - 1:.1%} on data not fitted"
+    pairs = zip(channel_results(found.problem, old), channel_results(found.problem, new), strict=True)
+    for was, would in pairs:
+        if would.after.rms > (1 + PREDICTION_MARGIN) * was.after.rms:
+            return f"the predicted {was.name} would be worse by {would.after.rms / was.after.rms - 1:.1%}"
+    return ""
+
+
+def _statement(reason: str) -> str:
+    if not reason:
+        return "The values were refined in closed-loop simulation, which does better with them on data not fitted."
+    return f"Values refined in closed-loop simulation were not kept: {reason}. The values are those of the attribution."
+
+
+def _kept_back(problem: LoopProblem) -> dict[str, str]:
+    """Effects some of whose values the refinement could not move, with the reason."""
+    reasons, first = {}, 0
+    for effect in problem.effects:
+        count = coordinate_count(effect, problem.plant)
+        part: BoolArray = problem.free[first : first + count]
+        first += count
+        if not part.all():
+            reasons[effect.name] = DELAYED if effect.kind is Kind.TIMING else CHAOTIC
+    return reasons
+
+
+def _values(before: Sequence[Effect], after: Sequence[Effect]) -> tuple[RefinedValue, ...]:
+    return tuple(
+        RefinedValue(old.name, key, old.parameter(key).unit, old.values[key], new.values[key])
+        for old, new in zip(before, after, strict=True)
+        for key in old.values
+        if old.values[key] != new.values[key]
+    )
+
+
+def _result(before: LoopErrors, attributed: LoopErrors, after: LoopErrors | None, kept: bool) -> SimulationResult:
+    tried = after or {}
+    final = tried if kept else attributed
+    channels = tuple(
+        SimulatedChannel(name, channel_unit(name, ""), before[name], final[name], attributed[name], tried.get(name))
+        for name in before
+    )
+    first = channels[0]
+    refinement = first.after_refinement.relative if first.after_refinement is not None else None
+    shares = first.before.relative, first.after.relative, first.after_attribution.relative
+    return SimulationResult(first.name, *shares, refinement, kept, channels=channels)
+
+
+def _finite(*errors: LoopErrors) -> bool:
+    return all(np.isfinite(error.rms) for each in errors for error in each.values())

@@ -1,0 +1,76 @@
+"""Closed-loop simulation error, where the controller is declared: what the plant does on its own, set-point given.
+
+Torque in shares of its rms; the table position in shares of the rms of the following error (recorded position less
+set-point, about its mean). Unfiltered, over the judged samples that the declared controller commanded.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from feeddrive.diagnosis.evidence import Evidence
+from feeddrive.diagnosis.fit import Problem
+from feeddrive.diagnosis.judge import Judged
+from feeddrive.diagnosis.predictor import Machine
+from feeddrive.diagnosis.recordings.recordings import RecordingPredictor
+from feeddrive.diagnosis.simulated.loop_evidence import LoopEvidence
+from feeddrive.diagnosis.simulated.simulation_result import ErrorFigure
+from feeddrive.plant.plant import Plant
+from feeddrive.typing import FloatArray
+
+LoopErrors = dict[str, ErrorFigure]
+"""Channel to its simulation error, all judged recordings together."""
+
+
+def loop_errors(loops: Sequence[LoopEvidence], plants: Sequence[Machine]) -> LoopErrors:
+    """Channel to its simulation error over the judged samples.
+
+    Args:
+        loops: judged recordings.
+        plants: one for each of them.
+
+    Returns:
+        Empty where nothing is left to judge; not a number where a plant could not be followed.
+    """
+    missed: dict[str, list[FloatArray]] = {}
+    shown: dict[str, list[FloatArray]] = {}
+    for loop, plant in zip(loops, plants, strict=True):
+        rows = loop.judged_rows
+        if not rows.any():
+            continue
+        assert isinstance(plant, Plant)
+        for name, error in loop.missed(loop.simulated(plant), rows).items():
+            missed.setdefault(name, []).append(error)
+            shown.setdefault(name, []).append(_scale(loop, name)[rows])
+    return {name: _error(np.concatenate(missed[name]), np.concatenate(shown[name])) for name in missed}
+
+
+def before_and_after(
+    problem: Problem, judged: Sequence[Judged], loops: Sequence[LoopEvidence]
+) -> tuple[LoopErrors, LoopErrors]:
+    """Errors of the declared plant and of the plant with the effects found, on the samples of the loops."""
+    before = loop_errors(loops, [j.before for j in judged])
+    return before, loop_errors(loops, [machine_in(problem, j.after, j.evidence) for j in judged])
+
+
+def machine_in(problem: Problem, plant: Machine, evidence: Evidence) -> Machine:
+    """The plant as it is in one recording, where recordings differ."""
+    predictor = problem.predictor
+    machine: Machine = predictor.machine(plant, evidence) if isinstance(predictor, RecordingPredictor) else plant
+    return machine
+
+
+def _scale(loop: LoopEvidence, name: str) -> FloatArray:
+    series = loop.recording[name]
+    if name != "table_position":
+        return series
+    behind = series - loop.recording["setpoint"]
+    following: FloatArray = behind - behind.mean()
+    return following
+
+
+def _error(error: FloatArray, scale: FloatArray) -> ErrorFigure:
+    rms = float(np.sqrt(np.mean(error**2)))
+    return ErrorFigure(rms, rms / float(np.sqrt(np.mean(scale**2))))

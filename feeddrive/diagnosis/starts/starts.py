@@ -1,0 +1,134 @@
+"""Values from which the fits of the candidates start, read off the residual."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from feeddrive.diagnosis.declared_friction import declared_level, declared_viscous
+from feeddrive.diagnosis.scene import AxisScene
+from feeddrive.diagnosis.starts.periodogram import sine_at, strongest_orders
+from feeddrive.diagnosis.starts.position_curve import bump_of, friction_over_position
+from feeddrive.diagnosis.starts.residual_force import residual_forces
+from feeddrive.effects.backlash import Backlash
+from feeddrive.effects.base import Effect, Port
+from feeddrive.effects.friction_deviation import FrictionDeviation
+from feeddrive.effects.friction_vs_position import FrictionVsPosition
+from feeddrive.effects.lead_error_periodic import LeadErrorPeriodic
+from feeddrive.effects.presliding import Presliding
+from feeddrive.effects.stribeck import Stribeck
+from feeddrive.effects.torque_ripple import TorqueRipple
+from feeddrive.typing import FloatArray
+
+TABLE_NODES = 12
+"""Nodes of a tabulated friction curve over the stroke."""
+
+LEAST_SINE = 0.001
+"""Share of its channel's square that a sine must take away: a fifth of the gain that is asked of all channels together,
+since a sine of the whole recording misses what the band takes off it in fast strokes."""
+
+LEAST_CURVE = 0.01
+"""Share of the residual force's square that must follow the position before a table is tried."""
+
+
+def plain(effect: Effect) -> Callable[[AxisScene], list[list[Effect]]]:
+    """One start, whatever the residual."""
+    return lambda scene: [[effect]]
+
+
+def deviation(scene: AxisScene) -> list[list[Effect]]:
+    """A factor of one at every port that declares friction and has none yet."""
+    plant = scene.plant
+    ports = [p for p in FrictionDeviation.ports if declared_level(plant, p) or declared_viscous(plant, p)]
+    taken = [effect.port for effect in scene.found if effect.name == FrictionDeviation.name]
+    return [[FrictionDeviation.of(port)] for port in ports if port not in taken]
+
+
+def stribeck(scene: AxisScene) -> list[list[Effect]]:
+    """A typical size at a few velocities of the recording."""
+    fastest = max(float(np.abs(run.table_velocity).max()) for run in scene.runs)
+    size = Stribeck.parameter("delta_force").size
+    return [[Stribeck.of(delta_force=size, velocity=fastest * share) for share in (0.005, 0.015, 0.05, 0.15, 0.4)]]
+
+
+def presliding(scene: AxisScene) -> list[list[Effect]]:
+    """Bristles of a few deflections, slipping from the start or after break-away."""
+    level = max(declared_level(scene.plant, Port.TABLE), 1.0)
+    deflections = (1e-7, 3e-7, 1e-6, 3e-6, 1e-5, 3e-5, 1e-4)
+    return [
+        [Presliding.of(stiffness=level / z, damping=0.0, break_away=share) for z in deflections] for share in (0.0, 0.7)
+    ]
+
+
+def backlash(scene: AxisScene) -> list[list[Effect]]:
+    """Widths about the lag of the table."""
+    at = scene.longest
+    residual, rows = scene.residuals[at], scene.problem.evidence[at].fit_rows
+    widths = [1e-6, 3e-6, 1e-5, 3e-5, 1e-4]
+    if "table_position" in residual:
+        flank = float(np.std(residual["table_position"][rows]))  # the table lags by half the play, either way
+        widths = [2 * flank, 1.4 * flank, 0.7 * flank, 3 * flank]
+    return [[Backlash.of(width=min(width, 5e-3)) for width in widths]]
+
+
+def ripple(scene: AxisScene) -> list[list[Effect]]:
+    """The strongest orders of the residual torque."""
+    at = scene.longest
+    rows = scene.problem.evidence[at].fit_rows
+    angle, residual = scene.runs[at].motor_angle[rows], scene.residuals[at]["motor_torque"][rows]
+    orders = strongest_orders(angle, residual, highest_order(scene, at))
+    return [[sine(TorqueRipple, angle, residual, order) for order in orders]] if orders else []
+
+
+def lead_error(scene: AxisScene) -> list[list[Effect]]:
+    """The strongest orders of the residual position."""
+    at = scene.longest
+    rows = scene.problem.evidence[at].fit_rows
+    if "table_position" not in scene.residuals[at]:
+        return []
+    angle, residual = scene.runs[at].screw_angle[rows], scene.residuals[at]["table_position"][rows]
+    orders = strongest_orders(angle, residual, highest_order(scene, at))
+    starts = [sine(LeadErrorPeriodic, angle, residual, order) for order in orders]
+    kept = [start for start in starts if explains(start, residual)]
+    return [kept] if kept else []
+
+
+def highest_order(scene: AxisScene, at: int) -> float:
+    """Order whose frequency meets half the sample rate at the highest speed; above it a sampled sine is another one."""
+    fastest = float(np.abs(scene.runs[at].motor_speed).max())
+    return float(np.pi / scene.problem.evidence[at].recording.sample_time / fastest)
+
+
+def sine(kind: type[Effect], angle: FloatArray, residual: FloatArray, order: float) -> Effect:
+    """A sine of this order as it fits the residual best."""
+    amplitude, phase = sine_at(angle, residual, order)
+    return kind.of(amplitude=amplitude, order=order, phase=phase)
+
+
+def explains(start: Effect, residual: FloatArray) -> bool:
+    """Whether a sine takes enough of its own channel away to be worth the simulations of a fit."""
+    amplitude = float(start.values["amplitude"])  # type: ignore[arg-type]
+    return 0.5 * amplitude**2 >= LEAST_SINE * float(np.mean(residual**2))
+
+
+def over_position(scene: AxisScene) -> list[list[Effect]]:
+    """Bumps that fit the friction left over, and a table where it follows the position."""
+    at = scene.longest
+    rows, run = scene.problem.evidence[at].fit_rows, scene.runs[at]
+    bumps: list[Effect] = []
+    tables: list[Effect] = []
+    for whole in residual_forces(scene, at):
+        force = whole[rows]
+        curve = friction_over_position(run.table_position[rows], run.table_velocity[rows], force)
+        if curve is None:
+            continue
+        bumps += [
+            FrictionVsPosition.of(peak=peak, centre=centre, half_width=width) for peak, centre, width in bump_of(curve)
+        ]
+        follows = float(np.sum(curve.samples * curve.force**2)) / float(np.sum(force**2))
+        if follows >= LEAST_CURVE and not tables:
+            nodes = np.linspace(curve.position[0], curve.position[-1], TABLE_NODES)
+            levels = tuple([0.0] * TABLE_NODES)
+            tables.append(FrictionVsPosition.of(position=tuple(nodes.tolist()), delta_force=levels))
+    return [form for form in (bumps, tables) if form]

@@ -1,0 +1,109 @@
+"""Starts of what makes the spring of the transmission other than a straight line: read off the lag of the table.
+
+Where the motor is given, the table lags by the stretch of the spring. What a softer spring adds to it, in the band,
+
+    -x_left = b sat(F, F1) / k                 preload lost around zero force, b = 1 / ratio - 1
+    -x_left = a F (x - x_l) / (x_h - x_l) / k  to first order, stiffness falling along the stroke
+
+follows the transmitted force F; the first by least squares for a few F1, the second beside a softer spring everywhere.
+Where the lag does not follow, no simulation is spent on it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from feeddrive.diagnosis.evidence import AxisEvidence
+from feeddrive.diagnosis.materiality import is_material
+from feeddrive.diagnosis.scene import AxisScene
+from feeddrive.effects.base import Effect
+from feeddrive.effects.preload_loss import PreloadLoss
+from feeddrive.effects.stiffness_deviation import StiffnessDeviation, parts_of
+from feeddrive.effects.stiffness_vs_position import StiffnessVsPosition
+from feeddrive.plant.stiffness_budget import nut_stiffness
+from feeddrive.typing import FloatArray
+
+LEAST_LAG = 0.004
+"""Share of the square of what is left of the position that must follow the force: less than what an effect must take
+away of all channels together, and twice what the best of the forces tried takes from noise in some seconds."""
+
+FORCES = 16
+"""Forces F1 that are tried, up to the greatest transmitted one."""
+
+LEAST_FORCE = 0.02
+"""Smallest of them over the greatest transmitted force; a loss within it is a free play."""
+
+
+def preload_loss(scene: AxisScene) -> list[list[Effect]]:
+    """The force up to which the lag grows best with it, and the ratio that goes with it."""
+    lag, force = _lag(scene), _transmitted(scene)
+    if not np.any(force):
+        return []
+    stiffness = nut_stiffness(scene.plant)
+    if lag is None:
+        return [[PreloadLoss.of(ratio=0.3, force=float(share * np.std(force))) for share in (0.3, 1.0)]]
+    limits = np.abs(force).max() * np.geomspace(LEAST_FORCE, 1.0, FORCES)
+    slopes, shares = np.zeros(FORCES), np.zeros(FORCES)
+    for i, limit in enumerate(limits):  # one after the other: all at once are four times the recording
+        stretch = _in_band(scene, np.clip(force, -limit, limit) / stiffness)
+        energy = float(stretch @ stretch)
+        slopes[i] = float(stretch @ lag) / energy
+        shares[i] = slopes[i] ** 2 * energy / float(lag @ lag)
+    best = int(np.argmax(np.where(slopes > 0, shares, 0.0)))
+    if slopes[best] <= 0 or shares[best] < LEAST_LAG:
+        return []
+    start = PreloadLoss.of(ratio=max(1 / (1 + float(slopes[best])), 0.02), force=float(limits[best]))
+    return [[start]] if is_material(start, scene.plant) else []
+
+
+def stiffness(scene: AxisScene) -> list[list[Effect]]:
+    """The declared stiffness, of every part that the chain knows apart and that has no other one yet."""
+    taken = {effect.place for effect in scene.found if effect.name == StiffnessDeviation.name}
+    parts = [part for part in parts_of(scene.plant.chain.values) if part not in taken]
+    return [[StiffnessDeviation.of(place=part, factor=1.0)] for part in parts]
+
+
+def stiffness_vs_position(scene: AxisScene) -> list[list[Effect]]:
+    """The slope over the stroke: the declared one, or where none is declared that of the recordings."""
+    low, high = scene.plant.stroke or _travelled(scene)
+    lag, force = _lag(scene), _transmitted(scene)
+    if lag is None:
+        return [[StiffnessVsPosition.of(share_over_stroke=0.0, low=low, high=high)]]
+    stretch = force / nut_stiffness(scene.plant)
+    along = (scene.runs[scene.longest].table_position - low) / (high - low)
+    everywhere, growing = _in_band(scene, np.column_stack([stretch, stretch * along])).T
+    growing = growing - everywhere * float(growing @ everywhere) / float(everywhere @ everywhere)
+    slope = float(growing @ lag) / float(growing @ growing)
+    if slope**2 * float(growing @ growing) < LEAST_LAG * float(lag @ lag):
+        return []
+    return [[StiffnessVsPosition.of(share_over_stroke=0.0, low=low, high=high)]]
+
+
+def _lag(scene: AxisScene) -> FloatArray | None:
+    """How far the table stays behind what is predicted, about its mean, fitted samples [m]; None without a scale."""
+    residual = scene.residuals[scene.longest]
+    if "table_position" not in residual:
+        return None
+    left = residual["table_position"][scene.problem.evidence[scene.longest].fit_rows]
+    behind: FloatArray = left.mean() - left
+    return behind
+
+
+def _transmitted(scene: AxisScene) -> FloatArray:
+    """Force of the nut on the table with what was found so far, all samples [N]."""
+    return scene.runs[scene.longest].force
+
+
+def _in_band(scene: AxisScene, series: FloatArray) -> FloatArray:
+    """Series, or columns, as they show in the comparison, about their means; all samples in, fitted ones out."""
+    evidence = scene.problem.evidence[scene.longest]
+    assert isinstance(evidence, AxisEvidence)
+    seen = evidence.band.filter(series)[evidence.fit_rows]
+    about_mean: FloatArray = seen - seen.mean(axis=0)
+    return about_mean
+
+
+def _travelled(scene: AxisScene) -> tuple[float, float]:
+    """Least and greatest table position of all recordings [m]."""
+    positions = [run.table_position for run in scene.runs]
+    return min(float(p.min()) for p in positions), max(float(p.max()) for p in positions)

@@ -1,0 +1,186 @@
+"""Terms of no known name carried in the plant: as which effect, with which values, and whether that pays.
+
+A term of the torque becomes a force, a friction or a torque; the table of the residual gives the first values, one
+linear step on all channels the final ones. It is carried when it lowers the error on the judged data by as much as is
+asked of a named effect.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from feeddrive.diagnosis.coordinates import read_coordinates, write_coordinates
+from feeddrive.diagnosis.cross_validation import compare_left_out
+from feeddrive.diagnosis.fit import Problem
+from feeddrive.diagnosis.judge import Judged, error_series, judged_residual
+from feeddrive.diagnosis.unexplained.functional_anova import Found
+from feeddrive.diagnosis.unexplained.result import Carried, Table
+from feeddrive.diagnosis.unexplained.shape import table_of
+from feeddrive.diagnosis.unexplained.term import Form
+from feeddrive.effects.base import Effect, Port
+from feeddrive.effects.tabulated import Tabulated
+from feeddrive.effects.tabulated_force import TabulatedForce
+from feeddrive.effects.tabulated_friction import TabulatedFriction
+from feeddrive.effects.tabulated_torque import TabulatedTorque
+from feeddrive.effects.tabulated_travel import TabulatedTravel
+from feeddrive.errors import InputError
+from feeddrive.plant.plant import Plant
+from feeddrive.typing import FloatArray
+
+DAMPING = 0.01
+"""Of the step on all channels: breakpoints that the recordings hardly see keep the value of the residual."""
+
+WORSE = 1.02
+"""Factor by which the error of another channel may rise."""
+
+MOTION = {"table_position": "position", "table_velocity": "velocity", "time": "time", "motor_angle": "position"}
+"""Variable to the word of a table at the table."""
+
+DEAR = 3.0
+"""Squared error, in units of the noise, that a further breakpoint must take away."""
+
+SHAFT = {"table_position": "angle", "table_velocity": "speed", "time": "time", "motor_angle": "angle"}
+"""Variable to the word of a table at the motor."""
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """A tabulated effect on the judged data: the effect, what it explains, and whether it pays."""
+
+    effect: Tabulated
+    explains: dict[str, float]
+    before: dict[str, float]
+    after: dict[str, float]
+    pays: bool
+
+
+def effects_of(found: Found, channel: str, unit: str, plant: Plant) -> list[Tabulated]:
+    """The effects that a term may stand for, with the values of the residual; none where there is no such effect."""
+    table, term, radius = table_of(found, unit), found.term, plant.chain.motor_radius
+    values = np.array(table.values)
+    if channel == "table_position":
+        return _travel(table, found, values, radius)
+    if term.variable not in MOTION and not (term.form is Form.LEVEL and term.variable == "direction"):
+        return []
+    if term.form is Form.LEVEL or term.times:
+        return _friction(table, found, values / radius, radius)
+    made: list[Tabulated] = [_made(TabulatedForce, Port.TABLE, MOTION[term.variable], table, values / radius, radius)]
+    made.append(_made(TabulatedTorque, Port.MOTOR, SHAFT[term.variable], table, values, radius))
+    return made
+
+
+def _travel(table: Table, found: Found, values: FloatArray, radius: float) -> list[Tabulated]:
+    term = found.term
+    if term.times or MOTION.get(term.variable) not in ("position", "time"):
+        return []
+    return [_made(TabulatedTravel, Port.TRANSMISSION, MOTION[term.variable], table, values - values.mean(), radius)]
+
+
+def _friction(table: Table, found: Found, values: FloatArray, radius: float) -> list[Tabulated]:
+    """Friction at the table: its level where the term turns with the direction, or its viscous coefficient."""
+    term = found.term
+    if term.form is Form.LEVEL:
+        return [TabulatedFriction.of(Port.TABLE, "position", position=(0.0,), force=(float(values[0]),))]
+    word = MOTION[term.variable]
+    if word == "velocity":
+        return []
+    key = "viscous" if term.times == "table_velocity" else "force"
+    return [_made(TabulatedFriction, Port.TABLE, word, table, values, radius, key)]
+
+
+def _made(
+    kind: type[Tabulated], port: Port, word: str, table: Table, values: FloatArray, radius: float, key: str = ""
+) -> Tabulated:
+    """An effect with a table over `word`, its breakpoints brought from the variable's unit to the port's."""
+    at, period = np.array(table.breakpoints), table.period
+    to_travel, to_angle = table.breakpoint_unit == "rad" and word == "position", word in ("angle", "speed")
+    scale = radius if to_travel else 1 / radius if to_angle and table.breakpoint_unit != "rad" else 1.0
+    at, period = scale * at, scale * period
+    place = f"periodic_{word}" if period else word
+    given = {kind.breakpoint_keys[place]: tuple(at.tolist()), key or kind.value_keys[0]: tuple(values.tolist())}
+    return kind.of(port, place, **given, **({"period": period} if period else {}))
+
+
+def resampled(found: Found, finer: Found) -> Found:
+    """The term with the breakpoints of another one over the same variable, its values read off at them."""
+    values = np.interp(finer.term.nodes, found.term.nodes, found.values)
+    errors = np.interp(finer.term.nodes, found.term.nodes, found.errors)
+    return replace(found, term=finer.term, values=values, errors=errors)
+
+
+def fitted_step(problem: Problem, before: Sequence[Effect], new: Tabulated) -> tuple[Tabulated, float]:
+    """The table after one damped linear step on all channels, the other effects as they are, and the squared error."""
+    (moved,), error = joint_step(problem, before, [new])
+    return moved, error
+
+
+def joint_step(
+    problem: Problem, before: Sequence[Effect], tables: Sequence[Tabulated]
+) -> tuple[list[Tabulated], float]:
+    """Several tables after one damped linear step together, and the squared error; as they are where it does not help.
+
+    Raises:
+        InputError: the plant cannot be simulated with them.
+    """
+    free = [*[False] * len(before), *[True] * len(tables)]
+    residual = problem.residual((*before, *tables))
+    base = problem.measured() - residual
+    jacobian = problem.jacobian((*before, *tables), free, base)
+    here = float(residual @ residual)
+    if not (np.isfinite(here) and np.all(np.isfinite(jacobian))):
+        raise InputError(f"{tables[-1].name} could not be simulated", tables[-1].name)
+    normal = jacobian.T @ jacobian
+    scale = np.diag(normal) + 1e-9 * np.trace(normal) + 1e-300
+    step = np.linalg.solve(normal + DAMPING * np.diag(scale), jacobian.T @ residual)
+    moved = write_coordinates(tables, problem.plant, read_coordinates(tables, problem.plant) + step)
+    left = problem.residual((*before, *moved))
+    there = float(left @ left)
+    if not there < here:
+        return list(tables), here
+    return [one for one in moved if isinstance(one, Tabulated)], there
+
+
+def judged_with(problem: Problem, judged: Sequence[Judged], new: Tabulated) -> Judgement:
+    """What a further effect does on the judged data."""
+    having = with_carried(judged, new)
+    before, after = (_rms(problem, group) for group in (judged, having))
+    without, blocks = judged_residual(problem, [(j.after, j.evidence) for j in judged])
+    there, _ = judged_residual(problem, [(j.after, j.evidence) for j in having])
+    pays = compare_left_out(without, there, blocks).pays
+    harmless = all(after[name] <= WORSE * before[name] for name in before)
+    explains = {name: 1 - (after[name] / before[name]) ** 2 for name in before}
+    return Judgement(new, explains, before, after, pays and harmless)
+
+
+def with_carried(judged: Sequence[Judged], *effects: Effect) -> list[Judged]:
+    """The judged recordings with further effects in the plant after."""
+    return [replace(j, after=j.after.with_effects(*effects)) for j in judged]
+
+
+def _rms(problem: Problem, judged: Sequence[Judged]) -> dict[str, float]:
+    """Channel to the rms of the error after, all recordings together."""
+    squares: dict[str, list[FloatArray]] = {}
+    for j in judged:
+        for name, error in error_series(problem, j.after, j.evidence).items():
+            squares.setdefault(name, []).append(error[np.isfinite(error)] ** 2)
+    return {name: float(np.sqrt(np.mean(np.concatenate(parts)))) for name, parts in squares.items()}
+
+
+def carried_result(judgement: Judgement) -> Carried:
+    """The effect as it is said."""
+    effect = judgement.effect
+    key, values = effect.breakpoint_key, effect.tables[0]
+    table = Table(
+        effect.breakpoints,
+        effect.parameter(key).unit,
+        effect.table(values),
+        (),
+        effect.parameter(values).unit,
+        effect.period,
+    )
+    return Carried(
+        effect.name, str(effect.port), effect.place, table, judgement.explains, judgement.before, judgement.after
+    )
