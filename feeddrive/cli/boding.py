@@ -14,7 +14,7 @@ from feeddrive.cli.bode_tables import family_tables
 from feeddrive.cli.output import chain_remark, deliver, finite, tell_written, warnings_as_lines
 from feeddrive.errors import InputError
 from feeddrive.export.point import export_point
-from feeddrive.files import find_plant, shipped_scenarios, write_bytes_atomically, write_text_atomically
+from feeddrive.files import find_plant, find_scenario_or_controller, write_bytes_atomically, write_text_atomically
 from feeddrive.metrology.recorded_response import recorded_response
 from feeddrive.metrology.response import Response as Measured
 from feeddrive.output_folder import output_folder, refuse_unusable
@@ -27,7 +27,7 @@ from feeddrive.recording.formats.opened import read_frequency_response
 from feeddrive.recording.frequency_response import FrequencyResponse
 from feeddrive.recording.reading import read_recording
 from feeddrive.servo.cascade import Cascade
-from feeddrive.servo.frequency_response import UNITS, Case, refuse_no_range
+from feeddrive.servo.frequency_response import UNITS, Case
 from feeddrive.servo.loop_response import loops_of, refuse_unstable_case
 from feeddrive.servo.response_family import Family, closed_family, controlled_family, mechanics_family, open_family
 from feeddrive.servo.response_json import family_content, measured_content
@@ -105,20 +105,6 @@ def quantities(text: str, unit: str, where: str) -> tuple[float, ...]:
     return tuple(parse(part.strip(), unit, where) for part in text.split(",")) if text.strip() else ()
 
 
-def find_controller(name: str) -> Path:
-    """A scenario or controller file by path, or a shipped scenario by its name.
-
-    Raises:
-        InputError: neither; names the nearest shipped scenario.
-    """
-    if Path(name).is_file():
-        return Path(name)
-    known = {path.stem: path for path in shipped_scenarios()}
-    if name.removesuffix(".toml") in known:
-        return known[name.removesuffix(".toml")]
-    raise InputError("neither a file nor the name of a shipped scenario", name, nearest(Path(name).stem, known))
-
-
 def _range(text: str) -> tuple[float, float]:
     ends = quantities(text, "Hz", "--range")
     if len(ends) != 2:
@@ -143,7 +129,7 @@ def _loop_families(plant: Plant, request: Request, cases: tuple[Case, ...], low:
     if not request.scenario:
         mend = "name a scenario or controller file by --scenario, such as step_position"
         raise InputError("a loop needs a controller", "--loop", mend)
-    cascade = read_controller(find_controller(request.scenario), plant)
+    cascade = read_controller(find_scenario_or_controller(request.scenario), plant)
     if request.loop == "closed":
         return _closed(plant, cascade, request, cases, low, high)
     if request.given or request.output:

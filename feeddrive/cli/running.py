@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -17,12 +16,10 @@ from rich.table import Table
 
 from feeddrive import __version__
 from feeddrive.cli.output import deliver, table, tell_written, warnings_as_lines
-from feeddrive.errors import InputError
-from feeddrive.files import shipped_scenarios, write_bytes_atomically, write_text_atomically
+from feeddrive.files import find_scenario, write_bytes_atomically, write_text_atomically
 from feeddrive.metrology.evaluate import Evaluated, as_json, evaluate
 from feeddrive.metrology.following import following
 from feeddrive.output_folder import output_folder, refuse_unusable
-from feeddrive.plant.entries import nearest
 from feeddrive.quantity import format_quantity
 from feeddrive.recording.writing import write_recording
 from feeddrive.servo.cascade import KV_UNIT
@@ -64,24 +61,6 @@ def run_and_tell(name: str, settings: list[str], json_wanted: bool, out: Path | 
             _write(result, evaluated, content, folder)
     deliver(content, [] if json_wanted else _tables(content), json_wanted, None)
     tell_written(out, json_wanted)
-
-
-def find_scenario(name: str) -> Path:
-    """A scenario file by path, or a shipped one by name with or without `.toml`.
-
-    Raises:
-        InputError: neither; names the nearest shipped scenario.
-    """
-    path = Path(name)
-    if os.path.isfile(path):
-        return path
-    if os.path.isdir(path):
-        raise InputError("is a folder, not a scenario file", name, "name a file in it")
-    known = {scenario.stem: scenario for scenario in shipped_scenarios()}
-    found = known.get(name.removesuffix(".toml"))
-    if found is None:
-        raise InputError("neither a file nor the name of a shipped scenario", name, nearest(path.stem, known))
-    return found
 
 
 def metrics(result: ScenarioResult, evaluated: tuple[Evaluated, ...], path: Path) -> dict[str, Any]:

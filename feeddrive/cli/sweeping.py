@@ -15,9 +15,8 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 
 from feeddrive.cli.output import deliver, table, tell_written
-from feeddrive.cli.running import find_scenario
 from feeddrive.errors import InputError
-from feeddrive.files import write_bytes_atomically, write_text_atomically
+from feeddrive.files import find_scenario, write_bytes_atomically, write_text_atomically
 from feeddrive.metrology.run_metrics import run_metrics
 from feeddrive.output_folder import output_folder, refuse_unusable
 from feeddrive.plant.entries import nearest

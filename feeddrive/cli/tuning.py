@@ -11,20 +11,21 @@ from typing import Any
 from rich.table import Table
 
 from feeddrive import __version__
-from feeddrive.cli.boding import find_controller, quantities
+from feeddrive.cli.boding import quantities
 from feeddrive.cli.output import deliver, table, tell_written, warnings_as_lines
 from feeddrive.errors import InputError
-from feeddrive.files import find_plant, write_bytes_atomically, write_text_atomically
+from feeddrive.files import find_plant, find_scenario_or_controller, write_bytes_atomically, write_text_atomically
 from feeddrive.output_folder import output_folder, refuse_unusable
 from feeddrive.plant.entries import nearest
 from feeddrive.plant.plant import Plant
 from feeddrive.quantity import format_quantity, parse
-from feeddrive.servo.cascade import KV_UNIT, Cascade, Feedback, divider
+from feeddrive.servo.cascade import KV_UNIT, Cascade, Feedback
 from feeddrive.servo.loop_response import loops_of
 from feeddrive.servo.response_family import open_family
 from feeddrive.servo.response_json import margins_content
 from feeddrive.simulate.controller_file import read_controller
 from feeddrive.thermal.whole_file import read_drive_plant
+from feeddrive.tuning.bare_drive import bare_drive
 from feeddrive.tuning.demand import Demand, operating_points
 from feeddrive.tuning.reasons import controller_text, describe, rules, settings
 from feeddrive.tuning.reasons import operating_points as points_in_words
@@ -93,7 +94,7 @@ def drive_of(plant: Plant, written: Drive) -> Cascade:
         if written.feedback not in allowed:
             raise InputError(f'"{written.feedback}" is not possible', "--feedback", nearest(written.feedback, allowed))
     if written.scenario:
-        read = read_controller(find_controller(written.scenario), plant)
+        read = read_controller(find_scenario_or_controller(written.scenario), plant)
         place = Feedback(written.feedback) if written.feedback else read.feedback
         return replace(read, feedback=place, torque_filters=(), speed_filters=())
     fast = _positive(written.velocity_rate, "Hz", "--velocity-rate")
@@ -101,20 +102,9 @@ def drive_of(plant: Plant, written: Drive) -> Cascade:
     dead = parse(written.dead_time, "s", "--dead-time")
     if dead < 0:
         raise InputError(f"{written.dead_time} is negative", "--dead-time", "write zero or more")
-    scale = any(sensor.channel == "table_position" for sensor in plant.sensors)
-    return Cascade(
-        radius=plant.chain.motor_radius,
-        sample_time=1 / fast,
-        position_divider=divider(fast, slow, "--position-rate"),
-        position_gain=0.0,
-        velocity_gain=0.0,
-        reset_time=math.inf,
-        tracking_time=1.0 + 1 / fast,
-        torque_limit=plant.torque_limit,
-        feedback=Feedback(written.feedback) if written.feedback else Feedback.TABLE if scale else Feedback.MOTOR,
-        current_lag=1 / (2 * math.pi * _positive(written.current_bandwidth, "Hz", "--current-bandwidth")),
-        dead_time=dead,
-    )
+    bandwidth = _positive(written.current_bandwidth, "Hz", "--current-bandwidth")
+    reads = Feedback(written.feedback) if written.feedback else None
+    return bare_drive(plant, fast, slow, bandwidth, dead, reads, "--position-rate")
 
 
 def _positive(text: str, unit: str, where: str) -> float:

@@ -15,6 +15,7 @@ def bare_drive(
     current_bandwidth: float,
     dead_time: float,
     feedback: Feedback | None = None,
+    where: str = "position_rate",
 ) -> Cascade:
     """A cascade without gains.
 
@@ -24,6 +25,7 @@ def bare_drive(
         current_bandwidth: -3 dB of the current loop [Hz].
         dead_time: of the torque [s].
         feedback: what the position loop reads, in place of the above.
+        where: what is told where the rates do not fit.
 
     Raises:
         InputError: rates that do not fit.
@@ -32,7 +34,7 @@ def bare_drive(
     return Cascade(
         radius=plant.chain.motor_radius,
         sample_time=1 / velocity_rate,
-        position_divider=divider(velocity_rate, position_rate, "position_rate"),
+        position_divider=divider(velocity_rate, position_rate, where),
         position_gain=0.0,
         velocity_gain=0.0,
         reset_time=math.inf,

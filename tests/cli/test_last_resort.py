@@ -83,7 +83,7 @@ DAMAGES: dict[str, Callable[[bytes], bytes]] = {
 @pytest.fixture(scope="module")
 def checkpoint(tmp_path_factory: pytest.TempPathFactory) -> bytes:
     """The checkpoint of a run that was stopped after its first stretch."""
-    from feeddrive.cli.running import find_scenario
+    from feeddrive.files import find_scenario
     from feeddrive.simulate import scenario_run
     from feeddrive.simulate.scenario_file import read_scenario
 
