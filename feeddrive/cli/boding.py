@@ -27,7 +27,7 @@ from feeddrive.recording.formats.opened import read_frequency_response
 from feeddrive.recording.frequency_response import FrequencyResponse
 from feeddrive.recording.reading import read_recording
 from feeddrive.servo.cascade import Cascade
-from feeddrive.servo.frequency_response import UNITS, Case
+from feeddrive.servo.frequency_response import UNITS, Case, refuse_no_range
 from feeddrive.servo.loop_response import loops_of, refuse_unstable_case
 from feeddrive.servo.response_family import Family, closed_family, controlled_family, mechanics_family, open_family
 from feeddrive.servo.response_json import family_content, measured_content
