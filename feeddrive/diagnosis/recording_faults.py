@@ -34,7 +34,7 @@ from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray
 
-TOLERANCE = 1.25
+TOLERANCE = 1.1 / 0.9
 """Factor on a torque, an inertia or a friction within which the machine itself may be other than declared: a tenth
 each for the torque constant (the usual tolerance of motor data) and for inertias (those of catalogues), together."""
 

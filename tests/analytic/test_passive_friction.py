@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from feeddrive.diagnosis.fit import Problem, fit
+from feeddrive.diagnosis.prediction import AxisPredictor
 from feeddrive.effects.base import Effect, FrictionEffect, Motion, Port, Value, listed
 from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.errors import InputError
@@ -267,7 +268,7 @@ class _Drop(Problem):
 
 
 def test_fit_stays_where_friction_takes_power() -> None:
-    problem = _Drop(BENCH, (), None)  # type: ignore[arg-type]
+    problem = _Drop(BENCH, (), AxisPredictor())
     start = _effect("stribeck", delta_force=-30.0, velocity=0.02)
     found = fit(problem, [start]).effects
     assert problem.possible(found)

@@ -113,7 +113,7 @@ def feedback_design(plant: Plant) -> SampledController:
 
 def exported(plant: Plant) -> None:
     model = model_of(plant, export_point(plant))
-    casadi_function(model), source_text(model), description_text(model, "0", ()), changes_with_time(plant)
+    casadi_function(model), source_text(model), description_text(model, "0", (), 0), changes_with_time(plant)
 
 
 def scenario(plant: Plant) -> None:

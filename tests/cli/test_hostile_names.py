@@ -116,7 +116,12 @@ def test_machine_made_in_code_with_a_name_that_is_obeyed(name: str) -> None:
     """No file was read, so nothing has been refused: the generated texts show the letters as escapes."""
     plant = replace(read_plant(plants_folder() / "bench_axis.toml"), name=name)
     model, linear = model_of(plant, Point(0.1)), linear_model_of(plant, Point(0.1))
-    texts = [header_text(model), source_text(model), description_text(model, "0" * 32, ("x.c",)), python_text(linear)]
+    texts = [
+        header_text(model),
+        source_text(model),
+        description_text(model, "0" * 32, ("x.c",), 0),
+        python_text(linear),
+    ]
     for text in texts:
         assert text.replace("\n", "").replace("\t", "").isprintable()
     ElementTree.fromstring(texts[2])

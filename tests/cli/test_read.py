@@ -181,7 +181,7 @@ def test_bode_takes_a_frequency_response(tmp_path: Path, capsys: pytest.CaptureF
 def test_diagnose_takes_a_trace_and_refuses_a_response(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["diagnose", "kimm_testbed", str(FRF), "--out", str(tmp_path / "o")]) == 2
     line = capsys.readouterr().err
-    assert "is a frequency response, not a recording over time" in line
+    assert "a response from motor_speed_setpoint is not compared" in line
     path = tmp_path / "a.log"
     path.write_text(made.halscope_old())
     assert main(["diagnose", "kimm_testbed", str(path), "--out", str(tmp_path / "o")]) == 2

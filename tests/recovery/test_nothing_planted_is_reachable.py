@@ -62,7 +62,7 @@ def test_package_holds_no_planted_number() -> None:
     assert planted
     found = {
         (path.name, node.value)
-        for path, tree in trees(PACKAGE / "diagnose")
+        for path, tree in trees(PACKAGE / "diagnosis")
         for node in ast.walk(tree)
         if isinstance(node, ast.Constant) and isinstance(node.value, float) and node.value in planted
     }

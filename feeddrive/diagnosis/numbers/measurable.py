@@ -20,8 +20,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from feeddrive.errors import InputError
-from feeddrive.plant.modes import braked_modes, free_modes
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.resolution import FIRST, resolved_modes
 from feeddrive.plant.steady import steady_motions
 from feeddrive.plant.stiffness_budget import stiffness_budget
 from feeddrive.plant.summary import summarise
@@ -72,7 +72,8 @@ def _stiffness(plant: Plant, setting: Setting) -> float:
 
 
 def _frequency(plant: Plant, setting: Setting) -> float:
-    modes = braked_modes(plant, setting.at) if setting.motor == HELD else free_modes(plant, setting.at)
+    resolved = resolved_modes(plant, setting.at, max(setting.mode, FIRST))
+    modes = resolved.braked if setting.motor == HELD else resolved.free
     found = modes.frequencies[modes.frequencies > 0]
     if setting.mode > len(found):
         what = f"mode {setting.mode} with the motor {setting.motor}"
