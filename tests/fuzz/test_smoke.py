@@ -15,3 +15,10 @@ def test_input_of_any_kind_ends_with_status_0_or_2(name: str) -> None:
     assert [(one.number, one.what, one.fault, one.line[:300]) for one in outcomes if one.fault] == []
     # A module whose every input is refused at its first line, or taken whole, tries nothing.
     assert {one.status for one in outcomes} == {0, 2}
+
+
+@pytest.mark.parametrize(("name", "seed", "number"), [("plants", 20261122, 1606)])
+def test_cases_that_once_broke_the_promise_keep_it(name: str, seed: int, number: int) -> None:
+    """Steps that are tried many at a time ran away, and their place on the screw was no number."""
+    (outcome,) = run_cases(name, seed, [number])
+    assert outcome.fault == ""

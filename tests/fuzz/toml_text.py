@@ -144,7 +144,7 @@ def _number(generator: random.Random, holder: Any, at: Any, _: Any) -> None:
 def _scaled(generator: random.Random, holder: Any, at: Any, _: Any) -> None:
     """A number some powers of ten away, as a slip of the unit makes it."""
     value = holder[at]
-    if isinstance(value, str) and (match := re.match(r"([-+]?[0-9.]+(?:[eE][-+]?\d+)?)(.*)", value)):
+    if isinstance(value, str) and (match := re.match(r"([-+]?\d+(?:\.\d*)?(?:[eE][-+]?\d+)?)(.*)", value)):
         power = generator.choice([generator.uniform(-1, 1), generator.randint(-3, 3), generator.randint(-12, 12)])
         holder[at] = f"{float(match[1]) * 10.0**power:g}{match[2]}"
     elif isinstance(value, int | float) and not isinstance(value, bool):
