@@ -59,11 +59,13 @@ def dealt_blocks(evidence: Evidence) -> IntegerArray:
 
     All blocks of the recording are dealt, so that leaving samples out does not deal the others anew.
     """
-    kinds = kinds_of_motion(evidence.motion_speed, block_of_rows(evidence, np.arange(len(evidence.counted))))
+    blocks = block_of_rows(evidence, np.arange(len(evidence.counted)))
+    present = np.unique(blocks)  # blocks shorter than a row leave gaps
+    kinds = kinds_of_motion(evidence.motion_speed, blocks)
     random = np.random.default_rng(SEED)
     order = np.concatenate([random.permutation(np.flatnonzero(kinds == kind)) for kind in np.unique(kinds)])
-    numbers = np.empty(len(kinds), dtype=np.int64)
-    numbers[order] = np.arange(len(kinds))
+    numbers = np.zeros(int(present[-1]) + 1, dtype=np.int64)
+    numbers[present[order]] = np.arange(len(kinds))
     return numbers
 
 
@@ -72,10 +74,10 @@ def kinds_of_motion(speed: FloatArray, blocks: IntegerArray) -> IntegerArray:
 
     Args:
         speed: of the motor or the screw, (n,).
-        blocks: block of every sample, without gaps and in order, (n,).
+        blocks: block of every sample, in order, (n,).
 
     Returns:
-        Per block 0 rest, 1 stroke, 2 acceleration or excitation (the half of the moving blocks in which the speed
+        Per block that has a sample 0 rest, 1 stroke, 2 acceleration or excitation (the half of the moving blocks in which the speed
         changes most), 3 reversal.
     """
     first = np.flatnonzero(np.concatenate([[True], np.diff(blocks) > 0]))

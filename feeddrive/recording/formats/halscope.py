@@ -23,7 +23,7 @@ from feeddrive.recording.formats.trace import Signal, Trace, clean, unique_names
 from feeddrive.typing import FloatArray
 
 NAME, SAMPLER = "halscope log", "halsampler output"
-_PERIOD = re.compile(r"\s*#?\s*Sampling period is\s+(\d{1,12})\s*n", re.IGNORECASE)
+_PERIOD = re.compile(r"\s*(?:#\s*)?Sampling period is\s+(\d{1,12})\s*n", re.IGNORECASE)
 _OVERRUN = "overrun"
 _FEWEST = 3  # lines of numbers without any word by which halsampler's output is known
 
