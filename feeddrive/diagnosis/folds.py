@@ -77,8 +77,8 @@ def kinds_of_motion(speed: FloatArray, blocks: IntegerArray) -> IntegerArray:
         blocks: block of every sample, in order, (n,).
 
     Returns:
-        Per block that has a sample 0 rest, 1 stroke, 2 acceleration or excitation (the half of the moving blocks in which the speed
-        changes most), 3 reversal.
+        Per block that has a sample 0 rest, 1 stroke, 2 acceleration or excitation (the half of the moving blocks in
+        which the speed changes most), 3 reversal.
     """
     first = np.flatnonzero(np.concatenate([[True], np.diff(blocks) > 0]))
     slow = AT_REST * float(np.max(np.abs(speed), initial=0.0))

@@ -43,8 +43,20 @@ def is_copy(source: FloatArray, other: FloatArray) -> bool:
         return False
     x, y = source - source.mean(), other - other.mean()
     factor = float(x @ y) / float(x @ x)
-    steps = resolution(source), resolution(other)
+    steps = _grid(source), _grid(other)
     if np.ptp(source) < WIDE * steps[0] or np.ptp(other) < WIDE * steps[1]:
         return False
     rounding = 1e-12 * float(np.max(np.abs(other)))
     return bool(np.max(np.abs(y - factor * x)) <= ROUNDED * (abs(factor) * steps[0] + steps[1]) + rounding)
+
+
+def _grid(samples: FloatArray) -> float:
+    """Resolution of samples that all lie on its grid; 0 where they do not.
+
+    The least difference of a few hundred rows may be a thousand times what their sensor resolves.
+    """
+    step = resolution(samples)
+    places = (samples - samples[0]) / step if step > 0.0 else np.full(1, 0.5)
+    # a decimal file writes 8 digits or more of a place, so that a tenth of a step is far from rounding
+    off = float(np.max(np.abs(places - np.round(places))))
+    return float(step) if off < 0.1 else 0.0
