@@ -102,8 +102,8 @@ class _Interpreter:
         held = (change < 1.0) & (error <= 1.0)
         if self.program.varies:
             starts = np.vstack([place.memory, memories[:-1]])
-            known = np.isfinite(starts).all(axis=1)  # what has run away is in no cell
-            held &= [ok and self._cell(task, one) == place.cell for ok, one in zip(known, starts, strict=True)]
+            # what has run away is in no cell
+            held &= [bool(np.isfinite(one).all()) and self._cell(task, one) == place.cell for one in starts]
         good = len(part) if held.all() else int(np.argmin(held))
         if good:
             seen[at : at + good] = shown[:good]
