@@ -103,7 +103,8 @@ def _find_toml(name: str, shipped: list[Path], kind: str, shipped_kind: str) -> 
     if stem in by_name:
         return by_name[stem]
     what = f"is a folder, not {kind}" if os.path.isdir(path) else f"neither a file nor the name of {shipped_kind}"
-    raise InputError(what, where=name, mend=_nearest(path.stem, list(by_name)))
+    near = get_close_matches(path.stem, by_name, n=1, cutoff=0.5)
+    raise InputError(what, where=name, mend=f'did you mean "{near[0]}"?' if near else f"known are {', '.join(by_name)}")
 
 
 def find_scenario_file(relative: str) -> Path:
