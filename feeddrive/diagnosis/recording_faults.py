@@ -78,7 +78,7 @@ def refuse_faulty(problem: Problem, recordings: Sequence[Evidence]) -> None:
     plant = problem.plant
     if not isinstance(plant, Plant):
         return
-    for evidence in {id(one): one for one in recordings}.values():
+    for evidence in dict.fromkeys(recordings):
         if isinstance(evidence, AxisEvidence) and "motor_torque" in evidence.channels:
             _refuse(problem, plant, evidence)
 
