@@ -23,6 +23,9 @@ ROUNDED = 0.6
 WIDE = 1000.0
 """Range over resolution from which a copy is told from two sensors that see next to nothing."""
 
+SIZES = 3
+"""Different steps that show a grid: rest and one speed, to and fro, make two at most, whatever resolves them."""
+
 
 def refuse_copied_setpoint(channels: Mapping[str, FloatArray], where: str) -> None:
     """Refuse a measured motion that is the set-point; channels are (n,) each.
@@ -51,12 +54,16 @@ def is_copy(source: FloatArray, other: FloatArray) -> bool:
 
 
 def _grid(samples: FloatArray) -> float:
-    """Resolution of samples that all lie on its grid; 0 where they do not.
+    """Resolution of samples that all lie on its grid; 0 where they do not, or where nothing shows that it is one.
 
-    The least difference of a few hundred rows may be a thousand times what their sensor resolves.
+    The least difference of a few hundred rows may be a thousand times what their sensor resolves; in a stroke at one
+    speed it is the way of a row. A grid shows itself by steps of several of its multiples.
     """
     step = resolution(samples)
-    places = (samples - samples[0]) / step if step > 0.0 else np.full(1, 0.5)
+    if step == 0.0:
+        return 0.0
+    places = np.round((samples - samples[0]) / step)
     # a decimal file writes 8 digits or more of a place, so that a tenth of a step is far from rounding
-    off = float(np.max(np.abs(places - np.round(places))))
-    return float(step) if off < 0.1 else 0.0
+    off = float(np.max(np.abs((samples - samples[0]) / step - places)))
+    sizes = np.unique(np.abs(np.diff(places)))
+    return float(step) if off < 0.1 and np.sum(sizes > 0.0) >= SIZES else 0.0
