@@ -105,7 +105,8 @@ def _forward(
         for one, comparison in offered:
             if one.target not in ranked or comparison.gain > ranked[one.target][1].gain:
                 ranked[one.target] = one, comparison
-        likely = [one for one, c in offered if c.gain > max(c.least, c.standard_error)]
+        # the scatter of one linear step of a law that jumps, as play does, says little; the fit is judged by it
+        likely = [one for one, c in offered if c.gain > c.least]
         for one in likely[:OFFERS]:
             group = [other for other in free if other is one or _partners(one.target, other.target)]
             wider, comparison = set_free(problem, current, at_rest.effects[one.effect], group, recordings)
