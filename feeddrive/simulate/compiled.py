@@ -28,6 +28,10 @@ FLAGS = (
 )
 """No fused or reordered arithmetic: the compiled numbers are those of the virtual machine."""
 
+FOR_THIS_PROCESSOR = ("-march=native", "-mprefer-vector-width=256")
+"""Where processors have vectors of 512 bits: arrays of some ten numbers written by them and read in narrower pieces wait
+for the memory, and the loop takes half as long again; narrower vectors give the same numbers."""
+
 
 @lru_cache(maxsize=1)
 def processor() -> str:
@@ -41,7 +45,7 @@ def processor() -> str:
 
 def compiled_run(program: Program) -> Run | None:
     """The driver of a program in C; None without a compiler, or where it fails or no folder can hold what it makes."""
-    flags = (*FLAGS, "-march=native") if processor() else FLAGS
+    flags = (*FLAGS, *FOR_THIS_PROCESSOR) if processor() else FLAGS
     source = source_of(program)
     with SYMBOLS.laid_down():
         library = compiled_library(source, flags, processor())
