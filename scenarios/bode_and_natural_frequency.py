@@ -14,66 +14,42 @@ from pathlib import Path
 
 import numpy as np
 
-from feeddrive.files import find_plant, write_bytes_atomically
-from feeddrive.metrology.recorded_response import recorded_response
-from feeddrive.metrology.response import Response
-from feeddrive.plant.files import read_plant
-from feeddrive.plant.linear import steady_motion
-from feeddrive.plant.modes import braked_modes, free_modes
-from feeddrive.plant.plant import Plant
-from feeddrive.recording.recording import Recording
-from feeddrive.report.drawing import render
-from feeddrive.report.figure_bode import bode_figure
-from feeddrive.servo.frequency_response import Case
-from feeddrive.servo.resonances import Kind
-from feeddrive.servo.response_family import Curve, mechanics_family
-from feeddrive.simulate.held_torque import simulate_torque
+import feeddrive as fd
 
 POSITIONS = (0.10, 0.50, 0.90)  # of the table [m]
 VELOCITY = 0.02  # slow, so that the position hardly changes, but no reversal and no stiction [m/s]
-TICK, DURATION = 1 / 4000, 2.0  # [s]
+DURATION = 2.0  # [s]
 AMPLITUDE = 3.0  # of the binary sequence on the torque [N m]
 
 
-def shaken(plant: Plant, position: float) -> Response:
-    """Frequency response from motor torque to table velocity, as it is measured on the moving machine."""
-    count = round(DURATION / TICK)
-    steady = steady_motion(plant, VELOCITY, position).torque
-    sequence = np.random.default_rng(1).integers(0, 2, count) * 2.0 - 1.0
-    time, torque = TICK * np.arange(count), steady + AMPLITUDE * (sequence - sequence.mean())
-    run = simulate_torque(plant, time, torque, position - 0.5 * VELOCITY * DURATION, VELOCITY)
-    channels = {"motor_torque": torque, "table_velocity": run.velocity}
-    return recorded_response(Recording("shaken", time, channels, TICK), "motor_torque", "table_velocity")
-
-
-def measured_peak(found: Response, about: float) -> float:
-    """Frequency of the largest magnitude within a fifth of `about` [Hz]."""
+def measured_peak(axis: fd.Axis, position: float, about: float) -> float:
+    """Frequency of the largest response within a fifth of `about`, as it is measured on the moving machine [Hz]."""
+    sequence = np.random.default_rng(1).integers(0, 2, round(4000 * DURATION)) * 2.0 - 1.0
+    run = fd.move(axis, torque=AMPLITUDE * (sequence - sequence.mean()), rate="4 kHz", duration=DURATION,
+                  start=position - 0.5 * VELOCITY * DURATION, moving=VELOCITY)  # fmt: skip
+    found = run.response("motor_torque", "table_velocity")
     near = np.abs(found.frequency / about - 1) < 0.2
     return float(found.frequency[near][np.argmax(np.abs(found.response[near]))])
 
 
-def first_peak(curve: Curve) -> float:
-    """Frequency of the first peak of a curve [Hz]."""
-    return next(one.frequency for one in curve.seen if one.kind is Kind.RESONANCE)
-
-
 def main(folder: Path) -> None:
     """Print the table, check it by the moving machine, write the figure."""
-    plant = read_plant(find_plant("kimm_testbed"))
-    cases = [Case(position, VELOCITY) for position in POSITIONS]
-    family = mechanics_family(plant, "motor_torque", "table_velocity", cases, 10.0, 1000.0)
-    print(f"{plant.name}: first natural frequency over the table position\n")
+    axis = fd.load("kimm_testbed")
+    bode = axis.bode("motor_torque", "table_velocity", at=f"v={VELOCITY} m/s", positions=POSITIONS,
+                     frequencies=("10 Hz", "1 kHz"))  # fmt: skip
+    modes = axis.modes(POSITIONS)
+    print(f"{axis.name}: first natural frequency over the table position\n")
     print("  table at   motor held   motor free   peak of the response   peak of the moving machine")
-    for curve in family.curves:
-        position, peak = curve.case.position, first_peak(curve)
-        held, free = (modes(plant, position).frequencies for modes in (braked_modes, free_modes))
-        seen = measured_peak(shaken(plant, position), peak)
-        print(f"  {1e3 * position:5.0f} mm   {held[0]:7.1f} Hz   {free[1]:7.1f} Hz   {peak:17.1f} Hz   {seen:15.1f} Hz"
+    for number, (position, curve) in enumerate(zip(POSITIONS, bode.curves, strict=True)):
+        peak = next(one.frequency for one in curve.seen if str(one.kind) == "resonance")
+        seen = measured_peak(axis, position, peak)
+        held, free = modes.held[number, 0], modes.free[number, 0]
+        print(f"  {1e3 * position:5.0f} mm   {held:7.1f} Hz   {free:7.1f} Hz   {peak:17.1f} Hz   {seen:15.1f} Hz"
               f"   ({100 * (seen / peak - 1):+.1f} %)")  # fmt: skip
     print("\nThe peak lies beside the natural frequency by damping alone; the machine's spectra resolve 8.5 Hz.")
-    path = folder / "bode_and_natural_frequency.png"
-    write_bytes_atomically(path, render(bode_figure(family)).png)
-    print(f"Figure: {path}")
+    folder.mkdir(parents=True, exist_ok=True)
+    bode.plot().savefig(folder / "bode_and_natural_frequency.png", dpi=150)
+    print(f"Figure: {folder / 'bode_and_natural_frequency.png'}")
 
 
 if __name__ == "__main__":

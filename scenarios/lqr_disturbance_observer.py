@@ -2,7 +2,7 @@
 
     feedback    python-control's dlqr: table position against torque
     observer    stationary Kalman filter with the force on the table as a further, wandering state
-    cascade     as `feeddrive tune` recommends it for the same drive
+    cascade     as `fd.tune` recommends it for the same drive
 
 Both hold the moving table against a step of the force, on the nonlinear machine; the observer's estimate of that force
 is shown beside the true one. Standing still is told too: there the friction is steeper than either design knows.
@@ -12,116 +12,94 @@ is shown beside the true one. Standing still is told too: there the friction is 
 
 from __future__ import annotations
 
-import math
 import sys
 from pathlib import Path
 
 import control
+import matplotlib.pyplot as plt
 import numpy as np
 
-from feeddrive.files import find_plant, write_bytes_atomically
-from feeddrive.plant.files import read_plant
-from feeddrive.plant.linear import MOVING
-from feeddrive.plant.plant import Plant
-from feeddrive.report.drawing import AFTER, BEFORE, MEASURED, ReportFigure, dress, legend_above, new_figure, render
-from feeddrive.servo.cascade import Cascade, Feedback
-from feeddrive.servo.cascade_function import cascade_controller
-from feeddrive.servo.frequency_response import Case
-from feeddrive.servo.linear_loop import open_velocity_loop
-from feeddrive.servo.margins import margins
-from feeddrive.servo.sampled import SampledController
-from feeddrive.servo.sampled_plant import Matrices, sampled_plant
-from feeddrive.servo.state_feedback import open_loop, state_feedback, with_load
-from feeddrive.simulate.controlled import ControlledRun, TorqueLoop, resting_state, simulate_controlled
-from feeddrive.tuning.demand import Demand
-from feeddrive.tuning.recommendation import recommend
-from feeddrive.typing import FloatArray
+import feeddrive as fd
 
-TICK, LAG = 1 / 4000, 1 / (2 * math.pi * 1000)  # one tick of dead time, current loop of 1 kHz [s]
+RATE = 4000.0  # of the controller; one tick of dead time, current loop of 1 kHz [Hz]
 ERROR, TORQUE = 3e-6, 1.0  # of equal weight [m, N m]
 ENCODER, SCALE = 3e-6, 50e-9  # noise that the filter assumes [rad, m]
 ACTING, PUSHING, WANDERING = 1.0, 20.0, 4e3  # unknown torque [N m] and force [N] per tick, drift of the load [N/s]
-FORCE, FORCE_AT, DURATION, START = -500.0, 0.3, 0.6, 0.1  # [N, s, s, m]
+FORCE, FORCE_AT, START, MOVING = -500.0, 0.3, 0.1, 0.05  # [N, s, m, m/s]
 
 
-def feedback(machine: Matrices) -> FloatArray:
+def feedback(machine: control.StateSpace) -> np.ndarray:
     """Gain of least weighted error and torque."""
-    row = machine.c[2:3]
-    gain, _, _ = control.dlqr(machine.a, machine.b[:, :1], row.T @ row / ERROR**2, np.array([[1 / TORQUE**2]]))
+    row = machine.C[2:3]
+    gain, _, _ = control.dlqr(machine.A, machine.B[:, :1], row.T @ row / ERROR**2, np.array([[1 / TORQUE**2]]))
     return np.asarray(gain)
 
 
-def observer(machine: Matrices) -> FloatArray:
+def observer(machine: control.StateSpace) -> np.ndarray:
     """Gain of the stationary Kalman filter in predicting form, by the Riccati equation of the dual system."""
-    a, c = with_load(machine)
-    torque, force = (np.append(machine.b[:, i], 0.0)[:, None] for i in (0, 1))
-    drift = np.zeros((len(a), len(a)))
-    drift[-1, -1] = (WANDERING * TICK) ** 2
+    loaded = fd.with_load(machine)
+    torque, force = loaded.B[:, :1], loaded.B[:, 1:2]
+    drift = np.zeros(loaded.A.shape)
+    drift[-1, -1] = (WANDERING / RATE) ** 2
     process = torque @ torque.T * ACTING**2 + force @ force.T * PUSHING**2 + drift
-    found, _, _ = control.dlqr(a.T, c.T, process, np.diag([ENCODER**2, SCALE**2]))
+    found, _, _ = control.dlqr(loaded.A.T, loaded.C.T, process, np.diag([ENCODER**2, SCALE**2]))
     return np.asarray(found).T
 
 
-def pushed(plant: Plant, controller: SampledController, velocity: float) -> ControlledRun:
+def pushed(axis: fd.Axis, loop: fd.Controller, velocity: float) -> fd.Motion:
     """The nonlinear machine, the table moving or standing, under a step of the force."""
-    loop, time = TorqueLoop(LAG, TICK), TICK * np.arange(round(DURATION / TICK))
-    reference = np.zeros((time.size, len(controller.references)))
-    reference[:, 0], reference[:, 1] = START + velocity * time, velocity
-    load = np.where(time < FORCE_AT, 0.0, FORCE)
-    start = resting_state(plant, controller, loop, START, velocity)
-    return simulate_controlled(plant, controller, reference, load, loop, start)
+    return fd.move(axis, loop, duration="0.6 s", start=START, moving=velocity, velocity=velocity,
+                   position=lambda t: START + velocity * t,
+                   force=lambda t: np.where(t < FORCE_AT, 0.0, FORCE))  # fmt: skip
 
 
-def row(name: str, run: ControlledRun, velocity: float) -> FloatArray:
+def row(name: str, run: fd.Motion, velocity: float) -> np.ndarray:
     """Print what a run shows; the following error [µm]."""
-    error = 1e6 * (START + velocity * run.time - run.table_position)
+    error: np.ndarray = 1e6 * (START + velocity * run.time - run["table_position"])
     pressed = error[run.time > FORCE_AT] - error[run.time <= FORCE_AT][-1]
-    motion = "moving" if velocity else "standing"
     left, swing = abs(error[-400:].mean()), np.ptp(error[-400:])
-    print(f"  {name:8} {motion:9} gives way by {np.max(np.abs(pressed)):5.2f} µm, is {left:.3f} µm off at the end, "
-          f"swings {swing:.3f} µm")  # fmt: skip
+    print(f"  {name:8} {'moving' if velocity else 'standing':9} gives way by {np.max(np.abs(pressed)):5.2f} µm, "
+          f"is {left:.3f} µm off at the end, swings {swing:.3f} µm")  # fmt: skip
     return error
 
 
 def main(folder: Path) -> None:
     """Design both, push both, print and draw."""
-    plant = read_plant(find_plant("bench_axis"))
-    bare = Cascade(plant.chain.motor_radius, TICK, 1, 0.0, 0.0, math.inf, 1.0, current_lag=LAG, dead_time=TICK,
-                   feedback=Feedback.TABLE, torque_limit=plant.torque_limit)  # fmt: skip
-    machine = sampled_plant(plant, bare)
-    gains = feedback(machine), observer(machine)
-    cascade = recommend(plant, bare, [Case()], Demand()).cascade
-    print(f"{plant.name}: step of {FORCE:g} N on the table, {1 / TICK:g} Hz\n")
-    for name, loop in (("optimal", open_loop(machine, TICK, *gains)), ("cascade", open_velocity_loop(plant, cascade))):
-        found = margins(loop)
+    axis = fd.load("bench_axis")
+    machine = fd.sampled(axis, RATE)
+    optimal = fd.state_feedback(axis, feedback(machine), observer(machine), RATE)
+    tuned = fd.tune(axis, velocity_rate=RATE, position_rate=RATE, dead_time=1 / RATE, feedback="table")
+    designs = {"cascade": fd.cascade(axis, tuned), "optimal": optimal}
+    print(f"{axis.name}: step of {FORCE:g} N on the table, {RATE:g} Hz\n")
+    for name, loop in designs.items():
+        found = loop.margins()
         print(f"  {name:10} margins at the torque {found.phase:.1f}°, {found.gain:.1f} dB")
-    optimal = state_feedback(machine, TICK, *gains, torque_limit=plant.torque_limit, position=START)
-    figure = new_figure(4.8)
-    panels = figure.subplots(2, 1, sharex=True)
+    figure, panels = plt.subplots(2, 1, sharex=True, figsize=(8.6, 4.8), layout="constrained")
     print()
-    for name, controller, colour in (("cascade", cascade_controller(cascade), BEFORE), ("optimal", optimal, AFTER)):
-        run = pushed(plant, controller, MOVING)
+    for name, loop in designs.items():
+        run = pushed(axis, loop, MOVING)
         error = row(name, run, MOVING)
-        row(name, pushed(plant, controller, 0.0), 0.0)
+        row(name, pushed(axis, loop, 0.0), 0.0)
         shown = (run.time > FORCE_AT - 0.02) & (run.time < FORCE_AT + 0.12)
         time = 1e3 * (run.time[shown] - FORCE_AT)
-        panels[0].plot(time, error[shown], color=colour, label=name)
-        if "load" in run.signals:
-            before = run.signals["load"][run.time < FORCE_AT][-1]
-            panels[1].plot(time, run.signals["load"][shown] - before, color=colour, label="as estimated, less friction")
-            panels[1].plot(time, np.where(time < 0, 0.0, FORCE), color=MEASURED, linestyle="--", label="acting")
-            print(f"  estimated force {run.signals['load'][-400:].mean() - before:.1f} N, acting {FORCE:g} N")
-    dress(panels[0], "", "following error [µm]", "moving at 3 m/min")
-    dress(panels[1], "time after the force [ms]", "force on the table [N]")
+        panels[0].plot(time, error[shown], label=name)
+        if "load" in run.series:
+            before = run["load"][run.time < FORCE_AT][-1]
+            panels[1].plot(time, run["load"][shown] - before, label="as estimated, less friction")
+            panels[1].plot(time, np.where(time < 0, 0.0, FORCE), color="0.2", linestyle="--", label="acting")
+            print(f"  estimated force {run['load'][-400:].mean() - before:.1f} N, acting {FORCE:g} N")
     print(
         "\nMoving, the drag of nut and bearings acts on the screw; taken for a force on the table it leaves the optimal"
     )
     print("controller its small offset, which the integrator of the cascade does not have.")
+    panels[0].set(ylabel="following error [µm]", title="moving at 3 m/min")
+    panels[1].set(xlabel="time after the force [ms]", ylabel="force on the table [N]")
     for panel in panels:
-        legend_above(panel, 2)
-    path = folder / "lqr_disturbance_observer.png"
-    write_bytes_atomically(path, render(ReportFigure("force", "Force on the table", "", figure)).png)
-    print(f"\nFigure: {path}")
+        panel.legend()
+        panel.grid(alpha=0.3)
+    folder.mkdir(parents=True, exist_ok=True)
+    figure.savefig(folder / "lqr_disturbance_observer.png", dpi=150)
+    print(f"\nFigure: {folder / 'lqr_disturbance_observer.png'}")
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -21,6 +22,7 @@ from feeddrive.plant.effect_text import plant_text_with_effects
 from feeddrive.plant.entries import Origins, Table, parse_toml
 from feeddrive.plant.files import declares_heat_alone, plant_from_entries
 from feeddrive.plant.mode_map import mode_map
+from feeddrive.plant.moving_inertia import inertia_at_motor
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.plausibility import check_plant
 from feeddrive.plant.rated_life import rated_life
@@ -145,6 +147,16 @@ class Axis:
     def name(self) -> str:
         """Name of the machine."""
         return self.plant.name if self.has_motion else self.heat.name
+
+    @property
+    def inertia_at_motor(self) -> float:
+        """Inertia of everything that moves, as the motor feels it [kg m^2]."""
+        return inertia_at_motor(self.plant)
+
+    @property
+    def travel_per_turn(self) -> float:
+        """Table travel per turn of the motor: the lead, behind its transmission [m]."""
+        return 2 * math.pi * self.plant.chain.motor_radius
 
     def refuse_unusable(self) -> None:
         """Read everything that the file declares.

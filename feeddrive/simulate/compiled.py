@@ -29,8 +29,8 @@ FLAGS = (
 """No fused or reordered arithmetic: the compiled numbers are those of the virtual machine."""
 
 FOR_THIS_PROCESSOR = ("-march=native", "-mprefer-vector-width=256")
-"""Where processors have vectors of 512 bits: arrays of some ten numbers written by them and read in narrower pieces wait
-for the memory, and the loop takes half as long again; narrower vectors give the same numbers."""
+"""Where processors have vectors of 512 bits: arrays of some ten numbers written by them and read in narrower pieces
+wait for the memory, and the loop takes half as long again; narrower vectors give the same numbers."""
 
 
 @lru_cache(maxsize=1)

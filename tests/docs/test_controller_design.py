@@ -20,6 +20,12 @@ def said(name: str, folder: Path, capsys: pytest.CaptureFixture[str]) -> str:
     return capsys.readouterr().out
 
 
+@pytest.mark.parametrize("name", SCRIPTS)
+def test_script_imports_the_public_interface_alone(name: str) -> None:
+    text = (ROOT / "scenarios" / f"{name}.py").read_text(encoding="utf-8")
+    assert re.findall(r"^\s*(?:from|import) feeddrive.*$", text, re.MULTILINE) == ["import feeddrive as fd"]
+
+
 def test_scripts_are_listed() -> None:
     listed = (ROOT / "scenarios" / "README.md").read_text(encoding="utf-8")
     for name in SCRIPTS:
