@@ -16,6 +16,9 @@ The recording is refused where a fault leaves a quarter of what any single cause
 does: of all masses and levels, none explains better than one number that is the same for all of them. A payload moves f
 alone, other friction h alone; a torque constant a few percent off stays inside TOLERANCE and is not refused. A motion
 that takes no torque to accelerate, or has no friction, tells no factor from a mass or a friction, and is not refused.
+
+A torque that follows the motion of no machine is refused as well, where the motion asks for a torque that varies by
+more than its mean. In a stroke at one speed it asks for less: there what friction varies by along the way may be all.
 """
 
 from __future__ import annotations
@@ -95,7 +98,7 @@ def _refuse(problem: Problem, plant: Plant, evidence: AxisEvidence) -> None:
             shares = (f"{100 * math.sqrt(left):.3g} %" for left in (best.left, seen.as_declared))
             explained = "{} of its rms are left unexplained then, {} as it is".format(*shares)
             raise InputError(f"{best.what}; {explained}", where, best.mend)
-    elif any_machine > 1 - LEAST_LIKENESS**2:
+    elif seen.varies and any_machine > 1 - LEAST_LIKENESS**2:
         likeness = math.sqrt(max(1 - any_machine, 0.0))
         what = f"the torque does not follow the motion (correlation {likeness:.2f} with that of any such machine)"
         mend = "check both columns: which they are, their units, and jumps or lost rows in the motion"
@@ -104,11 +107,20 @@ def _refuse(problem: Problem, plant: Plant, evidence: AxisEvidence) -> None:
 
 @dataclass(frozen=True)
 class TorqueParts:
-    """Measured torque m and its parts a and c as the declared plant predicts them, about their means; (n,) [N m]."""
+    """Measured torque m and its parts a and c as the declared plant predicts them, about their means; (n,) [N m].
+
+    `mean` is that of the prediction [N m].
+    """
 
     measured: FloatArray
     inertial: FloatArray
     rest: FloatArray
+    mean: float
+
+    @property
+    def varies(self) -> bool:
+        """Whether the motion asks for a torque that varies by more than its mean."""
+        return float(np.std(self.predicted)) > abs(self.mean)
 
     @property
     def predicted(self) -> FloatArray:
@@ -157,7 +169,7 @@ def torque_parts(problem: Problem, plant: Plant, evidence: AxisEvidence) -> Torq
     series = [one - np.mean(one) for one in (evidence.measured["motor_torque"][rows], inertial, predicted - inertial)]
     if not all(np.all(np.isfinite(one)) and one.any() for one in series):
         return None
-    return TorqueParts(*series)
+    return TorqueParts(*series, float(np.mean(predicted)))
 
 
 def inertia_at_motor(plant: Plant) -> float:

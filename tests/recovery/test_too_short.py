@@ -2,34 +2,36 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import pytest
 
 from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.result import Diagnosis
 from feeddrive.errors import InputError
 from feeddrive.recording import Recording
+from tests.generator import BENCH
+from tests.generator.effects import PlantedEffects
+from tests.generator.profile import Profile
+from tests.generator.recording import simulate
 from tests.recovery.planted import axis_plant, pair
 
 NEEDS_BOTH_DIRECTIONS = ("presliding", "coulomb_asymmetry", "viscous_asymmetry", "stribeck", "friction_vs_position")
 NEEDS_TURNS = ("torque_ripple", "lead_error_periodic")
 
-ONE_WAY = (1.45, 3.35)
-"""The longest stroke in one direction, 14 revolutions [s]."""
+ONE_WAY = ((0.25, 0.06),)
+"""A stroke in one direction, 12 revolutions in some 4 s: distance [m] and speed [m/s]."""
 
-SLOWER = 1.8
-"""Its clock runs this much slower, so that it lasts longer than the 3 s that any recording needs. The torque then
-does not belong to the motion; only what is refused is looked at."""
+MOVING = (0.02, 4.15)
+"""From its beginning to where it stops; a servo that stops turns back by an encoder step or two [s]."""
 
 WITHIN_TWO_TURNS = (7.2, 10.6)
 """Slow motion to and fro over 1.3 revolutions [s]."""
 
 
 def one_way() -> Recording:
-    """A stroke without reversal."""
-    part = pair("bench", "null")[0].between(*ONE_WAY)
-    return replace(part, time=SLOWER * part.time, sample_time=SLOWER * part.sample_time)
+    """A stroke without reversal, recorded."""
+    profile = Profile(0.05, ONE_WAY, (), 0.0, 1.0, 0.6, 0.0, 2.0)
+    channels = simulate(BENCH, PlantedEffects(()), profile, 11)
+    return Recording("one_way", channels.pop("time"), channels, BENCH.sample_time).between(*MOVING)
 
 
 def diagnosed(fitted: Recording) -> Diagnosis:

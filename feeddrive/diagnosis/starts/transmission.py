@@ -33,6 +33,9 @@ FORCES = 16
 LEAST_FORCE = 0.02
 """Smallest of them over the greatest transmitted force; a loss within it is a free play."""
 
+NOTHING = 1e-18
+"""Mean square over the largest square below which a series does not change: rounding leaves as much of a constant."""
+
 
 def preload_loss(scene: AxisScene) -> list[list[Effect]]:
     """The force up to which the lag grows best with it, and the ratio that goes with it."""
@@ -47,6 +50,8 @@ def preload_loss(scene: AxisScene) -> list[list[Effect]]:
     for i, limit in enumerate(limits):  # one after the other: all at once are four times the recording
         stretch = _in_band(scene, np.clip(force, -limit, limit) / stiffness)
         energy = float(stretch @ stretch)
+        if energy <= NOTHING * len(stretch) * (limit / stiffness) ** 2:
+            continue  # the force never comes below the limit: in one direction the lag stays as it is
         slopes[i] = float(stretch @ lag) / energy
         shares[i] = slopes[i] ** 2 * energy / float(lag @ lag)
     best = int(np.argmax(np.where(slopes > 0, shares, 0.0)))
@@ -72,7 +77,12 @@ def stiffness_vs_position(scene: AxisScene) -> list[list[Effect]]:
     stretch = force / nut_stiffness(scene.plant)
     along = (scene.runs[scene.longest].table_position - low) / (high - low)
     everywhere, growing = _in_band(scene, np.column_stack([stretch, stretch * along])).T
+    least = NOTHING * len(stretch) * float(np.max(stretch**2))
+    if not float(everywhere @ everywhere) > least:
+        return []  # a force that stays
     growing = growing - everywhere * float(growing @ everywhere) / float(everywhere @ everywhere)
+    if not float(growing @ growing) > least:
+        return []  # at a place that stays
     slope = float(growing @ lag) / float(growing @ growing)
     if slope**2 * float(growing @ growing) < LEAST_LAG * float(lag @ lag):
         return []
