@@ -169,7 +169,8 @@ def torque_parts(problem: Problem, plant: Plant, evidence: AxisEvidence) -> Torq
     series = [one - np.mean(one) for one in (evidence.measured["motor_torque"][rows], inertial, predicted - inertial)]
     if not all(np.all(np.isfinite(one)) and one.any() for one in series):
         return None
-    return TorqueParts(*series, float(np.mean(predicted)))
+    measured, pushed, rest = series
+    return TorqueParts(measured, pushed, rest, float(np.mean(predicted)))
 
 
 def inertia_at_motor(plant: Plant) -> float:
