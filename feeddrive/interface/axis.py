@@ -18,10 +18,11 @@ from feeddrive.files import find_plant, write_text_atomically
 from feeddrive.interface.machine_tables import Check, Life, Modes, Stiffness
 from feeddrive.interface.quantities import Quantity, quantities, si, span
 from feeddrive.plant.effect_text import plant_text_with_effects
-from feeddrive.plant.entries import Origins, Table, parse_toml
+from feeddrive.plant.entries import parse_toml
 from feeddrive.plant.files import declares_heat_alone, plant_from_entries
 from feeddrive.plant.mode_map import mode_map
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.plant_schema import plant_table
 from feeddrive.plant.plausibility import check_plant
 from feeddrive.plant.rated_life import rated_life
 from feeddrive.plant.stiffness_budget import stiffness_budget
@@ -137,7 +138,7 @@ class Axis:
         Raises:
             InputError: the file declares none.
         """
-        top = Table(self.entries, str(self.path), Origins(), str(self.entries.get("source", "")))
+        top = plant_table(self.entries, str(self.path))
         found = thermal_plant(top, self.path.stem)
         return found.with_effects(*(one for one in self.added if isinstance(one, ThermalEffect)))
 

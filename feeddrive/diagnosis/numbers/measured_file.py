@@ -29,6 +29,7 @@ from feeddrive.errors import InputError
 from feeddrive.plant.entries import Origins, Table, read_toml
 from feeddrive.plant.plant import Plant
 from feeddrive.quantity import format_quantity, parse
+from feeddrive.schema.measured import MEASURED
 
 FORMAT = "feeddrive-measured/1"
 _KEYS = ("quantity", "value", "at", "tolerance", "source")
@@ -85,8 +86,8 @@ def read_measured_numbers(path: Path, plant: Plant) -> tuple[MeasuredNumber, ...
             positive, a position off the stroke.
     """
     entries = read_toml(path, "file of measured numbers")
-    top = Table(entries, str(path), Origins())
-    top.refuse_unknown(("format", "name", "description", "source", "measured"))
+    top = Table(entries, str(path), Origins(), section=MEASURED)
+    top.refuse_undeclared()
     if "format" in entries and entries["format"] != FORMAT:
         raise InputError("is no file of measured numbers of this version", str(path), f'write format = "{FORMAT}"')
     tables = top.tables("measured")
