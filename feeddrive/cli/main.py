@@ -52,6 +52,7 @@ class Entry:
 COMMANDS: dict[str, Entry] = {
     "demo": Entry("demo", "Diagnose a shipped machine from a shipped recording."),
     "list": Entry("list_plants", "List the machines that come with feeddrive."),
+    "keys": Entry("keys", "Show what may stand in a file: keys, units, ranges, defaults."),
     "show": Entry("show", "Show a machine: stiffness budget, inertias, friction, modes."),
     "modes": Entry("modes", "Natural frequencies of a machine along its stroke."),
     "bode": Entry("bode", "Frequency response of machine or loop; resonances, margins."),

@@ -20,6 +20,7 @@ from feeddrive.parts.values import PartValue
 from feeddrive.plant.chain import CHAINS
 from feeddrive.plant.drive_sections import BEARING_VALUES, PART_VALUES
 from feeddrive.plant.entries import Origins, Table
+from feeddrive.plant.named_parts import with_named_parts
 from feeddrive.plant.ratings import RATINGS
 from feeddrive.quantity import format_quantity
 from feeddrive.schema.controller import DECLARED_CONTROLLER
@@ -275,14 +276,14 @@ PLANT = Section(
 
 
 def plant_table(entries: Mapping[str, Any], where: str) -> Table:
-    """The table of a whole plant file, its keys declared.
+    """The table of a whole plant file, its keys declared and the values of the parts that it names put in.
 
     Args:
         entries: of the file.
         where: its path, for messages.
 
     Raises:
-        InputError: `source` is not a text.
+        InputError: `source` is not a text, or a part that the catalogue does not hold.
     """
-    plain = Table(entries, where, Origins())
-    return Table(entries, where, plain.origins, plain.text("source", ""), PLANT)
+    plain = Table(with_named_parts(entries, where), where, Origins())
+    return replace(plain, source=plain.text("source", ""), section=PLANT)

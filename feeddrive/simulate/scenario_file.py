@@ -46,7 +46,7 @@ from feeddrive.simulate.scenario import Recorder, Scenario
 from feeddrive.simulate.scenario_controller import read_cascade
 from feeddrive.simulate.scenario_evaluations import read_evaluations
 from feeddrive.simulate.scenario_motion import read_excitation, read_forces, read_trajectory
-from feeddrive.simulate.scenario_overrides import with_overrides
+from feeddrive.simulate.scenario_overrides import with_absolute_paths, with_overrides
 from feeddrive.simulate.scenario_values import boolean, positive, quantities, texts, whole
 from feeddrive.simulate.trajectories import refuse_beyond_travel
 from feeddrive.thermal.whole_file import drive_plant
@@ -88,7 +88,7 @@ def read_scenario(
     Args:
         path: of the file.
         overrides: dotted key to text, put in place of what the file says; "plant.table.mass" and the like lead into
-            the plant file.
+            the plant file. Paths among them count from the current folder, those in the file from its folder.
         given: plant in place of the one that the file names.
         controller: entries in place of those of the file.
 
@@ -102,7 +102,7 @@ def read_scenario(
         raise InputError(
             "is not a scenario file of this version", where, f'write format = "{FORMAT}" in its first line'
         )
-    wanted = dict(overrides or {})
+    wanted = with_absolute_paths(overrides or {})
     of_plant = {key.removeprefix("plant."): wanted.pop(key) for key in list(wanted) if key.startswith("plant.")}
     if "controller" in wanted:
         entries["controller"] = wanted.pop("controller")
