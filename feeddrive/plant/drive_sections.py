@@ -175,7 +175,7 @@ def _supports(top: Table) -> ScrewSupports:
     support.refuse_unknown(("kind", "housing_stiffness", "near_stiffness", "far_stiffness", "source"))
     kind = Support(support.choice("kind", [kind.value for kind in Support]))
     for end in ("near", "far"):
-        bearing.table(end).refuse_unknown((*(value.key for value in BEARING_VALUES), "source"))
+        bearing.table(end).refuse_unknown(("part", *(value.key for value in BEARING_VALUES), "source"))
     near = _part(bearing, "near", SupportBearing, SupportBearing.values, "bearing.near")
     far = None
     if "far" in bearing.entries:

@@ -77,7 +77,7 @@ from feeddrive.plant.entries import Table, read_toml
 from feeddrive.plant.equipment import read_controller, read_sensors
 from feeddrive.plant.passive_friction import refuse_active_friction
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.plant_schema import plant_table
+from feeddrive.plant.plant_schema import NAMED_PARTS, plant_table
 from feeddrive.plant.ratings import RATINGS, read_data
 from feeddrive.plant.stroke import read_stroke
 from feeddrive.quantity import format_quantity
@@ -200,6 +200,7 @@ def _refuse_unknown_keys(top: Table) -> None:
         known += [value.key for value in RATINGS.get(section, ())]
         if parts:
             known += [value.key for value in PART_VALUES.get(section, ())]
+            known += ["part"] if section in NAMED_PARTS else []
         elsewhere = {
             value.section_key: f'leave it out, or use structure = "{other.structure}"'
             for other in CHAINS.values()

@@ -103,7 +103,7 @@ def _part(section: Mapping[str, Any], place: tuple[str, ...], where: str) -> Cat
     key = f"{where}, {'.'.join(place)}.part"
     if not isinstance(name, str) or not name.strip():
         raise InputError(f"{name!r} is no name of a part", key, f"`feeddrive parts {kind}` lists them")
-    part = find_part(name, kind, key)
+    part = find_part(name, kind, key, "or leave `part` out and write the values")
     if place[0] not in part.sections and not (place[0] == "nut" and "axial_stiffness" in section):
         what = f"the catalogue prints no stiffness of the nut of {name}"
         raise InputError(what, key, 'write axial_stiffness = "... N/µm" in [nut], and leave its part out')

@@ -52,7 +52,7 @@ class CataloguePart:
     @property
     def origin(self) -> str:
         """Name and source, as a value that is taken from it shows them."""
-        return f"catalogue: {self.maker} {self.name}, {self.source}"
+        return f"catalogue: {self.name}, {self.source}"
 
 
 @lru_cache(maxsize=1)
@@ -66,22 +66,23 @@ def catalogue() -> Mapping[str, CataloguePart]:
     return found
 
 
-def find_part(name: str, kind: str, where: str) -> CataloguePart:
+def find_part(name: str, kind: str, where: str, otherwise: str = "") -> CataloguePart:
     """The part of a name and kind.
 
     Args:
         name: as in the catalogue.
         kind: of `KINDS`.
         where: file and key, for messages.
+        otherwise: what else may be done where there is no such part.
 
     Raises:
         InputError: no such part, or one of another kind; names the nearest of that kind.
     """
     part = catalogue().get(name)
     if part is None:
-        raise InputError(f'no {kind} "{name}" in the catalogue', where, _mend(name, kind))
+        raise InputError(f'no {kind} "{name}" in the catalogue', where, _mend(name, kind, otherwise))
     if part.kind != kind:
-        raise InputError(f"{name} is a {part.kind}, not a {kind}", where, _mend(name, kind))
+        raise InputError(f"{name} is a {part.kind}, not a {kind}", where, _mend(name, kind, otherwise))
     return part
 
 
@@ -93,10 +94,10 @@ def nearest_names(name: str, kind: str, most: int = 4) -> list[str]:
     return [known[near] for near in get_close_matches(name.casefold(), known, n=most, cutoff=0.3)]
 
 
-def _mend(name: str, kind: str) -> str:
+def _mend(name: str, kind: str, otherwise: str) -> str:
     near = nearest_names(name, kind)
-    guess = f"near are {', '.join(near)}; " if near else ""
-    return f"{guess}`feeddrive parts {kind}` lists all; or leave `part` out and write the values"
+    guess = f"near are {', '.join(near)}" if near else ""
+    return "; ".join(one for one in (guess, f"`feeddrive parts {kind}` lists all", otherwise) if one)
 
 
 def _parts(content: Mapping[str, Any]) -> list[CataloguePart]:
