@@ -276,6 +276,21 @@ class Table:
         return written["value"]
 
 
+def whole_file(entries: Mapping[str, Any], where: str, section: Section) -> Table:
+    """The table of a whole file, with the source that it names for all of its values.
+
+    Args:
+        entries: of the file.
+        where: its path, for messages.
+        section: that declares its keys.
+
+    Raises:
+        InputError: `source` is not a text.
+    """
+    plain = Table(entries, where, Origins())
+    return replace(plain, source=plain.text("source", ""), section=section)
+
+
 def read_toml(path: Path, kind: str) -> dict[str, Any]:
     """Parse a TOML file; a byte order mark is passed over.
 

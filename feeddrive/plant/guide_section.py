@@ -70,7 +70,7 @@ def guide_friction_of(top: Table, gravity: float, before: Sequence[Effect]) -> l
     table = top.table("guide")
     if any(isinstance(effect, GuideFriction) for effect in before):
         raise InputError("guide and guide_friction are both declared", table.where, "keep one of them")
-    if table.entries.get("carriage") in _rated():
+    if "carriage" in table.entries and table.text("carriage") in _rated():
         return [_rated_friction(top, gravity)]
     table.refuse_unknown(_OF_GEOMETRY)
     name, guide = _carriage(table)

@@ -19,7 +19,7 @@ from feeddrive.parts.material import STEEL
 from feeddrive.parts.values import PartValue
 from feeddrive.plant.chain import CHAINS
 from feeddrive.plant.drive_sections import BEARING_VALUES, PART_VALUES
-from feeddrive.plant.entries import Origins, Table
+from feeddrive.plant.entries import Table, whole_file
 from feeddrive.plant.named_parts import with_named_parts
 from feeddrive.plant.ratings import RATINGS
 from feeddrive.quantity import format_quantity
@@ -285,5 +285,4 @@ def plant_table(entries: Mapping[str, Any], where: str) -> Table:
     Raises:
         InputError: `source` is not a text, or a part that the catalogue does not hold.
     """
-    plain = Table(with_named_parts(entries, where), where, Origins())
-    return replace(plain, source=plain.text("source", ""), section=PLANT)
+    return whole_file(with_named_parts(entries, where), where, PLANT)

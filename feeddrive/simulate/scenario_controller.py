@@ -75,6 +75,8 @@ def read_cascade(written: Table, plant: Plant) -> tuple[Cascade, bool]:
     entries = with_own_names(dict(written.entries), written.where)
     table = Table(entries, written.where, written.origins, written.source, CONTROLLER)
     table.refuse_undeclared()
+    for key in ("format", "name", "source"):
+        table.text(key, "")
     fast, slow = positive(table, "velocity_rate", "Hz"), positive(table, "position_rate", "Hz")
     reset = optional(table, "reset_time", "s", math.inf)
     bandwidth = positive(table, "current_bandwidth", "Hz") if "current_bandwidth" in table.entries else math.inf

@@ -32,7 +32,7 @@ from feeddrive import __version__
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant
 from feeddrive.plant.effect_sections import read_effects
-from feeddrive.plant.entries import Origins, Table, read_toml
+from feeddrive.plant.entries import Table, read_toml, whole_file
 from feeddrive.plant.passive_friction import refuse_active_friction
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.plant_schema import EFFECT
@@ -110,7 +110,7 @@ def read_scenario(
         entries["controller"] = dict(controller)
     controller_where = insert_controller(entries, path)
     entries = with_overrides(entries, _own_keys(wanted))
-    top = Table(entries, where, Origins(), section=SCENARIO)
+    top = whole_file(entries, where, SCENARIO)
     top.refuse_undeclared()
     if given is None:
         plant_path = _plant_path(top, path.parent)

@@ -91,7 +91,9 @@ def nearest_names(name: str, kind: str, most: int = 4) -> list[str]:
     from difflib import get_close_matches
 
     known = {one.name.casefold(): one.name for one in catalogue().values() if one.kind == kind}
-    return [known[near] for near in get_close_matches(name.casefold(), known, n=most, cutoff=0.3)]
+    begins = [known[one] for one in known if name and one.startswith(name.casefold())]
+    near = [known[one] for one in get_close_matches(name.casefold(), known, n=most, cutoff=0.3)]
+    return list(dict.fromkeys([*begins, *near]))[:most]
 
 
 def _mend(name: str, kind: str, otherwise: str) -> str:
