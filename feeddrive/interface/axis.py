@@ -18,12 +18,14 @@ from feeddrive.errors import InputError
 from feeddrive.files import find_plant, write_text_atomically
 from feeddrive.interface.machine_tables import Check, Life, Modes, Stiffness
 from feeddrive.interface.quantities import Quantity, quantities, si, span
+from feeddrive.plant.declared_check import check_declared
 from feeddrive.plant.effect_text import plant_text_with_effects
-from feeddrive.plant.entries import Origins, Table, parse_toml
+from feeddrive.plant.entries import parse_toml
 from feeddrive.plant.files import declares_heat_alone, plant_from_entries
 from feeddrive.plant.mode_map import mode_map
 from feeddrive.plant.moving_inertia import inertia_at_motor
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.plant_schema import plant_table
 from feeddrive.plant.plausibility import check_plant
 from feeddrive.plant.rated_life import rated_life
 from feeddrive.plant.stiffness_budget import stiffness_budget
@@ -139,7 +141,7 @@ class Axis:
         Raises:
             InputError: the file declares none.
         """
-        top = Table(self.entries, str(self.path), Origins(), str(self.entries.get("source", "")))
+        top = plant_table(self.entries, str(self.path))
         found = thermal_plant(top, self.path.stem)
         return found.with_effects(*(one for one in self.added if isinstance(one, ThermalEffect)))
 
@@ -253,7 +255,7 @@ class Axis:
         return Stiffness(self.name, place, stiffness_budget(self.plant, place))
 
     def check(self, position_gain: Quantity | None = None) -> Check:
-        """Rules of plausibility.
+        """Rules of plausibility, values that differ from the part that the file names, and what is still a guess.
 
         Args:
             position_gain: K_v of the controller, "60 1/s"; the declared one if left out.
@@ -266,7 +268,8 @@ class Axis:
         gain = None if position_gain is None else si(position_gain, "1/s", "position_gain")
         if gain is not None and not gain > 0:
             raise InputError(f"{position_gain} is no gain", "position_gain", "write one above zero, such as '50 1/s'")
-        return Check(self.name, check_plant(self.plant, gain))
+        declared = check_declared(self.entries, str(self.path), self.plant)
+        return Check(self.name, (*check_plant(self.plant, gain), *declared))
 
     def life(self) -> Life:
         """Rated life of the ball screw, survived by 90 %."""

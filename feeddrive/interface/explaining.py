@@ -13,6 +13,7 @@ from feeddrive.export.point import export_point
 from feeddrive.interface.axis import Axis
 from feeddrive.interface.numbers import Explained
 from feeddrive.interface.responses import ExplainedResponse
+from feeddrive.plant.named_parts import with_named_parts
 from feeddrive.recording.formats.choosing import Wishes
 from feeddrive.recording.formats.opened import read_trace
 from feeddrive.recording.frequency_response import FrequencyResponse
@@ -43,19 +44,20 @@ def explain(
     >>> len(found.result.beyond)
     0
     """
+    entries = with_named_parts(axis.entries, str(axis.path))
     if axis.values or axis.added:
         raise InputError("the axis was changed after it was loaded", axis.name, "save it, and load the file")
     said = progress or (lambda _: None)
     if not isinstance(measured, FrequencyResponse) and Path(measured).suffix.lower() == ".toml":
         numbers = read_measured_numbers(Path(measured), axis.plant)
-        return Explained(axis, diagnose_numbers(axis.entries, axis.path, axis.plant, numbers, said))
+        return Explained(axis, diagnose_numbers(entries, axis.path, axis.plant, numbers, said))
     response = measured if isinstance(measured, FrequencyResponse) else read_response_file(Path(measured))
     if response is None:
         what = "is neither measured numbers nor a frequency response"
         raise InputError(what, str(measured), "give recordings over time to diagnose")
     point = export_point(axis.plant, at, "at")
     case = Case(point.position, point.linearised_at)
-    return ExplainedResponse(axis, diagnose_response(axis.entries, axis.path, axis.plant, response, case, said))
+    return ExplainedResponse(axis, diagnose_response(entries, axis.path, axis.plant, response, case, said))
 
 
 MOST_BYTES = 20_000_000

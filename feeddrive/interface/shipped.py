@@ -10,7 +10,8 @@ from feeddrive.errors import InputError
 from feeddrive.files import shipped_plants, shipped_scenarios
 from feeddrive.interface.shown import Listing, Shown
 from feeddrive.plant.effect_sections import read_effects
-from feeddrive.plant.entries import Origins, Table, nearest
+from feeddrive.plant.entries import nearest
+from feeddrive.plant.plant_schema import plant_table
 
 
 def list_plants() -> tuple[str, ...]:
@@ -91,7 +92,7 @@ def effect(name: str, **values: object) -> Effect:
     units = {one.key: one.unit for one in known[name].parameters}
     entry = {key: _written(value, units.get(key, "1")) for key, value in values.items()}
     catalogue: dict[str, type[Effect]] = dict(THERMAL_EFFECTS) if name in THERMAL_EFFECTS else EFFECTS
-    top = Table({"effect": [{"name": name, **entry}]}, f"effect({name!r})", Origins())
+    top = plant_table({"effect": [{"name": name, **entry}]}, f"effect({name!r})")
     return read_effects(top, catalogue)[0]
 
 

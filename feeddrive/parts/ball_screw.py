@@ -51,11 +51,29 @@ class ScrewShaft:
     material: ShaftMaterial = STEEL
 
     values: ClassVar[tuple[PartValue, ...]] = (
-        PartValue("lead", "m", 1e-4, 0.5, usual=(1e-3, 0.08)),
-        PartValue("diameter", "m", 1e-3, 0.5, usual=(4e-3, 0.2)),
-        PartValue("length", "m", 0.005, 30.0, usual=(0.05, 12.0)),
-        PartValue("stub", "m", 0.0, 5.0, usual=(0.0, 0.5), default=0.0, open_ends=False),
-        PartValue("root_diameter", "m", 1e-3, 0.5, usual=(3e-3, 0.2)),
+        PartValue("lead", "m", 1e-4, 0.5, usual=(1e-3, 0.08), meaning="table travel per turn of the screw"),
+        PartValue(
+            "diameter", "m", 1e-3, 0.5, usual=(4e-3, 0.2), meaning="nominal diameter, counted for mass and inertia"
+        ),
+        PartValue("length", "m", 0.005, 30.0, usual=(0.05, 12.0), meaning="from the near bearing to the far end"),
+        PartValue(
+            "stub",
+            "m",
+            0.0,
+            5.0,
+            usual=(0.0, 0.5),
+            default=0.0,
+            open_ends=False,
+            meaning="from the near bearing back to the coupling, under torque alone",
+        ),
+        PartValue(
+            "root_diameter",
+            "m",
+            1e-3,
+            0.5,
+            usual=(3e-3, 0.2),
+            meaning="diameter counted for stiffness; the nominal one if left out",
+        ),
     )
 
     def __post_init__(self) -> None:

@@ -29,7 +29,16 @@ class SupportBearing:
 
     axial_stiffness: float
 
-    values: ClassVar[tuple[PartValue, ...]] = (PartValue("axial_stiffness", "N/m", 1e5, 1e11, usual=(1e7, 1e10)),)
+    values: ClassVar[tuple[PartValue, ...]] = (
+        PartValue(
+            "axial_stiffness",
+            "N/m",
+            1e5,
+            1e11,
+            usual=(1e7, 1e10),
+            meaning="axial stiffness of the preloaded set, without its housing",
+        ),
+    )
 
     def __post_init__(self) -> None:
         check_values("bearing", self.values, vars(self))

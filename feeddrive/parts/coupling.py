@@ -33,9 +33,33 @@ class Coupling:
     screw_side_share: float = 0.5
 
     values: ClassVar[tuple[PartValue, ...]] = (
-        PartValue("torsional_stiffness", "N m/rad", 0.1, 1e9, usual=(10.0, 5e6)),
-        PartValue("inertia", "kg m^2", 0.0, 100.0, usual=(0.0, 0.2), default=0.0, open_ends=False),
-        PartValue("screw_side_share", "1", 0.0, 1.0, default=0.5, open_ends=False),
+        PartValue(
+            "torsional_stiffness",
+            "N m/rad",
+            0.1,
+            1e9,
+            usual=(10.0, 5e6),
+            meaning="torsional stiffness between the hubs",
+        ),
+        PartValue(
+            "inertia",
+            "kg m^2",
+            0.0,
+            100.0,
+            usual=(0.0, 0.2),
+            default=0.0,
+            open_ends=False,
+            meaning="inertia of both hubs",
+        ),
+        PartValue(
+            "screw_side_share",
+            "1",
+            0.0,
+            1.0,
+            default=0.5,
+            open_ends=False,
+            meaning="share of the inertia in the hub on the screw",
+        ),
     )
 
     def __post_init__(self) -> None:

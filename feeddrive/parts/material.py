@@ -37,10 +37,10 @@ class ShaftMaterial:
     expansion: float
 
     values: ClassVar[tuple[PartValue, ...]] = (
-        PartValue("young", "Pa", 1e8, 2e12, usual=(5e10, 4.5e11)),
-        PartValue("shear", "Pa", 1e7, 1e12, usual=(2e10, 2e11)),
-        PartValue("density", "kg/m^3", 500.0, 25_000.0, usual=(2_000.0, 16_000.0)),
-        PartValue("expansion", "1/K", -1e-5, 2e-4, usual=(0.0, 3e-5)),
+        PartValue("young", "Pa", 1e8, 2e12, usual=(5e10, 4.5e11), meaning="Young's modulus of the screw"),
+        PartValue("shear", "Pa", 1e7, 1e12, usual=(2e10, 2e11), meaning="shear modulus of the screw"),
+        PartValue("density", "kg/m^3", 500.0, 25_000.0, usual=(2_000.0, 16_000.0), meaning="density of the screw"),
+        PartValue("expansion", "1/K", -1e-5, 2e-4, usual=(0.0, 3e-5), meaning="thermal expansion of the screw"),
     )
 
     def __post_init__(self) -> None:

@@ -31,8 +31,15 @@ class HoldingBrake:
     stiffness: float
 
     values: ClassVar[tuple[PartValue, ...]] = (
-        PartValue("holding_torque", "N m", 0.0, 1e6, usual=(0.05, 2e3)),
-        PartValue("stiffness", "N m/rad", 0.1, 1e10, usual=(10.0, 1e7)),
+        PartValue("holding_torque", "N m", 0.0, 1e6, usual=(0.05, 2e3), meaning="torque above which the brake slips"),
+        PartValue(
+            "stiffness",
+            "N m/rad",
+            0.1,
+            1e10,
+            usual=(10.0, 1e7),
+            meaning="torsional stiffness of the closed brake between rotor and motor housing",
+        ),
     )
 
     def __post_init__(self) -> None:
@@ -66,9 +73,23 @@ class Motor:
     brake: HoldingBrake | None = None
 
     values: ClassVar[tuple[PartValue, ...]] = (
-        PartValue("rotor_inertia", "kg m^2", 0.0, 100.0, usual=(1e-7, 1.0)),
-        PartValue("torque_limit", "N m", 0.0, 1e6, usual=(0.01, 5e3)),
-        PartValue("shaft_stiffness", "N m/rad", 0.1, 1e10, usual=(10.0, 1e7)),
+        PartValue(
+            "rotor_inertia",
+            "kg m^2",
+            0.0,
+            100.0,
+            usual=(1e-7, 1.0),
+            meaning="inertia of the rotor, with encoder and brake",
+        ),
+        PartValue("torque_limit", "N m", 0.0, 1e6, usual=(0.01, 5e3), meaning="peak torque of the motor"),
+        PartValue(
+            "shaft_stiffness",
+            "N m/rad",
+            0.1,
+            1e10,
+            usual=(10.0, 1e7),
+            meaning="torsional stiffness from the rotor to the hub; rigid if left out",
+        ),
     )
 
     def __post_init__(self) -> None:

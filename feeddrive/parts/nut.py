@@ -13,12 +13,35 @@ from typing import ClassVar
 
 from feeddrive.parts.values import PartValue, check_values
 
-_CATALOGUE = (
-    PartValue("catalogue_stiffness", "N/m", 1e5, 1e11, usual=(1e7, 5e9)),
-    PartValue("catalogue_preload", "N", 0.0, 1e7, usual=(10.0, 1e5)),
-    PartValue("preload", "N", 0.0, 1e7, usual=(10.0, 1e5)),
-    PartValue("accuracy_factor", "1", 0.0, 1.0, usual=(0.4, 1.0), open_ends=False),
+CATALOGUE_VALUES = (
+    PartValue(
+        "catalogue_stiffness",
+        "N/m",
+        1e5,
+        1e11,
+        usual=(1e7, 5e9),
+        meaning="nut stiffness as the catalogue states it, R_nu",
+    ),
+    PartValue(
+        "catalogue_preload",
+        "N",
+        0.0,
+        1e7,
+        usual=(10.0, 1e5),
+        meaning="preload or load at which the catalogue states it",
+    ),
+    PartValue("preload", "N", 0.0, 1e7, usual=(10.0, 1e5), meaning="preload of this nut"),
+    PartValue(
+        "accuracy_factor",
+        "1",
+        0.0,
+        1.0,
+        usual=(0.4, 1.0),
+        open_ends=False,
+        meaning="share of the stated stiffness that real balls and grooves reach, f_ar",
+    ),
 )
+"""Of a nut whose stiffness follows from a catalogue's value at another preload."""
 
 
 @dataclass(frozen=True)
@@ -37,7 +60,16 @@ class Nut:
 
     axial_stiffness: float
 
-    values: ClassVar[tuple[PartValue, ...]] = (PartValue("axial_stiffness", "N/m", 1e5, 1e11, usual=(1e7, 5e9)),)
+    values: ClassVar[tuple[PartValue, ...]] = (
+        PartValue(
+            "axial_stiffness",
+            "N/m",
+            1e5,
+            1e11,
+            usual=(1e7, 5e9),
+            meaning="stiffness between screw and nut body at the preload, R_nu,ar",
+        ),
+    )
 
     def __post_init__(self) -> None:
         check_values("nut", self.values, vars(self))
@@ -64,5 +96,5 @@ def stiffness_at_preload(
         "catalogue_stiffness": catalogue_stiffness, "catalogue_preload": catalogue_preload, "preload": preload,
         "accuracy_factor": accuracy_factor,
     }  # fmt: skip
-    check_values("nut", _CATALOGUE, given)
+    check_values("nut", CATALOGUE_VALUES, given)
     return float(accuracy_factor * catalogue_stiffness * (preload / catalogue_preload) ** (1.0 / 3.0))

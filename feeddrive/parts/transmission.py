@@ -43,10 +43,35 @@ class Transmission:
     screw_wheel_inertia: float = 0.0
 
     values: ClassVar[tuple[PartValue, ...]] = (
-        PartValue("ratio", "1", 1e-3, 1e3, usual=(0.25, 20.0)),
-        PartValue("torsional_stiffness", "N m/rad", 0.1, 1e10, usual=(10.0, 1e7)),
-        PartValue("motor_wheel_inertia", "kg m^2", 0.0, 100.0, usual=(0.0, 1.0), default=0.0, open_ends=False),
-        PartValue("screw_wheel_inertia", "kg m^2", 0.0, 100.0, usual=(0.0, 1.0), default=0.0, open_ends=False),
+        PartValue("ratio", "1", 1e-3, 1e3, usual=(0.25, 20.0), meaning="turns of the motor per turn of the screw"),
+        PartValue(
+            "torsional_stiffness",
+            "N m/rad",
+            0.1,
+            1e10,
+            usual=(10.0, 1e7),
+            meaning="torsional stiffness of belt or teeth with the motor's wheel held, at the screw's wheel",
+        ),
+        PartValue(
+            "motor_wheel_inertia",
+            "kg m^2",
+            0.0,
+            100.0,
+            usual=(0.0, 1.0),
+            default=0.0,
+            open_ends=False,
+            meaning="inertia of the wheel on the motor",
+        ),
+        PartValue(
+            "screw_wheel_inertia",
+            "kg m^2",
+            0.0,
+            100.0,
+            usual=(0.0, 1.0),
+            default=0.0,
+            open_ends=False,
+            meaning="inertia of the wheel on the screw",
+        ),
     )
 
     def __post_init__(self) -> None:

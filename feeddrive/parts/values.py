@@ -26,6 +26,7 @@ class PartValue:
         usual: range in which catalogues lie [unit]; None where anything possible is usual.
         default: value where none is given; None if it must be given.
         open_ends: whether the ends of the possible range are impossible themselves.
+        meaning: in a few words, for the reference of plant files and for errors.
     """
 
     key: str
@@ -35,6 +36,7 @@ class PartValue:
     usual: tuple[float, float] | None = None
     default: float | None = None
     open_ends: bool = True
+    meaning: str = ""
 
 
 def check_values(part: str, known: tuple[PartValue, ...], values: Mapping[str, float]) -> None:

@@ -82,31 +82,101 @@ class DistributedScrew(Chain):
     structure = "distributed_screw"
     varies = True
     required = (
-        ChainValue("lead", "ball_screw", "m", usual=(5e-4, 0.2)),
-        ChainValue("motor_inertia", "motor", "kg m^2", usual=(1e-8, 10.0)),
-        ChainValue("ratio", "transmission", "1"),
-        ChainValue("drive_stiffness", "transmission", "N m/rad", usual=(1.0, 1e8)),
-        ChainValue("drive_damping", "transmission", "N m s/rad", may_be_zero=True),
-        ChainValue("shared_inertia", "transmission", "kg m^2", may_be_zero=True),
-        ChainValue("drive_end_inertia", "transmission", "kg m^2", may_be_zero=True),
-        ChainValue("drive_length", "ball_screw", "m", may_be_zero=True, written="stub"),
-        ChainValue("bearing_distance", "ball_screw", "m"),
-        ChainValue("screw_length", "ball_screw", "m", usual=(0.02, 20.0)),
-        ChainValue("axial_rigidity", "ball_screw", "N", usual=(1e5, 1e11)),
-        ChainValue("torsional_rigidity", "ball_screw", "N m^2", usual=(1e-2, 1e8)),
-        ChainValue("mass_per_length", "ball_screw", "kg/m"),
-        ChainValue("inertia_per_length", "ball_screw", "kg m"),
-        ChainValue("damping_time", "damping", "s", may_be_zero=True, written="time"),
+        ChainValue("lead", "ball_screw", "m", usual=(5e-4, 0.2), meaning="table travel per turn of the screw"),
         ChainValue(
-            "bearing_stiffness", "support", "N/m", may_be_zero=True, written="near_stiffness", usual=(1e6, 1e11)
+            "motor_inertia", "motor", "kg m^2", usual=(1e-8, 10.0), meaning="inertia at the motor: rotor and coupling"
         ),
         ChainValue(
-            "far_bearing_stiffness", "support", "N/m", may_be_zero=True, written="far_stiffness", usual=(1e6, 1e11)
+            "ratio", "transmission", "1", meaning="turns of the motor per turn of the screw; 1 where it is direct"
         ),
-        ChainValue("nut_stiffness", "nut", "N/m", written="combined_stiffness", usual=(1e6, 1e11)),
-        ChainValue("nut_damping", "nut", "N s/m", may_be_zero=True, written="damping"),
-        ChainValue("table_mass", "table", "kg", usual=(0.2, 1e5)),
-        ChainValue("first_nut_position", "table", "m", may_be_zero=True),
+        ChainValue(
+            "drive_stiffness",
+            "transmission",
+            "N m/rad",
+            usual=(1.0, 1e8),
+            meaning="torsional stiffness from the motor to the screw's end",
+        ),
+        ChainValue(
+            "drive_damping", "transmission", "N m s/rad", may_be_zero=True, meaning="damping beside the drive stiffness"
+        ),
+        ChainValue(
+            "shared_inertia",
+            "transmission",
+            "kg m^2",
+            may_be_zero=True,
+            meaning="inertia of hubs and wheels between motor and screw, sum of J a (1 - a)",
+        ),
+        ChainValue(
+            "drive_end_inertia",
+            "transmission",
+            "kg m^2",
+            may_be_zero=True,
+            meaning="inertia of hubs and wheels at the screw's end, sum of J a^2",
+        ),
+        ChainValue(
+            "drive_length",
+            "ball_screw",
+            "m",
+            may_be_zero=True,
+            written="stub",
+            meaning="from the near bearing back to the coupling, under torque alone",
+        ),
+        ChainValue("bearing_distance", "ball_screw", "m", meaning="between near and far bearing"),
+        ChainValue("screw_length", "ball_screw", "m", usual=(0.02, 20.0), meaning="of the elastic screw"),
+        ChainValue("axial_rigidity", "ball_screw", "N", usual=(1e5, 1e11), meaning="E A of the screw"),
+        ChainValue("torsional_rigidity", "ball_screw", "N m^2", usual=(1e-2, 1e8), meaning="G I_p of the screw"),
+        ChainValue("mass_per_length", "ball_screw", "kg/m", meaning="mass of the screw per length"),
+        ChainValue("inertia_per_length", "ball_screw", "kg m", meaning="inertia of the screw per length"),
+        ChainValue(
+            "damping_time",
+            "damping",
+            "s",
+            may_be_zero=True,
+            written="time",
+            meaning="damping over stiffness of every spring, C = time K",
+        ),
+        ChainValue(
+            "bearing_stiffness",
+            "support",
+            "N/m",
+            may_be_zero=True,
+            written="near_stiffness",
+            usual=(1e6, 1e11),
+            meaning="axial stiffness of the bearing at the motor's end",
+        ),
+        ChainValue(
+            "far_bearing_stiffness",
+            "support",
+            "N/m",
+            may_be_zero=True,
+            written="far_stiffness",
+            usual=(1e6, 1e11),
+            meaning="axial stiffness of the far bearing",
+        ),
+        ChainValue(
+            "nut_stiffness",
+            "nut",
+            "N/m",
+            written="combined_stiffness",
+            usual=(1e6, 1e11),
+            meaning="stiffness of nut and bracket together",
+        ),
+        ChainValue(
+            "nut_damping",
+            "nut",
+            "N s/m",
+            may_be_zero=True,
+            written="damping",
+            meaning="damping beside the nut stiffness",
+        ),
+        ChainValue("table_mass", "table", "kg", usual=(0.2, 1e5), meaning="mass that moves with the table"),
+        ChainValue(
+            "first_nut_position",
+            "table",
+            "m",
+            may_be_zero=True,
+            meaning="nut from the near bearing where the table is at 0",
+        ),
     )
 
     elements: int = 1

@@ -24,7 +24,7 @@ from feeddrive.parts.bearing import SupportBearing
 from feeddrive.parts.coupling import Coupling
 from feeddrive.parts.material import STEEL, ShaftMaterial
 from feeddrive.parts.motor import HoldingBrake, Motor
-from feeddrive.parts.nut import Nut, stiffness_at_preload
+from feeddrive.parts.nut import CATALOGUE_VALUES, Nut, stiffness_at_preload
 from feeddrive.parts.screw_drive import BallScrewDrive
 from feeddrive.parts.supports import ScrewSupports, Support
 from feeddrive.parts.transmission import Transmission
@@ -41,14 +41,10 @@ _MEASURED = {
 """Keys by which sections of parts hold measured values of the chain instead."""
 
 _PRELOADED = ("catalogue_stiffness", "catalogue_preload", "preload", "accuracy_factor")
-_NUT_VALUES = (
-    *Nut.values,
-    PartValue("catalogue_stiffness", "N/m"),
-    PartValue("catalogue_preload", "N"),
-    PartValue("preload", "N"),
-    PartValue("accuracy_factor", "1"),
+_NUT_VALUES = (*Nut.values, *CATALOGUE_VALUES)
+BEARING_RATING = PartValue(
+    "static_rating", "N", 0.0, 1e8, usual=(500.0, 5e6), meaning="static load rating C0 of the bearing"
 )
-BEARING_RATING = PartValue("static_rating", "N", 0.0, 1e8, usual=(500.0, 5e6))
 """C0 of a bearing, for plausibility rules."""
 
 BEARING_VALUES = (*SupportBearing.values, BEARING_RATING)
@@ -61,7 +57,11 @@ PART_VALUES: dict[str, tuple[PartValue, ...]] = {
     "belt": Transmission.values,
     "gear": Transmission.values,
     "ball_screw": (*ScrewShaft.values, *ShaftMaterial.values),
-    "support": (PartValue("housing_stiffness", "N/m"),),
+    "support": (
+        PartValue(
+            "housing_stiffness", "N/m", meaning="axial stiffness of bearing housing and nut bracket; rigid if left out"
+        ),
+    ),
     "nut": _NUT_VALUES,
 }
 """Values of parts by section."""
@@ -175,7 +175,7 @@ def _supports(top: Table) -> ScrewSupports:
     support.refuse_unknown(("kind", "housing_stiffness", "near_stiffness", "far_stiffness", "source"))
     kind = Support(support.choice("kind", [kind.value for kind in Support]))
     for end in ("near", "far"):
-        bearing.table(end).refuse_unknown((*(value.key for value in BEARING_VALUES), "source"))
+        bearing.table(end).refuse_unknown(("part", *(value.key for value in BEARING_VALUES), "source"))
     near = _part(bearing, "near", SupportBearing, SupportBearing.values, "bearing.near")
     far = None
     if "far" in bearing.entries:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from itertools import pairwise
 
 from feeddrive.effects.base import Effect, Parameter, Port, TransmissionEffect, Value
@@ -28,9 +29,7 @@ def read_effects(top: Table, known: Mapping[str, type[Effect]] = EFFECTS) -> tup
         if _belongs_elsewhere(name, known, top):
             continue
         label = next_label(name, effects)
-        effects.append(
-            _effect(Table(table.entries, f"{table.where} ({name})", table.origins, table.source), label, known, top)
-        )
+        effects.append(_effect(replace(table, where=f"{table.where} ({name})"), label, known, top))
     return tuple(effects)
 
 
@@ -50,7 +49,7 @@ def _effect(table: Table, label: str, catalogue: Mapping[str, type[Effect]], top
     name = table.entries["name"]
     if name not in catalogue:
         raise InputError(_unknown(name), table.where, nearest(name, catalogue))
-    effect = catalogue[name]
+    effect, table = catalogue[name], table.of_kind(name)
     keys = [parameter.key for parameter in effect.parameters]
     along = _along_stroke(effect, table, top)
     table.refuse_unknown(("name", "port", "source", *([effect.place_key] if effect.place_key else []), *keys))

@@ -63,18 +63,10 @@ def read_controller(top: Table) -> PositionVelocityController | DeclaredCascade 
     table = top.table("controller")
     if table.choice("kind", ("position_velocity", "cascade")) == "cascade":
         return DeclaredCascade({key: value for key, value in table.entries.items() if key != "kind"}, table.where)
-    table.refuse_unknown(("kind", "source", "velocity_samples", *_CONTROLLER_UNITS))
+    table = table.of_kind("position_velocity")
+    table.refuse_undeclared()
     values = {key: table.quantity(key, unit, f"controller.{key}") for key, unit in _CONTROLLER_UNITS.items()}
     for key, value in values.items():
         if value <= 0:
             raise InputError(f"{value:g} is not above zero", table.place(key), "write a positive value")
-    return PositionVelocityController(**values, velocity_samples=_velocity_samples(table))
-
-
-def _velocity_samples(table: Table) -> int:
-    samples = table.entries.get("velocity_samples", 0)
-    if isinstance(samples, bool) or not isinstance(samples, int) or not 0 <= samples <= MOST_SAMPLES:
-        raise InputError(
-            f"{samples!r} is not a number of samples", table.place("velocity_samples"), f"write 0 to {MOST_SAMPLES}"
-        )
-    return samples
+    return PositionVelocityController(**values, velocity_samples=table.whole("velocity_samples", 0, MOST_SAMPLES, 0))

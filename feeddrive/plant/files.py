@@ -73,10 +73,11 @@ from feeddrive.plant.derived_effects import WEIGHT_KEYS, derived_effects
 from feeddrive.plant.drive_sections import PART_VALUES, describes_parts
 from feeddrive.plant.effect_sections import read_effects
 from feeddrive.plant.effect_text import plant_text_with_effects
-from feeddrive.plant.entries import Origins, Table, read_toml
+from feeddrive.plant.entries import Table, read_toml
 from feeddrive.plant.equipment import read_controller, read_sensors
 from feeddrive.plant.passive_friction import refuse_active_friction
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.plant_schema import NAMED_PARTS, plant_table
 from feeddrive.plant.ratings import RATINGS, read_data
 from feeddrive.plant.stroke import read_stroke
 from feeddrive.quantity import format_quantity
@@ -104,11 +105,6 @@ _SECTIONS = (
     "nut",
     "damping",
 )
-_NESTED = ("bearing", "guide")
-_TOP_KEYS = (
-    "format", "name", "structure", "source", "description", *_SECTIONS, *_NESTED, "effect", "sensor",
-    "controller", "thermal",
-)  # fmt: skip
 
 
 def read_plant(path: Path) -> Plant:
@@ -186,10 +182,10 @@ def _top(entries: Mapping[str, Any], path: Path) -> Table:
     if declares_heat_alone(entries):
         what = "declares heat alone, and this needs a machine with masses and drives"
         raise InputError(what, where, 'name another plant, or add structure = "..." with its sections')
-    unread = Table(entries, where, Origins())
-    unread.refuse_unknown(_TOP_KEYS)
-    unread.text("description", "")
-    return Table(entries, where, unread.origins, unread.text("source", ""))
+    top = plant_table(entries, where)
+    top.refuse_undeclared()
+    top.text("description", "")
+    return top
 
 
 def _refuse_unknown_keys(top: Table) -> None:
@@ -204,6 +200,7 @@ def _refuse_unknown_keys(top: Table) -> None:
         known += [value.key for value in RATINGS.get(section, ())]
         if parts:
             known += [value.key for value in PART_VALUES.get(section, ())]
+            known += ["part"] if section in NAMED_PARTS else []
         elsewhere = {
             value.section_key: f'leave it out, or use structure = "{other.structure}"'
             for other in CHAINS.values()

@@ -13,26 +13,43 @@ seal_drag = "6 N"               # of one carriage; may be left out
 load = "500 N"                  # vertical load of one carriage; may be left out: the table's weight, shared evenly
 coefficients = "A"              # of rolling and slip: set A or B; may be left out
 smoothing_velocity = "0.5 mm/s" # may be left out
+
+or a carriage of the catalogue, whose geometry is not published (`feeddrive.parts.guide_rating`):
+
+carriage = "HGH25HA"
+carriages = 4
+preload_class = "Z0"            # may be left out: the lightest
+preload = "420 N"               # in place of that of the class
+friction_coefficient = 0.004    # as seal_drag, load and smoothing_velocity: may be left out
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from feeddrive.effects.base import Effect
 from feeddrive.effects.guide_friction import GuideFriction, guide_effect
 from feeddrive.errors import InputError
+from feeddrive.parts.catalogue.reading import CataloguePart, catalogue, nearest_names
 from feeddrive.parts.guide_coefficients import SET_A, SET_B
 from feeddrive.parts.guide_geometry import GUIDE_VALUES, HSR_20R, HSR_30R, BallGuide
+from feeddrive.parts.guide_rating import rated_friction
 from feeddrive.plant.drive_sections import placed
 from feeddrive.plant.entries import Table
-from feeddrive.quantity import format_quantity
+from feeddrive.quantity import format_quantity, parse
 
 CARRIAGES = {"HSR-20R": HSR_20R, "HSR-30R": HSR_30R}
+"""Carriages whose geometry is published, by their name."""
+
 COEFFICIENTS = {"A": SET_A, "B": SET_B}
 _GEOMETRY = tuple(value.key for value in GUIDE_VALUES)
-_OTHERS = ("carriage", "carriages", "seal_drag", "smoothing_velocity", "load", "coefficients", "source")
+_SHARED = ("carriage", "carriages", "seal_drag", "smoothing_velocity", "load", "source")
+_OF_GEOMETRY = (*_SHARED, "coefficients", *_GEOMETRY)
+_OF_RATING = (*_SHARED, "preload_class", "preload", "friction_coefficient")
+
+MOST = 1000
+"""Of carriages, and of balls in a row."""
 
 _TURNING = 5e-4  # where tanh of the guide friction turns unless it is said [m/s]
 
@@ -51,12 +68,14 @@ def guide_friction_of(top: Table, gravity: float, before: Sequence[Effect]) -> l
     if "guide" not in top.entries:
         return []
     table = top.table("guide")
-    table.refuse_unknown((*_OTHERS, *_GEOMETRY))
     if any(isinstance(effect, GuideFriction) for effect in before):
         raise InputError("guide and guide_friction are both declared", table.where, "keep one of them")
+    if "carriage" in table.entries and table.text("carriage") in _rated():
+        return [_rated_friction(top, gravity)]
+    table.refuse_unknown(_OF_GEOMETRY)
     name, guide = _carriage(table)
     coefficients = COEFFICIENTS[table.choice("coefficients", COEFFICIENTS, "A")]
-    count = _whole(table, "carriages", "carriages = 4")
+    count = table.whole("carriages", 1, MOST)
     seal = table.quantity("seal_drag", "N", "guide.seal_drag") if "seal_drag" in table.entries else 0.0
     load, turning = _load(top, gravity, count), _TURNING
     if "smoothing_velocity" in table.entries:
@@ -73,9 +92,11 @@ def _carriage(table: Table) -> tuple[str, BallGuide]:
         mend = "keep the name of a known carriage, or its geometry"
         raise InputError(f"carriage and {written[0]} are both given", table.where, mend)
     if not written:
-        name = table.choice("carriage", CARRIAGES)
+        name = table.text("carriage")
+        if name not in CARRIAGES:
+            raise InputError(f'no carriage "{name}"', table.place("carriage"), _known_carriages(name))
         return name, CARRIAGES[name]
-    balls = _whole(table, "balls_per_row", "balls_per_row = 12")
+    balls = table.whole("balls_per_row", 1, MOST)
     size = {v.key: table.quantity(v.key, v.unit, f"guide.{v.key}") for v in GUIDE_VALUES if v.key != "balls_per_row"}
     return "as written", placed(
         table.where,
@@ -86,11 +107,54 @@ def _carriage(table: Table) -> tuple[str, BallGuide]:
     )  # fmt: skip
 
 
-def _whole(table: Table, key: str, example: str) -> int:
-    count = table.entries.get(key)
-    if not isinstance(count, int) or isinstance(count, bool) or not 1 <= count <= 1000:
-        raise InputError(f"{count!r} is not a whole number above 0", table.place(key), f"write e.g. {example}")
-    return count
+def _known_carriages(name: str) -> str:
+    """The remedy for an unknown carriage: those that are near, those whose geometry is known, or a geometry."""
+    near = ", ".join(nearest_names(name, "guide"))
+    guess = f"near in the catalogue are {near}; " if near else ""
+    known = f"of {', '.join(CARRIAGES)} the geometry is known"
+    return f"{guess}{known}; or write a geometry in place of the name: {', '.join(_GEOMETRY)}"
+
+
+def _rated() -> Mapping[str, CataloguePart]:
+    """Carriages of the catalogue by their name."""
+    return {name: part for name, part in catalogue().items() if part.kind == "guide"}
+
+
+def _rated_friction(top: Table, gravity: float) -> tuple[Effect, str]:
+    """Friction of carriages of the catalogue, from load, preload and seals, and where it comes from."""
+    table = top.table("guide")
+    table.refuse_unknown(_OF_RATING)
+    part = _rated()[table.text("carriage")]
+    count = table.whole("carriages", 1, MOST)
+    drag = _or_printed(table, "seal_drag", part.sections["guide"]["seal_drag"])
+    coefficient = _or_printed(table, "friction_coefficient", part.further["friction_coefficient"])
+    load, preload = _load(top, gravity, count), _preload(table, part)
+    turning = table.quantity("smoothing_velocity") if "smoothing_velocity" in table.entries else _TURNING
+    one = placed(table.where, lambda: rated_friction(load, preload, coefficient, drag))
+    shown = f"{format_quantity(load, 'N')} and a preload of {format_quantity(preload, 'N')} each"
+    origin = f"computed from {count} carriages {part.name} under {shown}; {part.source}"
+    return GuideFriction.of(coulomb=count * one, smoothing_velocity=turning), origin
+
+
+def _preload(table: Table, part: CataloguePart) -> float:
+    """Of one carriage [N]: written, or that of its class."""
+    if "preload" in table.entries:
+        return table.quantity("preload", "N", "guide.preload")
+    shares = part.further["preload_share"]
+    name = table.text("preload_class", next(iter(shares)))
+    if name not in shares:
+        raise InputError(f'no class "{name}"', table.place("preload_class"), f"write one of {', '.join(shares)}")
+    if "dynamic_rating" not in part.further:
+        what = f"of {part.name} the catalogue's dynamic rating is not known, of which a preload class is a share"
+        raise InputError(what, table.place("preload"), 'write the preload of one carriage, such as preload = "400 N"')
+    return float(shares[name] * parse(part.further["dynamic_rating"], "N", part.name))
+
+
+def _or_printed(table: Table, key: str, printed: object) -> float:
+    """A value that is written, or that of the catalogue."""
+    if key in table.entries:
+        return table.quantity(key, "", f"guide.{key}")
+    return parse(printed, "1" if key == "friction_coefficient" else "N", key)
 
 
 def _load(top: Table, gravity: float, count: int) -> float:

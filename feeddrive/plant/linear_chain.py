@@ -60,6 +60,7 @@ class ChainValue:
         written: key in that section, where it is not the key without the section's name before it.
         usual: range in which it is usual [unit], outside of which a slip of the unit is likely; None for that of its
             unit.
+        meaning: in a few words, for the reference of plant files and for errors.
     """
 
     key: str
@@ -68,6 +69,7 @@ class ChainValue:
     may_be_zero: bool = False
     written: str = ""
     usual: tuple[float, float] | None = None
+    meaning: str = ""
 
     @property
     def section_key(self) -> str:

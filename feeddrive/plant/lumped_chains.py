@@ -37,10 +37,24 @@ class Rigid(Chain):
 
     structure = "rigid"
     required = (
-        ChainValue("lead", "ball_screw", "m", usual=(5e-4, 0.2)),
-        ChainValue("motor_inertia", "motor", "kg m^2", may_be_zero=True, usual=(1e-8, 10.0)),
-        ChainValue("screw_inertia", "ball_screw", "kg m^2", may_be_zero=True, usual=(1e-8, 10.0)),
-        ChainValue("table_mass", "table", "kg", usual=(0.2, 1e5)),
+        ChainValue("lead", "ball_screw", "m", usual=(5e-4, 0.2), meaning="table travel per turn of the screw"),
+        ChainValue(
+            "motor_inertia",
+            "motor",
+            "kg m^2",
+            may_be_zero=True,
+            usual=(1e-8, 10.0),
+            meaning="inertia at the motor: rotor and coupling",
+        ),
+        ChainValue(
+            "screw_inertia",
+            "ball_screw",
+            "kg m^2",
+            may_be_zero=True,
+            usual=(1e-8, 10.0),
+            meaning="inertia that turns with the screw",
+        ),
+        ChainValue("table_mass", "table", "kg", usual=(0.2, 1e5), meaning="mass that moves with the table"),
     )
 
     @property
@@ -70,17 +84,45 @@ class ThreeInertias(Chain):
 
     structure = "three_inertias"
     required = (
-        ChainValue("lead", "ball_screw", "m", usual=(5e-4, 0.2)),
-        ChainValue("motor_inertia", "motor", "kg m^2", usual=(1e-8, 10.0)),
-        ChainValue("screw_inertia", "ball_screw", "kg m^2", usual=(1e-8, 10.0)),
-        ChainValue("torsional_stiffness", "transmission", "N m/rad", usual=(1.0, 1e8)),
-        ChainValue("torsional_damping", "transmission", "N m s/rad", may_be_zero=True),
-        ChainValue("axial_stiffness", "transmission", "N/m", usual=(1e5, 1e11)),
-        ChainValue("axial_damping", "transmission", "N s/m", may_be_zero=True),
-        ChainValue("table_mass", "table", "kg", usual=(0.2, 1e5)),
+        ChainValue("lead", "ball_screw", "m", usual=(5e-4, 0.2), meaning="table travel per turn of the screw"),
+        ChainValue(
+            "motor_inertia", "motor", "kg m^2", usual=(1e-8, 10.0), meaning="inertia at the motor: rotor and coupling"
+        ),
+        ChainValue(
+            "screw_inertia", "ball_screw", "kg m^2", usual=(1e-8, 10.0), meaning="inertia that turns with the screw"
+        ),
+        ChainValue(
+            "torsional_stiffness",
+            "transmission",
+            "N m/rad",
+            usual=(1.0, 1e8),
+            meaning="torsional stiffness from motor to nut, at the screw",
+        ),
+        ChainValue(
+            "torsional_damping",
+            "transmission",
+            "N m s/rad",
+            may_be_zero=True,
+            meaning="damping beside the torsional stiffness",
+        ),
+        ChainValue(
+            "axial_stiffness",
+            "transmission",
+            "N/m",
+            usual=(1e5, 1e11),
+            meaning="axial stiffness of bearing, screw and nut in series",
+        ),
+        ChainValue(
+            "axial_damping", "transmission", "N s/m", may_be_zero=True, meaning="damping beside the axial stiffness"
+        ),
+        ChainValue("table_mass", "table", "kg", usual=(0.2, 1e5), meaning="mass that moves with the table"),
     )
 
-    optional = (ChainValue("ratio", "transmission", "1"),)
+    optional = (
+        ChainValue(
+            "ratio", "transmission", "1", meaning="turns of the motor per turn of the screw; 1 where it is direct"
+        ),
+    )
 
     @property
     def coordinates(self) -> tuple[str, ...]:

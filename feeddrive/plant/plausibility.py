@@ -32,6 +32,7 @@ class Sense(Enum):
 
     AT_MOST = "≤"
     AT_LEAST = "≥"
+    EQUAL = "="
 
 
 class Verdict(Enum):

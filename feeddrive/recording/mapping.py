@@ -43,6 +43,7 @@ from feeddrive.quantity import Conversion, parse, split_quantity, unit_conversio
 from feeddrive.recording.channels import channel_unit
 from feeddrive.recording.csv_file import Layout
 from feeddrive.recording.opening import opened
+from feeddrive.schema.mapping import MAPPING
 
 FORMAT = "feeddrive-map/1"
 LONGEST = 1_000_000
@@ -51,9 +52,9 @@ LONGEST = 1_000_000
 LONGEST_LINE = 2000
 """Letters of a line at most; the time that a key takes to read grows with the square of its dots."""
 
-_TOP_KEYS = ("format", "sample_time", "time", "channels", "file", "description", "rate", "part")
-_VARIABLE_KEYS = ("variable", "unit", "factor", "offset", "hold", "column")
-_FILE_KEYS = ("header_row", "first_row", "separator", "decimal")
+_TOP_KEYS = MAPPING.names()
+_VARIABLE_KEYS = MAPPING.sections["time"].names()
+_FILE_KEYS = MAPPING.sections["file"].names()
 
 
 class Hold(Enum):

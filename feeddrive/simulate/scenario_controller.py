@@ -41,6 +41,7 @@ from feeddrive.errors import InputError
 from feeddrive.plant.entries import Table
 from feeddrive.plant.moving_inertia import inertia_at_motor
 from feeddrive.plant.plant import Plant
+from feeddrive.schema.controller import CONTROLLER
 from feeddrive.servo.cascade import Cascade, Feedback, FeedForward, divider
 from feeddrive.servo.cascade_function import velocity_loop_of
 from feeddrive.servo.filters import Filter, biquad, notch, pt1, pt2
@@ -48,12 +49,6 @@ from feeddrive.servo.vendor_names import with_own_names
 from feeddrive.simulate.scenario_values import boolean, optional, positive
 
 FORMAT = "feeddrive-controller/1"
-_KEYS = (
-    "format", "name", "source", "velocity_rate", "position_rate", "position_gain", "velocity_gain", "reset_time",
-    "tracking_time", "position_feedback", "current_bandwidth", "dead_time", "torque_limit", "current_limit",
-    "torque_constant", "speed_limit", "balancing_time", "torque_offset", "mode", "allow_unstable", "feed_forward",
-    "filter",
-)  # fmt: skip
 _MODES = ("position", "velocity", "torque")
 _FORWARD_UNITS = {
     "speed": "1", "torque": "1", "inertia": "kg m^2", "coulomb": "N m", "smoothing_speed": "rad/s",
@@ -77,8 +72,11 @@ def read_cascade(written: Table, plant: Plant) -> tuple[Cascade, bool]:
     Raises:
         InputError: unknown key, a value missing or impossible, rates that are no integer multiples.
     """
-    table = Table(with_own_names(dict(written.entries), written.where), written.where, written.origins, written.source)
-    table.refuse_unknown(_KEYS)
+    entries = with_own_names(dict(written.entries), written.where)
+    table = Table(entries, written.where, written.origins, written.source, CONTROLLER)
+    table.refuse_undeclared()
+    for key in ("format", "name", "source"):
+        table.text(key, "")
     fast, slow = positive(table, "velocity_rate", "Hz"), positive(table, "position_rate", "Hz")
     reset = optional(table, "reset_time", "s", math.inf)
     bandwidth = positive(table, "current_bandwidth", "Hz") if "current_bandwidth" in table.entries else math.inf
@@ -133,7 +131,7 @@ def _torque_limit(table: Table, plant: Plant) -> float:
 
 def _feed_forward(table: Table, plant: Plant) -> FeedForward:
     inner = table.table("feed_forward")
-    inner.refuse_unknown(_FORWARD_UNITS)
+    inner.refuse_undeclared()
     values = {key: inner.quantity(key, unit, key) for key, unit in _FORWARD_UNITS.items() if key in inner.entries}
     for key, value in values.items():
         if value < 0:
@@ -147,7 +145,8 @@ def _filters(table: Table, place: str) -> tuple[Filter, ...]:
     for inner in table.tables("filter"):
         kind = inner.choice("kind", _FILTERS)
         make, units = _FILTERS[kind]
-        inner.refuse_unknown(("at", "kind", *units))
+        inner = inner.of_kind(kind)
+        inner.refuse_undeclared()
         if inner.choice("at", ("torque", "speed"), "torque") == place:
             found.append(make(**{key: inner.quantity(key, unit, key) for key, unit in units.items()}))
     return tuple(found)

@@ -52,7 +52,8 @@ def read_evaluations(tables: list[Table]) -> tuple[Evaluation, ...]:
 def _evaluation(table: Table) -> Evaluation:
     kind = table.choice("kind", KINDS)
     keys = KINDS[kind]
-    table.refuse_unknown(("kind", *keys))
+    table = table.of_kind(kind)
+    table.refuse_undeclared()
     settings: dict[str, float | str] = {}
     for key, unit in keys.items():
         if key not in table.entries and (kind, key) in _MAY_BE_LEFT_OUT:

@@ -32,10 +32,12 @@ from feeddrive import __version__
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant
 from feeddrive.plant.effect_sections import read_effects
-from feeddrive.plant.entries import Origins, Table, read_toml
+from feeddrive.plant.entries import Table, read_toml, whole_file
 from feeddrive.plant.passive_friction import refuse_active_friction
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.plant_schema import EFFECT
 from feeddrive.recording.channels import channel_unit
+from feeddrive.schema.scenario import scenario
 from feeddrive.servo.cascade import Cascade, divider
 from feeddrive.servo.linear_loop import refuse_unstable
 from feeddrive.servo.vendor_names import with_own_names
@@ -44,16 +46,15 @@ from feeddrive.simulate.scenario import Recorder, Scenario
 from feeddrive.simulate.scenario_controller import read_cascade
 from feeddrive.simulate.scenario_evaluations import read_evaluations
 from feeddrive.simulate.scenario_motion import read_excitation, read_forces, read_trajectory
-from feeddrive.simulate.scenario_overrides import with_overrides
+from feeddrive.simulate.scenario_overrides import with_absolute_paths, with_overrides
 from feeddrive.simulate.scenario_values import boolean, positive, quantities, texts, whole
 from feeddrive.simulate.trajectories import refuse_beyond_travel
 from feeddrive.thermal.whole_file import drive_plant
 
 FORMAT = "feeddrive-scenario/1"
-_KEYS = (
-    "format", "name", "description", "source", "plant", "controller", "travel", "run", "record", "trajectory",
-    "excitation", "force", "effect", "evaluate",
-)  # fmt: skip
+SCENARIO = scenario(EFFECT)
+"""What may stand in a scenario file."""
+
 CHANNELS = (
     "setpoint", "motor_torque", "motor_angle", "motor_speed", "table_position", "table_velocity", "cutting_force",
 )  # fmt: skip
@@ -87,7 +88,7 @@ def read_scenario(
     Args:
         path: of the file.
         overrides: dotted key to text, put in place of what the file says; "plant.table.mass" and the like lead into
-            the plant file.
+            the plant file. Paths among them count from the current folder, those in the file from its folder.
         given: plant in place of the one that the file names.
         controller: entries in place of those of the file.
 
@@ -101,7 +102,7 @@ def read_scenario(
         raise InputError(
             "is not a scenario file of this version", where, f'write format = "{FORMAT}" in its first line'
         )
-    wanted = dict(overrides or {})
+    wanted = with_absolute_paths(overrides or {})
     of_plant = {key.removeprefix("plant."): wanted.pop(key) for key in list(wanted) if key.startswith("plant.")}
     if "controller" in wanted:
         entries["controller"] = wanted.pop("controller")
@@ -109,8 +110,8 @@ def read_scenario(
         entries["controller"] = dict(controller)
     controller_where = insert_controller(entries, path)
     entries = with_overrides(entries, _own_keys(wanted))
-    top = Table(entries, where, Origins())
-    top.refuse_unknown(_KEYS)
+    top = whole_file(entries, where, SCENARIO)
+    top.refuse_undeclared()
     if given is None:
         plant_path = _plant_path(top, path.parent)
         given = GivenPlant(_plant(plant_path, of_plant), plant_path.read_bytes())
@@ -160,7 +161,7 @@ def _plant(path: Path, overrides: Mapping[str, str]) -> Plant:
 
 def _ticks(top: Table, cascade: Cascade, trajectory: float) -> int:
     run = top.table("run")
-    run.refuse_unknown(("duration",))
+    run.refuse_undeclared()
     duration = positive(run, "duration", "s") if "duration" in run.entries else trajectory
     ticks = math.ceil(duration / cascade.sample_time - 1e-6)
     if not 2 <= ticks <= _LONGEST:
@@ -178,7 +179,7 @@ def _travel(top: Table) -> tuple[float, float]:
 
 def _recorder(top: Table, cascade: Cascade) -> Recorder:
     table = top.table("record")
-    table.refuse_unknown(("rate", "channels", "noise", "quantised", "seed", "source"))
+    table.refuse_undeclared()
     ticks = cascade.position_divider
     if "rate" in table.entries:
         ticks = divider(1 / cascade.sample_time, positive(table, "rate", "Hz"), table.place("rate"))

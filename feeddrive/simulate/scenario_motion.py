@@ -54,9 +54,6 @@ MOST_REPEATS = 10_000
 MOST_TEETH = 1000
 """Of a cutter; the largest face mills have some hundred."""
 
-_LIMITS = ("velocity", "acceleration", "jerk")
-_WAVEFORM_KEYS = ("waveform", "low", "high", "duration", "period", "periods", "lines", "bit", "order")
-
 
 def read_trajectory(table: Table) -> Trajectory:
     """The trajectory of a table [trajectory].
@@ -65,9 +62,9 @@ def read_trajectory(table: Table) -> Trajectory:
         InputError: unknown kind or key, values missing or impossible.
     """
     kind = table.choice("kind", _TRAJECTORIES)
-    keys, read = _TRAJECTORIES[kind]
-    table.refuse_unknown(("kind", "source", *keys))
-    return read(table)
+    table = table.of_kind(kind)
+    table.refuse_undeclared()
+    return _TRAJECTORIES[kind](table)
 
 
 def read_excitation(table: Table) -> Excitation:
@@ -76,7 +73,7 @@ def read_excitation(table: Table) -> Excitation:
     Raises:
         InputError: as `read_trajectory`.
     """
-    table.refuse_unknown(("at", "amplitude", "start", "source", *_WAVEFORM_KEYS))
+    table.refuse_undeclared()
     place = Place(table.choice("at", [str(place) for place in Place]))
     unit = {Place.SPEED: "rad/s", Place.TORQUE: "N m"}[place]
     return Excitation(place, positive(table, "amplitude", unit), _waveform(table), optional(table, "start", "s", 0.0))
@@ -90,9 +87,10 @@ def read_forces(tables: list[Table], folder: Path) -> Force:
     """
     found: list[Force] = []
     for table in tables:
-        keys, read = _FORCES[table.choice("kind", _FORCES)]
-        table.refuse_unknown(("kind", "source", *keys))
-        found.append(read(table, folder))
+        kind = table.choice("kind", _FORCES)
+        table = table.of_kind(kind)
+        table.refuse_undeclared()
+        found.append(_FORCES[kind](table, folder))
     return SumOfForces(tuple(found)) if found else NoForce()
 
 
@@ -168,15 +166,15 @@ def _waveform(table: Table) -> Waveform:
     return Multisine(low, high, positive(table, "period", "s"), whole(table, "periods", 1), whole(table, "lines", 0))
 
 
-_TRAJECTORIES: dict[str, tuple[tuple[str, ...], Callable[[Table], Trajectory]]] = {
-    "hold": (("position", "duration"), _hold),
-    "moves": (("start", "targets", *_LIMITS, "dwell", "repeat"), _moves),
-    "staircase": (("targets", "runs", "overrun", *_LIMITS, "dwell"), _staircase),
-    "position_step": (("start", "height", "at", "duration"), _position_step),
-    "velocity_steps": (("start", "velocities", "durations"), _velocity_steps),
-    "circle": (("centre", "radius", "turns", *_LIMITS, "dwell"), _circle),
-    "sine": (("centre", "amplitude", "frequency", "duration", "fade"), _sine),
-    "wave": (("start", "offset_velocity", "amplitude", *_WAVEFORM_KEYS), _wave),
+_TRAJECTORIES: dict[str, Callable[[Table], Trajectory]] = {
+    "hold": _hold,
+    "moves": _moves,
+    "staircase": _staircase,
+    "position_step": _position_step,
+    "velocity_steps": _velocity_steps,
+    "circle": _circle,
+    "sine": _sine,
+    "wave": _wave,
 }
 
 
@@ -212,11 +210,10 @@ def _milling(table: Table, _: Path) -> Force:
     )  # fmt: skip
 
 
-_FORCES: dict[str, tuple[tuple[str, ...], Callable[[Table, Path], Force]]] = {
-    "step": (("force", "start", "end"), _step_force),
-    "triangle": (("amplitude", "period", "cycles", "start"), _triangle_force),
-    "sine": (("amplitude", "frequency", "mean", "start"), _sine_force),
-    "file": (("path",), _recorded_force),
-    "milling": (("teeth", "spindle_speed", "depth", "feed_per_tooth", "tangential", "radial", "entry", "exit", "start",
-                 "end"), _milling),
-}  # fmt: skip
+_FORCES: dict[str, Callable[[Table, Path], Force]] = {
+    "step": _step_force,
+    "triangle": _triangle_force,
+    "sine": _sine_force,
+    "file": _recorded_force,
+    "milling": _milling,
+}

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import copy
+import re
 import tomllib
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 from feeddrive.errors import InputError
+from feeddrive.files import find_plant
 from feeddrive.plant.entries import refuse_deep
 
 
@@ -26,6 +29,30 @@ def parse_overrides(texts: list[str]) -> dict[str, str]:
             raise InputError(f"{key} is set twice", "--set", "keep one of them")
         found[key] = value
     return found
+
+
+_FILES = re.compile(r"plant|controller|force\.[^.]+\.path")
+"""Keys of a scenario that name a file."""
+
+
+def with_absolute_paths(overrides: Mapping[str, str]) -> dict[str, str]:
+    """The overrides of a scenario with every path absolute: what is typed counts from the current folder.
+
+    What the file itself says counts from the folder of the file.
+
+    Raises:
+        InputError: a plant that is neither a file nor a shipped one.
+    """
+    return {key: _absolute(key, text) if _FILES.fullmatch(key) else text for key, text in overrides.items()}
+
+
+def _absolute(key: str, text: str) -> str:
+    if key != "plant":
+        return str(Path(text).absolute())
+    try:
+        return str(find_plant(text).absolute())
+    except InputError as error:
+        raise InputError(error.what, f"--set {key}={text}", f"{error.mend}; paths count from {Path.cwd()}") from None
 
 
 def with_overrides(entries: Mapping[str, Any], overrides: Mapping[str, str]) -> dict[str, Any]:

@@ -24,7 +24,8 @@ from typing import Any
 
 from feeddrive.errors import InputError
 from feeddrive.parts.lubricant import Lubricant
-from feeddrive.plant.entries import Origins, Table, read_toml
+from feeddrive.plant.entries import Table, read_toml
+from feeddrive.plant.plant_schema import plant_table
 from feeddrive.thermal.coupling import Coupling
 from feeddrive.thermal.nut_preload import Spacer
 
@@ -41,7 +42,7 @@ def read_coupling(path: Path) -> Coupling:
     Raises:
         InputError: no such file or section, unknown key, a value that is missing, without unit or impossible.
     """
-    return coupling(Table(read_toml(path, "plant file"), str(path), Origins()))
+    return coupling(plant_table(read_toml(path, "plant file"), str(path)))
 
 
 def coupling(top: Table) -> Coupling:

@@ -57,8 +57,9 @@ from feeddrive.effects.catalogue import THERMAL_EFFECTS
 from feeddrive.effects.thermal.base import ThermalEffect
 from feeddrive.errors import InputError
 from feeddrive.plant.effect_sections import read_effects
-from feeddrive.plant.entries import Origins, Table, read_toml
+from feeddrive.plant.entries import Table, read_toml
 from feeddrive.plant.files import FORMAT, declares_heat_alone
+from feeddrive.plant.plant_schema import plant_table
 from feeddrive.thermal.films import Films
 from feeddrive.thermal.friction import Friction
 from feeddrive.thermal.plant import ThermalPlant
@@ -94,8 +95,8 @@ def read_thermal_plant(path: Path) -> ThermalPlant:
             "is not a plant file of this version", str(path), f'write format = "{FORMAT}" in its first line'
         )
     if declares_heat_alone(entries):
-        Table(entries, str(path), Origins()).refuse_unknown(_TOP_OF_HEAT_ALONE)
-    return thermal_plant(Table(entries, str(path), Origins(), str(entries.get("source", ""))), path.stem)
+        plant_table(entries, str(path)).refuse_unknown(_TOP_OF_HEAT_ALONE)
+    return thermal_plant(plant_table(entries, str(path)), path.stem)
 
 
 def thermal_plant(top: Table, name: str) -> ThermalPlant:

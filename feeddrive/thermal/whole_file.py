@@ -6,9 +6,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from feeddrive.plant.entries import Origins, Table, read_toml
+from feeddrive.plant.entries import read_toml
 from feeddrive.plant.files import declares_heat_alone, plant_from_entries, read_plant
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.plant_schema import plant_table
 from feeddrive.thermal.coupling_section import coupling
 from feeddrive.thermal.files import SECTION, read_thermal_plant, thermal_plant
 from feeddrive.thermal.plant import ThermalPlant
@@ -64,7 +65,7 @@ def _refuse_bad_heat(entries: Mapping[str, Any], path: Path) -> None:
     """Refuse what the thermal section and its coupling to the drive cannot be made of."""
     if SECTION not in entries:
         return
-    top = Table(entries, str(path), Origins())
+    top = plant_table(entries, str(path))
     thermal_plant(top, path.stem)
     if "coupling" in top.table(SECTION).entries:
         coupling(top)

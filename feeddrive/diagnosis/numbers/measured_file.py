@@ -26,9 +26,10 @@ from typing import Any
 
 from feeddrive.diagnosis.numbers.measurable import FREE, HELD, MEASURABLE, Measurable, Setting
 from feeddrive.errors import InputError
-from feeddrive.plant.entries import Origins, Table, read_toml
+from feeddrive.plant.entries import Table, read_toml, whole_file
 from feeddrive.plant.plant import Plant
 from feeddrive.quantity import format_quantity, parse
+from feeddrive.schema.measured import MEASURED
 
 FORMAT = "feeddrive-measured/1"
 _KEYS = ("quantity", "value", "at", "tolerance", "source")
@@ -85,8 +86,10 @@ def read_measured_numbers(path: Path, plant: Plant) -> tuple[MeasuredNumber, ...
             positive, a position off the stroke.
     """
     entries = read_toml(path, "file of measured numbers")
-    top = Table(entries, str(path), Origins())
-    top.refuse_unknown(("format", "name", "description", "source", "measured"))
+    top = whole_file(entries, str(path), MEASURED)
+    top.refuse_undeclared()
+    for key in ("name", "description"):
+        top.text(key, "")
     if "format" in entries and entries["format"] != FORMAT:
         raise InputError("is no file of measured numbers of this version", str(path), f'write format = "{FORMAT}"')
     tables = top.tables("measured")
