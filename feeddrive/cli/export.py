@@ -14,6 +14,7 @@ from feeddrive.export.notes import included, left_out, linear_notes
 from feeddrive.export.point import Point, export_point
 from feeddrive.export.writing import Form, write_export
 from feeddrive.files import find_plant
+from feeddrive.interface.axis import load
 from feeddrive.output_folder import output_folder, refuse_unusable
 from feeddrive.plant.plant import Plant
 from feeddrive.quantity import format_quantity
@@ -32,6 +33,9 @@ def command(
             help='Table position and velocity, "x=200 mm,v=3 m/min"; without x the middle of the stroke.',
         ),
     ] = "",
+    heat: Annotated[
+        bool, typer.Option("--heat", help="Temperatures and growth in place of the motion: ss, casadi, c, fmu.")
+    ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print files, point and notes as JSON.")] = False,
 ) -> None:
     """Write a machine in the form of another tool; NAME is that of the machine.
@@ -48,11 +52,22 @@ def command(
       c       NAME.h, .c   cc -ffp-contract=off NAME.c NAME_selftest.c -lm && ./a.out
       fmu     NAME.fmu     fmpy.simulate_fmu("NAME.fmu", start_values={"motor_torque": 1.5})
 
+    With --heat, or from a file that declares heat alone, the same forms but mat and json hold the heat of the machine:
+    inputs are the speed of the screw and the temperature of the air.
+
     All in SI units. CasADi loads files of its own version or an older one. The FMU is FMI 2.0 for model exchange, with
     sources; its binary is for this platform.
     """
     refuse_unusable(out)
     with warnings_as_lines():
+        axis = load(plant)
+        if heat or not axis.has_motion:
+            with output_folder(out) as folder:
+                paths = [path for form in dict.fromkeys(to) for path in axis.export(form, folder, at, heat=True)]
+            paths = [out / path.name for path in paths]
+            content = {"format": "feeddrive-exported/1", "plant": axis.name, "files": [str(path) for path in paths]}
+            deliver(content, [f"{path}: heat of {axis.name}" for path in paths], as_json, None)
+            return
         machine = read_drive_plant(find_plant(plant))
         point = export_point(machine, at)
         with output_folder(out) as folder:

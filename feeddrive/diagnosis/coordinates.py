@@ -280,6 +280,15 @@ def write_coordinates(effects: Sequence[Effect], plant: Machine, vector: FloatAr
     return result
 
 
+def numbers(effect: Effect) -> list[str]:
+    """Names of the numbers of an effect's values, tables `key[i]`, in the order of `value_slopes`."""
+    return [
+        name
+        for key, value in effect.values.items()
+        for name in ([f"{key}[{i}]" for i in range(len(value))] if isinstance(value, tuple) else [key])
+    ]
+
+
 def value_slopes(effects: Sequence[Effect], plant: Machine, vector: FloatArray) -> FloatArray:
     """Exact slope of every number of the effects' values with the coordinates, shape (numbers, k)."""
     step = 1e-6

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from feeddrive.diagnosis.coordinates import coordinate_ends, read_coordinates, write_coordinates
+from feeddrive.diagnosis.coordinates import coordinate_ends, numbers, read_coordinates, value_slopes, write_coordinates
 from feeddrive.diagnosis.evidence import Evidence
 from feeddrive.diagnosis.predictor import Machine, Predictor
 from feeddrive.effects.base import Effect
@@ -112,6 +112,8 @@ class Problem:
         """Slope of the prediction with the coordinates of the free effects."""
         moved = [effect for effect, is_free in zip(effects, free, strict=True) if is_free]
         vector = read_coordinates(moved, self.plant)
+        if moved and (exact := self._exact_jacobian(effects, moved, vector)) is not None:
+            return exact
         _, high = coordinate_ends(moved, self.plant)
         columns = []
         for i in range(len(vector)):
@@ -120,6 +122,23 @@ class Problem:
             changed = _placed(effects, free, write_coordinates(moved, self.plant, vector + step))
             columns.append((self.predicted(changed) - base) / step[i])
         return np.column_stack(columns) if columns else np.zeros((len(base), 0))
+
+    def _exact_jacobian(
+        self, effects: Sequence[Effect], moved: Sequence[Effect], vector: FloatArray
+    ) -> FloatArray | None:
+        """The slope by the predictor's own sensitivities, where it has them; the moved effects come last."""
+        plant = self.plant.with_effects(*effects)
+        labelled = plant.effects[len(plant.effects) - len(moved) :]
+        names = [f"{to.label}.{name}" for to, effect in zip(labelled, moved, strict=True) for name in numbers(effect)]
+        columns = []
+        for e in self.evidence:
+            found = self.predictor.slopes(plant, e, names)
+            if found is None:
+                return None
+            rows = e.thinned(e.fit_rows)
+            parts = [e.weighted({c: s[:, i] for c, s in found.items()}, rows) for i in range(len(names))]
+            columns.append(np.column_stack(parts))
+        return np.asarray(np.vstack(columns) @ value_slopes(moved, self.plant, vector))
 
 
 def fit(

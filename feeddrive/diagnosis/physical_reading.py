@@ -5,10 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 
-import numpy as np
-
 from feeddrive.effects.base import Effect, Value
-from feeddrive.effects.thermal.bearing_heat import reference_heat
 
 
 def physical_reading(effect: Effect) -> str:
@@ -233,10 +230,12 @@ def _motor_heat(v: Mapping[str, Value]) -> str:
 
 
 def _bearing_heat(v: Mapping[str, Value]) -> str:
-    fast = np.array([750 * math.pi / 30])
-    heat = _one(v["factor"]) * float(reference_heat(fast)[0])
-    rear = heat * _one(v["rear_share"])
-    return f"The bearings rub: {heat:.2g} W at the front and {rear:.2g} W at the rear at 750 rev/min."
+    front, share = _one(v["factor"]), _one(v["rear_share"])
+    return (
+        f"The bearings rub: {front:.2g} times the heat that the plant declares for its front bearing comes on top of "
+        f"it at the front and {front * share:.2g} times at the rear. A plant that declares none is counted by a small "
+        "bearing in an oil bath, 0.31 W at 750 rev/min."
+    )
 
 
 def _structure_growth(v: Mapping[str, Value]) -> str:

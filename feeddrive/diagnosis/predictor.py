@@ -30,6 +30,10 @@ class Machine(Protocol):
     def name(self) -> str:
         """What it is called."""
 
+    @property
+    def effects(self) -> tuple[Effect, ...]:
+        """What it holds, labelled; those added come last."""
+
     def with_effects(self, *effects: Effect) -> Machine:
         """The machine with further effects."""
 
@@ -58,6 +62,13 @@ class Predictor(ABC, Generic[M, E]):
     @abstractmethod
     def predict(self, plant: M, evidence: E) -> dict[str, FloatArray]:
         """Channel to its prediction, as it is compared, (n,), SI; not finite where it cannot be simulated."""
+
+    def slopes(self, plant: M, evidence: E, numbers: Sequence[str]) -> dict[str, FloatArray] | None:
+        """Channel to the exact slopes of its prediction, (n, k), with numbers of effects, (k,), as `label.key[i]`.
+
+        None where slopes are taken by differences of predictions.
+        """
+        return None
 
     @abstractmethod
     def scene(self, problem: Problem, found: Sequence[Effect]) -> Scene:

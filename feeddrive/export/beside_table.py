@@ -30,8 +30,13 @@ BESIDE = "beside_table"
 
 @SYMBOLS.taken()
 def beside_table(model: Model) -> Model:
-    """The model with its states, their start and its equations beside the table; results and parameters as they are."""
+    """The model with its states, their start and its equations beside the table; results and parameters as they are.
+
+    A heat network has no table, and stays as it is.
+    """
     plant = model.plant
+    if plant is None:
+        return model
     n = len(plant.chain.coordinates)
     symbols = parameter_symbols(plant)
     rigid = plant.chain.rigid_motion(chain_symbols(plant, symbols))

@@ -87,6 +87,8 @@ def _points(model: Model) -> tuple[FloatArray, FloatArray, FloatArray, FloatArra
     """Times, states, inputs and parameters about the start, a row for each point; the first has the defaults."""
     random = np.random.default_rng(_SEED)
     plant = model.plant
+    if plant is None:
+        return _heat_points(model, random)
     motion = np.array(plant.chain.rigid_motion(plant.chain_values()), dtype=float)
     n, start = len(motion), np.array([row.value for row in model.states])
     scale = np.where(motion == 0, 1.0, motion)
@@ -103,6 +105,17 @@ def _points(model: Model) -> tuple[FloatArray, FloatArray, FloatArray, FloatArra
     parameters = values * (1 + about(_VARIED, POINTS, len(values)))
     parameters[0] = values
     return np.linspace(0.0, 100.0, POINTS), states, inputs, parameters
+
+
+def _heat_points(model: Model, random: np.random.Generator) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Points of a heat network: some kelvin about the start, speeds of both signs and rest, an hour's times."""
+    states = np.array(model.nominal) * random.uniform(-1, 1, (POINTS, len(model.states)))
+    inputs = np.array([row.value for row in model.inputs]) + random.uniform(-1, 1, (POINTS, 2)) * (100.0, 5.0)
+    inputs[0, 0] = 0.0
+    values = np.array([row.value for row in model.parameters])
+    parameters = values * (1 + _VARIED * random.uniform(-1, 1, (POINTS, len(values))))
+    parameters[0] = values
+    return np.linspace(0.0, 3600.0, POINTS), states, inputs, parameters
 
 
 def _evaluated(function: ca.Function, *arguments: FloatArray) -> list[FloatArray]:

@@ -55,7 +55,7 @@ def source_text(model: Model) -> str:
     for function in functions:
         generator.add(function)
     lines = [
-        *comment((f"{model.plant.name}: see {name}.h.", f"Compile with -ffp-contract=off: {name}_selftest.c.")),
+        *comment((f"{model.name}: see {name}.h.", f"Compile with -ffp-contract=off: {name}_selftest.c.")),
         f'#include "{name}.h"',
         generator.dump(),
         *(line for group, rows in _groups(model).items() for line in _tables(name, group, rows)),

@@ -23,7 +23,6 @@ from feeddrive import __version__
 from feeddrive.errors import InputError
 from feeddrive.export.json_file import rows
 from feeddrive.export.model import Model
-from feeddrive.export.notes import included, left_out
 from feeddrive.export.quantities import Quantity
 from feeddrive.plant.symbolic_turn import SYMBOLS
 
@@ -72,11 +71,11 @@ def casadi_notes(model: Model) -> str:
         "format": "feeddrive-casadi/1",
         "version": __version__,
         "casadi": ca.CasadiMeta.version(),
-        "plant": model.plant.name,
+        "plant": model.name,
         "states": rows(model.states),
         "inputs": rows([Quantity(name, row.unit, row.value, row.name) for name, row in named]),
         "outputs": [{"name": row.name, "unit": row.unit} for row in model.outputs],
-        "notes": {"included": included(model.plant), "left_out": left_out(model.plant)},
+        "notes": dict(zip(("included", "left_out"), model.notes, strict=True)),
     }
     return json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
@@ -86,5 +85,5 @@ def _input_names(model: Model) -> list[str]:
     plain = [re.sub(r"[^A-Za-z0-9]+", "_", row.name).strip("_") for row in (*model.inputs, *model.parameters)]
     names = ["time", "x", *plain]
     if len({name.lower() for name in names}) < len(names):
-        raise InputError("two parameters have the same name", model.plant.name, "give the effects other names")
+        raise InputError("two parameters have the same name", model.name, "give the effects other names")
     return names

@@ -33,7 +33,7 @@ def description_text(model: Model, guid: str, sources: tuple[str, ...], indicato
         indicators: number of event indicators.
     """
     root = Tree.Element("fmiModelDescription", {
-        "fmiVersion": "2.0", "modelName": _one_line(model.plant.name), "guid": guid,
+        "fmiVersion": "2.0", "modelName": _one_line(model.name), "guid": guid,
         "description": " | ".join(map(_one_line, model.heading)),
         "generationTool": f"feeddrive {__version__}", "variableNamingConvention": "structured",
         "numberOfEventIndicators": str(indicators),
@@ -46,7 +46,8 @@ def description_text(model: Model, guid: str, sources: tuple[str, ...], indicato
     for name in sources:
         Tree.SubElement(files, "File", {"name": name})
     _add_units(root, model)
-    Tree.SubElement(root, "DefaultExperiment", {"startTime": "0", "stopTime": "1", "tolerance": repr(TOLERANCE)})
+    lasts = "1" if model.plant is not None else "3600"
+    Tree.SubElement(root, "DefaultExperiment", {"startTime": "0", "stopTime": lasts, "tolerance": repr(TOLERANCE)})
     _add_variables(Tree.SubElement(root, "ModelVariables"), model)
     _add_structure(Tree.SubElement(root, "ModelStructure"), model)
     Tree.indent(root)

@@ -32,31 +32,38 @@ class Model:
     """Equations with their names, units and start.
 
     Attributes:
-        plant: the machine.
+        plant: the machine; None for its heat.
+        name: of the machine.
+        subject: what the equations are of.
+        notes: what they include, and what they leave out.
+        nominal: typical size of every state of a heat network; empty for a motion (`feeddrive.export.nominals`).
         identifier: its name as a C identifier, for files and functions.
-        point: where it starts; a steady motion, or at rest.
+        point: where a motion starts; a steady motion, or at rest. Heat starts cold.
         states, inputs: with values at the start.
         outputs: in the order of y.
         parameters: with their values.
         function: (time, x, u, p) -> (xdot, y), SI columns.
     """
 
-    plant: Plant
+    plant: Plant | None
+    name: str
     identifier: str
     point: Point
+    subject: str
+    notes: tuple[tuple[str, ...], tuple[str, ...]]
     states: tuple[Quantity, ...]
     inputs: tuple[Quantity, ...]
     outputs: tuple[Quantity, ...]
     parameters: tuple[Quantity, ...]
     function: ca.Function
+    nominal: tuple[float, ...] = ()
 
     @property
     def heading(self) -> tuple[str, ...]:
         """What stands at the head of every file made of it."""
-        lines = [f"{self.plant.name}: equations of motion, made by feeddrive {__version__}. SI units.", "Included:"]
-        lines += [f"  {line}" for line in included(self.plant)]
-        lines += ["Left out:", *(f"  {line}" for line in left_out(self.plant))]
-        return tuple(lines)
+        held, lacking = self.notes
+        lines = [f"{self.name}: {self.subject}, made by feeddrive {__version__}. SI units.", "Included:"]
+        return (*lines, *(f"  {line}" for line in held), "Left out:", *(f"  {line}" for line in lacking))
 
 
 def model_of(plant: Plant, point: Point) -> Model:
@@ -72,7 +79,9 @@ def model_of(plant: Plant, point: Point) -> Model:
     refuse_outside(plant, point, plant.name)
     start = steady_motion(plant, point.starts_at, point.position)
     rows = states(plant, start.state.tolist()), inputs(start.torque), outputs(), parameters(plant)
-    return Model(plant, identifier_of(plant.name), point, *rows, timed_ode(plant))
+    notes = included(plant), left_out(plant)
+    return Model(plant, plant.name, identifier_of(plant.name), point, "equations of motion", notes, *rows,
+                 timed_ode(plant))  # fmt: skip
 
 
 @SYMBOLS.taken()

@@ -20,6 +20,8 @@ def nominals(model: Model) -> FloatArray:
     Args:
         model: as `feeddrive.export.beside_table.beside_table` makes it.
     """
+    if model.plant is None:
+        return np.array(model.nominal)
     motion = np.abs(np.array(model.plant.chain.rigid_motion(model.plant.chain_values()), dtype=float))
     turning = np.where(motion == 0, 1.0, motion)
     positions, rates = _STRETCH * turning, _STRETCH_RATE * turning

@@ -50,6 +50,18 @@ def export_point(plant: Plant, text: str = "", where: str = "--at") -> Point:
     Raises:
         InputError: unknown or repeated key, a number without unit, or a position outside the stroke or off the screw.
     """
+    written = written_point(text, where)
+    point = Point(written.get("x", plant.middle), written.get("v"))
+    refuse_outside(plant, point, where)
+    return point
+
+
+def written_point(text: str, where: str = "--at") -> dict[str, float]:
+    """What a point such as "x=200 mm,v=3 m/min" gives: x [m] and v [m/s]; either may be left out.
+
+    Raises:
+        InputError: unknown or repeated key, or a number without unit.
+    """
     written: dict[str, float] = {}
     for part in _SEPARATOR.split(text) if text.strip() else []:
         key, equals, value = (piece.strip() for piece in part.partition("="))
@@ -57,9 +69,7 @@ def export_point(plant: Plant, text: str = "", where: str = "--at") -> Point:
             what = f"{key} is given twice" if key in written else f'"{part.strip()}" is neither x=... nor v=...'
             raise InputError(what, where, _MEND)
         written[key] = parse(value, _UNITS[key], f"{where} {key}")
-    point = Point(written.get("x", plant.middle), written.get("v"))
-    refuse_outside(plant, point, where)
-    return point
+    return written
 
 
 def refuse_outside(plant: Plant, point: Point, where: str) -> None:

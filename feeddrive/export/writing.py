@@ -7,18 +7,21 @@ from enum import StrEnum
 from pathlib import Path
 
 from feeddrive.compiler import find_compiler
+from feeddrive.errors import InputError
 from feeddrive.export.c_selftest import selftest_text
 from feeddrive.export.c_source import header_text, source_text
 from feeddrive.export.casadi_file import casadi_bytes, casadi_notes
 from feeddrive.export.fmu import fmu_bytes
+from feeddrive.export.heat_model import heat_model_of, heat_python_text
 from feeddrive.export.json_file import json_text
 from feeddrive.export.linear_model import linear_model_of
 from feeddrive.export.mat_file import mat_bytes
-from feeddrive.export.model import model_of
+from feeddrive.export.model import Model, identifier_of, model_of
 from feeddrive.export.point import Point
 from feeddrive.export.python_file import python_text
 from feeddrive.files import write_bytes_atomically
 from feeddrive.plant.plant import Plant
+from feeddrive.thermal.plant import ThermalPlant
 
 
 class Form(StrEnum):
@@ -52,10 +55,34 @@ def write_export(plant: Plant, form: Form, point: Point, folder: Path) -> tuple[
     Raises:
         InputError: no steady motion at the point, or a file cannot be written.
     """
-    files = _MAKERS[form](plant, point)
+    files = _LINEAR[form](plant, point) if form.is_linear else _NONLINEAR[form](model_of(plant, point))
     for name, data in files.items():
         write_bytes_atomically(folder / name, data)
     return tuple(folder / name for name in files)
+
+
+def write_heat_export(plant: ThermalPlant, form: Form, velocity: float, folder: Path) -> tuple[Path, ...]:
+    """Write the heat of a machine in one form: a state space, CasADi, C or FMU; else as `write_export`.
+
+    Args:
+        plant: the machine.
+        form: which.
+        velocity: of the table, about which is linearised [m/s].
+        folder: where to; made if it is not there.
+
+    Raises:
+        InputError: a form that heat is not written in, or a file that cannot be written.
+    """
+    if form is Form.SS:
+        name = identifier_of(f"{plant.name} heat")
+        files = {f"{name}_ss.py": heat_python_text(plant, abs(velocity) / plant.lead).encode()}
+    elif form in _NONLINEAR:
+        files = _NONLINEAR[form](heat_model_of(plant))
+    else:
+        raise InputError(f"heat is not written as {form}", "--to", "take ss, casadi, c or fmu")
+    for file, data in files.items():
+        write_bytes_atomically(folder / file, data)
+    return tuple(folder / file for file in files)
 
 
 def _ss(plant: Plant, point: Point) -> dict[str, bytes]:
@@ -73,28 +100,19 @@ def _json(plant: Plant, point: Point) -> dict[str, bytes]:
     return {f"{model.identifier}.json": json_text(model).encode()}
 
 
-def _casadi(plant: Plant, point: Point) -> dict[str, bytes]:
-    model = model_of(plant, point)
+def _casadi(model: Model) -> dict[str, bytes]:
     name = model.identifier
     return {f"{name}.casadi": casadi_bytes(model), f"{name}_casadi.json": casadi_notes(model).encode()}
 
 
-def _c(plant: Plant, point: Point) -> dict[str, bytes]:
-    model = model_of(plant, point)
+def _c(model: Model) -> dict[str, bytes]:
     texts = {".h": header_text(model), ".c": source_text(model), "_selftest.c": selftest_text(model)}
     return {f"{model.identifier}{ending}": text.encode() for ending, text in texts.items()}
 
 
-def _fmu(plant: Plant, point: Point) -> dict[str, bytes]:
-    model = model_of(plant, point)
+def _fmu(model: Model) -> dict[str, bytes]:
     return {f"{model.identifier}.fmu": fmu_bytes(model, find_compiler())}
 
 
-_MAKERS: dict[Form, Callable[[Plant, Point], dict[str, bytes]]] = {
-    Form.SS: _ss,
-    Form.MAT: _mat,
-    Form.CASADI: _casadi,
-    Form.C: _c,
-    Form.FMU: _fmu,
-    Form.JSON: _json,
-}
+_LINEAR: dict[Form, Callable[[Plant, Point], dict[str, bytes]]] = {Form.SS: _ss, Form.MAT: _mat, Form.JSON: _json}
+_NONLINEAR: dict[Form, Callable[[Model], dict[str, bytes]]] = {Form.CASADI: _casadi, Form.C: _c, Form.FMU: _fmu}

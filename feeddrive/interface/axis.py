@@ -355,13 +355,15 @@ class Axis:
             raise InputError(f'no loop "{loop}"', "loop", nearest(loop, known))
         return Bode(self.name, open_family(self.plant, cascade, known[wanted], cases, low, high))
 
-    def export(self, form: str, folder: str | Path, at: str = "") -> tuple[Path, ...]:
+    def export(self, form: str, folder: str | Path, at: str = "", heat: bool = False) -> tuple[Path, ...]:
         """Write the axis in the form of another tool.
 
         Args:
             form: "ss", "mat", "json" (linear), "casadi", "c", "fmu" (nonlinear, with all effects).
             folder: for the files; made if it is not there.
             at: operating point.
+            heat: the heat of the machine in place of its motion: temperatures and growth from the speed of the screw;
+                without masses and drives in the file in any case. "ss", "casadi", "c" or "fmu".
 
         Returns:
             The files.
@@ -370,13 +372,28 @@ class Axis:
             InputError: an unknown form, a point off the stroke, or a folder that cannot be written.
         """
         from feeddrive.export.point import export_point
-        from feeddrive.export.writing import Form, write_export
+        from feeddrive.export.writing import Form, write_export, write_heat_export
         from feeddrive.plant.entries import nearest
 
         forms = {str(one): one for one in Form}
         if form not in forms:
             raise InputError(f'no form "{form}"', "export", nearest(form, forms))
+        if heat or not self.has_motion:
+            return write_heat_export(self.heat, forms[form], heat_velocity(self, at), Path(folder))
         return write_export(self.plant, forms[form], export_point(self.plant, at, "at"), Path(folder))
+
+
+def heat_velocity(axis: Axis, at: str) -> float:
+    """Velocity of the table about which the heat is linearised [m/s], from an operating point such as "v=3 m/min".
+
+    Raises:
+        InputError: a point that cannot be read, or that says where the table is to a machine without one.
+    """
+    from feeddrive.export.point import Point, export_point, written_point
+    from feeddrive.plant.linear import MOVING
+
+    point = export_point(axis.plant, at, "at") if axis.has_motion else Point(0.0, written_point(at, "at").get("v"))
+    return MOVING if point.velocity is None else point.velocity
 
 
 def _short(length: float) -> str:

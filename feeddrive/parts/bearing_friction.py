@@ -34,10 +34,12 @@ import warnings
 from dataclasses import dataclass
 from enum import Enum
 
+import casadi as ca
 import numpy as np
 
 from feeddrive.errors import ValidityWarning
 from feeddrive.parts.values import PartValue, check_values
+from feeddrive.typing import Expression
 
 RESTING_PRODUCT = 2000.0
 """nu n [mm^2/s rev/min] below which M_0 no longer falls with the speed."""
@@ -155,9 +157,18 @@ def viscous_torque(viscous_factor: float, viscosity: float, speed: float, mean_d
     check_values("bearing", _FACTORS, {"viscous_factor": viscous_factor})
     check_values("lubricant", _STATE[:1], {"viscosity": viscosity})
     check_values("bearing", _TURNING, {"speed": speed, "mean_diameter": mean_diameter})
-    product = 1e6 * viscosity * abs(speed) * 30.0 / math.pi
-    resting = product < RESTING_PRODUCT
-    size = _RESTING if resting else _VISCOUS * product ** (2.0 / 3.0)
+    return float(palmgren_torque(viscous_factor, viscosity, abs(speed), mean_diameter))
+
+
+def palmgren_torque(
+    viscous_factor: Expression, viscosity: Expression, speed: Expression, mean_diameter: Expression
+) -> Expression:
+    """M_0 [N m] as `viscous_torque`, unchecked, of CasADi expressions or numbers; the speed is not negative."""
+    product = 1e6 * viscosity * speed * (30.0 / math.pi)
+    # the power is taken where it acts alone: at rest its slope is infinite
+    size = ca.if_else(
+        product < RESTING_PRODUCT, _RESTING, _VISCOUS * ca.fmax(product, 0.5 * RESTING_PRODUCT) ** (2.0 / 3.0)
+    )
     return size * viscous_factor * (1e3 * mean_diameter) ** 3 * _NEWTON_MILLIMETRE
 
 

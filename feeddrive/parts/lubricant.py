@@ -23,8 +23,11 @@ import math
 import warnings
 from dataclasses import dataclass
 
+import casadi as ca
+
 from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.parts.values import PartValue, check_values
+from feeddrive.typing import Expression
 
 ISO_GRADES = (2.2, 3.2, 4.6, 6.8, 10, 15, 22, 32, 46, 68, 100, 150, 220, 320, 460, 680, 1000, 1500, 2200, 3200)
 """ISO 3448: middle of the grade's range of viscosity at 40 degC [mm^2/s]; a grade's name is this number, rounded."""
@@ -83,7 +86,8 @@ class Lubricant:
         Raises:
             InputError: at or below absolute zero, or above 500 degC.
         """
-        nu = _SQUARE_MILLIMETRE * (self._shifted(temperature) - _SHIFT)
+        _check_temperature(temperature)
+        nu = float(self.viscosity_law(temperature))
         if not LOWEST <= temperature <= HIGHEST or nu < _LEAST:
             text = f"lubricant: {nu / _SQUARE_MILLIMETRE:.3g} mm²/s at {temperature:g} °C lies outside Walther's law"
             warnings.warn(
@@ -91,13 +95,18 @@ class Lubricant:
             )
         return nu
 
+    def viscosity_law(self, temperature: Expression) -> Expression:
+        """nu [m^2/s] as `viscosity`, unchecked, of a CasADi expression or a number."""
+        return _SQUARE_MILLIMETRE * (self._shifted(temperature) - _SHIFT)
+
     def viscosity_slope(self, temperature: float) -> float:
         """d nu/dT [m^2/s/K] at a temperature [degC], negative.
 
         Raises:
             InputError: at or below absolute zero, or above 500 degC.
         """
-        shifted = self._shifted(temperature)
+        _check_temperature(temperature)
+        shifted = float(self._shifted(temperature))
         slope = -self.walther_slope * shifted * math.log(shifted) / (temperature + KELVIN)
         return _SQUARE_MILLIMETRE * slope
 
@@ -114,11 +123,10 @@ class Lubricant:
         """eta = nu rho [Pa s] at a temperature [degC]; raises and warns as `viscosity`."""
         return self.viscosity(temperature) * self.density(temperature)
 
-    def _shifted(self, temperature: float) -> float:
+    def _shifted(self, temperature: Expression) -> Expression:
         """nu + 0.7 in mm^2/s."""
-        _check_temperature(temperature)
-        fall = self.walther_slope * math.log10((temperature + KELVIN) / (40.0 + KELVIN))
-        return float(10.0 ** min(10.0 ** (_double_logarithm(self.viscosity_40) - fall), 300.0))
+        fall = self.walther_slope * ca.log10((temperature + KELVIN) / (40.0 + KELVIN))
+        return ca.exp(math.log(10.0) * ca.fmin(10.0 ** (_double_logarithm(self.viscosity_40) - fall), 300.0))
 
 
 _VALUES = (

@@ -24,6 +24,7 @@ from feeddrive.parts.preload_loss import stiffness_share, torque_share
 from feeddrive.quantity import format_quantity
 from feeddrive.thermal.nut_preload import Spacer, preload_change
 from feeddrive.thermal.rig import refuse_negative, refuse_unless, refuse_unless_positive
+from feeddrive.typing import Expression
 
 _PALMGREN = 2 / 3
 LEAST_PRELOAD = 0.05
@@ -116,26 +117,35 @@ class Coupling:
         Raises:
             InputError: the nut has lost its preload.
         """
-        # Two nuts share the load about zero, so that the whole is twice as stiff as one.
-        gained = preload_change(
-            at.nut - at.shaft, preload, self.nut_stiffness / 2, self.group_distance, pitch_diameter,
-            self.contact_angle, self.spacer, expansion,
-        )  # fmt: skip
-        share = 1 + gained / preload
+        share = 1 + self._gained(at.nut - at.shaft, preload, pitch_diameter, expansion) / preload
         if share < LEAST_PRELOAD:
             told = f"a nut {at.nut - at.shaft:.3g} K warmer than its shaft keeps {share:.0%} of its preload"
             raise InputError(told, "coupling", f"cool it, or preload it with more than {format_quantity(preload, 'N')}")
         mean = (1 - self.rear_share) * at.front + self.rear_share * at.rear
         return Changes(
-            viscous_share(self.nut_oil, at.nut, reference), viscous_share(self.bearing_oil, mean, reference),
+            _warned_share(self.nut_oil, at.nut, reference), _warned_share(self.bearing_oil, mean, reference),
             share, stiffness_share(share),
         )  # fmt: skip
 
+    def preload_slope(self, preload: float, pitch_diameter: float, expansion: float) -> float:
+        """Change of the preload's share with the difference of nut and shaft [1/K]; arguments as `changes`."""
+        small = 1e-6  # the law is linear, and so small a difference cannot loosen the nut
+        return self._gained(small, preload, pitch_diameter, expansion) / small / preload
 
-def viscous_share(oil: Lubricant, temperature: float, reference: float) -> float:
-    """T_v over that at the reference temperature [degC], at the same speed.
+    def _gained(self, difference: float, preload: float, pitch_diameter: float, expansion: float) -> float:
+        """Change of the preload [N] by a difference of nut and shaft [K]."""
+        # Two nuts share the load about zero, so that the whole is twice as stiff as one.
+        return preload_change(
+            difference, preload, self.nut_stiffness / 2, self.group_distance, pitch_diameter, self.contact_angle,
+            self.spacer, expansion,
+        )  # fmt: skip
 
-    Warns:
-        ValidityWarning: a temperature outside Walther's law.
-    """
+
+def viscous_share(oil: Lubricant, temperature: Expression, reference: Expression) -> Expression:
+    """T_v over that at the reference temperature [degC], at the same speed; expressions or numbers."""
+    return (oil.viscosity_law(temperature) / oil.viscosity_law(reference)) ** _PALMGREN
+
+
+def _warned_share(oil: Lubricant, temperature: float, reference: float) -> float:
+    """`viscous_share`, with a warning outside Walther's law."""
     return float((oil.viscosity(temperature) / oil.viscosity(reference)) ** _PALMGREN)

@@ -16,12 +16,14 @@ to 27 degC; h_n is a fit, exact to 0.005 W/(m² K) between 250 and 750 rev/min a
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
+import casadi as ca
 import numpy as np
 
 from feeddrive.thermal.rig import refuse_negative, refuse_unless_positive
-from feeddrive.typing import FloatArray
+from feeddrive.typing import Expression, FloatArray
 
 REFERENCE_SPEED = 250 * math.pi / 30
 """Speed at which films are declared: 250 rev/min [rad/s]."""
@@ -78,8 +80,28 @@ class Films:
 
     def on_screw(self, speeds: FloatArray) -> FloatArray:
         """h_s at speeds [rad/s], of the same shape [W/(m² K)]."""
-        return np.maximum(self.screw * (np.abs(speeds) / REFERENCE_SPEED) ** (2 / 3), self.screw_least)
+        return _evaluated(film_on_screw, self, speeds)
 
     def on_nut(self, speeds: FloatArray) -> FloatArray:
         """h_n at speeds [rad/s], of the same shape [W/(m² K)]."""
-        return np.asarray((self.nut_free**4 + self.nut_forced**4 * (speeds / REFERENCE_SPEED) ** 2) ** 0.25)
+        return _evaluated(film_on_nut, self, speeds)
+
+
+def film_on_screw(speed: Expression, p: Mapping[str, Expression]) -> Expression:
+    """h_s at a speed of the screw, not negative [rad/s], with the values of `Films`, [W/(m² K)]."""
+    turning = p["screw"] * (speed / REFERENCE_SPEED) ** (2 / 3)
+    # no maximum: at rest the slope of the power is infinite, and must not be multiplied by zero
+    return ca.if_else(turning > p["screw_least"], turning, p["screw_least"])
+
+
+def film_on_nut(speed: Expression, p: Mapping[str, Expression]) -> Expression:
+    """h_n, arguments as `film_on_screw`, [W/(m² K)]."""
+    return (p["nut_free"] ** 4 + p["nut_forced"] ** 4 * (speed / REFERENCE_SPEED) ** 2) ** 0.25
+
+
+def _evaluated(
+    law: Callable[[Expression, Mapping[str, Expression]], Expression], films: Films, speeds: FloatArray
+) -> FloatArray:
+    """A law at speeds of any shape."""
+    shown = law(ca.DM(np.abs(np.ravel(speeds))), vars(films))
+    return np.asarray(ca.DM(shown).full().reshape(np.shape(speeds)))

@@ -16,13 +16,15 @@ Source: paper 002, equations (15) to (26), with Harris's factor 1e-7 (N mm) that
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
+import casadi as ca
 import numpy as np
 
-from feeddrive.parts.bearing_friction import viscous_torque
+from feeddrive.parts.bearing_friction import palmgren_torque
 from feeddrive.thermal.rig import refuse_negative, refuse_unless, refuse_unless_positive
-from feeddrive.typing import FloatArray
+from feeddrive.typing import Expression, FloatArray
 
 LOAD_EXPONENT = 1.33
 """Of the preload in the load torque: 1 + y, y = 0.33."""
@@ -69,9 +71,9 @@ class Friction:
 
     def viscous_torques(self, speeds: FloatArray) -> FloatArray:
         """T_v at speeds [rad/s], of the same shape [N m]; zero at rest."""
-        distinct, which = np.unique(np.abs(speeds), return_inverse=True)
-        torques = np.array([self._viscous(float(speed)) for speed in distinct])
-        return np.asarray(torques[which].reshape(np.shape(speeds)))
+        turning = np.abs(np.asarray(speeds, dtype=float))
+        torques = ca.DM(oil_torque(ca.DM(turning.ravel()), vars(self))).full().reshape(turning.shape)
+        return np.asarray(np.where(turning > 0, torques, 0.0))
 
     def heats(self, speeds: FloatArray, load_factor: FloatArray | float = 1.0,
               viscous_factor: FloatArray | float = 1.0) -> FloatArray:  # fmt: skip
@@ -85,7 +87,14 @@ class Friction:
         torques = self.load_torque * load_factor + self.viscous_torques(speeds) * viscous_factor
         return np.asarray(self.heat_share * np.abs(speeds) * torques)
 
-    def _viscous(self, speed: float) -> float:
-        if speed == 0 or self.viscous_factor == 0:
-            return 0.0
-        return viscous_torque(self.viscous_factor, self.viscosity, speed, self.mean_diameter)
+
+def oil_torque(speed: Expression, p: Mapping[str, Expression]) -> Expression:
+    """T_v [N m] at a speed, not negative [rad/s], with the values of `Friction`; that of the slowest motion at rest."""
+    return palmgren_torque(p["viscous_factor"], p["viscosity"], speed, p["mean_diameter"])
+
+
+def torque_law(
+    speed: Expression, p: Mapping[str, Expression], load_factor: Expression = 1.0, viscous_factor: Expression = 1.0
+) -> Expression:
+    """T [N m], arguments as `oil_torque` and factors on T₁ and T_v."""
+    return p["load_torque"] * load_factor + oil_torque(speed, p) * viscous_factor

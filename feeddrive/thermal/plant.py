@@ -12,6 +12,7 @@ from feeddrive.effects.base import Effect
 from feeddrive.effects.thermal.base import ThermalEffect
 from feeddrive.errors import InputError
 from feeddrive.thermal.contact_conductance import conductance_at_preload
+from feeddrive.thermal.coupling import Coupling
 from feeddrive.thermal.films import Films
 from feeddrive.thermal.friction import LOAD_EXPONENT, Friction
 from feeddrive.thermal.full_model import FRONT, NUT, REAR, full_model
@@ -40,6 +41,7 @@ class ThermalPlant:
         cells: grid of the full model.
         bodies: attached to nut and seats.
         effects: beyond the declared films, contact and friction.
+        coupling: how friction follows the temperatures; None where it is as declared at all of them.
         sensors: channels and where they are read; those of the default names where none is declared.
         origins: source of a value, by `thermal.key` or `label.key`.
     """
@@ -58,6 +60,7 @@ class ThermalPlant:
     cells: Cells = field(default_factory=Cells)
     bodies: tuple[Body, ...] = ()
     effects: tuple[ThermalEffect, ...] = ()
+    coupling: Coupling | None = None
     sensors: tuple[HeatSensor, ...] = ()
     origins: Mapping[str, str] = field(default_factory=dict)
 
@@ -81,10 +84,14 @@ class ThermalPlant:
             labelled.append(replace(effect, label=effect.name if count == 1 else f"{effect.name}_{count}"))
         return replace(self, effects=tuple(labelled))
 
+    def without_effects(self) -> ThermalPlant:
+        """What is declared beside effects."""
+        return replace(self, effects=())
+
     @property
     def attached(self) -> tuple[Body, ...]:
         """Bodies that effects attach to the nut."""
-        held = [(effect.label, effect.attached()) for effect in self.effects]
+        held = [(effect.label, effect.attached(effect.values)) for effect in self.effects]
         return tuple(Body(label, NUT, body[1], body[0]) for label, body in held if body is not None)
 
     def full_model(self, travel: Travel | None = None) -> HeatModel:

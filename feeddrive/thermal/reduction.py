@@ -85,7 +85,7 @@ def common_basis(
     full, sizes = tuple(models), sizes or Sizes()
     inputs, outputs = sizes.of_inputs(full[0].input_names), sizes.of_outputs(full[0].readings)
     points = list(operating_points(limits))
-    rates = (1e-5, 1e-3, 3e-2)
+    rates = (1e-5, 1e-3, 3e-2, 1.0)  # [1/s]: a day to the skin of a seat
     columns = [moments(model.at(point), rates, inputs) for model, point in product(full, points)]
     wide = orthonormal(np.hstack(columns), full[0].capacity)
     small = [model.projected(wide) for model in full]

@@ -20,12 +20,13 @@ import numpy as np
 
 from feeddrive.thermal.duty import Duty
 from feeddrive.thermal.full_model import NUT
+from feeddrive.thermal.laws import FOLLOWED
 from feeddrive.thermal.ledger import EnergyBalance, balance_of, with_ledger
 from feeddrive.thermal.model import HeatModel, Path
 from feeddrive.thermal.plant import ThermalPlant
 from feeddrive.thermal.reduction import DEFAULT_ORDER, compressed, reduce_model
 from feeddrive.thermal.system import HeatSystem
-from feeddrive.thermal.warm_up import Rows, declared_rows, readings, run
+from feeddrive.thermal.warm_up import HEATED, Rows, declared_rows, readings, run
 from feeddrive.typing import FloatArray
 
 _SUBSTEPS = 4
@@ -130,12 +131,13 @@ def study(plant: ThermalPlant, duty: Duty, within: float = 1e-6, order: int = DE
 
 
 def _acting(rows: Rows, full: HeatModel, states: FloatArray) -> Mapping[str, FloatArray]:
-    """Heats that acted; that of the nut by its temperature where it follows it, as `run` takes it."""
-    if rows.nut_heat is None:
+    """Heats that acted; those that follow temperatures as `run` takes them."""
+    if rows.following is None:
         return rows.inputs
-    rise = np.concatenate([[0.0, 0.0], states[:-1, :-1] @ full.readings[NUT]])
-    given = [rows.nut_heat(i, 1.5 * float(rise[i + 1]) - 0.5 * float(rise[i])) for i in range(len(states))]
-    return {**rows.inputs, NUT: np.array(given)}
+    read = np.vstack([full.readings[name] for name in FOLLOWED])
+    rises = np.vstack([np.zeros((2, len(FOLLOWED))), states[:-1, :-1] @ read.T])
+    given = np.array([rows.following(i, 1.5 * rises[i + 1] - 0.5 * rises[i]).copy() for i in range(len(states))])
+    return {**rows.inputs, **dict(zip(HEATED, given.T, strict=True))}
 
 
 @dataclass(frozen=True, eq=False)

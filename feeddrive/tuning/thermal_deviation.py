@@ -30,11 +30,11 @@ def deviating(rows: Rows, heat: float = 1.0, screw_film: float = 1.0, nut_film: 
     """
     for factor, where in ((heat, "heat"), (screw_film, "screw_film"), (nut_film, "nut_film")):
         refuse_negative(factor, "1", where)
-    nut_heat = rows.nut_heat
+    following = rows.following
     films = {**dict.fromkeys(SCREW_FILMS, screw_film), **dict.fromkeys(NUT_FILMS, nut_film)}
     conductances: Mapping[Path, FloatArray] = {
         path: values * films.get(path, 1.0) for path, values in rows.conductances.items()
     }
     inputs = {name: values if name in (AMBIENT, COOLANT) else heat * values for name, values in rows.inputs.items()}
-    scaled = None if nut_heat is None else lambda row, rise: heat * nut_heat(row, rise)
-    return replace(rows, conductances=conductances, inputs=inputs, nut_heat=scaled)
+    scaled = None if following is None else lambda row, rises: heat * following(row, rises)
+    return replace(rows, conductances=conductances, inputs=inputs, following=scaled)

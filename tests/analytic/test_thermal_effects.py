@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,15 +13,15 @@ from feeddrive.diagnosis.physical_reading import READINGS
 from feeddrive.effects.base import Parameter
 from feeddrive.effects.catalogue import EFFECTS, THERMAL_EFFECTS
 from feeddrive.effects.thermal.base import Operation, ThermalEffect
-from feeddrive.effects.thermal.bearing_heat import reference_heat
+from feeddrive.effects.thermal.bearing_heat import reference_torque
 from feeddrive.errors import InputError
 from feeddrive.files import plants_folder
 from feeddrive.plant.files import plant_text_with_effects, read_plant
-from feeddrive.thermal.acting import sensed
 from feeddrive.thermal.files import read_thermal_plant
+from feeddrive.thermal.friction import Friction
 from feeddrive.thermal.model import HeatModel
 from feeddrive.thermal.reduction import reduce_model
-from feeddrive.thermal.warm_up import simulate
+from feeddrive.thermal.warm_up import declared_rows, lagging, simulate
 from tests.analytic.thermal_cases import BENCH, RPM
 
 NEUTRAL: dict[str, dict[str, float]] = {
@@ -108,20 +109,32 @@ def test_value_outside_its_range_is_refused(name: str, parameter: Parameter) -> 
 
 
 def test_bearing_torque_is_that_of_the_source() -> None:
-    speeds = np.array([250.0, 500.0, 750.0]) * RPM
+    torques = [float(reference_torque(speed * RPM)) for speed in (250.0, 500.0, 750.0)]
     # Table 4 of paper 002 prints 2.2, 3.2 and 4.0 mN m: half of the last digit.
-    np.testing.assert_allclose(reference_heat(speeds) / speeds, [2.2e-3, 3.2e-3, 4.0e-3], atol=0.05e-3)
+    np.testing.assert_allclose(torques, [2.2e-3, 3.2e-3, 4.0e-3], atol=0.05e-3)
+
+
+def test_bearing_heat_is_counted_by_the_bearing_that_the_plant_declares() -> None:
+    bearing = Friction(load_torque=0.09, viscous_factor=4.5, viscosity=87.6e-6, mean_diameter=37e-3)
+    own = replace(BENCH, front=bearing).with_effects(_made("bearing_heat", {"factor": 1.0}))
+    speeds, air = np.array([300.0, 900.0]) * RPM, np.full(2, 23.0)
+    shown = declared_rows(own, STEP, speeds, air).inputs
+    # As much again as is declared at the front, and that at the rear, which declares none.
+    np.testing.assert_allclose(shown["front"], 2 * bearing.heats(speeds), rtol=1e-12)
+    np.testing.assert_allclose(shown["rear"], bearing.heats(speeds), rtol=1e-12)
 
 
 def test_lag_follows_a_ramp_late_by_its_time_constant() -> None:
-    operation = Operation(np.zeros(400), STEP * np.arange(400), STEP)
-    ramp, lag = 0.01 * (operation.start + STEP), _made("sensor_lag", {"time_constant": 120.0})
-    read = sensed((lag,), "nut_temperature", ramp, 0.0, operation, None)
-    time = operation.start + STEP
+    time = STEP * np.arange(1.0, 401)
+    read = lagging(0.01 * time, 0.0, 120.0, STEP)
     # Closed form of a first-order lag on a ramp, which the straight pieces meet exactly.
     np.testing.assert_allclose(read, 0.01 * (time - 120.0 * (1 - np.exp(-time / 120.0))), rtol=1e-9)
-    other = sensed((lag,), "front_bearing_temperature", ramp, 0.0, operation, None)
-    np.testing.assert_array_equal(other, ramp)
+
+
+def test_lag_is_of_its_channel_alone(model: HeatModel) -> None:
+    declared, late = _run(model), _run(model, _made("sensor_lag", {"time_constant": 120.0}))
+    np.testing.assert_array_equal(late["front_bearing_temperature"], declared["front_bearing_temperature"])
+    np.testing.assert_allclose(late["nut_temperature"], lagging(declared["nut_temperature"], 23.0, 120.0, STEP))
 
 
 def test_drift_of_long_enough_is_the_rise_of_everything(model: HeatModel) -> None:
@@ -137,8 +150,10 @@ def test_drift_of_long_enough_is_the_rise_of_everything(model: HeatModel) -> Non
 
 def test_motor_heat_is_that_of_its_law() -> None:
     effect = _made("motor_heat", {"power": 2.0, "at_speed": 750 * RPM, "share_at_rest": 0.4})
-    run = Operation(np.array([0.0, 375.0, 750.0]) * RPM, np.zeros(3), STEP)
-    np.testing.assert_allclose(effect.heats(run, effect.values)["front"], [0.0, 2.0 * (0.4 + 0.6 / 2), 2.0], rtol=1e-12)
+    heats = [
+        float(effect.heats(Operation(speed * RPM, 0.0, STEP), effect.values)["front"]) for speed in (0.0, 375.0, 750.0)
+    ]
+    np.testing.assert_allclose(heats, [0.0, 2.0 * (0.4 + 0.6 / 2), 2.0], rtol=1e-12)
 
 
 @pytest.mark.parametrize("name", STRONG)
@@ -194,4 +209,4 @@ def test_wrong_sensor_is_refused(old: str, new: str, told: str, tmp_path: Path) 
 def test_reading_of_a_deviation_tells_its_direction() -> None:
     reading = READINGS["convection_deviation"]
     assert "More heat" in reading({"factor": 1.2}) and "Less heat" in reading({"factor": 0.8})
-    assert math.isfinite(float(reference_heat(np.array([0.0]))[0]))
+    assert math.isfinite(float(reference_torque(0.0)))

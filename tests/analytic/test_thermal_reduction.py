@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from feeddrive.errors import InputError, ValidityWarning
-from feeddrive.thermal.exporting import casadi_model, casadi_system, conductance_order, state_space
 from feeddrive.thermal.full_model import full_model
 from feeddrive.thermal.grid import Cells
 from feeddrive.thermal.model import HeatModel, Path
@@ -47,6 +46,15 @@ def test_balanced_model_is_stable_at_every_order() -> None:
     full = compressed(FULL.at(conductances(500)), WORKING)
     for order in range(1, 15):
         assert reduced_system(full, order, WORKING).poles(order).max() < 0
+
+
+@pytest.mark.parametrize("speed", [20, 50, 100, 250, 500, 750, 1000, 1500])
+def test_parametric_model_is_the_full_one_at_every_speed(reduced: HeatModel, speed: float) -> None:
+    g = conductances(speed)
+    error = reduction_error(FULL.at(g), reduced.at(g), WORKING)
+    # What is asked for. Measured 0.6 mK and 0.5 nm; without a rate of 1/s in the basis the seat's skin cost 3.7 mK.
+    assert error.largest(growth=False) < 3e-3
+    assert error.largest(growth=True) < 10e-9
 
 
 @pytest.mark.parametrize("speed", [30, 400, 1400])
@@ -95,26 +103,6 @@ def test_full_and_reduced_answer_the_same_methods() -> None:
     shown, truth = (system.step_response("front", 1.0, 100, 10.0) for system in (small, full))
     # The full model is stepped implicitly, 10 s beside a local time constant of a second.
     np.testing.assert_allclose(shown[5:], truth[5:], atol=0.01)
-
-
-def test_exported_forms_answer_alike(reduced: HeatModel, generator: np.random.Generator) -> None:
-    g = conductances(500)
-    small = reduced_system(FULL.at(g), 10, WORKING)
-    exported = state_space(small)
-    frequency = np.array([1e-4])
-    np.testing.assert_allclose(exported(2j * np.pi * 1e-4), small.frequency_response(frequency)[0], rtol=1e-8)
-    x, u = generator.normal(size=10), generator.normal(size=len(small.input_names))
-    rate, shown = casadi_system(small)(x, u)
-    np.testing.assert_allclose(np.array(rate).ravel(), -small.conductance @ x + small.gains @ u, rtol=1e-10)
-    np.testing.assert_allclose(np.array(shown).ravel(), small.outputs(x), rtol=1e-10)
-    state = generator.normal(size=reduced.order)
-    held = reduced.at(g)
-    rate, _ = casadi_model(reduced)(state, [g.get(path, 0.0) for path in conductance_order(reduced)], u)
-    np.testing.assert_allclose(
-        np.array(rate).ravel(), -held.conductance @ state + held.gains @ u, rtol=1e-8, atol=1e-12
-    )
-    with pytest.raises(InputError, match="too large to export"):
-        state_space(FULL.at(g))
 
 
 def test_network_reads_well_and_is_near_the_full_model() -> None:

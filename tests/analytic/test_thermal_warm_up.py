@@ -51,10 +51,10 @@ def test_heat_that_grows_with_the_nut_settles_where_the_balance_says(reduced: He
     share, ω, load = BENCH.nut.heat_share, 500 * RPM, BENCH.nut.load_torque
     base = float(rows.inputs[NUT][0])
 
-    def heat(_: int, rise: float) -> float:
-        return base + share * ω * load * growth * rise
+    def heat(_: int, rises: FloatArray) -> FloatArray:
+        return np.array([base + share * ω * load * growth * rises[0], 0.0, 0.0])
 
-    states = run(reduced, replace(rows, nut_heat=heat))
+    states = run(reduced, replace(rows, following=heat))
     g = {path: float(values[0]) for path, values in rows.conductances.items()}
     system = reduced.at(g)
     per_watt = float(system.gain()[system.row(NUT), system.column(NUT)])
@@ -68,7 +68,7 @@ def test_feedback_converges_with_the_rows(reduced: HeatModel) -> None:
         count = round(3600 / step)
         rows = declared_rows(BENCH, step, np.full(count, 500 * RPM), np.full(count, 23.0))
         base = float(rows.inputs[NUT][0])
-        states = run(reduced, replace(rows, nut_heat=lambda _, rise: base * (1 + 0.02 * rise)))
+        states = run(reduced, replace(rows, following=lambda _, rises: np.array([base * (1 + 0.02 * rises[0]), 0, 0])))
         return float(states[-1] @ reduced.readings[NUT])
 
     # A heat that follows the temperature is taken at the middle of each row; 30 s rows are then good to 2 mK.

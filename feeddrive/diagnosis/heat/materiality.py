@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from feeddrive.effects.base import Effect
-from feeddrive.effects.thermal.base import curve
-from feeddrive.effects.thermal.bearing_heat import reference_heat
+from feeddrive.effects.base import Effect, listed
+from feeddrive.effects.thermal.bearing_heat import reference_torque
+from feeddrive.thermal.friction import torque_law
 from feeddrive.thermal.plant import ThermalPlant
 
 LEAST_HEAT_SHARE = 2e-4
@@ -45,7 +45,7 @@ def is_material_heat(effect: Effect, plant: ThermalPlant) -> bool:
         case "motor_heat":
             return v["power"] >= LEAST_HEAT_SHARE * nut_heat
         case "bearing_heat":
-            return v["factor"] * float(reference_heat(fastest)[0]) >= LEAST_HEAT_SHARE * nut_heat
+            return v["factor"] * plant.highest_speed * _bearing_torque(plant) >= LEAST_HEAT_SHARE * nut_heat
         case "ambient_drift":
             return abs(v["amplitude"]) * _largest_shape(effect) >= LEAST_DRIFT
         case "preload_growth" | "viscosity_temperature":
@@ -67,8 +67,14 @@ def is_material_heat(effect: Effect, plant: ThermalPlant) -> bool:
 
 
 def _largest_shape(effect: Effect) -> float:
-    nodes = curve(effect.values["shape"])
-    return max(abs(s) for s in nodes) if len(curve(effect.values["time"])) > 1 else 1.0
+    nodes = listed(effect.values["shape"])
+    return max(abs(s) for s in nodes) if len(listed(effect.values["time"])) > 1 else 1.0
+
+
+def _bearing_torque(plant: ThermalPlant) -> float:
+    """Of the bearing that `bearing_heat` counts by, at the highest speed [N m]."""
+    speed = plant.highest_speed
+    return float(reference_torque(speed) if plant.front is None else torque_law(speed, vars(plant.front)))
 
 
 def _film_of_nut(plant: ThermalPlant) -> float:

@@ -19,6 +19,7 @@ from feeddrive.effects.base import Effect
 from feeddrive.thermal.model import HeatModel, Path
 from feeddrive.thermal.plant import ThermalPlant
 from feeddrive.thermal.reduction import reduce_model
+from feeddrive.thermal.sensitivity import simulate_with_slopes
 from feeddrive.thermal.warm_up import channel_of, simulate
 from feeddrive.typing import FloatArray
 
@@ -58,6 +59,15 @@ class HeatPredictor(Predictor[ThermalPlant, HeatEvidence]):
         values = tuple((e.name, e.place, tuple(e.values.items())) for e in plant.effects)
         return self._known.found(evidence.recording, values, lambda: self._simulated(plant, evidence))
 
+    def slopes(
+        self, plant: ThermalPlant, evidence: HeatEvidence, numbers: Sequence[str]
+    ) -> dict[str, FloatArray] | None:
+        """Exact slopes, carried along with the run."""
+        step = evidence.recording.sample_time
+        run = simulate_with_slopes(plant, self._model(plant), step, evidence.speed, evidence.ambient, numbers)
+        none = np.zeros((evidence.start_rows, len(numbers)))
+        return {name: np.vstack([none, run[name][1]]) for name in evidence.channels}
+
     def scene(self, problem: Problem, found: Sequence[Effect]) -> Scene:
         """Residuals with the effects found so far."""
         plant = problem.plant.with_effects(*found)
@@ -89,13 +99,17 @@ class HeatPredictor(Predictor[ThermalPlant, HeatEvidence]):
         return is_material_heat(effect, plant)
 
     def _all_channels(self, plant: ThermalPlant, evidence: HeatEvidence) -> dict[str, FloatArray]:
+        step = evidence.recording.sample_time
+        return simulate(plant, self._model(plant), step, evidence.speed, evidence.ambient)
+
+    def _model(self, plant: ThermalPlant) -> HeatModel:
+        """The reduced model with the bodies that effects attach to the declared plant."""
         model = self.model
         own = {body.name for body in self.declared.attached}
         for body in plant.attached:
             if body.name not in own:
                 model = model.with_body(body)
-        step = evidence.recording.sample_time
-        return simulate(plant, model, step, evidence.speed, evidence.ambient)
+        return model
 
     def _simulated(self, plant: ThermalPlant, evidence: HeatEvidence) -> dict[str, FloatArray]:
         """The compared channels of `_all_channels`, (n,) each."""

@@ -6,8 +6,7 @@ from dataclasses import replace
 
 from feeddrive.diagnosis.fit import fit
 from feeddrive.diagnosis.search import Search
-from feeddrive.effects.base import Effect
-from feeddrive.effects.thermal.base import curve, number
+from feeddrive.effects.base import Effect, listed, number
 
 
 def normalised(found: Search) -> Search:
@@ -21,7 +20,7 @@ def normalised(found: Search) -> Search:
 def _scaled(effect: Effect) -> Effect:
     if effect.name != "ambient_drift" or not isinstance(effect.values["time"], tuple):
         return effect
-    shape = curve(effect.values["shape"])
+    shape = listed(effect.values["shape"])
     largest = max(shape, key=abs)
     if largest == 0:
         return effect

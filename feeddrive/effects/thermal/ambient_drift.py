@@ -15,11 +15,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-import numpy as np
+import casadi as ca
 
-from feeddrive.effects.base import Parameter, Signature, Value
-from feeddrive.effects.thermal.base import Operation, ThermalEffect, curve, number
-from feeddrive.typing import FloatArray
+from feeddrive.effects.base import Parameter, Signature
+from feeddrive.effects.thermal.base import Operation, ThermalEffect
+from feeddrive.typing import Expression
 
 
 class AmbientDrift(ThermalEffect):
@@ -36,9 +36,17 @@ class AmbientDrift(ThermalEffect):
         ("front_bearing_temperature", "nut_temperature", "table_growth"), "time", ("convection_deviation", "heat_sink")
     )
 
-    def surroundings(self, run: Operation, p: Mapping[str, Value]) -> FloatArray | float:
+    def surroundings(self, run: Operation, p: Mapping[str, Expression]) -> Expression:
         """Rise of the surroundings [K]."""
-        A, nodes, shape = number(p["amplitude"]), curve(p["time"]), curve(p["shape"])
-        if len(nodes) > 1:
-            return np.asarray(A * np.interp(run.middle, nodes, shape))
-        return np.asarray(A * np.sin(2 * np.pi * run.middle / number(p["period"])))
+        if isinstance(self.values["time"], tuple) and len(self.values["time"]) > 1:
+            return p["amplitude"] * _straight(run.middle, p["time"], p["shape"])
+        return p["amplitude"] * ca.sin(2 * ca.pi * run.middle / p["period"])
+
+
+def _straight(time: Expression, nodes: Expression, values: Expression) -> Expression:
+    """Straight lines between nodes, (k, 1) each, the last one held."""
+    shown = values[0]
+    for i in range(nodes.numel() - 1):
+        share = (time - nodes[i]) / (nodes[i + 1] - nodes[i])
+        shown += (values[i + 1] - values[i]) * ca.fmin(ca.fmax(share, 0), 1)
+    return shown

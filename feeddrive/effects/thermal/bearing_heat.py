@@ -1,18 +1,16 @@
 """Friction heat of the support bearings beyond what is declared.
 
-    Q_front = c ω T_b(ω),    Q_rear = s Q_front,    T_b = T_1 + 1e-7 f_0 (ν N)^(2/3) d_m^3   [N mm, mm²/s, rev/min, mm]
+    Q_front = c ω T_b(ω),    Q_rear = s Q_front
 
 | symbol | key | meaning | unit |
 |---|---|---|---|
-| c | factor | heat over that of the reference bearing | 1 |
+| c | factor | heat over that of the machine's front bearing | 1 |
 | s | rear_share | heat of the rear bearing over that of the front one | 1 |
-| ω, N | | speed of the screw | rad/s, rev/min |
-| T_1 | | load torque of the reference bearing, 0.539 mN m | N m |
-| f_0, ν, d_m | | its viscous factor 3.3 (oil bath), 32 mm²/s, 23.3 mm | |
+| ω | | speed of the screw | rad/s |
+| T_b | | torque of the front bearing as the plant declares it in `[thermal.front_bearing]` | N m |
 
-The reference bearing is the angular contact bearing 7201C of paper 002, whose torques of table 4 these numbers give
-(2.2, 3.2 and 4.0 mN m at 250, 500 and 750 rev/min). Another bearing of the kind has the same law of the speed and
-another factor: read the heat in watts from the product.
+A plant that declares no bearing gets a small one in its place, the angular contact bearing 7201C of paper 002, table 4
+(2.2, 3.2 and 4.0 mN m at 250, 500 and 750 rev/min): read the heat in watts from the product.
 Source: paper 002, equations (15) to (17) and (23); Palmgren's law in `feeddrive.parts.bearing_friction`.
 """
 
@@ -20,17 +18,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-import numpy as np
-
-from feeddrive.effects.base import Parameter, Signature, Value
-from feeddrive.effects.thermal.base import FRONT, REAR, Operation, ThermalEffect, number
-from feeddrive.parts.bearing_friction import viscous_torque
-from feeddrive.typing import FloatArray
+from feeddrive.effects.base import Parameter, Signature
+from feeddrive.effects.thermal.base import FRONT, REAR, Operation, ThermalEffect
+from feeddrive.parts.bearing_friction import palmgren_torque
+from feeddrive.typing import Expression
 
 LOAD_TORQUE = 5.39e-4
 """T_1 of the reference bearing [N m]."""
 
 _VISCOUS_FACTOR, _VISCOSITY, _MEAN_DIAMETER = 3.3, 32e-6, 23.3e-3
+"""Its f_0 in an oil bath [1], oil [m²/s] and mean diameter [m]."""
 
 
 class BearingHeat(ThermalEffect):
@@ -45,14 +42,12 @@ class BearingHeat(ThermalEffect):
         ("front_bearing_temperature", "table_growth"), "speed, at both ends", ("motor_heat", "ambient_drift")
     )
 
-    def heats(self, run: Operation, p: Mapping[str, Value]) -> dict[str, FloatArray]:
+    def heats(self, run: Operation, p: Mapping[str, Expression]) -> dict[str, Expression]:
         """Heat at both seats [W]."""
-        front = number(p["factor"]) * reference_heat(run.speed)
-        return {FRONT: front, REAR: number(p["rear_share"]) * front}
+        front = p["factor"] * run.speed * run.bearing
+        return {FRONT: front, REAR: p["rear_share"] * front}
 
 
-def reference_heat(speed: FloatArray) -> FloatArray:
-    """ω T_b of the reference bearing at speeds (k,) [rad/s], (k,) [W]."""
-    distinct, which = np.unique(speed, return_inverse=True)
-    torques = [LOAD_TORQUE + viscous_torque(_VISCOUS_FACTOR, _VISCOSITY, float(ω), _MEAN_DIAMETER) for ω in distinct]
-    return np.asarray((distinct * np.array(torques))[which])
+def reference_torque(speed: Expression) -> Expression:
+    """Friction torque of the reference bearing at a speed, not negative [rad/s], [N m]."""
+    return LOAD_TORQUE + palmgren_torque(_VISCOUS_FACTOR, _VISCOSITY, speed, _MEAN_DIAMETER)

@@ -11,8 +11,11 @@ Source: paper 002, equations (11), (12) and table 5: it follows the load, and is
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from feeddrive.effects.base import Parameter, Signature
-from feeddrive.effects.thermal.base import ThermalEffect, number
+from feeddrive.effects.thermal.base import ThermalEffect
+from feeddrive.typing import Expression
 
 
 class ContactConductanceDeviation(ThermalEffect):
@@ -24,6 +27,6 @@ class ContactConductanceDeviation(ThermalEffect):
         ("nut_temperature", "table_growth"), "difference of nut and screw", ("convection_deviation", "heat_sink")
     )
 
-    def contact_factor(self) -> float:
+    def contact_factor(self, p: Mapping[str, Expression]) -> Expression:
         """Factor on the contact conductance."""
-        return number(self.values["factor"])
+        return p["factor"]

@@ -12,8 +12,11 @@ Source: film coefficients after paper 002, equation (30) and table 3; correlatio
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from feeddrive.effects.base import Parameter, Signature
-from feeddrive.effects.thermal.base import ThermalEffect, number
+from feeddrive.effects.thermal.base import ThermalEffect
+from feeddrive.typing import Expression
 
 
 class ConvectionDeviation(ThermalEffect):
@@ -29,6 +32,6 @@ class ConvectionDeviation(ThermalEffect):
     place_key = "where"
     places = ("screw", "nut", "all")
 
-    def film_factor(self, film: str) -> float:
+    def film_factor(self, film: str, p: Mapping[str, Expression]) -> Expression:
         """Factor on the film of "screw", "nut" or a seat."""
-        return number(self.values["factor"]) if self.place in (film, "all") else 1.0
+        return p["factor"] if self.place in (film, "all") else 1.0

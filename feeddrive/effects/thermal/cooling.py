@@ -15,11 +15,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-import numpy as np
+import casadi as ca
 
-from feeddrive.effects.base import Parameter, Signature, Value
-from feeddrive.effects.thermal.base import Operation, ThermalEffect, number
-from feeddrive.typing import FloatArray
+from feeddrive.effects.base import Parameter, Signature
+from feeddrive.effects.thermal.base import Operation, ThermalEffect
+from feeddrive.typing import Expression
 
 
 class Cooling(ThermalEffect):
@@ -34,7 +34,7 @@ class Cooling(ThermalEffect):
         ("nut_temperature", "table_growth"), "time and rise of the nut", ("convection_deviation", "heat_sink")
     )
 
-    def coolant_conductance(self, run: Operation, p: Mapping[str, Value]) -> FloatArray | float:
+    def coolant_conductance(self, run: Operation, p: Mapping[str, Expression]) -> Expression:
         """Conductance to the coolant [W/K]."""
-        G, t0 = number(p["conductance"]), number(p["start"])
-        return np.asarray(G * np.clip((run.start + run.step - t0) / run.step, 0.0, 1.0))
+        share = (run.start + run.step - p["start"]) / run.step
+        return p["conductance"] * ca.fmin(ca.fmax(share, 0), 1)

@@ -11,8 +11,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from feeddrive.effects.base import Parameter, Signature
-from feeddrive.effects.thermal.base import ThermalEffect, number
+from feeddrive.effects.thermal.base import ThermalEffect
+from feeddrive.typing import Expression
 
 
 class HeatSink(ThermalEffect):
@@ -27,6 +30,6 @@ class HeatSink(ThermalEffect):
         ("nut_temperature", "table_growth"), "time and rise of the nut", ("convection_deviation", "cooling")
     )
 
-    def attached(self) -> tuple[float, float] | None:
+    def attached(self, p: Mapping[str, Expression]) -> tuple[Expression, Expression] | None:
         """Conductance and capacity."""
-        return number(self.values["conductance"]), number(self.values["capacity"])
+        return p["conductance"], p["capacity"]

@@ -17,11 +17,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-import numpy as np
+import casadi as ca
 
-from feeddrive.effects.base import Parameter, Signature, Value
-from feeddrive.effects.thermal.base import FRONT, Operation, ThermalEffect, number
-from feeddrive.typing import FloatArray
+from feeddrive.effects.base import Parameter, Signature
+from feeddrive.effects.thermal.base import FRONT, Operation, ThermalEffect
+from feeddrive.typing import Expression
 
 
 class MotorHeat(ThermalEffect):
@@ -37,7 +37,7 @@ class MotorHeat(ThermalEffect):
         ("front_bearing_temperature", "table_growth"), "speed, at the motor-side end", ("bearing_heat", "ambient_drift")
     )
 
-    def heats(self, run: Operation, p: Mapping[str, Value]) -> dict[str, FloatArray]:
+    def heats(self, run: Operation, p: Mapping[str, Expression]) -> dict[str, Expression]:
         """Heat at the front seat [W]."""
-        P, N_ref, a = (number(p[key]) for key in ("power", "at_speed", "share_at_rest"))
-        return {FRONT: np.where(run.speed > 0, P * (a + (1 - a) * run.speed / N_ref), 0.0)}
+        P, N_ref, a = (p[key] for key in ("power", "at_speed", "share_at_rest"))
+        return {FRONT: ca.if_else(run.speed > 0, P * (a + (1 - a) * run.speed / N_ref), 0.0)}

@@ -15,8 +15,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from feeddrive.effects.base import Parameter, Signature, Value
-from feeddrive.effects.thermal.base import ThermalEffect, number
+import casadi as ca
+
+from feeddrive.effects.base import Parameter, Signature
+from feeddrive.effects.thermal.base import ThermalEffect
+from feeddrive.typing import Expression
 
 
 class PreloadGrowth(ThermalEffect):
@@ -31,6 +34,6 @@ class PreloadGrowth(ThermalEffect):
     )
     follows_nut = True
 
-    def load_factor(self, rise: float, p: Mapping[str, Value]) -> float:
+    def load_factor(self, rise: Expression, p: Mapping[str, Expression]) -> Expression:
         """Factor on the load torque, not below zero."""
-        return max(1.0 + number(p["coefficient"]) * rise, 0.0)
+        return ca.fmax(1.0 + p["coefficient"] * rise, 0.0)

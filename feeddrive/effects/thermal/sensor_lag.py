@@ -11,8 +11,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from feeddrive.effects.base import Parameter, Signature
-from feeddrive.effects.thermal.base import ThermalEffect, number
+from feeddrive.effects.thermal.base import ThermalEffect
+from feeddrive.typing import Expression
 
 
 class SensorLag(ThermalEffect):
@@ -24,6 +27,6 @@ class SensorLag(ThermalEffect):
     place_key = "channel"
     repeatable = True
 
-    def lag(self, channel: str) -> float:
+    def lag(self, channel: str, p: Mapping[str, Expression]) -> Expression:
         """Time constant of this channel's sensor [s]."""
-        return number(self.values["time_constant"]) if channel == self.place else 0.0
+        return p["time_constant"] if channel == self.place else 0.0

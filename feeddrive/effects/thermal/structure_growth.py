@@ -16,11 +16,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-import numpy as np
+import casadi as ca
 
-from feeddrive.effects.base import Parameter, Signature, Value
-from feeddrive.effects.thermal.base import ThermalEffect, number
-from feeddrive.typing import FloatArray
+from feeddrive.effects.base import Parameter, Signature
+from feeddrive.effects.thermal.base import ThermalEffect
+from feeddrive.typing import Expression
 
 
 class StructureGrowth(ThermalEffect):
@@ -34,7 +34,6 @@ class StructureGrowth(ThermalEffect):
     )
     signature = Signature(("table_growth",), "time and position, no temperature", ("ambient_drift",))
 
-    def growth(self, position: float, time: FloatArray, p: Mapping[str, Value]) -> FloatArray | float:
+    def growth(self, position: float, time: Expression, p: Mapping[str, Expression]) -> Expression:
         """Growth at a position [m]."""
-        u, s, τ = number(p["growth"]), number(p.get("slope", 0.0)), number(p["time_constant"])
-        return np.asarray((u + s * position) * (1 - np.exp(-time / τ)))
+        return (p["growth"] + p.get("slope", 0.0) * position) * (1 - ca.exp(-time / p["time_constant"]))

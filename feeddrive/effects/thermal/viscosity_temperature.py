@@ -13,11 +13,13 @@ that β is two thirds of the coefficient of the oil, 0.02 to 0.04 per kelvin nea
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 
-from feeddrive.effects.base import Parameter, Signature, Value
-from feeddrive.effects.thermal.base import ThermalEffect, number
+import casadi as ca
+
+from feeddrive.effects.base import Parameter, Signature
+from feeddrive.effects.thermal.base import ThermalEffect
+from feeddrive.typing import Expression
 
 
 class ViscosityTemperature(ThermalEffect):
@@ -30,6 +32,6 @@ class ViscosityTemperature(ThermalEffect):
     )
     follows_nut = True
 
-    def viscous_factor(self, rise: float, p: Mapping[str, Value]) -> float:
+    def viscous_factor(self, rise: Expression, p: Mapping[str, Expression]) -> Expression:
         """Factor on the viscous torque."""
-        return math.exp(-min(max(number(p["coefficient"]) * rise, -50.0), 50.0))
+        return ca.exp(-ca.fmin(ca.fmax(p["coefficient"] * rise, -50.0), 50.0))

@@ -1,0 +1,78 @@
+"""The heat of a machine, ready to be written in another form: temperatures and growth from speed and surroundings.
+
+    from thermal_bench_heat_ss import system
+    fmpy.simulate_fmu("thermal_bench_heat.fmu", stop_time=3600, start_values={"screw_speed": 50})
+
+Inputs are the speed of the screw [rad/s] and the temperature of the air [degC], outputs what the sensors read
+[degC, m], or every output where the plant declares no sensor. It starts cold, at `start.temperature`.
+"""
+
+from __future__ import annotations
+
+from feeddrive import __version__
+from feeddrive.export.model import Model, identifier_of
+from feeddrive.export.point import Point
+from feeddrive.export.quantities import Quantity
+from feeddrive.quantity import format_quantity
+from feeddrive.thermal.equations import HEAT_INPUT_UNITS, HEAT_INPUTS, heat_equations, linear_heat
+from feeddrive.thermal.plant import ThermalPlant
+
+_COMMENTS = ("of the screw, either sign", "of the air around screw and nut")
+
+
+def heat_model_of(plant: ThermalPlant) -> Model:
+    """The equations of the heat of a plant, cold and at rest at the start.
+
+    Args:
+        plant: the machine.
+    """
+    equations = heat_equations(plant)
+    start = zip(HEAT_INPUTS, HEAT_INPUT_UNITS, (0.0, plant.ambient), _COMMENTS, strict=True)
+    units = (
+        "J^0.5 K^0.5" if name.startswith("network_") else "m" if "growth" in name else "K" for name in equations.states
+    )
+    return Model(
+        plant=None,
+        name=f"{plant.name}, heat",
+        identifier=identifier_of(f"{plant.name} heat"),
+        point=Point(0.0, 0.0),
+        subject="temperatures and growth",
+        notes=_notes(plant),
+        states=tuple(Quantity(name, unit) for name, unit in zip(equations.states, units, strict=True)),
+        inputs=tuple(Quantity(*row) for row in start),
+        outputs=tuple(Quantity(name, unit) for name, unit in equations.outputs.items()),
+        parameters=tuple(
+            Quantity(name, unit, value, plant.origins.get(f"thermal.{name}", ""))
+            for name, (unit, value) in equations.parameters.items()
+        ),
+        function=equations.function,
+        nominal=tuple(equations.states.values()),
+    )
+
+
+def heat_python_text(plant: ThermalPlant, speed: float) -> str:
+    """Source of a module with the heat linearised at a speed of the screw [rad/s], `system` a control.StateSpace."""
+    system = linear_heat(plant, speed)
+    held, lacking = _notes(plant)
+    lines = [
+        f"# {plant.name}, heat, linear about {format_quantity(speed, 'rad/s')} at {plant.ambient:g} degC.",
+        f"# Made by feeddrive {__version__}. SI units: x' = A x + B u, y = C x + D u, deviations from the point.",
+        *(f"# Included: {line}" for line in held),
+        *(f"# Left out: {line}" for line in (*lacking, "what changes with time is taken at the start")),
+        "import control",
+        *(f"{key} = {getattr(system, key).tolist()!r}" for key in "ABCD"),
+        "",
+        f"system = control.ss(A, B, C, D, states={list(system.state_labels)!r},",
+        f"                    inputs={list(system.input_labels)!r}, outputs={list(system.output_labels)!r})",
+    ]
+    return "\n".join(" ".join(line.split()) if line.startswith("#") else line for line in lines) + "\n"
+
+
+def _notes(plant: ThermalPlant) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    held = [
+        f"screw, nut and {len(plant.bodies)} bodies, reduced; films, contact and friction heat that follow the speed"
+    ]
+    held += [f"effect {effect.label}" for effect in plant.effects]
+    low, high = (format_quantity(end, "rad/s") for end in (0.0, plant.highest_speed))
+    lacking = (f"speeds outside {low} to {high}", "the motion: the nut is averaged over its travel")
+    return tuple(held), lacking
