@@ -21,6 +21,7 @@ from feeddrive.servo.frequency_response import Case
 from feeddrive.servo.linear_loop import open_position_loop, open_velocity_loop, worst_eigenvalue
 from feeddrive.servo.margins import GROWTH, Margins, margins
 from feeddrive.tuning.demand import Demand
+from feeddrive.tuning.filter_choice import NO_LIMITS, FilterLimits
 from feeddrive.tuning.largest_gain import GainLimit
 from feeddrive.tuning.position_loop import position_gain
 from feeddrive.tuning.velocity_loop import VelocityGains, velocity_gains
@@ -28,7 +29,7 @@ from feeddrive.tuning.velocity_loop import VelocityGains, velocity_gains
 USABLE = 1.0
 """Least K_v worth recommending [1/s]; machine tools have 10 to 100."""
 
-_LOWERED = 0.98
+_LOWERED, _SLOWED = 0.98, 0.99
 _TRIES = 12
 _POINTS = 4000
 """Of the grid of margins; 5 times fewer than usual, and still 0.3 % of frequency apart."""
@@ -75,7 +76,9 @@ class Recommendation:
         return phase, min(self.reached, key=lambda one: one.position.gain)
 
 
-def recommend(plant: Plant, drive: Cascade, cases: Sequence[Case], demand: Demand) -> Recommendation:
+def recommend(
+    plant: Plant, drive: Cascade, cases: Sequence[Case], demand: Demand, limits: FilterLimits = NO_LIMITS
+) -> Recommendation:
     """The recommended cascade.
 
     Args:
@@ -83,16 +86,17 @@ def recommend(plant: Plant, drive: Cascade, cases: Sequence[Case], demand: Deman
         drive: rates, current loop, dead time, feedback, limits and filters that stay; its gains are replaced.
         cases: in which the demand must hold; at least one.
         demand: margins.
+        limits: what filters the drive has.
 
     Raises:
         InputError: no gains hold; says which loop, and what would.
     """
     bare = replace(drive, velocity_gain=0.0, position_gain=0.0, feed_forward=FeedForward(), balancing_time=0.0)
-    found = velocity_gains(plant, bare, cases, demand)
+    found = velocity_gains(plant, bare, cases, demand, limits)
     reset = _rounded(found.reset_time)
     with_velocity = replace(
         bare, velocity_gain=_rounded(found.gain), reset_time=reset, tracking_time=reset,
-        torque_filters=(*drive.torque_filters, *(choice.filter for choice in found.notches)),
+        torque_filters=(*drive.torque_filters, *(choice.filter for choice in found.filters)),
     )  # fmt: skip
     with_velocity = _lowered_velocity(plant, with_velocity, cases, demand)
     limit = position_gain(plant, with_velocity, cases, demand)
@@ -113,12 +117,18 @@ def _rounded(value: float) -> float:
 
 
 def _lowered_velocity(plant: Plant, cascade: Cascade, cases: Sequence[Case], demand: Demand) -> Cascade:
-    """The cascade with its velocity gain lowered until the loop itself holds in every case."""
+    """The cascade with its velocity loop slowed until the loop itself holds in every case.
+
+    Gain down and reset time up together: the phase margin holds in an interval of gains, which a gain alone may leave
+    at its lower end.
+    """
     for _ in range(_TRIES):
         every = [_margins(open_velocity_loop(case.on(plant), cascade, case.velocity, case.position)) for case in cases]
         if all(_holds(one, demand) for one in every):
             return cascade
-        cascade = replace(cascade, velocity_gain=_rounded(_LOWERED * cascade.velocity_gain))
+        reset = _rounded(cascade.reset_time / _SLOWED)
+        cascade = replace(cascade, velocity_gain=_rounded(_SLOWED * cascade.velocity_gain), reset_time=reset,
+                          tracking_time=reset)  # fmt: skip
     raise _unmet(plant, demand, "velocity")
 
 
