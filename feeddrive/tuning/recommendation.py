@@ -1,6 +1,6 @@
 """A recommended cascade, checked with the loop itself in every case, each setting with its why.
 
-Order: velocity loop with its notches, then the position loop around it. Gains are rounded as they will be written and
+Order: velocity loop with its filters, then the position loop around it. Gains are rounded as they will be written and
 lowered until every case holds, by the margins and eigenvalues of `servo.linear_loop`. Feed-forward is that of the plant
 and changes no margin. Valid for small motion about a moving table and about one that friction holds: limits and
 reversals are not in it.
@@ -124,7 +124,7 @@ def _lowered_velocity(plant: Plant, cascade: Cascade, cases: Sequence[Case], dem
     """
     for _ in range(_TRIES):
         every = [_margins(open_velocity_loop(case.on(plant), cascade, case.velocity, case.position)) for case in cases]
-        if all(_holds(one, demand) for one in every):
+        if all(holds(one, demand) for one in every):
             return cascade
         reset = _rounded(cascade.reset_time / _SLOWED)
         cascade = replace(cascade, velocity_gain=_rounded(_SLOWED * cascade.velocity_gain), reset_time=reset,
@@ -136,14 +136,15 @@ def _lowered_position(
     plant: Plant, cascade: Cascade, cases: Sequence[Case], demand: Demand
 ) -> tuple[Cascade, tuple[Reached, ...]]:
     for _ in range(_TRIES):
-        reached = tuple(_reached(plant, cascade, case) for case in cases)
-        if all(_holds(one.position, demand) and one.growth < GROWTH for one in reached):
+        reached = tuple(reached_in(plant, cascade, case) for case in cases)
+        if all(holds(one.position, demand) and one.growth < GROWTH for one in reached):
             return cascade, reached
         cascade = replace(cascade, position_gain=_rounded(_LOWERED * cascade.position_gain))
     raise _unmet(plant, demand, "position")
 
 
-def _reached(plant: Plant, cascade: Cascade, case: Case) -> Reached:
+def reached_in(plant: Plant, cascade: Cascade, case: Case) -> Reached:
+    """What a cascade reaches in a case, by the loop itself."""
     loaded = case.on(plant)
     velocity, position = (
         _margins(make(loaded, cascade, case.velocity, case.position))
@@ -157,7 +158,8 @@ def _margins(loop: control.StateSpace) -> Margins:
     return margins(loop, points=_POINTS)
 
 
-def _holds(found: Margins, demand: Demand) -> bool:
+def holds(found: Margins, demand: Demand) -> bool:
+    """Whether margins are what is asked."""
     return found.stable and found.phase >= demand.phase and found.gain >= demand.gain
 
 
