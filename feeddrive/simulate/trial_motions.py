@@ -20,8 +20,8 @@ from feeddrive.simulate.scenario_result import ScenarioResult
 from feeddrive.simulate.scenario_run import run_scenario
 from feeddrive.simulate.trajectories import Circle, position_step
 
-RADIUS, FEED, TURNS = 0.005, 0.05, 2.15
-"""Of the circle [m, m/s, 1]: the first turn settles, the second is looked at, the rest runs up and out."""
+RADIUS, FEED, TURNS = 0.005, 0.05, 1.15
+"""Of the circle [m, m/s, 1]: a whole turn at constant feed is looked at, the rest runs up and out."""
 HEIGHT, STEP_AT, STEP_LASTS = 20e-6, 0.005, 0.06
 """Of the step [m, s, s]."""
 _LIMITS, _DWELL = Limits(FEED, 1.0, 40.0), 0.01

@@ -189,6 +189,6 @@ def test_margins_hold_at_rest_too() -> None:
 def test_tuning_in_motion_alone_misses_at_rest() -> None:
     plant = read_plant(find_plant("vertical_axis"))
     drive = replace(DRIVE, radius=plant.chain.motor_radius, torque_limit=plant.torque_limit, feedback=Feedback.MOTOR)
-    moving = recommend(plant, drive, cases_of(plant), Demand())
+    moving = recommend(plant, drive, cases_of(plant), Demand(phase=35.0))  # where the gain margin limits
     at_rest = [_gain_margin_by_sampling(plant, moving.cascade, replace(case, velocity=0.0)) for case in cases_of(plant)]
     assert min(at_rest) < 7.9
