@@ -12,6 +12,8 @@ from feeddrive.errors import InputError
 _PACKAGE = Path(__file__).resolve().parent
 _SUFFIX = ".toml"
 _MAPPING = "_map.toml"
+DIAGNOSED = "plant_after.toml"
+"""The plant as diagnosed, in the folder that a diagnosis writes."""
 
 
 def plants_folder() -> Path:
@@ -55,12 +57,15 @@ def find_plant(name_or_path: str) -> Path:
     """Find a plant file.
 
     Args:
-        name_or_path: path of a file, or the name of a shipped plant with or without `.toml`. A file wins over a name.
+        name_or_path: path of a file, or of the folder of a diagnosis, whose `plant_after.toml` is meant, or the name of a
+            shipped plant with or without `.toml`. A file wins over a name.
 
     Raises:
         InputError: neither a file nor a shipped plant; names the nearest shipped plants.
     """
     path = Path(name_or_path)
+    if os.path.isfile(path / DIAGNOSED):
+        return path / DIAGNOSED
     # Not Path.is_file: it raises where a name is too long for the file system.
     if os.path.isfile(path):
         return path

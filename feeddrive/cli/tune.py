@@ -11,7 +11,7 @@ from feeddrive.cli.output import JsonOption
 
 
 def command(
-    plant: Annotated[str, typer.Argument(help="Plant file, or the name of a shipped machine.")],
+    plant: Annotated[str, typer.Argument(help="Plant file, folder of a diagnosis, or the name of a shipped machine.")],
     margin_phase: Annotated[str, typer.Option(help="Least phase margin of either loop.")] = "45deg",
     margin_gain: Annotated[str, typer.Option(help="Least gain margin of either loop.")] = "8dB",
     positions: Annotated[str, typer.Option(help="Table positions it must hold at; along the stroke if left out.")] = "",
@@ -27,13 +27,19 @@ def command(
     feedback: Annotated[
         str, typer.Option(help="motor or table: what the position loop reads; a scale if declared.")
     ] = "",
+    form: Annotated[
+        str, typer.Option(help="sinamics, twincat, heidenhain or linuxcnc: parameters of the drive, written and read.")
+    ] = "",
+    present: Annotated[
+        Path | None, typer.Option(help="Present settings: a controller file, or parameters in the form of --form.")
+    ] = None,
     as_json: JsonOption = False,
     out: Annotated[
-        Path | None, typer.Option("--out", help="Folder for controller.toml, tune.json and the figures.")
+        Path | None, typer.Option("--out", help="Folder for controller.toml, tune.json, figures and the drive's file.")
     ] = None,
 ) -> None:
-    """Recommend K_p, T_n, notches and K_v that keep margins over all positions and payloads, and say why."""
+    """Recommend K_p, T_n, filters and K_v that keep margins over all positions and payloads, and say why."""
     from feeddrive.cli.tuning import Drive, Wanted, run
 
     drive = Drive(scenario, velocity_rate, position_rate, current_bandwidth, dead_time, feedback)
-    run(Wanted(plant, margin_phase, margin_gain, positions, payload, velocity, drive), as_json, out)
+    run(Wanted(plant, margin_phase, margin_gain, positions, payload, velocity, drive, form, present), as_json, out)

@@ -12,9 +12,11 @@ from rich.table import Table
 
 from feeddrive import __version__
 from feeddrive.cli.boding import quantities
+from feeddrive.cli.tuning_drive import drive_content, drive_tables, write_drive
 from feeddrive.cli.output import deliver, table, tell_written, warnings_as_lines
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant, find_scenario_or_controller, write_bytes_atomically, write_text_atomically
+from feeddrive.interface.servo import Servo
 from feeddrive.output_folder import output_folder, refuse_unusable
 from feeddrive.plant.entries import nearest
 from feeddrive.plant.plant import Plant
@@ -27,6 +29,7 @@ from feeddrive.simulate.controller_file import read_controller
 from feeddrive.thermal.whole_file import read_drive_plant
 from feeddrive.tuning.bare_drive import bare_drive
 from feeddrive.tuning.demand import Demand, operating_points
+from feeddrive.tuning.drive_forms.drive_file import writer_of
 from feeddrive.tuning.reasons import controller_text, describe, rules, settings
 from feeddrive.tuning.reasons import operating_points as points_in_words
 from feeddrive.tuning.recommendation import Recommendation, recommend
@@ -57,6 +60,8 @@ class Wanted:
     payload: str
     velocity: str
     drive: Drive
+    form: str = ""
+    present: Path | None = None
 
 
 def run(wanted: Wanted, as_json: bool, out: Path | None) -> None:
@@ -66,6 +71,8 @@ def run(wanted: Wanted, as_json: bool, out: Path | None) -> None:
         InputError: anything in the request that cannot be used, or margins that cannot be met.
     """
     refuse_unusable(out)
+    if wanted.form:
+        writer_of(wanted.form, "--form")
     with warnings_as_lines():
         plant = read_drive_plant(find_plant(wanted.plant))
         phase = math.degrees(parse(wanted.margin_phase, "rad", "--margin-phase"))
@@ -74,12 +81,17 @@ def run(wanted: Wanted, as_json: bool, out: Path | None) -> None:
         places = quantities(wanted.positions, "m", "--positions")
         loads = quantities(wanted.payload, "kg", "--payload")
         cases = operating_points(plant, places, loads, parse(wanted.velocity, "m/s", "--velocity"))
-        found = recommend(plant, drive, cases, demand)
-    content = _content(plant, found)
+        servo = Servo(plant, recommend(plant, drive, cases, demand))
+        typed = servo.to_drive(wanted.form) if wanted.form else None
+        retuned = servo.compare(wanted.present, wanted.form) if wanted.present is not None else None
+    found = servo.recommendation
+    content = _content(plant, found) | drive_content(typed, retuned)
     if out is not None:
         with output_folder(out) as folder:
             _write(plant, found, content, folder)
-    deliver(content, [] if as_json else _tables(plant, found), as_json, None)
+            write_drive(typed, retuned, folder)
+    shown = [] if as_json else [*_tables(plant, found), *drive_tables(typed, retuned)]
+    deliver(content, shown, as_json, None)
     tell_written(out, as_json)
 
 
@@ -132,10 +144,11 @@ def _content(plant: Plant, found: Recommendation) -> dict[str, Any]:
         "reset_time": {"s": cascade.reset_time},
         "position_gain": {"1/s": cascade.position_gain, "(m/min)/mm": cascade.position_gain / KV_UNIT},
         "position_feedback": str(cascade.feedback),
-        "notches": [
-            {"frequency": one.frequency, "bandwidth": one.bandwidth, "depth_db": one.depth,
-             "resonance": list(one.resonance), "brings": one.brings}
-            for one in found.velocity.notches
+        "filters": [
+            {"kind": one.kind, "frequency": one.frequency, "damping": one.damping,
+             "depth_db": one.depth if math.isfinite(one.depth) else None,
+             "resonance": None if one.resonance is None else list(one.resonance), "brings": one.brings}
+            for one in found.velocity.filters
         ],
         "settings": [asdict(one) for one in settings(plant, found)],
         "rules": list(rules(plant, found)),

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from feeddrive.errors import InputError
 from feeddrive.files import find_scenario_or_controller, write_text_atomically
 from feeddrive.interface.quantities import Quantity, quantities, si
+from feeddrive.interface.retuning import Retuned, compare, read_present
 from feeddrive.interface.shown import Listing, Shown
 from feeddrive.plant.entries import nearest
 from feeddrive.plant.plant import Plant
@@ -20,7 +21,8 @@ from feeddrive.servo.loop_response import loops_of
 from feeddrive.servo.response_family import open_family
 from feeddrive.simulate.controller_file import read_controller
 from feeddrive.tuning.bare_drive import bare_drive
-from feeddrive.tuning.demand import Demand, cases_of
+from feeddrive.tuning.demand import Demand, operating_points
+from feeddrive.tuning.drive_settings import DriveSettings, drive_settings
 from feeddrive.tuning.reasons import Setting, controller_text, rules, settings
 from feeddrive.tuning.recommendation import Recommendation, recommend
 
@@ -90,6 +92,36 @@ class Servo(Shown):
         write_text_atomically(target, self.text)
         return target
 
+    def to_drive(self, form: str) -> DriveSettings:
+        """What to type into a drive: names, units and resolution of the form, within the filters that it has.
+
+        Args:
+            form: "sinamics", "twincat", "heidenhain" or "linuxcnc".
+
+        Raises:
+            InputError: an unknown form, a value that the drive does not take, margins that it cannot keep.
+
+        >>> import feeddrive as fd
+        >>> print(fd.tune(fd.load("bench_axis")).to_drive("sinamics").lines[0].parameter.name)
+        p1460[0]
+        """
+        return drive_settings(self.plant, self.recommendation, form)
+
+    def compare(self, present: str | Path, form: str = "") -> Retuned:
+        """What the recommendation would change and bring beside the present settings.
+
+        Args:
+            present: controller file, or a file of drive parameters.
+            form: of the parameters; what is recommended is then what that drive would have.
+
+        Raises:
+            InputError: a file that cannot be read, or as `to_drive`.
+        """
+        path = Path(present)
+        wanted = self.to_drive(form).cascade if form else self.cascade
+        cases = [one.case for one in self.recommendation.reached]
+        return compare(self.plant, read_present(path, form, self.plant, self.cascade), wanted, cases)
+
     def listing(self) -> Listing:
         """One row per setting."""
         rows = [[one.symbol, one.shown, one.why] for one in self.settings]
@@ -124,14 +156,14 @@ def tune(
     dead_time: Quantity = "125 us",
     feedback: str | None = None,
 ) -> Servo:
-    """Recommend K_p, T_n, notches and K_v that keep margins over positions and payloads.
+    """Recommend K_p, T_n, filters and K_v that keep margins over positions and payloads, in motion and at rest.
 
     Args:
         axis: the machine.
         phase, gain: least margins of either loop.
         positions: of the table at which they must hold; along the stroke if left out.
         payload: masses on the table with which they must hold.
-        velocity: of the table about which is linearised.
+        velocity: of the table in motion, about which is linearised.
         drive: scenario or controller file of the drive; gives rates, delays and limits in place of what follows.
         velocity_rate, position_rate, current_bandwidth, dead_time: of the drive.
         feedback: "motor" or "table", what the position loop reads; a scale if declared.
@@ -158,7 +190,7 @@ def tune(
         )
     demand = Demand(phase=round(math.degrees(si(phase, "rad", "phase")), 9), gain=si(gain, "dB", "gain"))
     places, loads = quantities(positions, "m", "positions"), quantities(payload, "kg", "payload")
-    cases = cases_of(plant, places, loads, si(velocity, "m/s", "velocity"))
+    cases = operating_points(plant, places, loads, si(velocity, "m/s", "velocity"))
     return Servo(plant, recommend(plant, bare, cases, demand))
 
 

@@ -19,7 +19,7 @@ from feeddrive.simulate.scenario import Evaluation
 from feeddrive.simulate.scenario_result import ScenarioResult
 from feeddrive.simulate.trajectories import Circle, Wave
 from feeddrive.simulate.waveforms import Multisine, Prbs, Sweep, Waveform
-from feeddrive.typing import BoolArray
+from feeddrive.typing import BoolArray, FloatArray, IntegerArray
 
 Figure = (
     Following | tuple[Settling, ...] | Positioning | Circular | tuple[FrictionPoint, ...] | ForceLoop | TorqueLoop
@@ -128,15 +128,28 @@ def _circular(result: ScenarioResult, _: Evaluation) -> Circular:
     if not isinstance(circle, Circle):
         raise InputError("the set-point is no circle", "evaluate circular", 'use kind = "circle"')
     angle = circle.angle(result.time)
-    rate = np.gradient(angle, result.time)
+    chosen = steady_turn(angle, result.time)
+    return circular(angle[chosen], result.series["table_position"][chosen], circle.radius)
+
+
+def steady_turn(angle: FloatArray, time: FloatArray) -> IntegerArray:
+    """The samples of a circle that are looked at: whole turns at constant feed, without the first where there are more.
+
+    Args:
+        angle: along the circle [rad], rising, shape (n,).
+        time: [s], shape (n,).
+
+    Raises:
+        InputError: nothing moves.
+    """
+    rate = np.gradient(angle, time)
     if not rate.max() > 0:
         raise InputError("the run ends before the circle begins", "evaluate circular", "make the run longer")
     steady = np.flatnonzero(np.abs(rate - rate.max()) < 1e-6 * rate.max())
     last = angle[steady[-1]]
     turns = math.floor((last - angle[steady[0]]) / (2 * math.pi) + 1e-9)
     # whole turns at constant feed, the last ones: the first turn after the run-up is still settling
-    chosen = steady[angle[steady] > last - 2 * math.pi * max(1, turns - 1)] if turns > 1 else steady
-    return circular(angle[chosen], result.series["table_position"][chosen], circle.radius)
+    return steady[angle[steady] > last - 2 * math.pi * max(1, turns - 1)] if turns > 1 else steady
 
 
 def _friction_map(result: ScenarioResult, wanted: Evaluation) -> tuple[FrictionPoint, ...]:

@@ -15,7 +15,11 @@ from feeddrive.servo.cascade import KV_UNIT, Cascade
 from feeddrive.servo.frequency_response import Case
 from feeddrive.tuning.largest_gain import GainLimit, Limit
 from feeddrive.tuning.recommendation import Recommendation
-from feeddrive.tuning.velocity_loop import NotchChoice
+from feeddrive.tuning.filter_choice import FilterChoice
+
+
+_COMPLETE = 200.0
+"""Depth of a complete notch in a file [dB]: 1e-10, beyond every digit of a drive."""
 
 
 @dataclass(frozen=True)
@@ -44,7 +48,7 @@ def settings(plant: Plant, found: Recommendation) -> tuple[Setting, ...]:
                 f"most K_p/T_n that keeps {asked}; held back by {_held_back(found, found.velocity.limit)}"),
         Setting("reset_time", "T_n", format_quantity(cascade.reset_time, "s"),
                 _why_reset(plant, found)),
-        *(_notch_setting(choice) for choice in found.velocity.notches),
+        *(_filter_setting(choice) for choice in found.velocity.filters),
         Setting("position_gain", "K_v",
                 f"{_kv(cascade)} = {cascade.position_gain:.4g} 1/s",
                 _why_position(found)),
@@ -94,7 +98,7 @@ def controller_text(found: Recommendation, name: str) -> str:
         "[feed_forward]",
         "speed = 1.0",
         "torque = 1.0    # of the plant's inertia",
-        *(line for choice in found.velocity.notches for line in _notch_lines(choice)),
+        *(line for choice in found.velocity.filters for line in _filter_lines(choice)),
     ]
     return "\n".join(lines) + "\n"
 
@@ -135,7 +139,10 @@ def _why_reset(plant: Plant, found: Recommendation) -> str:
     inertia = max(inertia_at_motor(one.case.on(plant)) for one in found.reached)
     times = found.cascade.reset_time * found.cascade.velocity_gain / inertia
     taken = math.degrees(math.atan(1 / times))
-    return f"{times:.1f} J/K_p, so the integrator takes {taken:.0f}° at the crossover of a rigid axis (14° at most)"
+    return (
+        f"searched with K_p at the margins; {times:.1f} J/K_p, the integrator takes {taken:.0f}° at the crossover of a "
+        "rigid axis"
+    )
 
 
 def _why_position(found: Recommendation) -> str:
@@ -150,23 +157,28 @@ def _at(found: Recommendation, limit: GainLimit) -> str:
     return f"at {limit.frequency:.0f} Hz, {describe(found.reached[limit.case].case)}"
 
 
-def _notch_setting(choice: NotchChoice) -> Setting:
+def _filter_setting(choice: FilterChoice) -> Setting:
+    brings = f"allows {choice.brings:.2g} times the K_p/T_n"
+    if choice.kind == "PT2":
+        return Setting("filter", "low-pass", f"{choice.frequency:g} Hz, damping {choice.damping:g}", brings)
+    shown = f"{choice.frequency:g} Hz, {choice.bandwidth:.4g} Hz wide, {_depth(choice)}"
+    if choice.resonance is None:
+        return Setting("filter", "notch", shown, brings)
     low, high = choice.resonance
     where = f"{low:.0f} Hz" if high - low < 1 else f"{low:.0f} to {high:.0f} Hz over the cases"
-    shown = f"{choice.frequency:g} Hz, {choice.bandwidth:g} Hz wide, {choice.depth:g} dB"
-    return Setting("filter", "notch", shown, f"resonance at {where}; allows {choice.brings:.2g} times the K_p/T_n")
+    return Setting("filter", "notch", shown, f"resonance at {where}; {brings}")
 
 
-def _notch_lines(choice: NotchChoice) -> list[str]:
-    return [
-        "",
-        "[[filter]]",
-        'at = "torque"',
-        'kind = "notch"',
-        f'frequency = "{choice.frequency:g} Hz"',
-        f'bandwidth = "{choice.bandwidth:g} Hz"',
-        f'depth = "{choice.depth:g} dB"',
-    ]
+def _depth(choice: FilterChoice) -> str:
+    return f"{choice.depth:g} dB" if math.isfinite(choice.depth) else "complete"
+
+
+def _filter_lines(choice: FilterChoice) -> list[str]:
+    head = ["", "[[filter]]", 'at = "torque"', f'kind = "{choice.kind}"', f'frequency = "{_exact(choice.frequency)} Hz"']
+    if choice.kind == "PT2":
+        return [*head, f'damping = "{_exact(choice.damping)}"']
+    depth = f"{_exact(choice.depth)} dB" if math.isfinite(choice.depth) else f"{_COMPLETE:g} dB"
+    return [*head, f'bandwidth = "{_exact(choice.bandwidth)} Hz"', f'depth = "{depth}"']
 
 
 def _current_loop(cascade: Cascade) -> list[str]:

@@ -1,6 +1,6 @@
 """A recommended cascade, checked with the loop itself in every case, each setting with its why.
 
-Order: velocity loop with its notches, then the position loop around it. Gains are rounded as they will be written and
+Order: velocity loop with its filters, then the position loop around it. Gains are rounded as they will be written and
 lowered until every case holds, by the margins and eigenvalues of `servo.linear_loop`. Feed-forward is that of the plant
 and changes no margin. Valid for small motion about a moving table and about one that friction holds: limits and
 reversals are not in it.
@@ -21,6 +21,7 @@ from feeddrive.servo.frequency_response import Case
 from feeddrive.servo.linear_loop import open_position_loop, open_velocity_loop, worst_eigenvalue
 from feeddrive.servo.margins import GROWTH, Margins, margins
 from feeddrive.tuning.demand import Demand
+from feeddrive.tuning.filter_choice import NO_LIMITS, FilterLimits
 from feeddrive.tuning.largest_gain import GainLimit
 from feeddrive.tuning.position_loop import position_gain
 from feeddrive.tuning.velocity_loop import VelocityGains, velocity_gains
@@ -28,7 +29,7 @@ from feeddrive.tuning.velocity_loop import VelocityGains, velocity_gains
 USABLE = 1.0
 """Least K_v worth recommending [1/s]; machine tools have 10 to 100."""
 
-_LOWERED = 0.98
+_LOWERED, _SLOWED = 0.98, 0.99
 _TRIES = 12
 _POINTS = 4000
 """Of the grid of margins; 5 times fewer than usual, and still 0.3 % of frequency apart."""
@@ -75,7 +76,9 @@ class Recommendation:
         return phase, min(self.reached, key=lambda one: one.position.gain)
 
 
-def recommend(plant: Plant, drive: Cascade, cases: Sequence[Case], demand: Demand) -> Recommendation:
+def recommend(
+    plant: Plant, drive: Cascade, cases: Sequence[Case], demand: Demand, limits: FilterLimits = NO_LIMITS
+) -> Recommendation:
     """The recommended cascade.
 
     Args:
@@ -83,16 +86,17 @@ def recommend(plant: Plant, drive: Cascade, cases: Sequence[Case], demand: Deman
         drive: rates, current loop, dead time, feedback, limits and filters that stay; its gains are replaced.
         cases: in which the demand must hold; at least one.
         demand: margins.
+        limits: what filters the drive has.
 
     Raises:
         InputError: no gains hold; says which loop, and what would.
     """
     bare = replace(drive, velocity_gain=0.0, position_gain=0.0, feed_forward=FeedForward(), balancing_time=0.0)
-    found = velocity_gains(plant, bare, cases, demand)
+    found = velocity_gains(plant, bare, cases, demand, limits)
     reset = _rounded(found.reset_time)
     with_velocity = replace(
         bare, velocity_gain=_rounded(found.gain), reset_time=reset, tracking_time=reset,
-        torque_filters=(*drive.torque_filters, *(choice.filter for choice in found.notches)),
+        torque_filters=(*drive.torque_filters, *(choice.filter for choice in found.filters)),
     )  # fmt: skip
     with_velocity = _lowered_velocity(plant, with_velocity, cases, demand)
     limit = position_gain(plant, with_velocity, cases, demand)
@@ -113,12 +117,18 @@ def _rounded(value: float) -> float:
 
 
 def _lowered_velocity(plant: Plant, cascade: Cascade, cases: Sequence[Case], demand: Demand) -> Cascade:
-    """The cascade with its velocity gain lowered until the loop itself holds in every case."""
+    """The cascade with its velocity loop slowed until the loop itself holds in every case.
+
+    Gain down and reset time up together: the phase margin holds in an interval of gains, which a gain alone may leave
+    at its lower end.
+    """
     for _ in range(_TRIES):
         every = [_margins(open_velocity_loop(case.on(plant), cascade, case.velocity, case.position)) for case in cases]
-        if all(_holds(one, demand) for one in every):
+        if all(holds(one, demand) for one in every):
             return cascade
-        cascade = replace(cascade, velocity_gain=_rounded(_LOWERED * cascade.velocity_gain))
+        reset = _rounded(cascade.reset_time / _SLOWED)
+        cascade = replace(cascade, velocity_gain=_rounded(_SLOWED * cascade.velocity_gain), reset_time=reset,
+                          tracking_time=reset)  # fmt: skip
     raise _unmet(plant, demand, "velocity")
 
 
@@ -126,14 +136,15 @@ def _lowered_position(
     plant: Plant, cascade: Cascade, cases: Sequence[Case], demand: Demand
 ) -> tuple[Cascade, tuple[Reached, ...]]:
     for _ in range(_TRIES):
-        reached = tuple(_reached(plant, cascade, case) for case in cases)
-        if all(_holds(one.position, demand) and one.growth < GROWTH for one in reached):
+        reached = tuple(reached_in(plant, cascade, case) for case in cases)
+        if all(holds(one.position, demand) and one.growth < GROWTH for one in reached):
             return cascade, reached
         cascade = replace(cascade, position_gain=_rounded(_LOWERED * cascade.position_gain))
     raise _unmet(plant, demand, "position")
 
 
-def _reached(plant: Plant, cascade: Cascade, case: Case) -> Reached:
+def reached_in(plant: Plant, cascade: Cascade, case: Case) -> Reached:
+    """What a cascade reaches in a case, by the loop itself."""
     loaded = case.on(plant)
     velocity, position = (
         _margins(make(loaded, cascade, case.velocity, case.position))
@@ -147,7 +158,8 @@ def _margins(loop: control.StateSpace) -> Margins:
     return margins(loop, points=_POINTS)
 
 
-def _holds(found: Margins, demand: Demand) -> bool:
+def holds(found: Margins, demand: Demand) -> bool:
+    """Whether margins are what is asked."""
     return found.stable and found.phase >= demand.phase and found.gain >= demand.gain
 
 

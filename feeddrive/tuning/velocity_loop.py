@@ -1,18 +1,19 @@
 """Gains and filters of the velocity loop from margins: the most integral gain that holds in every case.
 
-    maximise K_p / T_n   subject to   T_n >= 4 J / K_p   and, in every case, to the margins of
-                                      L = K_p (1 + T / (T_n (z - 1))) F_t(z) G(z)
+    maximise K_p / T_n   over K_p, T_n and the filters, subject in every case to the margins of
+                         L = K_p (1 + T / (T_n (z - 1))) F_t(z) G(z)
 
 | symbol | meaning | unit |
 |---|---|---|
 | K_p, T_n, T | gain, reset time, tick | N m s/rad, s, s |
-| J | inertia of everything at the motor, greatest over the cases; K_p / J is the crossover of a rigid axis | kg m^2 |
 | F_t | filters of the torque command | 1 |
 | G | plant, current loop, dead time and speed from the encoder, sampled | rad/s per N m |
 
 1 / (K_p / T_n) is how far a constant load drives the integrated error of the speed, so its largest value rejects most.
-T_n of 4 J / K_p leaves the integrator 14 deg of the phase at the crossover; below it the speed overshoots its set-point
-and the position loop pays.
+For given T_n and filters the largest K_p follows in one pass (`tuning.largest_gain`); over T_n it is searched on a grid
+that is refined. Filters come one at a time, at the resonance that limits or as a low-pass, and are then moved in
+frequency, width and depth as long as that brings more. How the position loop does around it is not in the measure: the
+margins and the magnification that are asked of it are met by K_v (`tuning.position_loop`).
 Source: Åström, Hägglund, Advanced PID Control (2006), section 6.8: integral gain maximised under robustness
 constraints, with margins in the place of the largest sensitivity. The gains found are checked with the loop itself.
 """
@@ -26,15 +27,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feeddrive.errors import InputError
-from feeddrive.plant.moving_inertia import inertia_at_motor
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade
-from feeddrive.servo.filters import Filter, notch
+from feeddrive.servo.filters import Filter
 from feeddrive.servo.frequency_response import Case, grid, transfer
 from feeddrive.servo.linear_loop import open_velocity_loop
 from feeddrive.servo.margins import frequency_response
 from feeddrive.servo.resonances import Kind, Resonance, resonances
 from feeddrive.tuning.demand import Demand
+from feeddrive.tuning.filter_choice import NO_LIMITS, FilterChoice, FilterLimits, low_pass, notches_about
 from feeddrive.tuning.largest_gain import GainLimit, largest_gain
 from feeddrive.typing import ComplexArray, FloatArray
 
@@ -42,34 +43,16 @@ LOWEST = 0.5
 """Of the frequencies looked at [Hz]."""
 
 WORTH = 1.2
-"""Factor of integral gain that a further filter must bring."""
+"""Factor of integral gain that a further filter must bring: one that brings less costs K_v by its lag and asks to be kept
+up where the machine differs from the plant file."""
 
-MOST_FILTERS = 3
-SLOWER = 4.0
-"""Least T_n K_p / J."""
-_RESET_TIMES = np.geomspace(1e-3, 2.0, 34)
-_WIDTHS, _DEPTHS = (0.25, 0.5, 1.0), (10.0, 20.0, 30.0)
+_RESET_TIMES = np.geomspace(3e-4, 2.0, 40)
 _NEAR = 0.25
 """Share of frequency within which a limit is put down to a resonance."""
-
-
-@dataclass(frozen=True)
-class NotchChoice:
-    """A notch and what it brings.
-
-    Attributes:
-        filter: as the cascade takes it.
-        frequency, bandwidth, depth: of it [Hz, Hz, dB].
-        resonance: least and greatest natural frequency of the resonance over the cases [Hz].
-        brings: factor of the integral gain that it allows.
-    """
-
-    filter: Filter
-    frequency: float
-    bandwidth: float
-    depth: float
-    resonance: tuple[float, float]
-    brings: float
+_STEPS = (0.15, 0.05)
+"""Relative steps by which a filter is moved; natural frequencies of a plant file are not better than the last."""
+_PROMISING = 1.05
+"""Factor that a filter must bring before it is moved; moving a filter brings some tenths, not a hopeless one."""
 
 
 @dataclass(frozen=True)
@@ -79,13 +62,13 @@ class VelocityGains:
     Attributes:
         gain: K_p [N m s/rad].
         reset_time: T_n [s].
-        notches: of the torque command.
+        filters: of the torque command.
         limit: what holds the gain back.
     """
 
     gain: float
     reset_time: float
-    notches: tuple[NotchChoice, ...]
+    filters: tuple[FilterChoice, ...]
     limit: GainLimit
 
     @property
@@ -96,7 +79,7 @@ class VelocityGains:
 
 @dataclass(frozen=True)
 class _Task:
-    """Grid [Hz], loops at K_p = 1 without integrator (cases, n), resonances by case, greatest inertia [kg m^2].
+    """Grid [Hz], loops at K_p = 1 without integrator (cases, n), resonances by case, what filters may be.
 
     `velocities` of the cases [m/s]: a table that friction holds has other resonances than one that moves.
     """
@@ -106,36 +89,39 @@ class _Task:
     loops: ComplexArray
     resonances: tuple[tuple[Resonance, ...], ...]
     velocities: tuple[float, ...]
-    inertia: float
     demand: Demand
+    limits: FilterLimits
 
 
-def velocity_gains(plant: Plant, drive: Cascade, cases: Sequence[Case], demand: Demand) -> VelocityGains:
-    """The most integral gain whose margins hold in every case, with as few notches as are worth it.
+def velocity_gains(
+    plant: Plant, drive: Cascade, cases: Sequence[Case], demand: Demand, limits: FilterLimits = NO_LIMITS
+) -> VelocityGains:
+    """The most integral gain whose margins hold in every case, with as few filters as are worth it.
 
     Args:
         plant: the machine.
         drive: rates, current loop, dead time and filters that stay; its gains are not looked at.
         cases: in which the margins must hold.
         demand: the margins.
+        limits: what filters the drive has.
 
     Raises:
         InputError: no gain holds; says what would.
     """
-    task = _task(plant, drive, cases, demand)
+    task = _task(plant, drive, cases, demand, limits)
     found = _best(task, (), _RESET_TIMES)
     if not found.gain:
         raise InputError(f"no gain of the velocity loop keeps {demand.phase:g}° and {demand.gain:g} dB in every case",
                          plant.name, _hint(task))  # fmt: skip
-    while len(found.notches) < MOST_FILTERS:
-        better = _with_notch(task, found)
+    while len(found.filters) < limits.most:
+        better = _with_filter(task, found)
         if better is None:
             break
         found = better
-    return _best(task, found.notches, found.reset_time * np.geomspace(0.75, 1.35, 25))
+    return _refined(task, found)
 
 
-def _task(plant: Plant, drive: Cascade, cases: Sequence[Case], demand: Demand) -> _Task:
+def _task(plant: Plant, drive: Cascade, cases: Sequence[Case], demand: Demand, limits: FilterLimits) -> _Task:
     highest = 0.5 / drive.sample_time
     systems = [transfer(plant, "motor_torque", "motor_speed", case) for case in cases]
     roots = tuple(resonances(system, LOWEST, highest) for system in systems)
@@ -145,22 +131,33 @@ def _task(plant: Plant, drive: Cascade, cases: Sequence[Case], demand: Demand) -
         frequency_response(open_velocity_loop(case.on(plant), bare, case.velocity, case.position), frequency)
         for case in cases
     ]
-    inertia = max(inertia_at_motor(case.on(plant)) for case in cases)
     velocities = tuple(case.velocity for case in cases)
-    return _Task(drive.sample_time, frequency, np.array(loops), roots, velocities, inertia, demand)
+    return _Task(drive.sample_time, frequency, np.array(loops), roots, velocities, demand, limits)
 
 
-def _best(task: _Task, notches: tuple[NotchChoice, ...], reset_times: FloatArray) -> VelocityGains:
-    """The reset time of most integral gain, for given notches."""
-    filtered = task.loops * _through([choice.filter for choice in notches], task)
+def _best(task: _Task, filters: tuple[FilterChoice, ...], reset_times: FloatArray) -> VelocityGains:
+    """The reset time of most integral gain, for given filters."""
+    filtered = task.loops * _through([choice.filter for choice in filters], task)
+    z = np.exp(2j * math.pi * task.frequency * task.tick)
     found = []
     for reset in reset_times:
-        z = np.exp(2j * math.pi * task.frequency * task.tick)
         loops = filtered * (1 + task.tick / reset / (z - 1))
         limit = largest_gain(task.frequency, loops, 1 / (2 * math.pi * reset), task.demand)
-        slow = reset * limit.gain >= SLOWER * task.inertia
-        found.append(VelocityGains(limit.gain if slow else 0.0, float(reset), notches, limit))
+        found.append(VelocityGains(limit.gain, float(reset), filters, limit))
     return max(found, key=lambda one: one.integral)
+
+
+def _refined(task: _Task, found: VelocityGains) -> VelocityGains:
+    """The same filters, the reset time to half a percent."""
+    for width in (0.2, 0.03):
+        times = found.reset_time * np.geomspace(1 - width, 1 + width, 13)
+        found = max(found, _best(task, found.filters, times), key=lambda one: one.integral)
+    return found
+
+
+def _near(task: _Task, filters: tuple[FilterChoice, ...], about: float) -> VelocityGains:
+    """The best near a reset time [s]: filters that are moved a little move it a little."""
+    return _best(task, filters, about * np.array([0.88, 1.0, 1.14]))
 
 
 def _through(filters: Sequence[Filter], task: _Task) -> ComplexArray:
@@ -173,30 +170,50 @@ def _through(filters: Sequence[Filter], task: _Task) -> ComplexArray:
     return response
 
 
-def _with_notch(task: _Task, found: VelocityGains) -> VelocityGains | None:
-    """One notch more at the resonance that limits, the shallowest and narrowest that brings nearly most; or None."""
-    spread = _limiting_resonance(task, found)
-    if spread is None or spread[1] * task.tick > 0.4:
+def _with_filter(task: _Task, found: VelocityGains) -> VelocityGains | None:
+    """One filter more where it brings most, moved to where it brings most; None where it is not worth it."""
+    offered = _offered(task, found)
+    if not offered:
         return None
-    coarse = found.reset_time * np.geomspace(0.1, 1.2, 16)
-    tried = [_best(task, (*found.notches, choice), coarse) for choice in _notches(spread)]
-    best = max(one.integral for one in tried)
-    if best < WORTH * found.integral:
+    coarse = found.reset_time * np.geomspace(0.2, 1.3, 10)
+    tried = [_best(task, (*found.filters, choice), coarse) for choice in offered]
+    first = max(tried, key=lambda one: one.integral)
+    if first.integral < _PROMISING * found.integral:
         return None
-    chosen = next(one for one in tried if one.integral > 0.93 * best)
-    brings = replace(chosen.notches[-1], brings=chosen.integral / found.integral)
-    return replace(chosen, notches=(*found.notches, brings))
+    best = _moved(task, first)
+    if best.integral < WORTH * found.integral:
+        return None
+    brings = replace(best.filters[-1], brings=best.integral / found.integral)
+    return replace(best, filters=(*best.filters[:-1], brings))
 
 
-def _notches(spread: tuple[float, float]) -> list[NotchChoice]:
-    """Notches about a resonance, gentle ones first."""
-    centre = float(f"{math.sqrt(spread[0] * spread[1]):.3g}")
-    made = []
-    for depth in _DEPTHS:
-        for width in _WIDTHS:
-            bandwidth = float(f"{max(width * centre, 1.5 * (spread[1] - spread[0])):.2g}")
-            made.append(NotchChoice(notch(centre, bandwidth, depth), centre, bandwidth, depth, spread, 1.0))
-    return made
+def _offered(task: _Task, found: VelocityGains) -> list[FilterChoice]:
+    """Filters about the resonance that limits, and a low-pass, as far as the drive has them."""
+    spread, highest = _limiting_resonance(task, found), 0.4 / task.tick
+    notches = [] if spread is None else notches_about(spread, task.limits)
+    passes = [] if any(choice.kind == "PT2" for choice in found.filters) else [
+        low_pass(factor * found.limit.frequency, task.limits) for factor in (0.7, 1.5, 3.0)
+    ]  # fmt: skip
+    return [one for one in (*notches, *passes) if one is not None and one.frequency < highest]
+
+
+def _moved(task: _Task, found: VelocityGains) -> VelocityGains:
+    """All filters moved, each value by itself and up and down, as long as it brings more."""
+    highest = 0.4 / task.tick
+    for step in _STEPS:
+        better = True
+        while better:
+            better = False
+            for place, choice in enumerate(found.filters):
+                for changed in choice.varied(step, task.limits):
+                    if changed.frequency >= highest:
+                        continue
+                    filters = (*found.filters[:place], changed, *found.filters[place + 1 :])
+                    tried = _near(task, filters, found.reset_time)
+                    if tried.integral > (1 + 0.1 * step) * found.integral:
+                        found, better = tried, True
+                        break
+    return found
 
 
 def _limiting_resonance(task: _Task, found: VelocityGains) -> tuple[float, float] | None:
@@ -204,14 +221,11 @@ def _limiting_resonance(task: _Task, found: VelocityGains) -> tuple[float, float
     every = [[root.frequency for root in some if root.kind is Kind.RESONANCE] for some in task.resonances]
     own, velocity = every[found.limit.case], task.velocities[found.limit.case]
     poles = [some for some, other in zip(every, task.velocities, strict=True) if other == velocity]
-    taken = [choice.frequency for choice in found.notches]
     near = [f for f in own if abs(f / found.limit.frequency - 1) < _NEAR]
     if not near:
         return None
     number = own.index(min(near, key=lambda f: abs(f - found.limit.frequency)))
     over = [some[number] for some in poles if len(some) > number]
-    if any(min(over) * (1 - _NEAR / 2) < f < max(over) * (1 + _NEAR / 2) for f in taken):
-        return None
     return min(over), max(over)
 
 

@@ -67,7 +67,13 @@ def test_rigid_axis_meets_the_textbook() -> None:
     phase = 90 - math.degrees(crossover * delay + math.atan(1 / (crossover * cascade.reset_time)))
     # T_d takes atan(w T) of the lag for w T and the crossover for that of the gain alone: 2 deg
     assert phase == pytest.approx(45.0, abs=3.0)
-    assert cascade.reset_time >= 3.9 * inertia / cascade.velocity_gain
+    # with a = w T_n, K_p / T_n is J w^2 / a, and w T_d = 45 deg - atan(1 / a): largest at a = 3.57, and within 2 % of
+    # that from 3.0 to 4.3, so that the discrete loop may choose anything there
+    assert 3.0 < crossover * cascade.reset_time < 4.3
+    ratios = np.linspace(1.5, 8.0, 2000)
+    best = inertia * np.max((math.pi / 4 - np.arctan(1 / ratios)) ** 2 / ratios) / delay**2
+    # the lag taken as a delay turns the phase by up to 2 deg of 32 more than the lag does: 12 % of w^2
+    assert 0.97 * best < cascade.velocity_gain / cascade.reset_time < 1.15 * best
     assert not cascade.torque_filters
 
 
@@ -93,8 +99,10 @@ def test_gains_are_the_largest(bench: Plant, found: Recommendation) -> None:
 
 
 def test_notch_sits_on_the_torsional_mode_and_is_explained(bench: Plant, found: Recommendation) -> None:
-    (choice,) = found.velocity.notches
-    assert choice.resonance[0] - 1 < choice.frequency < choice.resonance[1] + 1
+    (choice,) = found.velocity.filters
+    assert choice.kind == "notch" and choice.resonance is not None
+    low, high = choice.resonance
+    assert 0.9 * low < choice.frequency < 1.1 * high  # moved to where it brings most, not away from its mode
     rows = {one.symbol: one for one in settings(bench, found)}
     assert set(rows) == {"K_p", "T_n", "notch", "K_v", "k_s, k_a"}
     assert "(m/min)/mm = " in rows["K_v"].shown and rows["K_v"].shown.endswith("1/s")
@@ -181,6 +189,6 @@ def test_margins_hold_at_rest_too() -> None:
 def test_tuning_in_motion_alone_misses_at_rest() -> None:
     plant = read_plant(find_plant("vertical_axis"))
     drive = replace(DRIVE, radius=plant.chain.motor_radius, torque_limit=plant.torque_limit, feedback=Feedback.MOTOR)
-    moving = recommend(plant, drive, cases_of(plant), Demand())
+    moving = recommend(plant, drive, cases_of(plant), Demand(phase=35.0))  # where the gain margin limits
     at_rest = [_gain_margin_by_sampling(plant, moving.cascade, replace(case, velocity=0.0)) for case in cases_of(plant)]
     assert min(at_rest) < 7.9

@@ -1,0 +1,212 @@
+"""The bench as one HTML file: equations, numbers, script and style in it, nothing fetched, nothing sent."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from html import escape
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from feeddrive.bench.equations import bench_equations
+from feeddrive.effects.base import Effect
+from feeddrive.effects.payload import Payload
+from feeddrive.errors import printable
+from feeddrive.metrology.circular import GLITCH_SPAN
+from feeddrive.plant.equations import parameter_names, parameter_values
+from feeddrive.plant.moving_inertia import inertia_at_motor
+from feeddrive.plant.plant import Plant
+from feeddrive.plant.steady import MOVING
+from feeddrive.servo.cascade import Cascade
+from feeddrive.servo.filters import Filter, notch
+from feeddrive.servo.frequency_response import grid
+from feeddrive.servo.margins import GROWTH
+from feeddrive.simulate.trial_motions import RADIUS, HEIGHT, STEP_AT, Trial, circle_about, step_at
+
+_SCRIPTS = ("linear.js", "loop.js", "engine.js", "bench.js", "drawing.js", "page.js")
+_LOWEST, _HIGHEST = 1.0, 4000.0
+FILTERS = 3
+"""Torque filters that can be moved; more of the given cascade stay as they are."""
+_FIXED_KEYS = ("order", "phase", "port", "at_torque")
+_FOLDER = Path(__file__).parent
+
+
+@dataclass(frozen=True)
+class BenchPage:
+    """What a page shows.
+
+    Attributes:
+        plant: the machine.
+        cascade: settings at the start.
+        payload: largest that can be chosen [kg].
+        found: names of the effects that a diagnosis found, first in the list of sliders.
+    """
+
+    plant: Plant
+    cascade: Cascade
+    payload: float
+    found: tuple[str, ...] = ()
+
+
+def bench_page(bench: BenchPage) -> str:
+    """The page as text.
+
+    Raises:
+        InputError: a rigid plant.
+    """
+    data = bench_data(bench)
+    functions = data.pop("functions")
+    title = escape(printable(bench.plant.name))
+    style = (_FOLDER / "page.css").read_text(encoding="utf-8")
+    body = (_FOLDER / "page.html").read_text(encoding="utf-8").replace("TITLE", title)
+    scripts = "\n".join((_FOLDER / name).read_text(encoding="utf-8") for name in _SCRIPTS)
+    return (
+        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'unsafe-inline'; "
+        "style-src 'unsafe-inline'; img-src data: blob:\">\n"
+        f"<title>Bench: {title}</title>\n<style>{style}</style>\n</head>\n<body>\n{body}\n"
+        f'<script type="application/json" id="data">{_json(data)}</script>\n'
+        f"<script>\n{functions}\n{scripts}\n</script>\n</body>\n</html>\n"
+    )
+
+
+def _json(data: Any) -> str:
+    """JSON that ends no script element, whatever a name holds."""
+    text = json.dumps(_finite(data), ensure_ascii=True, allow_nan=False, separators=(",", ":"))
+    return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
+
+
+def _finite(value: Any) -> Any:
+    """Infinite numbers as the largest one, which JSON can hold and no limit reaches."""
+    if isinstance(value, dict):
+        return {key: _finite(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(item) for item in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None if math.isnan(value) else math.copysign(1e300, value)
+    return value
+
+
+def bench_data(bench: BenchPage) -> dict[str, Any]:
+    """Numbers of the page, SI, and under `functions` the equations as JavaScript."""
+    plant = bench.plant.with_effects(Payload.of(mass=0.0))
+    cascade = _with_slots(bench.cascade)
+    functions, numbers = bench_equations(plant, cascade)
+    names = list(parameter_names(plant))
+    payload = plant.effects[-1]
+    stroke = None if plant.stroke is None else list(plant.stroke)
+    periods = (cascade.sample_time, cascade.sample_time * cascade.position_divider)
+    start = replace(bench.cascade, torque_filters=bench.cascade.torque_filters[:FILTERS])
+    return {
+        "functions": functions,
+        **numbers,
+        "name": printable(plant.name),
+        "payload": names.index(f"{payload.label}.mass"),
+        "most_payload": bench.payload,
+        "stroke": stroke,
+        "middle": plant.middle,
+        "position_matters": plant.chain.varies or bool(stroke),
+        "inertia": cascade.feed_forward.inertia or inertia_at_motor(bench.plant),
+        "velocity": MOVING,
+        "growth": GROWTH,
+        "frequency": [grid(_LOWEST, min(_HIGHEST, 0.5 / period)).tolist() for period in periods],
+        "circle": _circle(plant, cascade),
+        "step": _motion(step_at(plant, plant.middle), cascade, plant.middle) | {"height": HEIGHT, "at": STEP_AT},
+        "start": settings_of(start, plant.middle),
+        "effects": _effects(plant, names, bench.found),
+        "controller": _controller_head(bench.cascade),
+    }
+
+
+def settings_of(cascade: Cascade, position: float, payload: float = 0.0) -> dict[str, Any]:
+    """Settings of the page for a cascade, SI."""
+    filters = [_filter(one) for one in cascade.torque_filters]
+    filters += [{"kind": "none", "frequency": 500.0, "damping": 0.125, "depth": 15.0}] * (FILTERS - len(filters))
+    return {
+        "position": position, "payload": payload, "velocity_gain": cascade.velocity_gain,
+        "reset_time": cascade.reset_time, "position_gain": cascade.position_gain, "filters": filters,
+        "speed_share": cascade.feed_forward.speed, "torque_share": cascade.feed_forward.torque, "values": {},
+    }  # fmt: skip
+
+
+def _filter(one: Filter) -> dict[str, Any]:
+    if one.kind == "notch":
+        frequency, damping = one.frequency, one.denominator[1] / (4 * math.pi * one.frequency)
+        depth = 20 * math.log10(one.denominator[1] / one.numerator[1]) if one.numerator[1] else 200.0
+        return {"kind": "notch", "frequency": frequency, "damping": damping, "depth": depth}
+    damping = math.pi * one.frequency * one.denominator[1]
+    return {"kind": "PT2", "frequency": one.frequency, "damping": damping, "depth": 15.0}
+
+
+def _with_slots(cascade: Cascade) -> Cascade:
+    """As many torque filters as the page has places: which they are, the page says."""
+    spare = notch(0.1 / cascade.sample_time, 0.01 / cascade.sample_time, 10.0)
+    filters = (*cascade.torque_filters[:FILTERS], *(spare,) * FILTERS)[:FILTERS]
+    return replace(cascade, torque_filters=filters)
+
+
+def _motion(trial: Trial, cascade: Cascade, origin: float) -> dict[str, Any]:
+    """Set-point at the position ticks, the position from an origin [m], and the ticks of the run."""
+    ticks = math.ceil(trial.trajectory.duration / cascade.sample_time - 1e-6)
+    time = np.arange(0, ticks, cascade.position_divider) * cascade.sample_time
+    motion = trial.trajectory.at(time)
+    ref = {"position": (motion.position - origin).tolist(), "velocity": motion.velocity.tolist(),
+           "acceleration": motion.acceleration.tolist()}  # fmt: skip
+    return {"ref": ref, "ticks": ticks}
+
+
+def _circle(plant: Plant, cascade: Cascade) -> dict[str, Any]:
+    """The circle, and the ticks of its last whole turn at constant feed, as `metrology.evaluate` takes them."""
+    from feeddrive.metrology.evaluate import steady_turn
+
+    trial = circle_about(plant, plant.middle)
+    content = _motion(trial, cascade, trial.trajectory.centre)  # type: ignore[attr-defined]
+    time = np.arange(content["ticks"]) * cascade.sample_time
+    angle = trial.trajectory.angle(time)  # type: ignore[attr-defined]
+    chosen = steady_turn(angle, time)
+    turn = {"angle": angle[chosen].tolist(), "first": int(chosen[0]), "radius": RADIUS, "span": GLITCH_SPAN}
+    return content | turn
+
+
+def _effects(plant: Plant, names: Sequence[str], found: Sequence[str]) -> list[dict[str, Any]]:
+    """Sliders of the effects: those that were found first."""
+    values = parameter_values(plant)
+    made = []
+    for effect in plant.effects[:-1]:
+        sliders = [
+            {"place": names.index(f"{effect.label}.{one.key}"), "key": one.key, "unit": one.unit,
+             "value": values[names.index(f"{effect.label}.{one.key}")]}
+            for one in effect.parameters
+            if one.key not in _FIXED_KEYS and f"{effect.label}.{one.key}" in names
+        ]  # fmt: skip
+        sliders = [one for one in sliders if one["value"]]
+        if sliders:
+            made.append({"name": effect.name, "label": _label(effect), "found": effect.name in found, "sliders": sliders})
+    return sorted(made, key=lambda one: not one["found"])
+
+
+def _label(effect: Effect) -> str:
+    return printable(effect.label.replace("_", " "))
+
+
+def _controller_head(cascade: Cascade) -> list[str]:
+    """Lines of the controller file that the page does not move."""
+    lines = [
+        f'velocity_rate = "{1 / cascade.sample_time!r} Hz"',
+        f'position_rate = "{1 / (cascade.sample_time * cascade.position_divider)!r} Hz"',
+        f'position_feedback = "{cascade.feedback}"',
+    ]
+    if cascade.current_lag:
+        lines.append(f'current_bandwidth = "{1 / (2 * math.pi * cascade.current_lag)!r} Hz"')
+    if cascade.dead_time:
+        lines.append(f'dead_time = "{cascade.dead_time!r} s"')
+    if math.isfinite(cascade.torque_limit):
+        lines.append(f'torque_limit = "{cascade.torque_limit!r} N m"')
+    if math.isfinite(cascade.speed_limit):
+        lines.append(f'speed_limit = "{cascade.speed_limit!r} rad/s"')
+    return lines
