@@ -32,6 +32,8 @@ _HOMES = {
     "Sweep": "interface.sweeping",
     "ValidityWarning": "errors",
     "WarmUp": "interface.warm_up",
+    "Compensation": "interface.compensating",
+    "compensate": "interface.compensating",
     "diagnose": "interface.diagnosed",
     "Explained": "interface.numbers",
     "effect": "interface.shipped",

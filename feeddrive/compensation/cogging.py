@@ -3,8 +3,8 @@
     T(theta) = sum of the torques that resist at the motor and depend on its angle alone
 
 What it leaves is told by a revolution a second at constant velocity, simulated without and with the map and without
-travel errors: the ripple of the table's position. Valid for orders that are whole numbers per revolution, as cogging and current offsets make them; the angle is
-that of the recording, whose zero has to be the drive's own.
+travel errors: the ripple of the table's position. Valid for orders that are whole numbers per revolution, as cogging
+and current offsets make them; the angle is that of the recording, whose zero has to be the drive's own.
 """
 
 from __future__ import annotations
@@ -56,7 +56,9 @@ class CoggingMap:
     @property
     def text(self) -> str:
         """The map as CSV."""
-        rows = [f"{math.degrees(a):.3f},{t:.6f}" for a, t in zip(self.angle.tolist(), self.torque.tolist(), strict=True)]
+        rows = [
+            f"{math.degrees(a):.3f},{t:.6f}" for a, t in zip(self.angle.tolist(), self.torque.tolist(), strict=True)
+        ]
         head = [
             "# torque that the drive adds over the angle of the motor; linear between, the last row leads to the first",
             "# the angle is that of the recorded motor encoder: shift it to the zero of the drive's own",
@@ -76,10 +78,10 @@ def cogging_map(plant: Plant, cascade: Cascade) -> CoggingMap | None:
     if not found:
         return None
     angle: FloatArray = np.arange(POINTS) * (2 * math.pi / POINTS)
-    torque = np.zeros(POINTS)
+    torque: FloatArray = np.zeros(POINTS)
     for one in found:
         motion = PortMotion(ca.DM(angle), ca.DM.zeros(POINTS))
-        torque += np.asarray(ca.DM(_source(one).force(motion, one.values)).full()).ravel()  # type: ignore[arg-type]
+        torque += np.asarray(ca.DM(_source(one).force(motion, one.values)).full(), dtype=np.float64).ravel()
     table = _Map(angle, torque, cascade.radius)
     velocity = 2 * math.pi * cascade.radius
     steady = Pieces((Piece(float(_TURNS), plant.middle, velocity, 0.0, 0.0),))

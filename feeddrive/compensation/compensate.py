@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from feeddrive.compensation.cogging import CoggingMap, cogging_map
 from feeddrive.compensation.forms.catalogue import as_held, control
 from feeddrive.compensation.forms.control import Control
 from feeddrive.compensation.friction_values import FrictionValues, friction_values
-from feeddrive.compensation.lost_motion import LostMotion, lost_motion, refuse_wind_up
+from feeddrive.compensation.lost_motion import LostMotion, lost_motion, refuse_wind_up, without_play
 from feeddrive.compensation.plant_deviations import PlantDeviations, plant_deviations
 from feeddrive.compensation.prediction import Applied, Figures, figures, motions
 from feeddrive.compensation.recorded_deviations import RecordedDeviations
@@ -32,7 +32,7 @@ from feeddrive.tuning.recommendation import recommend
 POINTS_PER_PERIOD = 16
 """Wished for per period of a lead error: straight pieces of least squares then leave 0.8 % of a sine, 8 leave 3 %."""
 
-_NICE = (1.0, 2.0, 2.5, 5.0)
+_NICE = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)
 _USUAL_RATE, _POSITION_RATE, _BANDWIDTH, _DEAD_TIME = 8000.0, 2000.0, 1000.0, 125e-6
 """Of a drive that nobody has declared: those of `feeddrive tune`."""
 
@@ -82,6 +82,7 @@ class Compensated:
         refused: what is left out of the table, and why.
         prediction: None of a recording.
         friction, cogging: values beside the table, where the plant has them.
+        shortest: period of a lead error along the stroke [m]; infinite where none is known.
         measured: of a recording.
     """
 
@@ -98,7 +99,6 @@ class Compensated:
     friction: FrictionValues | None = None
     cogging: CoggingMap | None = None
     measured: RecordedDeviations | None = None
-    limits: AxisLimits = field(default_factory=AxisLimits)
 
     @property
     def left_by_table(self) -> float:
@@ -113,7 +113,8 @@ class Compensated:
 
 
 def compensate_plant(
-    plant: Plant, wishes: Wishes, cascade: Cascade | None = None, unsure_of_play: str = "", where: str = ""
+    plant: Plant, wishes: Wishes, cascade: Cascade | None = None, unsure_of_play: str = "", where: str = "",
+    beside: bool = True,
 ) -> Compensated:  # fmt: skip
     """The table of a plant, with its prediction.
 
@@ -123,6 +124,7 @@ def compensate_plant(
         cascade: its controller; the declared one, else a recommended one, if None.
         unsure_of_play: why its backlash must not be taken for play; empty where it may.
         where: file, for messages.
+        beside: whether values for friction and cogging are wanted beside the table.
 
     Raises:
         InputError: nothing that a table may hold, limits of the control, no stroke, a loop that reads the scale.
@@ -145,17 +147,16 @@ def compensate_plant(
         refuse_wind_up(lost, place, wanted.resolution)
     table = _table(wanted, known, stroke, reference, wishes.every, found)
     loop = cascade_of(plant, cascade)
-    limits = _limits(plant)
-    test, applied = motions(stroke, lost), Applied(wanted, table, limits)
+    test, applied = motions(stroke, lost), Applied(wanted, table, _limits(plant))
     worn = repaired(plant)
     prediction = Prediction(
         figures(plant, loop, test), None if worn is None else figures(worn, loop, test),
         figures(plant, loop, test, applied),
     )  # fmt: skip
-    friction = friction_values(plant, loop, test.circle, lost, applied) if lost.torque > 0 else None
+    friction = friction_values(plant, loop, test.circle, lost, applied) if beside and lost.torque > 0 else None
     return Compensated(
         plant.name, wishes, wanted, table, known.zeroed(reference), lost, found.of_time, tuple(refused),
-        found.shortest, prediction, friction, cogging_map(plant, loop), None, limits,
+        found.shortest, prediction, friction, cogging_map(plant, loop) if beside else None, None,
     )  # fmt: skip
 
 
@@ -202,8 +203,6 @@ def cascade_of(plant: Plant, cascade: Cascade | None) -> Cascade:
     if isinstance(plant.controller, DeclaredCascade):
         return read_cascade(Table(plant.controller.entries, plant.controller.where, Origins()), plant)[0]
     bare = bare_drive(plant, _USUAL_RATE, _POSITION_RATE, _BANDWIDTH, _DEAD_TIME, Feedback.MOTOR)
-    from feeddrive.compensation.lost_motion import without_play
-
     # inside a play nothing is linear; the gains are those of the axis on its flanks
     clean = without_play(plant)
     return recommend(clean, bare, cases_of(clean), Demand()).cascade
@@ -274,12 +273,12 @@ def _step(wanted: Control, width: float, shortest: float) -> float:
 
 
 def nice_above(length: float) -> float:
-    """The next length of 1, 2, 2.5, 5 times a power of ten that is not smaller [m]."""
+    """The next round length that is not smaller [m]."""
     power = 10.0 ** math.floor(math.log10(length))
     return next(one * power for one in (*_NICE, 10.0) if one * power >= length * (1 - 1e-9))
 
 
 def nice_below(length: float) -> float:
-    """The next length of 1, 2, 2.5, 5 times a power of ten that is not larger [m]."""
+    """The next round length that is not larger [m]."""
     power = 10.0 ** math.floor(math.log10(length))
     return next(one * power for one in reversed((*_NICE, 10.0)) if one * power <= length * (1 + 1e-9))

@@ -2,7 +2,7 @@
 
 The plant runs under its controller, the position loop closed at the motor, with the table applied as the control
 applies it (`compensation.applied`). One approach per direction and target: nothing in the simulation scatters, so that
-the repeatability R is the reversal alone. Motion is gentle: where there is play, the accelerations stay at a twentieth of
+the repeatability R is the reversal alone. Motion is gentle: where there is play, accelerations stay at a twentieth of
 what friction at the table can hold, or the table would cross the play by its inertia.
 """
 
@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -96,7 +96,7 @@ class Applied:
 
     control: Control
     table: CompensationTable
-    limits: AxisLimits = AxisLimits()
+    limits: AxisLimits = field(default_factory=AxisLimits)
 
 
 Extra = Callable[[FloatArray, Motion], tuple[FloatArray, FloatArray]]

@@ -175,6 +175,6 @@ def difference_words(found: RecordedDeviations) -> str:
         return "Only one direction was recorded: the table is the same in both."
     shown = format_quantity(found.difference, "m")
     return (
-        f"Between the directions {shown} differ. A recording alone does not tell play from wind-up by friction, so it is "
-        "in no table: diagnose the recording and give that folder."
+        f"Between the directions {shown} differ. A recording alone does not tell play from wind-up by friction, so "
+        "it is in no table: diagnose the recording and give that folder."
     )

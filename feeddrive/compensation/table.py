@@ -1,6 +1,7 @@
 """The one internal table, from which the tables of all controls are written.
 
-    d(p) = actual minus target position, as ISO 230-2 counts deviations; the mean of both directions is 0 at the reference
+    d(p) = actual minus target position, as ISO 230-2 counts deviations; its mean over both directions is 0 at the
+    reference
 
 | symbol | meaning | unit |
 |---|---|---|
@@ -16,6 +17,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -154,7 +156,7 @@ def fitted(deviations: Deviations, positions: FloatArray, reference: float, step
         reference: where its mean is set to 0 [m].
         step: distance of the points where it is even [m].
     """
-    inner = [np.linspace(a, b, PER_INTERVAL, endpoint=False) for a, b in zip(positions, positions[1:], strict=False)]
+    inner = [np.linspace(a, b, PER_INTERVAL, endpoint=False) for a, b in pairwise(positions.tolist())]
     places = np.unique(np.concatenate([*inner, positions[-1:], _within(deviations.positions, positions)]))
     values = [np.interp(places, deviations.positions, one) for one in (deviations.forward, deviations.reverse)]
     forward, reverse = (straight_pieces(places, one, positions, np.gradient(places)) for one in values)
@@ -163,7 +165,7 @@ def fitted(deviations: Deviations, positions: FloatArray, reference: float, step
 
 
 def _within(places: FloatArray, ends: FloatArray) -> FloatArray:
-    return places[(places >= ends[0]) & (places <= ends[-1])]
+    return np.asarray(places[(places >= ends[0]) & (places <= ends[-1])])
 
 
 def straight_pieces(

@@ -92,8 +92,8 @@ class Control:
 
 def _up(length: float) -> float:
     """A length rounded up to two digits, which print whole."""
-    digits = 1 - math.floor(math.log10(length))
-    return math.ceil(length * 10**digits - 1e-9) / 10**digits
+    scale = 10.0 ** (1 - math.floor(math.log10(length)))
+    return math.ceil(length * scale - 1e-9) / scale
 
 
 _AXIS = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,31}")

@@ -3,8 +3,8 @@
     sum of the increments from the reference to a position = target - actual there, in detection units x magnification
 
 Point number n stands for the stretch from (n - n0 - 1) to (n - n0) intervals from the reference, n0 the number of the
-reference (3620); its increment is put out in the middle of the stretch. Increments are whole numbers from -7 to 7, times
-3623. The running sum is rounded, not each increment, so that no error adds up. Positions before the reference are
+reference (3620); its increment is put out in the middle of the stretch. Increments are whole numbers from -7 to 7,
+times 3623. The running sum is rounded, not each increment, so that no error adds up. Positions before the reference are
 reached by taking the increments off.
 
 Source: B-63980EN/01 page 100 (numbers and where they are put out), A-77810E-02 (parameters 3620 to 3627); 1851, 1852

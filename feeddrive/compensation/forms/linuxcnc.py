@@ -39,7 +39,7 @@ def _load(_: CompensationTable, axis: str) -> tuple[str, ...]:
 LINUXCNC = Control(
     name="linuxcnc",
     title="LinuxCNC (COMP_FILE_TYPE 0)",
-    sign_rule="forward and reverse are actual positions: nominal + (actual - target); the control adds nominal - actual",
+    sign_rule="forward and reverse are actual positions, nominal + (actual - target); the control adds nominal - them",
     source="LinuxCNC src/emc/motion/command.c and control.c; docs/src/config/ini-config.adoc",
     resolution=1e-9,
     most_points=_MOST,

@@ -100,7 +100,7 @@ SINUMERIK_ENC = Control(
     source="6FC5397-1BP40-3BA1 p. 242; 808D Function Manual 01/2017 p. 106",
     resolution=1e-7,
     most_points=5000,
-    usual_points=200,
+    usual_points=801,  # as in the manual's example; an 808D has 200, which the sheet says
     steepest=0.01,  # MD32760 COMP_ADD_VELO_FACTOR, 1 % of the axis' velocity
     side=Side.ACTUAL,
     reversal=Reversal(),
@@ -113,7 +113,7 @@ SINUMERIK_ENC = Control(
 SINUMERIK_CEC = Control(
     name="sinumerik-cec",
     title="SINUMERIK compensation per direction (CEC)",
-    sign_rule="value = target - actual, added to the set-point; the manual's pages do not say the sign: check one point",
+    sign_rule="value = target - actual, added to the set-point; the manual's pages do not tell the sign: check it",
     source="6FC5397-1BP40-3BA1 p. 248, 249, 264; 802D sl Function Manual p. 222",
     resolution=1e-7,
     most_points=350,
