@@ -91,23 +91,39 @@ def _share_of_reverse(velocity: FloatArray, spread: float, cycle: float) -> Floa
 
 
 def ramped(value: FloatArray, cycle: float, limits: AxisLimits) -> FloatArray:
-    """The value as it follows under half of the axis' limits, from 0 at the start, shape (n,) [m].
+    """The value as LinuxCNC lets it follow, under half of the axis' limits, from 0 at the start, shape (n,) [m].
+
+    Each cycle: where the rest is no more than the way to a stop one step of speed higher, and a cycle at this speed, it
+    brakes, and from the last step of speed on jumps to the goal; else it speeds up if the same holds after that, and
+    keeps its speed if not. At rest it therefore stops short by up to a T^2, with a half of the acceleration.
 
     Args:
         value: that it follows, once a cycle, shape (n,) [m].
-        cycle: [s].
+        cycle: T [s].
         limits: of the axis.
+
+    Source: LinuxCNC src/emc/motion/control.c, compute_screw_comp.
     """
-    highest, change = 0.5 * limits.velocity, 0.5 * limits.acceleration * cycle
+    highest, hardest = 0.5 * limits.velocity, 0.5 * limits.acceleration
     found, at, speed = np.empty(len(value)), 0.0, 0.0
     for i, goal in enumerate(value.tolist()):
-        way = goal - at
-        if abs(way) <= max(abs(speed), change) * cycle:
-            at, speed = goal, 0.0
-        else:
-            braking = math.sqrt(2 * 0.5 * limits.acceleration * abs(way))
-            wanted = math.copysign(min(highest, braking), way)
-            speed += min(max(wanted - speed, -change), change)
-            at += speed * cycle
+        if goal != at:
+            way = math.copysign(1.0, goal - at)
+            moved, along = _one_cycle(abs(goal - at), way * speed, highest, hardest, cycle)
+            at, speed = (goal, 0.0) if moved is None else (at + way * moved, way * along)
         found[i] = at
     return found
+
+
+def _one_cycle(
+    rest: float, speed: float, highest: float, hardest: float, cycle: float
+) -> tuple[float | None, float]:  # fmt: skip
+    """Way of a cycle towards the goal and the speed behind it; no way where the goal is reached [m, m/s]."""
+    step, ahead = hardest * cycle, speed * cycle
+    if rest <= 0.5 * (speed + step) ** 2 / hardest + ahead:
+        return (ahead - 0.5 * step * cycle, speed - step) if speed > step else (None, 0.0)
+    step = min(step, highest - speed)
+    further = 0.5 * step * cycle
+    if rest > 0.5 * (speed + step) ** 2 / hardest + ahead + further:
+        return ahead + further, speed + step
+    return ahead, speed
