@@ -23,15 +23,15 @@ from feeddrive.thermal.model import HeatModel
 from feeddrive.thermal.moving_family import moving_family
 from feeddrive.thermal.stepping import Stepper
 from feeddrive.thermal.warm_up import declared_rows
-from feeddrive.tuning.thermal_deviation import deviating
-from feeddrive.tuning.thermal_error import LeftOver, TableError, left_over, table_error
-from feeddrive.tuning.thermal_line import LineTable, line_table, straight_line
-from feeddrive.tuning.thermal_observer import thermal_observer
-from feeddrive.tuning.thermal_open_loop import compensation_model, model_alone
-from feeddrive.tuning.thermal_placement import placements
-from feeddrive.tuning.thermal_sensors import Sensor, mountable_places
-from feeddrive.tuning.thermal_trial import TriedMachine, random_duty, tried_machine
-from feeddrive.tuning.thermal_unknowns import Unknowns
+from feeddrive.compensation.heat.thermal_deviation import deviating
+from feeddrive.compensation.heat.thermal_error import LeftOver, TableError, left_over, table_error
+from feeddrive.compensation.heat.thermal_line import LineTable, line_table, straight_line
+from feeddrive.compensation.heat.thermal_observer import thermal_observer
+from feeddrive.compensation.heat.thermal_open_loop import compensation_model, model_alone
+from feeddrive.compensation.heat.thermal_placement import placements
+from feeddrive.compensation.heat.thermal_sensors import Sensor, mountable_places
+from feeddrive.compensation.heat.thermal_trial import TriedMachine, random_duty, tried_machine
+from feeddrive.compensation.heat.thermal_unknowns import Unknowns
 from feeddrive.typing import FloatArray
 
 PLANT = read_thermal_plant(find_plant("thermal_bench"))

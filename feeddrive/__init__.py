@@ -38,6 +38,8 @@ _HOMES = {
     "ValidityWarning": "errors",
     "WarmUp": "interface.warm_up",
     "cascade": "interface.design",
+    "Compensation": "interface.compensating",
+    "compensate": "interface.compensating",
     "diagnose": "interface.diagnosed",
     "draft": "interface.drafts",
     "Explained": "interface.numbers",

@@ -28,14 +28,14 @@ from feeddrive.thermal.grid import Cells
 from feeddrive.thermal.model import HeatModel
 from feeddrive.thermal.plant import ThermalPlant
 from feeddrive.thermal.rig import Body
-from feeddrive.tuning.thermal_error import LeftOver, TableError, left_over, table_error
-from feeddrive.tuning.thermal_line import Convention, LineTable, line_table, straight_line
-from feeddrive.tuning.thermal_observer import thermal_observer
-from feeddrive.tuning.thermal_open_loop import compensation_model, model_alone
-from feeddrive.tuning.thermal_placement import Placement, placements
-from feeddrive.tuning.thermal_sensors import Sensor
-from feeddrive.tuning.thermal_trial import TriedMachine, tried_machine
-from feeddrive.tuning.thermal_unknowns import Unknowns
+from feeddrive.compensation.heat.thermal_error import LeftOver, TableError, left_over, table_error
+from feeddrive.compensation.heat.thermal_line import Convention, LineTable, line_table, straight_line
+from feeddrive.compensation.heat.thermal_observer import thermal_observer
+from feeddrive.compensation.heat.thermal_open_loop import compensation_model, model_alone
+from feeddrive.compensation.heat.thermal_placement import Placement, placements
+from feeddrive.compensation.heat.thermal_sensors import Sensor
+from feeddrive.compensation.heat.thermal_trial import TriedMachine, tried_machine
+from feeddrive.compensation.heat.thermal_unknowns import Unknowns
 from feeddrive.typing import FloatArray
 
 RPM = math.pi / 30

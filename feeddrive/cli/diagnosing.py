@@ -13,6 +13,7 @@ from rich.table import Table
 
 from feeddrive.cli.machine import read_machine
 from feeddrive.cli.output import escaped
+from feeddrive.compensation.actions import actions
 from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.ledger.continued import Earlier, changed_since
 from feeddrive.diagnosis.ledger.ledger import FileUse, RunFiles, runs_of, write_ledger, written_earlier
@@ -89,12 +90,14 @@ def run_job(job: Job, as_json: bool = False) -> Diagnosis:
         said = status.update
         result, effects = diagnose(plant, fitted, judged, job.split, job.simulate, said, job.start)
         result = _since(result, job)
+        said("predicting what a repair and a compensation bring")
+        todo = actions(result, plant.with_effects(*effects))
         said("writing the report")
         pictures = render_figures(result)
         with output_folder(job.out) as folder:
             write_outputs(result, effects, declared.decode("utf-8").replace("\r\n", "\n"), folder)
             save_figures(result, folder, pictures)
-            write_report(result, folder / "report.html", pictures)
+            write_report(result, folder / "report.html", pictures, todo)
             # Read now: another diagnosis may have written here meanwhile.
             there = runs_of(job.out)
             take_away(folder, written_earlier(there))  # a figure that this run has no reason to draw

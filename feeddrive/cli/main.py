@@ -66,6 +66,7 @@ COMMANDS: dict[str, Entry] = {
     "sweep": Entry("sweep", "Run a scenario over varied values: one table, one figure."),
     "read": Entry("read", "Read a trace file of a drive or control; say what it holds."),
     "diagnose": Entry("diagnose", "Find what a machine's model lacks, from recordings of it."),
+    "compensate": Entry("compensate", "Write what was found as tables that controls read."),
     "export": Entry("export", "Write a machine as state space, .mat, CasADi, C, FMU or JSON."),
     "reproduce": Entry("reproduce", "Compare the source papers' numbers with computed ones."),
 }

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
+from feeddrive.compensation.actions import Actions, actions
 from feeddrive.diagnosis.diagnose import diagnose as find_what_lacks
 from feeddrive.diagnosis.outputs import diagnosis_record, write_outputs
 from feeddrive.diagnosis.result import Diagnosis
@@ -129,7 +130,7 @@ class Diagnosed(Shown):
         """
         from feeddrive.report.html import write_report
 
-        write_report(self.diagnosis, Path(path))
+        write_report(self.diagnosis, Path(path), None, self._actions())
         return Path(path)
 
     def save(self, folder: str | Path) -> Path:
@@ -145,8 +146,13 @@ class Diagnosed(Shown):
         pictures = render_figures(self.diagnosis)
         write_outputs(self.diagnosis, self.found, self.axis.text, place)
         save_figures(self.diagnosis, place, pictures)
-        write_report(self.diagnosis, place / "report.html", pictures)
+        write_report(self.diagnosis, place / "report.html", pictures, self._actions())
         return place
+
+    def _actions(self) -> Actions:
+        """What to do, with a prediction where a table helps."""
+        plant = self.plant
+        return actions(self.diagnosis, plant.plant if plant.has_motion else None)
 
     def listing(self) -> Listing:
         """The effects, or where there are none the errors."""

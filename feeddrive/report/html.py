@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from feeddrive.compensation.actions import Actions
 from feeddrive.diagnosis.result import Diagnosis
 from feeddrive.files import write_text_atomically
 from feeddrive.report.certainty import ambiguous_section, correlation_section, experiments_section
@@ -13,6 +14,7 @@ from feeddrive.report.figures import render_figures
 from feeddrive.report.markup import figure, paragraph, section, text
 from feeddrive.report.people import share_text
 from feeddrive.report.records import recordings_section, stamp_section, tried_section
+from feeddrive.report.section_actions import actions_section
 from feeddrive.report.section_changes import changes_section, since_section
 from feeddrive.report.section_unexplained import unexplained_section
 from feeddrive.report.sections import (
@@ -25,22 +27,25 @@ from feeddrive.report.simulated import simulation_section
 from feeddrive.report.style import STYLE
 
 
-def write_report(diagnosis: Diagnosis, path: Path, rendered: tuple[RenderedFigure, ...] | None = None) -> None:
+def write_report(
+    diagnosis: Diagnosis, path: Path, rendered: tuple[RenderedFigure, ...] | None = None, todo: Actions | None = None
+) -> None:  # fmt: skip
     """Write the report as one file without scripts or outside resources; an old one is replaced as a whole.
 
     Args:
         diagnosis: what was found.
         path: the HTML file; its folder is made if need be.
         rendered: figures drawn before by `render_figures`; drawn here if left away.
+        todo: what to do, and what it brings.
 
     Raises:
         InputError: the file cannot be written.
     """
     figures = render_figures(diagnosis) if rendered is None else rendered
-    write_text_atomically(path, report_page(diagnosis, figures))
+    write_text_atomically(path, report_page(diagnosis, figures, todo))
 
 
-def report_page(diagnosis: Diagnosis, figures: tuple[RenderedFigure, ...]) -> str:
+def report_page(diagnosis: Diagnosis, figures: tuple[RenderedFigure, ...], todo: Actions | None = None) -> str:
     """The page as text, in the order in which a servo engineer asks."""
     tried = "".join(figure(one) for one in figures if one.stem == "tried")
     explaining = "".join(figure(one) for one in figures if one.stem.startswith(("explains", "curve")))
@@ -49,6 +54,7 @@ def report_page(diagnosis: Diagnosis, figures: tuple[RenderedFigure, ...]) -> st
     sections = (
         verdict_section(diagnosis),
         error_section(diagnosis),
+        actions_section(diagnosis, todo),
         effects_section(diagnosis) + explaining,
         changes_section(diagnosis) + since_section(diagnosis),
         ambiguous_section(diagnosis) + experiments_section(diagnosis),

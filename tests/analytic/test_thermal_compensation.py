@@ -11,13 +11,13 @@ from feeddrive.errors import InputError
 from feeddrive.thermal.full_model import full_model
 from feeddrive.thermal.rig import Body
 from feeddrive.thermal.warm_up import declared_rows, run
-from feeddrive.tuning.thermal_error import LeftOver, left_over, table_error
-from feeddrive.tuning.thermal_line import straight_line
-from feeddrive.tuning.thermal_observer import Observation, thermal_observer
-from feeddrive.tuning.thermal_open_loop import compensation_model, model_alone
-from feeddrive.tuning.thermal_sensors import Sensor
-from feeddrive.tuning.thermal_trial import tried_machine
-from feeddrive.tuning.thermal_unknowns import Unknowns
+from feeddrive.compensation.heat.thermal_error import LeftOver, left_over, table_error
+from feeddrive.compensation.heat.thermal_line import straight_line
+from feeddrive.compensation.heat.thermal_observer import Observation, thermal_observer
+from feeddrive.compensation.heat.thermal_open_loop import compensation_model, model_alone
+from feeddrive.compensation.heat.thermal_sensors import Sensor
+from feeddrive.compensation.heat.thermal_trial import tried_machine
+from feeddrive.compensation.heat.thermal_unknowns import Unknowns
 from tests.analytic.thermal_compensation_cases import (
     BENCH,
     DUTY,

@@ -12,15 +12,15 @@ from feeddrive.thermal.expansion import fixed_fixed
 from feeddrive.thermal.full_model import full_model
 from feeddrive.thermal.rig import Body
 from feeddrive.thermal.warm_up import declared_rows
-from feeddrive.tuning.thermal_augmented import Augmented, Row, Transition
-from feeddrive.tuning.thermal_deviation import deviating
-from feeddrive.tuning.thermal_error import table_error
-from feeddrive.tuning.thermal_line import Convention, LineTable, line_table, straight_line
-from feeddrive.tuning.thermal_observer import ThermalObserver, advance, thermal_observer
-from feeddrive.tuning.thermal_placement import expected_deviation, placements
-from feeddrive.tuning.thermal_sensors import Sensor, lagged, mountable_places
-from feeddrive.tuning.thermal_trial import random_duty
-from feeddrive.tuning.thermal_unknowns import Unknowns, stationary_step
+from feeddrive.compensation.heat.thermal_augmented import Augmented, Row, Transition
+from feeddrive.compensation.heat.thermal_deviation import deviating
+from feeddrive.compensation.heat.thermal_error import table_error
+from feeddrive.compensation.heat.thermal_line import Convention, LineTable, line_table, straight_line
+from feeddrive.compensation.heat.thermal_observer import ThermalObserver, advance, thermal_observer
+from feeddrive.compensation.heat.thermal_placement import expected_deviation, placements
+from feeddrive.compensation.heat.thermal_sensors import Sensor, lagged, mountable_places
+from feeddrive.compensation.heat.thermal_trial import random_duty
+from feeddrive.compensation.heat.thermal_unknowns import Unknowns, stationary_step
 from feeddrive.typing import FloatArray
 from tests.analytic.thermal_compensation_cases import BENCH, ERROR, MODEL, RPM, STEP
 

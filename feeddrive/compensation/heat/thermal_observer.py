@@ -21,15 +21,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from feeddrive.compensation.heat.thermal_augmented import Augmented, Row, Transition
+from feeddrive.compensation.heat.thermal_error import TableError
+from feeddrive.compensation.heat.thermal_sensors import Sensor, refuse_unmountable
+from feeddrive.compensation.heat.thermal_unknowns import Unknowns
 from feeddrive.errors import InputError
 from feeddrive.thermal.model import AMBIENT, HeatModel
 from feeddrive.thermal.plant import ThermalPlant
 from feeddrive.thermal.rig import refuse_unless_positive
 from feeddrive.thermal.warm_up import declared_rows, grouped
-from feeddrive.tuning.thermal_augmented import Augmented, Row, Transition
-from feeddrive.tuning.thermal_error import TableError
-from feeddrive.tuning.thermal_sensors import Sensor, refuse_unmountable
-from feeddrive.tuning.thermal_unknowns import Unknowns
 from feeddrive.typing import FloatArray
 
 

@@ -16,13 +16,13 @@ from itertools import combinations
 import numpy as np
 import scipy.linalg
 
+from feeddrive.compensation.heat.thermal_error import TableError
+from feeddrive.compensation.heat.thermal_observer import ThermalObserver, thermal_observer
+from feeddrive.compensation.heat.thermal_sensors import Sensor, mountable_places
+from feeddrive.compensation.heat.thermal_unknowns import Unknowns
 from feeddrive.errors import InputError
 from feeddrive.thermal.model import HeatModel
 from feeddrive.thermal.plant import ThermalPlant
-from feeddrive.tuning.thermal_error import TableError
-from feeddrive.tuning.thermal_observer import ThermalObserver, thermal_observer
-from feeddrive.tuning.thermal_sensors import Sensor, mountable_places
-from feeddrive.tuning.thermal_unknowns import Unknowns
 from feeddrive.typing import FloatArray
 
 

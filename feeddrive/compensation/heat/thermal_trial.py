@@ -7,14 +7,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from feeddrive.compensation.heat.thermal_deviation import deviating
+from feeddrive.compensation.heat.thermal_error import table_error
+from feeddrive.compensation.heat.thermal_sensors import Sensor, mountable_places, simulated_readings
 from feeddrive.thermal.expansion import FIXED_FREE, Supports
 from feeddrive.thermal.model import HeatModel
 from feeddrive.thermal.plant import ThermalPlant
 from feeddrive.thermal.rig import refuse_unless
 from feeddrive.thermal.warm_up import declared_rows, run
-from feeddrive.tuning.thermal_deviation import deviating
-from feeddrive.tuning.thermal_error import table_error
-from feeddrive.tuning.thermal_sensors import Sensor, mountable_places, simulated_readings
 from feeddrive.typing import FloatArray
 
 _SUBSTEPS = 4

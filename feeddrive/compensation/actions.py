@@ -1,0 +1,86 @@
+"""What to do after a diagnosis, and what repair and compensation will bring; the report shows it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from feeddrive.compensation.compensate import Compensated, Wishes, compensate_plant
+from feeddrive.compensation.cures import cure, in_order
+from feeddrive.diagnosis.result import Diagnosis
+from feeddrive.errors import InputError
+from feeddrive.plant.plant import Plant
+
+FORM = "csv"
+"""In which the figures are predicted: both directions, no rounding that tells; a control's own limits come on top."""
+
+_UNSURE = "backlash is in no table: {reason}. A backlash value against wind-up makes the contour worse"
+
+_ROOM = 0.02
+"""m: a shorter stroke was no stroke but a test about a point."""
+
+
+@dataclass(frozen=True, eq=False)
+class Actions:
+    """What to do.
+
+    Attributes:
+        effects: names in the order in which a person goes through them.
+        predicted: figures before, after repair, after compensation; None where no table helps.
+        why_not: why nothing is predicted, where a table was asked for; empty where it was not.
+    """
+
+    effects: tuple[str, ...]
+    predicted: Compensated | None = None
+    why_not: str = ""
+
+
+def actions(diagnosis: Diagnosis, after: object) -> Actions:
+    """What to do, with a prediction where a table of positions helps.
+
+    Args:
+        diagnosis: what was found.
+        after: the machine with what was found; anything but a `Plant` is not simulated.
+    """
+    names = in_order([one.name for one in diagnosis.effects])
+    carried = [one.name for left in diagnosis.unexplained.values() for one in left.carried]
+    wanted = [name for name in (*names, *carried) if cure(name).form == "table"]
+    if not wanted or not isinstance(after, Plant):
+        return Actions(tuple(names))
+    stroke = after.stroke or recorded_stroke(diagnosis)
+    if stroke is None:
+        return Actions(tuple(names), None, "no stroke is declared, and none was recorded")
+    try:
+        unsure = unsure_of_play([(one.name, one.carries) for one in diagnosis.effects], diagnosis.ambiguous)
+        done = compensate_plant(after, Wishes(FORM, stroke=stroke), None, unsure, diagnosis.plant, beside=False)
+    except InputError as error:
+        return Actions(tuple(names), None, str(error))
+    return Actions(tuple(names), done)
+
+
+def unsure_of_play(effects: Iterable[tuple[str, bool]], ambiguous: Iterable[Sequence[str]]) -> str:
+    """Why the backlash of a diagnosis may not be taken for play; empty where it may.
+
+    Args:
+        effects: names of what was found, and whether each carries over to data that were not fitted.
+        ambiguous: sets of effects that the recordings cannot tell apart.
+    """
+    if ("backlash", False) in effects:
+        return _UNSURE.format(reason="it was not confirmed on data that were not fitted")
+    for names in ambiguous:
+        if "backlash" in names:
+            others = " or ".join(str(one).replace("_", " ") for one in names if one != "backlash")
+            return _UNSURE.format(reason=f"these recordings cannot tell it from {others}")
+    return ""
+
+
+def recorded_stroke(diagnosis: Diagnosis) -> tuple[float, float] | None:
+    """The range of the table position in the judged recordings [m]; None where it is too short to be a stroke."""
+    found = [one.variables["table_position"] for one in diagnosis.recordings if "table_position" in one.variables]
+    if not found:
+        return None
+    low, high = (float(of([of(one[np.isfinite(one)], initial=start) for one in found]))
+                 for of, start in ((np.min, np.inf), (np.max, -np.inf)))  # fmt: skip
+    return (low, high) if high - low > _ROOM else None

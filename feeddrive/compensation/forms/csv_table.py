@@ -1,0 +1,39 @@
+"""The internal table as CSV, for everything else: ISO 230-2's sign, both directions."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from feeddrive.compensation.forms.control import Control, Reversal, Side, millimetres, plain_line
+from feeddrive.compensation.table import STEEPEST, CompensationTable
+
+
+def _write(table: CompensationTable, head: Sequence[str], _: str) -> str:
+    rows = np.column_stack([table.positions, 1e3 * table.forward, 1e3 * table.reverse])
+    lines = [*(f"# {plain_line(one)}" for one in head), "position [mm],forward [um],reverse [um]"]
+    lines += [f"{millimetres(x, 6)},{millimetres(a, 3)},{millimetres(b, 3)}" for x, a, b in rows.tolist()]
+    return "\n".join(lines) + "\n"
+
+
+def _load(_: CompensationTable, axis: str) -> tuple[str, ...]:
+    return (f"A control that adds to the command of {axis} takes the negative; one that takes off takes it as it is.",)
+
+
+CSV = Control(
+    name="csv",
+    title="a control that takes straight lines off its set-point, per direction",
+    sign_rule="value = actual - target (ISO 230-2); forward: approached along +, reverse: along -",
+    source="ISO 230-2:2014, clause 3, deviation of position",
+    resolution=1e-9,
+    most_points=20_000,
+    usual_points=1000,
+    steepest=STEEPEST,
+    side=Side.SETPOINT,
+    reversal=Reversal(),
+    directions=True,
+    comments=True,
+    load=_load,
+    write=_write,
+)

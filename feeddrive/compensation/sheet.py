@@ -1,0 +1,266 @@
+"""The sheet that belongs to a table: sign rule, loading, check of one point, prediction, what is left, other values."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from feeddrive import __version__
+from feeddrive.compensation.compensate import POINTS_PER_PERIOD, Compensated
+from feeddrive.compensation.forms import sinumerik_temp
+from feeddrive.compensation.forms.control import checked_axis, plain_line
+from feeddrive.compensation.lost_motion import CURE, flank_words, wind_up_words
+from feeddrive.compensation.prediction import Figures
+from feeddrive.compensation.recorded_deviations import difference_words
+from feeddrive.compensation.temperature import HeatTable
+from feeddrive.metrology.circular import Circular
+from feeddrive.quantity import format_quantity
+
+Section = tuple[str, Sequence[str]]
+
+
+def micrometres(value: float) -> str:
+    """A small length with two digits behind the point, or as many as say something."""
+    return f"{1e6 * value + 0.0:.2f} um" if abs(value) < 1e-3 else f"{1e3 * value:.3f} mm"
+
+
+def head(done: Compensated) -> list[str]:
+    """Lines for the comments of the file: what it is, sign rule with its source, check of one point."""
+    return [
+        f"{done.control.title}, axis {done.wishes.axis} of {plain_line(done.name)}, feeddrive {__version__}",
+        f"Sign: {done.control.sign_rule}", f"Source: {done.control.source}",
+        *check_of_one_point(done),
+        *done.control.load(done.table, done.wishes.axis),
+    ]  # fmt: skip
+
+
+def text(done: Compensated) -> str:
+    """The file for the control."""
+    axis = checked_axis(done.wishes.axis)
+    return done.control.write(done.table, head(done), axis)
+
+
+def check_of_one_point(done: Compensated) -> list[str]:
+    """One measurement on the machine that shows whether the sign is right."""
+    table = done.table
+    # from a point that can be approached from below, and not to the last one, which has no overrun behind it
+    inner = np.arange(1, len(table) - 1) if len(table) > 3 else np.arange(len(table))
+    base = int(inner[np.argmin(np.abs(table.positions[inner] - table.reference))])
+    forward = table.forward - table.forward[base]
+    place = int(inner[np.argmax(np.abs(forward[inner]))])
+    where, reference = (f"{1e3 * one:.3f} mm" for one in table.positions[[place, base]].tolist())
+    lines, enough = [], max(3 * done.control.resolution, 1e-7)
+    if abs(forward[place]) > enough:
+        lines.append(
+            f"Check: reference the axis, come to {reference} and then to {where}, both moving to +, and measure the "
+            f"way between. Without the table it is {micrometres(float(forward[place]))} off (+: too far); with it "
+            "nearly nothing. Twice as much means that the sign is wrong."
+        )
+    if table.play > enough:
+        lines.append(
+            f"Check: come to {where} moving to +, then moving to -. Without compensation the second stands "
+            f"{micrometres(table.play)} further to +; with it nearly at the same place. Twice as much: wrong sign."
+        )
+    return lines
+
+
+def left(done: Compensated) -> list[str]:
+    """What no table takes away, and why."""
+    lines = [*done.refused]
+    if done.measured is not None:
+        lines.append(difference_words(done.measured))
+        lines.append(f"Single samples scatter by {micrometres(done.measured.scatter)} about what is known.")
+    lines.append(f"By its points and its rounding the table leaves up to {micrometres(done.left_by_table)} of the map.")
+    if done.table.step > done.shortest / 4:
+        lines.append(
+            f"Points every {format_quantity(done.table.step, 'm')} do not hold the periodic error of period "
+            f"{format_quantity(done.shortest, 'm')}; {POINTS_PER_PERIOD} a period would. It stays as it is."
+        )
+    if done.of_time:
+        names = ", ".join(done.of_time)
+        lines.append(f"{names} changes with time and is in no table of positions: see --form sinumerik-temp.")
+    lost = done.lost
+    if lost is not None and abs(lost.wind_up) >= done.control.resolution:
+        lines.append(f"{wind_up_words(lost)}. It is in no table: {CURE}.")
+    if lost is not None and done.table.play > 0 and flank_words(lost):
+        lines.append(flank_words(lost))
+    both = done.prediction
+    if both is not None and both.after.contour > both.before.contour:
+        lines.append(
+            f"The circle gets worse, from {micrometres(both.before.contour)} to {micrometres(both.after.contour)}: on "
+            "reversal the value goes over so fast that the table is thrown across the play. Renew the preload, or let "
+            "the value go over more slowly."
+        )
+    return lines
+
+
+def predicted_rows(done: Compensated) -> list[tuple[str, list[float | None]]]:
+    """Figure to its value before, after repair (None where nothing is worn), after compensation [m]."""
+    if done.prediction is None:
+        return []
+    kinds = (done.prediction.before, done.prediction.repaired, done.prediction.after)
+    names: dict[str, Callable[[Figures], float]] = {
+        "ISO 230-2 bidirectional accuracy A": lambda one: one.positioning.accuracy,
+        "ISO 230-2 systematic deviation E": lambda one: one.positioning.systematic,
+        "ISO 230-2 mean deviation M": lambda one: one.positioning.mean_range,
+        "ISO 230-2 reversal value B": lambda one: one.positioning.reversal_value,
+        "ISO 230-4 circular deviation G": lambda one: one.circular.deviation,
+        "largest contour error of the circle": lambda one: one.contour,
+    }
+    return [(name, [None if one is None else float(of(one)) for one in kinds]) for name, of in names.items()]
+
+
+def friction_lines(done: Compensated) -> list[str]:
+    """Values for reversals, and what they bring."""
+    found = done.friction
+    if found is None:
+        return []
+
+    def glitch(one: Circular) -> str:
+        return micrometres(max(one.glitch, key=abs))
+
+    lines = [
+        f"Friction feed-forward: {found.torque:.3g} N m at the motor with the sign of the set velocity, turning within "
+        f"{found.turning:.3g} rad/s. Largest quadrant glitch, simulated with the table: {glitch(found.before)} before, "
+        f"{glitch(found.forward)} with it.",
+    ]
+    if not found.share:
+        return [*lines, "No pulse on the speed set-point makes the quadrants better."]
+    pulse = f"{60e3 * found.pulse:.3g} mm/min, decaying with {1e3 * found.time:.3g} ms"
+    lines.append(
+        f"Or a pulse at each reversal on the speed set-point: {pulse}. Glitch with it: {glitch(found.pulsed)}."
+    )
+    if done.control.name.startswith("sinumerik"):
+        axis = done.wishes.axis
+        lines.append(
+            f"MD32500 $MA_FRICT_COMP_ENABLE[{axis}] = 1, MD32510 FRICT_COMP_ADAPT_ENABLE = 0, MD32520 "
+            f"FRICT_COMP_CONST_MAX = {60e3 * found.pulse:.3g} mm/min, MD32540 FRICT_COMP_TIME = {found.time:.3g} s "
+            "(from experience: check the units of your release)."
+        )
+    return lines
+
+
+def sections(done: Compensated) -> list[Section]:
+    """The sheet, heading by heading."""
+    step = f"every {format_quantity(done.table.step, 'm')}" if done.table.step else "as measured"
+    ends = " to ".join(f"{1e3 * one:.6g} mm" for one in done.table.positions[[0, -1]])
+    what = [
+        f"{done.control.title}, axis {done.wishes.axis} of {plain_line(done.name)}.",
+        f"{len(done.table)} points {step}, {ends}; 0 at {1e3 * done.table.reference:.6g} mm; steps of "
+        f"{1e6 * done.control.resolution:g} um; play {micrometres(done.table.play)}.",
+    ]
+    found: list[Section] = [
+        ("Table", what), ("Sign", [done.control.sign_rule, f"Source: {done.control.source}"]),
+        ("Check of one point", check_of_one_point(done)), ("Load", done.control.load(done.table, done.wishes.axis)),
+    ]  # fmt: skip
+    rows = predicted_rows(done)
+    if rows:
+        shown = [f"{name}: " + ", ".join(_shown(label, value) for label, value in zip(_LABELS, values, strict=True)
+                                         if value is not None) for name, values in rows]  # fmt: skip
+        found.append(("Predicted by simulation, the table applied as this control does", shown))
+    found.append(("What is left", left(done)))
+    if friction_lines(done):
+        found.append(("Friction at reversals", friction_lines(done)))
+    if done.cogging is not None:
+        before, after = (f"{1e9 * one:.3g} nm" for one in (done.cogging.before, done.cogging.after))
+        line = f"The map beside this sheet takes the ripple of the position from {before} to {after} rms at 60 rev/min."
+        found.append(("Cogging", [line]))
+    return found
+
+
+_LABELS = ("before", "after repair", "after compensation")
+
+
+def _shown(label: str, value: float) -> str:
+    return f"{label} {micrometres(value)}"
+
+
+def heat_sections(done: HeatTable, axis: str) -> list[Section]:
+    """The sheet of a temperature compensation."""
+    one = done.left
+    ranked = ", ".join(f"{name} {share:.0%}" for name, share in done.ranking.items())
+    steepest = float(np.max(np.abs(done.table.slopes)))
+    recorded = done.sensor.endswith("_temperature")
+    counted = "the recording" if recorded else "[thermal] of the plant file"
+    return [
+        ("Table", [
+            f"SINUMERIK temperature compensation, axis {axis} of {plain_line(done.name)}, over {done.sensor}; "
+            f"tan beta up to {1e6 * steepest:.3g} um/m.",
+            f"Positions count as in {counted}; P0 = {1e3 * done.table.reference:.6g} mm.",
+        ]),
+        ("Sign", [sinumerik_temp.SIGN_RULE, f"Source: {sinumerik_temp.SOURCE}"]),
+        ("Check of one point", heat_check(axis)),
+        ("Load", sinumerik_temp.load(axis, done.sensor, done.table.reference)),
+        ("Predicted from the recording" if recorded else "Predicted by simulation", [
+            f"{done.judged}: rms {micrometres(one.rms_before)} to {micrometres(one.rms_after)}, largest "
+            f"{micrometres(one.largest_before)} to {micrometres(one.largest_after)}.",
+        ]),
+        ("What is left", [
+            f"Share of the rms error that a table over each sensor leaves: {ranked}.",
+            "What one temperature does not tell: screw and nut warm and cool along different ways.",
+        ]),
+    ]  # fmt: skip
+
+
+def heat_check(axis: str) -> list[str]:
+    """One measurement that shows the sign."""
+    return [
+        f"Check: with tan beta 0 write SD43900 $SA_TEMP_COMP_ABS_VALUE[{axis}] = 0.1 by hand: the axis must move by "
+        "0.1 mm to -. If it moves to +, the sign of all values is the other one."
+    ]
+
+
+def heat_text(done: HeatTable, axis: str) -> str:
+    """The file for PLC and control."""
+    name = checked_axis(axis)
+    lines = [
+        f"SINUMERIK temperature compensation, axis {name} of {plain_line(done.name)}, feeddrive {__version__}",
+        f"Sign: {sinumerik_temp.SIGN_RULE}", f"Source: {sinumerik_temp.SOURCE}", *heat_check(name),
+        *sinumerik_temp.load(name, done.sensor, done.table.reference),
+    ]  # fmt: skip
+    return sinumerik_temp.text(done.table, lines)
+
+
+def sheet_text(found: Sequence[Section]) -> str:
+    """The sheet as plain text."""
+    blocks = ["\n".join([title, "-" * len(title), *(f"* {line}" for line in lines)]) for title, lines in found]
+    return "\n\n".join(blocks) + "\n"
+
+
+def record(done: Compensated) -> dict[str, Any]:
+    """Everything as plain values, SI, for JSON."""
+    table, lost, friction = done.table, done.lost, done.friction
+    content: dict[str, Any] = {
+        "form": done.control.name, "axis": done.wishes.axis, "machine": done.name,
+        "reference": table.reference, "step": table.step or None, "resolution": done.control.resolution,
+        "positions": table.positions.tolist(), "forward": table.forward.tolist(), "reverse": table.reverse.tolist(),
+        "play": table.play, "sign_rule": done.control.sign_rule, "source": done.control.source,
+        "check": check_of_one_point(done), "left": left(done), "left_by_table": done.left_by_table,
+        "predicted": [
+            dict(zip(("figure", "before", "repaired", "after"), [name, *values], strict=True))
+            for name, values in predicted_rows(done)
+        ],
+    }  # fmt: skip
+    if lost is not None:
+        content["lost_motion"] = {"play": lost.play, "wind_up": lost.wind_up, "friction_force": lost.force,
+                                  "friction_torque": lost.torque,
+                                  "holding": lost.holding if math.isfinite(lost.holding) else None}  # fmt: skip
+    if friction is not None:
+        content["friction"] = {"torque": friction.torque, "turning_speed": friction.turning, "pulse": friction.pulse,
+                               "pulse_time": friction.time, "share": friction.share}  # fmt: skip
+    return content
+
+
+def heat_record(done: HeatTable, axis: str) -> dict[str, Any]:
+    """Everything of a temperature compensation as plain values, SI, for JSON."""
+    table, one = done.table, done.left
+    return {
+        "form": "sinumerik-temp", "axis": axis, "machine": done.name, "sensor": done.sensor,
+        "reference": table.reference, "temperatures": table.temperatures.tolist(), "K0": table.offsets.tolist(),
+        "tan_beta": table.slopes.tolist(), "judged": done.judged, "ranking": dict(done.ranking),
+        "predicted": {"rms_before": one.rms_before, "rms_after": one.rms_after,
+                      "largest_before": one.largest_before, "largest_after": one.largest_after},
+    }  # fmt: skip
