@@ -63,6 +63,8 @@ COMMANDS: dict[str, Entry] = {
     "sweep": Entry("sweep", "Run a scenario over varied values: one table, one figure."),
     "read": Entry("read", "Read a trace file of a drive or control; say what it holds."),
     "diagnose": Entry("diagnose", "Find what a machine's model lacks, from recordings of it."),
+    "iso230": Entry("iso230", "Measured accuracy after ISO 230: positioning, drift, circle."),
+    "watch": Entry("watch", "Follow an axis over months of recordings: trends, changes."),
     "export": Entry("export", "Write a machine as state space, .mat, CasADi, C, FMU or JSON."),
     "reproduce": Entry("reproduce", "Compare the source papers' numbers with computed ones."),
 }
