@@ -210,10 +210,10 @@ def _of_recordings(recordings: Sequence[Recording], wishes: _Wishes, plant: Axis
     found = circle_angle(first, target)
     if found is None:
         raise InputError("the set-point is no sine", first.name, "record a circle, or say --part 2")
-    angle, radius = found
+    angle, scale = found.angle, first["table_position"][found.rows]
     turns = math.floor((angle[-1] - angle[0]) / (2 * math.pi) + 1e-9)
     whole = angle > angle[-1] - 2 * math.pi * max(1, turns)
-    return Iso230(first.name, 4, circular(angle[whole], first["table_position"][whole], wishes.radius or radius))
+    return Iso230(first.name, 4, circular(angle[whole], scale[whole], wishes.radius or found.radius))
 
 
 def unit_of(key: str) -> str:

@@ -56,7 +56,7 @@ def _linear(test: LinearTest) -> ReportFigure:
         axes.plot(place, middle, "-.", color=MEASURED, linewidth=1.0, label="mean of both")
     low, high = float(np.min(outer)), float(np.max(outer))
     _span(axes, low, high, "A")
-    dress(axes, "target [mm]", "deviation [µm]", f"actual minus target, {EDITION}")
+    dress(axes, "target [mm]", "deviation, actual minus target [µm]")
     legend_above(axes, 5)
     if both is not None:
         found = (("A", both.accuracy), ("E", both.systematic), ("M", both.mean_range), ("B", both.reversal_value),
@@ -66,6 +66,7 @@ def _linear(test: LinearTest) -> ReportFigure:
         found = (("A", side.accuracy), ("E", side.systematic), ("R", side.repeatability))
     kind = "Bidirectional" if both is not None else "Unidirectional"
     text = ", ".join(f"{name} {micrometres(value)}" for name, value in found)
+    text = f"{text} ({EDITION})"
     return ReportFigure("positioning", f"{kind} accuracy and repeatability of positioning", text, figure)
 
 

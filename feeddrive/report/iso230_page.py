@@ -90,9 +90,14 @@ def _share_words(share: PlantShare) -> str:
     carried = {name: share.left.explains - one.explains for name, one in share.without.items()}
     order = sorted((name for name, value in carried.items() if value > 0.01), key=lambda name: -carried[name])
     named = ", ".join(f"{name.replace('_', ' ')} {100 * carried[name]:.0f} %" for name in order) or "none of its effects"
+    creeps = (
+        " Its friction is declared smooth in speed and lets the springs relax at rest: what they keep under friction "
+        "(lost motion) is not in the plant's B."
+    )
     return (
         f"The plant explains {100 * share.left.explains:.0f} % of the squared mean deviations, by {named}. "
         "The motor is taken to stand where it was sent: a control that reads the scale would hide what the screw does."
+        f"{creeps if share.creeps else ''}"
     )
 
 

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feeddrive.effects.base import Effect
+from feeddrive.effects.thermal.base import number
 from feeddrive.errors import InputError
 from feeddrive.metrology.measured.measurements import LinearTest
 from feeddrive.plant.plant import Plant
@@ -59,6 +60,8 @@ class PlantShare:
         left: of the measurement less the plant's deviations.
         without: label of an effect to what is left where the plant lacks it.
         up, down: the plant's deviations, (m,) [m].
+        creeps: whether declared friction at the table is smooth in speed, so that it lets a wound-up spring relax at rest:
+            the plant then has no lost motion of its springs, where a bristle would keep it.
     """
 
     measured: Share
@@ -67,6 +70,7 @@ class PlantShare:
     without: dict[str, Share]
     up: FloatArray
     down: FloatArray
+    creeps: bool
 
 
 def plant_share(test: LinearTest, plant: Plant) -> PlantShare:
@@ -89,8 +93,13 @@ def plant_share(test: LinearTest, plant: Plant) -> PlantShare:
         if fewer is not None:
             without[effect.label or effect.name] = _share(test, test.less(*fewer_deviations(fewer, test.target, up, down)))
     return PlantShare(
-        _share(test, zero), _share(test, alone), _share(test, test.less(up, down)), without, up, down
+        _share(test, zero), _share(test, alone), _share(test, test.less(up, down)), without, up, down, _creeps(plant)
     )  # fmt: skip
+
+
+def _creeps(plant: Plant) -> bool:
+    smooth = any(number(one.values.get("smoothing_velocity", 0.0)) > 0 for one in plant.effects)
+    return smooth and not any(one.name == "presliding" for one in plant.effects)
 
 
 def fewer_deviations(plant: Plant, target: FloatArray, up: FloatArray, down: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -112,7 +121,7 @@ def _without(plant: Plant, effect: Effect) -> Plant | None:
 def _share(test: LinearTest, left: LinearTest) -> Share:
     before, after = _means(test), _means(left)
     power = float(np.sum(before**2))
-    explains = 1 - float(np.sum(after**2)) / power if power > 0 else 0.0
+    explains = round(1 - float(np.sum(after**2)) / power, 9) + 0.0 if power > 0 else 0.0  # + 0.0: no minus before a zero
     both = left.both
     if both is None:
         (side,) = left.sides.values()

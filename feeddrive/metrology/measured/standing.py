@@ -25,8 +25,8 @@ SLOWEST = 1e-3
 """Speed of the motor's position below which an axis without a set-point stands [m/s]."""
 
 HOUR = 3600.0
-SINE = 0.01
-"""Share of the set-point's rms that a sine may leave for the motion to be a circle."""
+SINE = 1e-3
+"""Share of the radius that a sine may leave (rms) for the motion to be a circle: 5 µm of 5 mm, where friction leaves them."""
 
 
 @dataclass(frozen=True)
@@ -151,21 +151,47 @@ def drift_test_from(recording: Recording, target: FloatArray, stop: float | None
     return drift_test_of(series, stop, {}, recording.name)
 
 
-def circle_angle(recording: Recording, target: FloatArray) -> tuple[FloatArray, float] | None:
-    """Angle of the set-point along its circle, (n,) [rad], and its radius [m]; None where the motion is no sine."""
-    time = recording.time - recording.time[0]
-    about = target - np.mean(target)
-    spectrum = np.abs(np.fft.rfft(about * np.hanning(len(about))))
-    first = int(np.argmax(spectrum[1:])) + 1
-    if first < 2 or not np.ptp(about) > 0:
+@dataclass(frozen=True)
+class Sine:
+    """A stretch of a set-point that is a sine, centre + radius sin(angle).
+
+    Attributes:
+        rows: the stretch.
+        angle: in it, rising, (k,) [rad].
+        radius: [m].
+    """
+
+    rows: slice
+    angle: FloatArray
+    radius: float
+
+
+def circle_angle(recording: Recording, target: FloatArray) -> Sine | None:
+    """The longest stretch without run-up and run-out that is a sine of one turn at least; None where there is none."""
+    count = len(target)
+    shares = [(begin, end) for begin in (0.0, 0.05, 0.1, 0.2, 0.3, 0.4) for end in (1.0, 0.95, 0.9, 0.8, 0.7, 0.6)]
+    for begin, end in sorted(shares, key=lambda one: one[0] - one[1]):
+        rows = slice(round(begin * count), round(end * count))
+        found = _sine_of(recording, target, rows)
+        if found is not None:
+            return found
+    return None
+
+
+def _sine_of(recording: Recording, target: FloatArray, rows: slice) -> Sine | None:
+    time, about = recording.time[rows] - recording.time[rows.start], target[rows] - np.mean(target[rows])
+    if len(time) < 64 or not np.ptp(about) > 0:
         return None
-    omega, parts = _sine(time, target, 2 * math.pi * first / (len(time) * recording.sample_time))
-    centre, sine, cosine = parts
-    rest = target - centre - sine * np.sin(omega * time) - cosine * np.cos(omega * time)
-    radius = math.hypot(sine, cosine)
-    if radius == 0 or float(np.std(rest)) > SINE * radius / math.sqrt(2):
+    # crossings of the middle tell the frequency nearly enough for Gauss and Newton
+    crossings = int(np.count_nonzero(np.diff(np.signbit(about))))
+    if crossings < 2:
         return None
-    return omega * time + math.atan2(cosine, sine), radius
+    omega, (centre, sine, cosine) = _sine(time, about, math.pi * crossings / float(time[-1]))
+    rest = about - centre - sine * np.sin(omega * time) - cosine * np.cos(omega * time)
+    radius, turned = math.hypot(sine, cosine), omega * float(time[-1])
+    if not radius > 0 or float(np.std(rest)) > SINE * radius or turned < 2 * math.pi:
+        return None
+    return Sine(rows, omega * time + math.atan2(cosine, sine), radius)
 
 
 def _sine(time: FloatArray, values: FloatArray, omega: float) -> tuple[float, FloatArray]:
@@ -194,5 +220,5 @@ def circle_test_from(first: Recording, second: Recording, radius: float | None) 
     nominal = radius
     if nominal is None and "setpoint" in first:
         found = circle_angle(first, first["setpoint"])
-        nominal = None if found is None else found[1]
+        nominal = None if found is None else found.radius
     return CircleTest(((x, y),), nominal)
