@@ -67,6 +67,8 @@ COMMANDS: dict[str, Entry] = {
     "read": Entry("read", "Read a trace file of a drive or control; say what it holds."),
     "diagnose": Entry("diagnose", "Find what a machine's model lacks, from recordings of it."),
     "compensate": Entry("compensate", "Write what was found as tables that controls read."),
+    "iso230": Entry("iso230", "Measured accuracy after ISO 230: positioning, drift, circle."),
+    "watch": Entry("watch", "Follow an axis over months of recordings: trends, changes."),
     "export": Entry("export", "Write a machine as state space, .mat, CasADi, C, FMU or JSON."),
     "reproduce": Entry("reproduce", "Compare the source papers' numbers with computed ones."),
 }

@@ -84,3 +84,78 @@ def _glitch(angle: FloatArray, rest: FloatArray, lead: float, side: float) -> fl
     after = np.mod(angle + lead - side * math.pi / 2, 2 * math.pi)
     within = side * rest[after < GLITCH_SPAN]
     return float(within[np.argmax(np.abs(within))]) if len(within) else 0.0
+
+
+@dataclass(frozen=True)
+class CircularPath:
+    """Figures of a measured circular path of two axes, in one direction.
+
+    Attributes:
+        direction: +1 counter-clockwise, -1 clockwise.
+        angle: of the points about the least-squares centre, (n,) [rad], in their order in time.
+        radial: distance from that centre minus the nominal radius, (n,) [m].
+        deviation: G, largest minus smallest radius [m].
+        radial_maximum, radial_minimum: F max and F min [m].
+        radius: of the least-squares circle [m].
+        centre: of it [m].
+        glitches: largest deviation from the smooth path within 30 degrees after the axes' reversals at 0, 90, 180 and
+            270 degrees [m], positive outwards; not a number where no point lies there.
+    """
+
+    direction: int
+    angle: FloatArray
+    radial: FloatArray
+    deviation: float
+    radial_maximum: float
+    radial_minimum: float
+    radius: float
+    centre: tuple[float, float]
+    glitches: tuple[float, float, float, float]
+
+
+CENTRING_STEPS = 8
+"""Gauss-Newton steps for the least-squares circle; each squares the relative error of the centre."""
+
+
+def circular_path(x: FloatArray, y: FloatArray, nominal: float) -> CircularPath:
+    """The figures of points along a circle, one whole turn at least.
+
+    Args:
+        x, y: points in their order in time, shape (n,) [m].
+        nominal: radius [m].
+
+    Raises:
+        InputError: fewer than 36 points, or less than one turn.
+    """
+    centre, radius = least_squares_circle(x, y)
+    angle = np.unwrap(np.arctan2(y - centre[1], x - centre[0]))
+    turned = float(angle[-1] - angle[0])
+    gap = abs(turned) / max(1, len(angle) - 1)
+    if len(angle) < 36 or abs(turned) + 2 * gap < 2 * math.pi:
+        what = f"{len(angle)} points over {math.degrees(abs(turned)):.0f} degrees"
+        raise InputError(what, "circular test", "give one whole turn at least, a point every 10 degrees or closer")
+    radial = np.hypot(x - centre[0], y - centre[1]) - nominal
+    direction = 1 if turned > 0 else -1
+    harmonics = [np.ones_like(angle), *(wave(k * angle) for k in (1, 2) for wave in (np.sin, np.cos))]
+    basis = np.column_stack(harmonics)  # radius, centre, gains and squareness are no glitches
+    rest = radial - basis @ np.linalg.lstsq(basis, radial, rcond=None)[0]
+    after = [np.mod(direction * (angle - quarter * math.pi / 2), 2 * math.pi) < GLITCH_SPAN for quarter in range(4)]
+    glitches = [float(rest[one][np.argmax(np.abs(rest[one]))]) if one.any() else math.nan for one in after]
+    return CircularPath(
+        direction, angle, radial, float(np.ptp(radial)), float(radial.max()), float(radial.min()), radius, centre,
+        (glitches[0], glitches[1], glitches[2], glitches[3]),
+    )  # fmt: skip
+
+
+def least_squares_circle(x: FloatArray, y: FloatArray) -> tuple[tuple[float, float], float]:
+    """Centre and radius with the least sum of squared distances from the circle."""
+    algebraic = np.column_stack([x, y, np.ones_like(x)])
+    (a, b, _), *_ = np.linalg.lstsq(algebraic, x**2 + y**2, rcond=None)
+    centre = np.array([0.5 * a, 0.5 * b])
+    for _ in range(CENTRING_STEPS):
+        away = np.stack([x - centre[0], y - centre[1]])
+        distance = np.hypot(*away)
+        slopes = np.column_stack([*(away / distance), np.ones_like(x)])
+        step, *_ = np.linalg.lstsq(slopes, distance, rcond=None)
+        centre += step[:2]
+    return (float(centre[0]), float(centre[1])), float(np.mean(np.hypot(x - centre[0], y - centre[1])))

@@ -56,6 +56,36 @@ class Positioning:
     accuracy_down: float
 
 
+@dataclass(frozen=True)
+class OneDirection:
+    """Figures of approaches from one side, all in m; arrays of one value per target, shape (m,).
+
+    Attributes:
+        mean, deviation: mean deviation (actual minus target) and its standard uncertainty estimator s.
+        repeatability, systematic, accuracy: R, E, A of this direction.
+    """
+
+    mean: FloatArray
+    deviation: FloatArray
+    repeatability: float
+    systematic: float
+    accuracy: float
+
+
+def one_direction(deviations: FloatArray) -> OneDirection:
+    """The figures of one direction of approach from deviations, actual minus target [m], shape (m, n).
+
+    Raises:
+        InputError: fewer than two approaches.
+    """
+    if deviations.ndim != 2 or deviations.shape[1] < 2 or not len(deviations):
+        what = f"deviations of shape {deviations.shape}"
+        raise InputError(what, "ISO 230-2", "approach every target at least twice from the same side")
+    mean, s = deviations.mean(axis=1), deviations.std(axis=1, ddof=1)
+    accuracy = float((mean + 2 * s).max() - (mean - 2 * s).min())
+    return OneDirection(mean, s, float(4 * s.max()), float(np.ptp(mean)), accuracy)
+
+
 def positioning(target: FloatArray, up: FloatArray, down: FloatArray) -> Positioning:
     """The figures from deviations.
 
@@ -69,24 +99,24 @@ def positioning(target: FloatArray, up: FloatArray, down: FloatArray) -> Positio
     if up.shape != down.shape or up.ndim != 2 or up.shape[0] != len(target) or up.shape[1] < 2:
         what = f"deviations of shape {up.shape} and {down.shape} at {len(target)} targets"
         raise InputError(what, "ISO 230-2", "approach every target at least twice from both sides")
-    mean_up, mean_down = up.mean(axis=1), down.mean(axis=1)
-    s_up, s_down = up.std(axis=1, ddof=1), down.std(axis=1, ddof=1)
-    reversal, mean = mean_up - mean_down, 0.5 * (mean_up + mean_down)
+    one, other = one_direction(up), one_direction(down)
+    reversal, mean = one.mean - other.mean, 0.5 * (one.mean + other.mean)
+    s_up, s_down = one.deviation, other.deviation
     both = 2 * s_up + 2 * s_down + np.abs(reversal)
-    means = np.stack([mean_up, mean_down])
+    means = np.stack([one.mean, other.mean])
     spread = 2 * np.stack([s_up, s_down])
     return Positioning(
-        target, mean_up, mean_down, s_up, s_down, reversal,
+        target, one.mean, other.mean, s_up, s_down, reversal,
         reversal_value=float(np.max(np.abs(reversal))),
         mean_reversal=float(np.mean(reversal)),
-        repeatability_up=float(4 * s_up.max()),
-        repeatability_down=float(4 * s_down.max()),
+        repeatability_up=one.repeatability,
+        repeatability_down=other.repeatability,
         repeatability=float(np.max(np.maximum(both, np.maximum(4 * s_up, 4 * s_down)))),
         systematic=float(np.ptp(means)),
-        systematic_up=float(np.ptp(mean_up)),
-        systematic_down=float(np.ptp(mean_down)),
+        systematic_up=one.systematic,
+        systematic_down=other.systematic,
         mean_range=float(np.ptp(mean)),
         accuracy=float((means + spread).max() - (means - spread).min()),
-        accuracy_up=float((mean_up + 2 * s_up).max() - (mean_up - 2 * s_up).min()),
-        accuracy_down=float((mean_down + 2 * s_down).max() - (mean_down - 2 * s_down).min()),
+        accuracy_up=one.accuracy,
+        accuracy_down=other.accuracy,
     )  # fmt: skip

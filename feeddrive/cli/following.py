@@ -1,0 +1,67 @@
+"""What `feeddrive watch` does: follow the folder, write the files, print the findings."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+from rich.console import Console
+
+from feeddrive.cli.output import escaped, table, warnings_as_lines
+from feeddrive.errors import InputError, printable
+from feeddrive.interface.axis import load
+from feeddrive.interface.watching import watch
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What was typed, as typed; empty where nothing was."""
+
+    folder: Path
+    plant: str
+    out: Path | None
+    mapping: Path | None
+    decimal: str
+    stamp: str
+    every: str
+    first: str
+    absolute: tuple[str, ...]
+    limit: tuple[str, ...]
+    search: bool
+
+
+def follow_and_tell(asked: Asked, as_json: bool) -> None:
+    """Follow the folder, write the results beside it, and print the findings or the JSON.
+
+    Raises:
+        InputError: a folder, a plant or an option that cannot be used.
+    """
+    limits = dict(map(_limit, asked.limit))
+    with warnings_as_lines(), Console(stderr=True).status("looking into the folder") as status:
+        found = watch(
+            asked.folder, load(asked.plant), out=asked.out, map=asked.mapping, decimal=asked.decimal or None,
+            stamp=asked.stamp, every=asked.every or None, first=asked.first, absolute=asked.absolute, limits=limits,
+            search=asked.search, progress=lambda text: status.update(printable(text)),
+        )  # fmt: skip
+        place = found.save()
+    if as_json:
+        print(escaped(json.dumps(found.record(), indent=2, ensure_ascii=False)))
+        return
+    console = Console(soft_wrap=True, highlight=False)
+    console.print(printable(found.verdict), markup=False)
+    listing = found.listing()
+    console.print(table(listing.title, listing.headings, listing.rows), markup=False)
+    for note in found.trend.notes:
+        console.print(printable(note), markup=False)
+    waiting = sum(one.status != "used" for one in found.trend.entries)
+    if waiting:
+        console.print(f"{waiting} files are not used; trend.html says why", markup=False)
+    console.print(f"page: {printable(str((place / 'trend.html').resolve()))}", markup=False)
+
+
+def _limit(text: str) -> tuple[str, str]:
+    name, equals, value = text.partition("=")
+    if not equals or not name.strip() or not value.strip():
+        raise InputError(f'"{text}" is no limit', "--limit", "write it as 'play=10 µm' or 'coulomb=20 %'")
+    return name.strip(), value.strip()

@@ -1,0 +1,221 @@
+"""Which courses a series holds, since when, and at what odds.
+
+A course is added while the evidence summed over everything that could be added outweighs its prior; each is then moved to
+where it fits best beside the others, and dropped where it no longer pays.
+
+Prior: in a whole watch one course of any kind, in any quantity, at any date, is as likely as none. So each of m candidates
+of a kind, of K kinds in Q quantities, has prior odds 1 / (Q K m). A Bayes factor exceeds c by chance with probability 1/c
+at most, at whatever moment one looks (J. Ville, 1939: it is a martingale where nothing changes), so that asserting at odds
+of 100 lets at most one watch in a hundred tell of a change that is none.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.optimize import minimize
+from scipy.special import logsumexp
+
+from feeddrive.trend.atoms import JUMP, ODD, SETTLING, SLOPE, Atom
+from feeddrive.trend.evidence import Series
+from feeddrive.typing import FloatArray
+
+ASSERTED = 100.0
+"""Odds from which a change is told: at most one false one in a hundred watches, see above."""
+
+KINDS = (JUMP, SLOPE, SETTLING, ODD)
+FEWEST = 8
+"""Recordings from which changes are looked for: two before, two after, and a scatter that is known to a third."""
+
+MOST = 12
+"""Courses of one series at most; a machine on which more happened is told by its graph."""
+
+SWEEPS = 4
+"""Times that all courses are moved beside the others; a sweep that moves none ends it."""
+
+
+@dataclass(frozen=True)
+class Found:
+    """One course of a series.
+
+    Attributes:
+        atom: kind, date, time constant.
+        odds: of some such course against none, the others as they are.
+        dates: interval that holds the date with 95 %.
+        size, deviation: of the course and its standard deviation: the height of a jump, the rate of a slope.
+        time_constants: interval with 95 %, of a course that settles.
+    """
+
+    atom: Atom
+    odds: float
+    dates: tuple[float, float]
+    size: float
+    deviation: float
+    time_constants: tuple[float, float] = (0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Course:
+    """What a series did.
+
+    Attributes:
+        level: at the beginning, with its standard deviation.
+        scatter: of one value about the courses.
+        found: asserted courses, by date.
+        fitted: the courses at the times of the series, (n,).
+        band: their standard deviation, (n,).
+    """
+
+    level: tuple[float, float]
+    scatter: float
+    found: tuple[Found, ...]
+    fitted: FloatArray
+    band: FloatArray
+
+
+def course_of(series: Series, quantities: int) -> Course:
+    """Find the courses of a series.
+
+    Args:
+        series: with at least two values.
+        quantities: how many are watched together.
+    """
+    search = _Search(series, quantities)
+    atoms = search.settled(search.grown()) if len(series.values) >= FEWEST else []
+    odds = [search.odds_of(atoms, place) for place in range(len(atoms))]
+    while atoms and min(odds) < ASSERTED:
+        del atoms[int(np.argmin(odds))]
+        odds = [search.odds_of(atoms, place) for place in range(len(atoms))]
+    atoms = sorted(atoms, key=lambda atom: atom.date)
+    mean, spread, scatter = series.estimate(atoms)
+    columns = np.column_stack([np.ones(len(series.values)), *(atom.course(series.line.time) for atom in atoms)])
+    band = np.sqrt(np.clip(np.einsum("ij,jk,ik->i", columns, spread, columns), 0, None))
+    found = tuple(
+        Found(
+            atom, search.odds_of(atoms, i), search.dates(atoms, i), float(mean[1 + i]), float(np.sqrt(spread[1 + i, 1 + i])),
+            search.time_constants(atoms, i),
+        )
+        for i, atom in enumerate(atoms)
+    )  # fmt: skip
+    return Course((float(mean[0]), float(np.sqrt(spread[0, 0]))), scatter, found, columns @ mean, band)
+
+
+@dataclass(frozen=True, eq=False)
+class _Search:
+    """Looks for courses in one series."""
+
+    series: Series
+    quantities: int
+
+    @property
+    def log_prior(self) -> FloatArray:
+        """Log prior odds of each candidate, (m,)."""
+        tried = self.series.line.tried
+        many = Counter(atom.kind for atom in tried)
+        return -np.log([self.quantities * len(KINDS) * many[atom.kind] for atom in tried])
+
+    def grown(self) -> list[Atom]:
+        """Courses added one after the other while any pays."""
+        atoms: list[Atom] = []
+        while len(atoms) < MOST:
+            now = float(logsumexp(self.series.evidence(atoms)))
+            more = self.series.with_one_more(atoms) + self.log_prior - now
+            if float(logsumexp(more)) < 0:
+                break
+            atoms.append(self.series.line.tried[int(np.argmax(more))])
+            atoms = self.refined(atoms)
+        return atoms
+
+    def settled(self, atoms: list[Atom]) -> list[Atom]:
+        """Courses moved to where they fit best beside the others; those that no longer pay are dropped."""
+        for _ in range(SWEEPS):
+            before = list(atoms)
+            for atom in before:
+                others = [one for one in atoms if one is not atom]
+                more = self.series.with_one_more(others) + self.log_prior
+                best = self.series.line.tried[int(np.argmax(more))]
+                held = float(logsumexp(self.series.evidence([*others, atom])))
+                pays = float(logsumexp(more)) > float(logsumexp(self.series.evidence(others)))
+                moved = float(np.max(more)) > held + self._prior_of(atom)
+                atoms = self.refined([*others, best if moved else atom]) if pays else others
+            if atoms == before:
+                break
+        return atoms
+
+    def _prior_of(self, atom: Atom) -> float:
+        tried = self.series.line.tried
+        return -float(np.log(self.quantities * len(KINDS) * sum(one.kind == atom.kind for one in tried)))
+
+    def refined(self, atoms: list[Atom]) -> list[Atom]:
+        """The courses with their best time constants, those that settle."""
+        settling = [i for i, atom in enumerate(atoms) if atom.kind == SETTLING]
+        if not settling:
+            return atoms
+
+        def tried(logs: FloatArray) -> list[Atom]:
+            found = list(atoms)
+            for i, log in zip(settling, logs, strict=True):
+                found[i] = replace(atoms[i], time_constant=float(np.exp(log)))
+            return found
+
+        def worse(logs: FloatArray) -> float:
+            return -float(logsumexp(self.series.evidence(tried(logs))))
+
+        about = np.log([atoms[i].time_constant for i in settling])
+        simplex = np.vstack([about, *(about + 0.3 * row for row in np.eye(len(about)))])
+        options = {"initial_simplex": simplex, "xatol": 1e-4, "fatol": 1e-3, "maxfev": 60 * len(about)}
+        return tried(minimize(worse, about, method="Nelder-Mead", options=options).x)
+
+    def odds_of(self, atoms: Sequence[Atom], place: int) -> float:
+        """Odds of a course of any kind and date in the place of one, against none; 1e300 at most."""
+        others = [atom for i, atom in enumerate(atoms) if i != place]
+        more = self.series.with_one_more(others) + self.log_prior
+        alone = float(logsumexp(self.series.evidence(others)))
+        refined = float(logsumexp(self.series.evidence(atoms))) + self._prior_of(atoms[place])
+        return float(np.exp(min(float(logsumexp([*more, refined])) - alone, 690.0)))
+
+    def dates(self, atoms: Sequence[Atom], place: int) -> tuple[float, float]:
+        """Interval that holds the date of a course with 95 %, among those of its kind."""
+        atom, time = atoms[place], self.series.line.time
+        others = [one for i, one in enumerate(atoms) if i != place]
+        if atom.kind == SETTLING:
+            near = [replace(atom, date=float(date)) for date in time[: len(time) - 2]]
+            logs = np.array([float(logsumexp(self.series.evidence([*others, one]))) for one in _around(near, atom)])
+            dates = np.array([one.date for one in _around(near, atom)])
+        else:
+            chosen = [i for i, one in enumerate(self.series.line.tried) if one.kind == atom.kind]
+            logs = self.series.with_one_more(others)[chosen]
+            dates = np.array([self.series.line.tried[i].date for i in chosen])
+        weights = np.exp(logs - logsumexp(logs))
+        order = np.argsort(-weights)
+        held = order[: int(np.searchsorted(np.cumsum(weights[order]), 0.95)) + 1]
+        return float(dates[held].min()), float(dates[held].max())
+
+    def time_constants(self, atoms: Sequence[Atom], place: int) -> tuple[float, float]:
+        """Interval with 95 % of a time constant."""
+        atom = atoms[place]
+        if atom.kind != SETTLING:
+            return 0.0, 0.0
+        others = [one for i, one in enumerate(atoms) if i != place]
+        spread = np.linspace(-1.0, 1.0, 9)
+        for _ in range(3):  # narrower about what weighs
+            tried = [replace(atom, time_constant=float(atom.time_constant * np.exp(s))) for s in spread]
+            logs = np.array([float(logsumexp(self.series.evidence([*others, one]))) for one in tried])
+            weighing = spread[logs > logs.max() - 8]
+            low, high = float(weighing.min()), float(weighing.max())
+            step = float(spread[1] - spread[0])
+            if high - low > 3 * step:
+                break
+            spread = np.linspace(low - step, high + step, 9)
+        weights = np.exp(logs - logsumexp(logs))
+        mean = float(weights @ spread)
+        deviation = float(np.sqrt(weights @ (spread - mean) ** 2))
+        return tuple(float(atom.time_constant * np.exp(mean + s * 1.96 * deviation)) for s in (-1, 1))  # type: ignore[return-value]
+
+
+def _around(near: list[Atom], atom: Atom) -> list[Atom]:
+    """The twenty-five dates nearest to that of a course."""
+    return sorted(near, key=lambda one: abs(one.date - atom.date))[:25]

@@ -1,0 +1,84 @@
+"""What happened to the machine: changes of several quantities at the same time are one event, named by what they share."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from feeddrive.trend.atoms import JUMP, ODD, SETTLING, SLOPE
+from feeddrive.trend.change_points import Found
+from feeddrive.trend.quantities import Quantity
+
+
+@dataclass(frozen=True)
+class Change:
+    """A course of one quantity."""
+
+    quantity: Quantity
+    found: Found
+
+
+@dataclass(frozen=True)
+class Event:
+    """Changes that began together.
+
+    Attributes:
+        kind: "jump", "slope" or "settling".
+        changes: the surest first.
+        dates: interval of days that holds the date with 95 %, of the quantity that tells it most closely.
+        day: most likely one.
+        causes: effects that move all of these quantities, or what most of them share, the likeliest first.
+    """
+
+    kind: str
+    changes: tuple[Change, ...]
+    dates: tuple[float, float]
+    day: float
+    causes: tuple[str, ...]
+
+
+def events_of(changes: Sequence[Change]) -> tuple[Event, ...]:
+    """Group changes of a kind whose dates may be the same, by date; odd recordings are no events."""
+    groups: list[list[Change]] = []
+    told = [one for one in changes if one.found.atom.kind != ODD]
+    for one in sorted(told, key=lambda change: change.found.dates[1] - change.found.dates[0]):
+        group = next((group for group in groups if _together(group[0].found, one.found)), None)
+        if group is None:
+            groups.append([one])
+        else:
+            group.append(one)
+    return tuple(sorted(map(_event, groups), key=lambda event: event.day))
+
+
+def _together(one: Found, other: Found) -> bool:
+    """Whether two changes are of one kind (slow or sudden) and their dates overlap."""
+    if (one.atom.kind == JUMP) != (other.atom.kind == JUMP):
+        return False
+    return one.dates[0] <= other.dates[1] and other.dates[0] <= one.dates[1]
+
+
+def _event(group: list[Change]) -> Event:
+    closest = group[0]
+    ordered = tuple(sorted(group, key=lambda change: -change.found.odds))
+    kind = closest.found.atom.kind
+    return Event(kind, ordered, closest.found.dates, closest.found.atom.date, _causes(ordered, kind))
+
+
+def _causes(changes: Sequence[Change], kind: str) -> tuple[str, ...]:
+    """Effects by how many of the quantities they move; a sudden play is play and not a loss of preload."""
+    count: dict[str, float] = {}
+    for change in changes:
+        for place, effect in enumerate(change.quantity.effects):
+            weight = 1.0 - 0.01 * place
+            if effect == "preload_loss":
+                weight = _as_preload(change) if kind in (SLOPE, SETTLING) else 0.2
+            count[effect] = count.get(effect, 0.0) + weight
+    best = max(count.values(), default=0.0)
+    return tuple(sorted((name for name, value in count.items() if value > 0.7 * best), key=lambda name: -count[name]))
+
+
+def _as_preload(change: Change) -> float:
+    """How a slow change speaks for a loss of preload: friction and stiffness fall with it, lost motion rises."""
+    rises = change.found.size > 0
+    expected = change.quantity.name == "play"
+    return 1.05 if rises == expected else -1.0

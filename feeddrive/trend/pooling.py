@@ -1,0 +1,137 @@
+"""What is the same in every recording is taken out: maps over position, common to all, beside terms of each.
+
+    minimise  sum_i |y_i - A_i theta_i - B_i beta|^2 + sum_i |s theta_i / w|^2        over theta_i, beta
+
+With the triangle [R11 R12 z1; 0 R22 z2] of recording i the maps see R22, z2 alone, and theta_i follows from R11 theta_i =
+z1 - R12 beta: the sum over hundreds of recordings is one small least-squares problem. A level or slope that a map could hold
+as well as a term is the term's (maps have mean zero over their places, that of the lead slope zero too). The last sum is a weak prior
+of width w, so that a recording that does not show a term says nothing of it and not anything.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from feeddrive.trend.regressors import TERMS, Grid, Pass
+from feeddrive.typing import FloatArray
+
+INFLATION = 30.0
+"""Samples that tell as much as one of white noise: what is left is a fault of the model, alike over a good part of a stroke.
+Sets how a prior weighs against rows, no result."""
+
+SHOWN = 0.5
+"""Share of the prior's width below which a term is told by a recording: its rows say more than the prior does."""
+
+STIFF = 1e6
+"""Weight of the maps' freedom from level and slope against the rows."""
+
+
+@dataclass(frozen=True, eq=False)
+class Pooled:
+    """Terms of every recording of one channel.
+
+    Attributes:
+        channel: of which.
+        values: (n, p); not a number where a recording does not show a term.
+        variance: relative, 1 for the usual recording, (n, p).
+        declared: medians of what the plant's own prediction has, (p,).
+        slow_force: median [N].
+        places: of the maps [m], (k,).
+        maps: (2, k).
+        rest: rms of what terms and maps leave, (n,).
+    """
+
+    channel: str
+    values: FloatArray
+    variance: FloatArray
+    declared: FloatArray
+    slow_force: float
+    places: FloatArray
+    maps: FloatArray
+    rest: FloatArray
+
+
+def pool(passes: Sequence[Pass], grid: Grid, widths: Mapping[str, float]) -> Pooled:
+    """Solve for the maps and for the terms of every recording.
+
+    Args:
+        passes: of one channel, one per recording.
+        grid: that they were taken on.
+        widths: of the priors, by term, SI.
+    """
+    names = TERMS[passes[0].channel]
+    count = len(names)
+    low = min(one.first for one in passes)
+    hats = max(one.first + one.hats for one in passes) - low
+    places = grid.cell * (low + np.arange(hats))
+    beta = _maps(passes, count, low, hats, places, grid.middle)
+    noise = [_rest(one, beta, count, low, hats) for one in passes]
+    usual = float(np.sqrt(INFLATION) * np.median(noise)) if noise else 0.0
+    prior = np.diag([max(usual, 1e-300) / widths[name] for name in names])
+    values, variance = np.empty((len(passes), count)), np.empty((len(passes), count))
+    wide = np.array([widths[name] for name in names])
+    for i, one in enumerate(passes):
+        r, z = one.triangle[:count, :count], _seen(one, beta, count, low, hats)
+        stacked = np.vstack([r, prior])
+        values[i] = np.linalg.lstsq(stacked, np.concatenate([z, np.zeros(count)]), rcond=None)[0]
+        inverse = np.linalg.inv(stacked.T @ stacked)
+        spread = usual * np.sqrt(np.diag(inverse))
+        variance[i] = np.diag(inverse)
+        values[i, spread > SHOWN * wide] = np.nan
+    typical = np.median(variance, axis=0)
+    declared = np.median([one.declared for one in passes], axis=0)
+    force = float(np.median([one.slow_force for one in passes]))
+    return Pooled(
+        passes[0].channel, values, np.maximum(1.0, variance / typical), declared, force, places, beta.reshape(2, -1),
+        np.array(noise),
+    )  # fmt: skip
+
+
+def _placed(one: Pass, low: int, hats: int) -> FloatArray:
+    """Columns of the common maps that a recording's two maps are, (2 own hats,)."""
+    at = one.first - low + np.arange(one.hats)
+    return np.concatenate([at, hats + at])
+
+
+def _maps(
+    passes: Sequence[Pass], count: int, low: int, hats: int, places: FloatArray, middle: float
+) -> FloatArray:
+    """The common maps, (2 hats,)."""
+    rows, right = [], []
+    for one in passes:
+        columns = _placed(one, low, hats)
+        block = np.zeros((one.triangle.shape[0] - count, 2 * hats))
+        block[:, columns] = one.triangle[count:, count:-1]
+        rows.append(block)
+        right.append(one.triangle[count:, -1])
+    stacked, seen = np.vstack(rows), np.concatenate(right)
+    if len(seen) > 40 * hats:  # as many rows as recordings times hats: the triangle says the same
+        triangle = np.linalg.qr(np.column_stack([stacked, seen]), mode="r")
+        stacked, seen = triangle[:, :-1], triangle[:, -1]
+    size = max(float(np.linalg.norm(stacked)), 1e-300) / np.sqrt(stacked.size)
+    level, slope = np.ones(hats), (places - middle) / max(float(np.ptp(places)), 1e-12)
+    free = np.zeros((3, 2 * hats))
+    free[0, :hats], free[1, hats:] = level, level
+    if passes[0].channel == "table_position":
+        free[2, :hats] = slope  # which a term holds; no term of the forces goes with position
+    small = 1e-6 * size * np.eye(2 * hats)  # hats that no recording visits are zero
+    whole = np.vstack([stacked, STIFF * size * free, small])
+    found: FloatArray = np.linalg.lstsq(whole, np.concatenate([seen, np.zeros(3 + 2 * hats)]), rcond=None)[0]
+    return found
+
+
+def _seen(one: Pass, beta: FloatArray, count: int, low: int, hats: int) -> FloatArray:
+    """What the terms of a recording have to meet once the maps are taken out, (p,)."""
+    own = beta[_placed(one, low, hats)]
+    found: FloatArray = one.triangle[:count, -1] - one.triangle[:count, count:-1] @ own
+    return found
+
+
+def _rest(one: Pass, beta: FloatArray, count: int, low: int, hats: int) -> float:
+    """Rms of what terms and maps leave of a recording."""
+    own = beta[_placed(one, low, hats)]
+    left = one.triangle[count:, -1] - one.triangle[count:, count:-1] @ own
+    return float(np.sqrt(float(left @ left) / one.rows))

@@ -1,0 +1,340 @@
+"""Following an axis over a folder of recordings: read what is new, pool, and say what changed.
+
+Every recording is read once and passed linearly (`regressors`); all passes are pooled over equal positions (`pooling`);
+the series of every quantity is searched for courses (`change_points`); courses that began together are one event.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from datetime import datetime, timedelta
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from feeddrive.blas_threads import one_thread
+from feeddrive.errors import InputError
+from feeddrive.plant.plant import Plant
+from feeddrive.trend.change_points import Course, course_of
+from feeddrive.trend.checkpoint import (
+    BROKEN,
+    COPY,
+    UNDATED,
+    USED,
+    WAITING,
+    Checkpoint,
+    Entry,
+    load_checkpoint,
+    save_checkpoint,
+)
+from feeddrive.trend.events import Change, Event, events_of
+from feeddrive.trend.evidence import Series, Timeline
+from feeddrive.trend.folder import UNFINISHED, Source, opened, sources
+from feeddrive.trend.limits import Limit, limit_of
+from feeddrive.trend.pooling import Pooled, pool
+from feeddrive.trend.quantities import Quantity, means_of, prior_widths, quantities_of
+from feeddrive.trend.regressors import TERMS, grid_for, linear_pass
+from feeddrive.trend.stamps import stamp_of
+from feeddrive.trend.warm_growth import Growth, growth_of
+from feeddrive.typing import FloatArray
+
+SAVED_EVERY = 60.0
+"""Seconds of reading after which what is known is written, so that an interrupted first run goes on where it was."""
+
+LONGEST_SEARCHED = 500
+"""Values of a series that are searched at a time; more are averaged to so many, and dates are as coarse as that."""
+
+Said = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Options:
+    """How a folder is to be understood.
+
+    Attributes:
+        mapping, decimal: as for reading a recording.
+        stamp: pattern of `strptime` in names; empty to let content and name tell.
+        first, every: date of the first recording by name, and the distance of recordings; where nothing else tells.
+        absolute: whether the zero of the table against the motor is kept, so that an offset that moves is growth.
+        limits: quantity to what it may move by.
+    """
+
+    mapping: Path | None = None
+    decimal: str | None = None
+    stamp: str = ""
+    first: datetime | None = None
+    every: timedelta | None = None
+    absolute: bool = False
+    limits: Mapping[str, str] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Trend:
+    """What a folder says of an axis.
+
+    Attributes:
+        plant: name.
+        entries: what became of every file, used ones by date.
+        days: of the recordings since the first, (n,).
+        begin: date of the first.
+        quantities: with their values.
+        courses: of the quantities that were searched, by name.
+        limits: by name.
+        events: changes that began together, by date.
+        odd: quantity and number of a recording that stands alone.
+        growth: seen by a scale; None where nothing settles.
+        pooled: maps and rests by channel.
+        notes: what is to be said.
+        seconds: reading and passing the new files, and all of it.
+        fresh: how many were new.
+    """
+
+    plant: str
+    entries: tuple[Entry, ...]
+    days: FloatArray
+    begin: datetime
+    quantities: tuple[Quantity, ...]
+    courses: Mapping[str, Course]
+    limits: Mapping[str, Limit]
+    events: tuple[Event, ...]
+    odd: tuple[tuple[str, int], ...]
+    growth: Growth | None
+    pooled: Mapping[str, Pooled]
+    notes: tuple[str, ...]
+    seconds: tuple[float, float]
+    fresh: int
+
+    def when(self, day: float) -> datetime:
+        """The date of a day since the first recording."""
+        return self.begin + timedelta(days=float(day))
+
+    @property
+    def used(self) -> tuple[Entry, ...]:
+        """The recordings that count, by date."""
+        return tuple(one for one in self.entries if one.status == USED)
+
+
+@one_thread()
+def follow(
+    plant: Plant, text: str, entries: Mapping[str, Any], folder: Path, out: Path, options: Options, said: Said
+) -> tuple[Trend, Checkpoint]:
+    """Read what is new in a folder and say what all of it says.
+
+    Args:
+        plant: as declared.
+        text: that the plant was made from, so that another plant is noticed.
+        entries: of the plant file, for tolerances.
+        folder: of recordings.
+        out: where the checkpoint is kept.
+        options: how the folder is to be understood.
+        said: told what is going on.
+
+    Raises:
+        InputError: no folder, or no recording in it that can be used.
+    """
+    begun = time.monotonic()
+    identity = hashlib.sha256(repr((text, str(options.mapping), options.decimal)).encode()).hexdigest()
+    kept, remark = load_checkpoint(out, identity)
+    kept, fresh, notes = _read_new(plant, folder, out, options, kept, said)
+    reading = time.monotonic() - begun
+    said("comparing at equal positions")
+    trend = _trend(plant, entries, options, kept, (remark, *notes))
+    return replace(trend, seconds=(reading, time.monotonic() - begun), fresh=fresh), kept
+
+
+def _read_new(
+    plant: Plant, folder: Path, out: Path, options: Options, kept: Checkpoint, said: Said
+) -> tuple[Checkpoint, int, tuple[str, ...]]:
+    """The checkpoint with what is new in the folder, and how much of it there was."""
+    notes: list[str] = []
+    there: dict[str, Source] = {}
+    for one in sources(folder, out):
+        if isinstance(one, Source):
+            there[one.key] = one
+        else:
+            notes.append(f"{one[0]}: {one[1]}")
+    gone = [key for key in kept.entries if key not in there]
+    stay = {key: entry for key, entry in kept.entries.items() if key in there or entry.status == USED}
+    if gone and any(kept.entries[key].status == USED for key in gone):
+        notes.append(f"{len(gone)} files are no longer there; what they said is kept")
+    kept = replace(kept, entries=stay)
+    new = [one for key, one in there.items() if not _known(kept.entries.get(key), one)]
+    saved = time.monotonic()
+    for number, source in enumerate(new, 1):
+        said(f"reading {number} of {len(new)}: {source.key}")
+        kept = _with_source(plant, source, options, kept)
+        if time.monotonic() - saved > SAVED_EVERY:
+            save_checkpoint(out, kept)
+            saved = time.monotonic()
+    if new or gone:
+        save_checkpoint(out, kept)
+    return kept, len(new), tuple(notes)
+
+
+def _known(entry: Entry | None, source: Source) -> bool:
+    """Whether a file was read as it is."""
+    if entry is None or entry.status in (WAITING, UNDATED):
+        return False
+    return (entry.size, entry.changed) == (source.size, source.changed)
+
+
+def _with_source(plant: Plant, source: Source, options: Options, kept: Checkpoint) -> Checkpoint:
+    """The checkpoint with what one file says."""
+
+    def ended(status: str, told: str) -> Checkpoint:
+        return kept.with_entry(Entry(source.key, source.size, source.changed, status, told))
+
+    if Path(source.member or source.path.name).suffix.lower() in UNFINISHED:
+        return ended(WAITING, "it is being written under this name")
+    try:
+        found = opened(source, options.mapping, options.decimal)
+        name = Path(source.member or source.path.name).name
+        stamp = stamp_of(name, found.head, options.stamp)
+    except (InputError, OSError) as error:
+        waits = source.young and not source.member
+        return ended(WAITING if waits else BROKEN, f"still being written? {error}" if waits else str(error))
+    twin = next((one for one in kept.entries.values() if one.digest == found.digest and one.key != source.key), None)
+    if twin is not None and twin.status == USED:
+        return ended(COPY, f"the same recording as {twin.key}")
+    if stamp is None and options.every is None:
+        return ended(UNDATED, 'no date: give --stamp "%Y%m%d" for its name, or --every "1 day"')
+    means = {
+        channel: float(np.mean(samples))
+        for channel, samples in found.recording.channels.items()
+        if channel.endswith("_temperature") or channel.startswith("table_growth")
+    }
+    grid = kept.grid
+    try:
+        recording = replace(found.recording, name=source.key)
+        grid = kept.grid or grid_for(plant, recording)
+        passes = linear_pass(recording, plant, grid)
+    except InputError as error:
+        if not means:
+            return ended(BROKEN, str(error))
+        passes = ()
+    moment, told = ("", "by name") if stamp is None else (stamp[0].isoformat(), stamp[1])
+    entry = Entry(source.key, source.size, source.changed, USED, told, moment, found.digest, passes, means)
+    return replace(kept, grid=grid).with_entry(entry)
+
+
+def _dated(kept: Checkpoint, options: Options) -> list[tuple[datetime, Entry]]:
+    """The recordings that count with their dates, the first one first."""
+    used = sorted((one for one in kept.entries.values() if one.status == USED), key=lambda one: one.key)
+    if options.every is not None:
+        first = options.first or datetime(2000, 1, 1)
+        moments = [first + number * options.every for number in range(len(used))]
+        return list(zip(moments, used, strict=True))
+    found = [(datetime.fromisoformat(one.moment), one) for one in used if one.moment]
+    return sorted(found, key=lambda pair: (pair[0], pair[1].key))
+
+
+def _trend(
+    plant: Plant, declared: Mapping[str, Any], options: Options, kept: Checkpoint, notes: tuple[str, ...]
+) -> Trend:
+    dated = _dated(kept, options)
+    if not dated:
+        reasons = sorted({one.told for one in kept.entries.values()})
+        why = f"({reasons[0]})" if reasons else ""
+        raise InputError(f"no recording can be used {why}", plant.name, "add recordings of the motion of this axis")
+    begin = dated[0][0]
+    days = np.array([(moment - begin).total_seconds() / 86400 for moment, _ in dated])
+    used = [entry for _, entry in dated]
+    pooled: dict[str, tuple[Pooled, FloatArray]] = {}
+    widths = prior_widths(plant)
+    for channel in TERMS:
+        here = [(i, one) for i, entry in enumerate(used) for one in entry.passes if one.channel == channel]
+        if here and kept.grid is not None:
+            numbers = np.array([i for i, _ in here])
+            pooled[channel] = pool([one for _, one in here], kept.grid, widths), numbers
+    quantities: tuple[Quantity, ...] = ()
+    if kept.grid is not None:
+        quantities = quantities_of(pooled, plant, kept.grid, len(used), options.absolute)
+    quantities += means_of([entry.means for entry in used])
+    notes = (*notes, *_remarks(quantities, options, days))
+    courses, limits, changes, odd = _searched(quantities, days, options, declared)
+    others = tuple(one for one in kept.entries.values() if one.status != USED)
+    return Trend(
+        plant.name, (*used, *others), days, begin, quantities, courses, limits, events_of(changes), tuple(odd),
+        growth_of(courses.get("offset"), courses.get("slope")), {name: one for name, (one, _) in pooled.items()},
+        tuple(one for one in notes if one), (0.0, 0.0), 0,
+    )  # fmt: skip
+
+
+def _searched(
+    quantities: tuple[Quantity, ...], days: FloatArray, options: Options, declared: Mapping[str, Any]
+) -> tuple[dict[str, Course], dict[str, Limit], list[Change], list[tuple[str, int]]]:
+    """Courses and limits of the quantities that are watched, what changed, and which recordings stand alone."""
+    courses: dict[str, Course] = {}
+    limits: dict[str, Limit] = {}
+    changes: list[Change] = []
+    odd: list[tuple[str, int]] = []
+    watched = [one for one in quantities if one.watched]
+    lines: dict[bytes, Timeline] = {}
+    for quantity in watched:
+        here = np.flatnonzero(np.isfinite(quantity.values))
+        times, values = days[here], quantity.values[here]
+        apart = np.concatenate([[True], np.diff(times) > 0])  # two of the same moment cannot be told in time
+        here, times, values = here[apart], times[apart], values[apart]
+        if len(times) < 3 or not np.ptp(values) > 0:
+            continue
+        course = _course(times, values, quantity.variance[here], len(watched), lines)
+        courses[quantity.name] = course
+        limit = limit_of(
+            replace(quantity, values=values), course, times, options.limits or {}, declared, len(watched)
+        )  # fmt: skip
+        if limit is not None:
+            limits[quantity.name] = limit
+        for found in course.found:
+            if found.atom.kind == "odd":
+                odd.append((quantity.name, int(here[int(np.argmin(np.abs(times - found.atom.date)))])))
+            else:
+                changes.append(Change(quantity, found))
+    return courses, limits, changes, odd
+
+
+def _course(
+    times: FloatArray, values: FloatArray, variance: FloatArray, watched: int, lines: dict[bytes, Timeline]
+) -> Course:
+    """The course of a series, in its own units, at its own times."""
+    size, middle = float(np.std(values)), float(np.mean(values))
+    t, y, v = times, (values - middle) / size, np.minimum(variance, 100.0)
+    if len(t) > LONGEST_SEARCHED:
+        t, y, v = _averaged(t, y, v)
+    line = lines.setdefault(t.tobytes() + v.tobytes(), Timeline(t, v))
+    found = course_of(Series(line, y), watched)
+    fitted, band = np.interp(times, t, found.fitted), np.interp(times, t, found.band)
+    return Course(
+        (middle + size * found.level[0], size * found.level[1]), size * found.scatter,
+        tuple(replace(one, size=size * one.size, deviation=size * one.deviation) for one in found.found),
+        middle + size * fitted, size * band,
+    )  # fmt: skip
+
+
+def _averaged(t: FloatArray, y: FloatArray, v: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Neighbours averaged to as many values as are searched at a time, each dated as its first."""
+    groups = np.array_split(np.arange(len(t)), LONGEST_SEARCHED)
+    return (
+        np.array([t[group[0]] for group in groups]), np.array([np.mean(y[group]) for group in groups]),
+        np.array([np.mean(v[group]) for group in groups]),
+    )  # fmt: skip
+
+
+def _remarks(quantities: tuple[Quantity, ...], options: Options, days: FloatArray) -> list[str]:
+    """What is to be said of what is shown."""
+    names = {one.name: one for one in quantities}
+    found = []
+    if "slope" in names and not options.absolute:
+        found.append("The zero of the scale is taken to be free: an offset that moves is not called growth. "
+                     "Say --absolute where scale and motor keep their zeros.")  # fmt: skip
+    if "offset" in names and np.nanstd(np.diff(names["offset"].values)) > 1e-3:
+        found.append("The table's zero against the motor scatters by more than 1 mm from recording to recording: "
+                     "the motor's zero is not kept, and growth cannot be told from it.")  # fmt: skip
+    if len(days) > 1 and np.any(np.diff(days) == 0):
+        found.append("Some recordings have the same date and time; the first of each is followed.")
+    if len(days) > LONGEST_SEARCHED:
+        found.append(f"More than {LONGEST_SEARCHED} recordings: neighbours are averaged where changes are looked for.")
+    return found
