@@ -34,6 +34,7 @@ nitpick_ignore_regex = [
     (r"py:.*", r"feeddrive\..*|[A-Z]\w+|ca\..*|n,|k,|SI"),
 ]
 highlight_language = "none"
+default_role = "code"  # single backticks of docstrings
 
 myst_enable_extensions = ["colon_fence", "deflist", "attrs_inline"]
 myst_heading_anchors = 3

@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 import planted
+
 from feeddrive.diagnosis.candidates import CANDIDATES
 from feeddrive.effects.base import Effect, Kind, Parameter
 from feeddrive.effects.catalogue import EFFECTS, THERMAL_EFFECTS
@@ -102,7 +103,12 @@ def written(effect: type[Effect]) -> str:
     values = planted.SIZES.get(effect.name)
     if values is None:
         return ""
-    lines = ["```toml", "[[effect]]", f'name = "{effect.name}"', *(f'{key} = "{value}"' for key, value in values.items())]
+    lines = [
+        "```toml",
+        "[[effect]]",
+        f'name = "{effect.name}"',
+        *(f'{key} = "{value}"' for key, value in values.items()),
+    ]
     text = "\n".join([*lines, "```\n"])
     return re.sub(r'= "(-?[\d.]+)"$', r"= \1", text, flags=re.MULTILINE)
 
@@ -115,7 +121,11 @@ def parameter_table(effect: type[Effect]) -> str:
         default = f'`"{effect.default_place}"`' if effect.default_place else "must be given"
         rows.append(f"| `{effect.place_key}` | word | {words} | {default} |")
     for one in effect.parameters:
-        default = "must be given" if one.default is None else ("none" if one.table else format_quantity(one.default, one.unit))
+        default = (
+            "must be given"
+            if one.default is None
+            else ("none" if one.table else format_quantity(one.default, one.unit))
+        )
         listed = "list, each " if one.table else ""
         rows.append(f"| `{one.key}` | {one.unit} | {listed}{_range(one)} | {default} |")
     return "\n".join(rows) + "\n"
@@ -150,7 +160,7 @@ def needed(effect: type[Effect]) -> str:
         if one.name == effect.name:
             return (inspect.getdoc(one.needs) or "").splitlines()[0]
     if getattr(effect, "declared", False):
-        return "It is declared, not searched for; a level other than declared is [`friction_deviation`](friction_deviation.md)."
+        return "It is declared; a level other than declared is found as [`friction_deviation`](friction_deviation.md)."
     if effect.kind == Kind.HEAT:
         return "Temperatures or growth over time, with the speed of the screw."
     return "Nothing: it carries, as a table, what no name explains."
@@ -165,7 +175,8 @@ def picture(effect: type[Effect], folder: Path) -> str:
     size = ", ".join(f"{key} {value}" for key, value in planted.SIZES[effect.name].items())
     figure = f"```{{figure}} {effect.name}.png\n:alt: residual with {effect.name}\n\n"
     if effect.kind == Kind.HEAT:
-        return f"## What it does\n\n{figure}`thermal_bench` at 750 rev/min for three hours, with {size} less without it.\n```\n"
+        caption = f"`thermal_bench` at 750 rev/min for three hours, with {size} less without it."
+        return f"## What it does\n\n{figure}{caption}\n```\n"
     text = f"{figure}`bench_axis` with {size}, less what the declared machine predicts from the motor motion.\n```\n"
     return f"## What it leaves in a residual\n\n{text}\n{telling(rows)}"
 
@@ -183,8 +194,12 @@ def telling(rows: list[dict[str, object]]) -> str:
     for row in rows:
         imitated: dict[str, float] = row["imitated"]  # type: ignore[assignment]
         cells = "".join(f" | {_times(imitated[name])}" for name in names)
-        lines.append(f"| [`{row['scenario']}`](../reference/scenarios.md) | {_times(float(str(row['declared'])))}{cells} |")
-    lines.append("\nErrors are rms over the noise of the sensors, all channels together, no noise drawn: 1 is as large as it.\n")
+        lines.append(
+            f"| [`{row['scenario']}`](../reference/scenarios.md) | {_times(float(str(row['declared'])))}{cells} |"
+        )
+    lines.append(
+        "\nErrors are rms over the noise of the sensors, all channels together, no noise drawn: 1 is as large as it.\n"
+    )
     return "\n".join(lines)
 
 
@@ -196,7 +211,8 @@ def _verdict(rows: list[dict[str, object]], names: list[str]) -> str:
         return f"`{scenario}` shows it most clearly. Nothing in the catalogue looks like it.\n"
     nearest = min(left, key=lambda name: left[name])
     if left[nearest] >= TELLS:
-        return f"`{scenario}` tells it: its nearest imitator, `{nearest}`, leaves {_times(left[nearest])} times the noise.\n"
+        rest = f"its nearest imitator, `{nearest}`, leaves {_times(left[nearest])} times the noise."
+        return f"`{scenario}` tells it: {rest}\n"
     return (
         f"At this size no shipped scenario settles it on this machine by itself. `{scenario}` comes nearest: "
         f"`{nearest}` in its place leaves {_times(left[nearest])} times the noise.\n"
@@ -226,7 +242,8 @@ def found_by(effect: type[Effect], rates: dict[str, dict[str, str]]) -> str:
         return ""
     sizes = [(key, row[key]) for key in ("2%", "10%", "50%") if key in row]
     told = ", ".join(f"{value} where it makes up {key.replace('%', ' %')} of the error" for key, value in sizes)
-    return f"## How often it is found\n\nNamed right, and nothing else: {told}. All cases: [recovery](../../recovery.md).\n"
+    rest = "All cases: [recovery](../../recovery.md)."
+    return f"## How often it is found\n\nNamed right, and nothing else: {told}. {rest}\n"
 
 
 def _keys(effect: type[Effect]) -> str:

@@ -13,7 +13,7 @@ from html import escape
 from pathlib import Path
 
 FLOORS = {
-    "quantity": "Units at the border: \"20 mm\" in, 0.020 m inside",
+    "quantity": 'Units at the border: "20 mm" in, 0.020 m inside',
     "recording": "One time-series type; foreign trace formats; what is wrong with a file",
     "parts": "What a catalogue sells: geometry and ratings to stiffness, friction, life",
     "effects": "One file, one law",
@@ -32,7 +32,7 @@ FLOORS = {
 }
 """What happens on each floor; a folder that is not named here says it by the first line of its `__init__.py`."""
 
-ROW, LEFT, TEXT, SIZES, GRID = 30, 16, 118, 500, 640
+ROW, LEFT, TEXT, SIZES, GRID = 30, 16, 118, 560, 700
 
 
 @dataclass(frozen=True)
@@ -95,35 +95,41 @@ def house(root: Path) -> str:
     count = len(floors)
     width, height = GRID + count * 19 + 20, 128 + count * ROW
     parts = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" font-family="DejaVu Sans, sans-serif">',
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" font-family="DejaVu Sans,sans-serif">',
         f'<rect width="{width}" height="{height}" fill="#ffffff"/>',
         f'<path d="M8 92 L{(SIZES + 110) / 2} 22 L{SIZES + 112} 92 Z" fill="#1f5f8b"/>',
-        f'<text x="{(SIZES + 120) / 2}" y="76" text-anchor="middle" font-size="17" fill="#fff">feeddrive</text>',
-        f'<text x="{GRID}" y="20" font-size="11" fill="#445">imports of a floor (row)</text>',
-        f'<text x="{GRID}" y="34" font-size="11" fill="#445">from the floors below it</text>',
+        _text((SIZES + 120) / 2, 76, "feeddrive", 'font-size="17" fill="#fff" text-anchor="middle"'),
+        _text(GRID, 20, "imports of a floor (row)"),
+        _text(GRID, 34, "from the floors below it"),
     ]
     for number, floor in enumerate(reversed(floors)):
         parts += _drawn(floor, number, floors)
     top = 96 + count * ROW
     parts.append(f'<rect x="8" y="{top}" width="{SIZES + 104}" height="8" fill="#39424a"/>')
-    parts.append(f'<text x="{LEFT}" y="{top + 24}" font-size="11" fill="#445">A floor imports from the floors below it only.</text>')
+    parts.append(_text(LEFT, top + 24, "A floor imports from the floors below it only."))
     return "\n".join([*parts, "</svg>\n"])
+
+
+def _text(x: float, y: float, words: str, style: str = 'font-size="11" fill="#445"') -> str:
+    return f'<text x="{x}" y="{y}" {style}>{escape(words)}</text>'
 
 
 def _drawn(floor: Floor, number: int, floors: list[Floor]) -> list[str]:
     y = 94 + number * ROW
     middle = y + 19
+    shade = "#e9f0f5" if number % 2 else "#f6f9fb"
+    size = f"{floor.files} file{'s' if floor.files > 1 else ''}, {floor.lines} lines"
     parts = [
-        f'<rect x="8" y="{y}" width="{SIZES + 104}" height="{ROW - 2}" fill="{"#e9f0f5" if number % 2 else "#f6f9fb"}" stroke="#9db4c2"/>',
-        f'<text x="{LEFT}" y="{middle}" font-size="13" font-weight="bold" fill="#123">{floor.name}</text>',
-        f'<text x="{TEXT}" y="{middle}" font-size="11" fill="#223">{escape(floor.words)}</text>',
-        f'<text x="{SIZES + 104}" y="{middle}" font-size="10" text-anchor="end" fill="#556">'
-        f"{floor.files} file{'s' if floor.files > 1 else ''}, {floor.lines} lines</text>",
+        f'<rect x="8" y="{y}" width="{SIZES + 104}" height="{ROW - 2}" fill="{shade}" stroke="#9db4c2"/>',
+        _text(LEFT, middle, floor.name, 'font-size="13" font-weight="bold" fill="#123"'),
+        _text(TEXT, middle, floor.words, 'font-size="11" fill="#223"'),
+        _text(SIZES + 104, middle, size, 'font-size="10" text-anchor="end" fill="#556"'),
     ]
     for column, below in enumerate(floors):
         x = GRID + 8 + column * 19
         if number == 0:
-            parts.append(f'<text x="{x + 4}" y="88" font-size="10" fill="#445" transform="rotate(-55 {x + 4} 88)">{below.name}</text>')
+            turned = f'font-size="10" fill="#445" transform="rotate(-55 {x + 4} 88)"'
+            parts.append(_text(x + 4, 88, below.name, turned))
         if below.name == floor.name:
             parts.append(f'<rect x="{x - 5}" y="{y + 9}" width="10" height="10" fill="#c9d6de"/>')
         elif floor.imports[below.name]:

@@ -1,7 +1,7 @@
 """What the blocks of a page do: Python runs in one namespace, commands in one folder, as their reader would type them.
 
 A page is MyST. Three kinds of fenced blocks do something: `{run}` (Python) and `{terminal}` (lines that begin with
-`feeddrive`) show their output below them, `{file} NAME` is written into the page's folder. The tests run the same blocks.
+`feeddrive`) show their output below them, `{file} NAME` is written into the page's folder. The tests run them too.
 """
 
 from __future__ import annotations
@@ -20,17 +20,13 @@ from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
-
-from matplotlib.figure import Figure  # noqa: E402  (the backend is chosen first)
+from matplotlib.figure import Figure
 
 BLOCK = re.compile(
     r"^(```+)\{(run|terminal|file)\} *([^\n]*)\n(?::[\w-]+:[^\n]*\n)*(.*?)^\1\s*$", re.MULTILINE | re.DOTALL
 )
 DOTS_PER_INCH = 130
-WIDTH = 92
+WIDTH = 80
 """Columns of the terminal whose output is shown: what a page of the site holds without scrolling."""
 
 
@@ -93,7 +89,7 @@ class PageRunner:
                 status = main(words[1:])
             if status != 0:
                 raise RuntimeError(f"{title}: {line} ends with {status}: {told.getvalue()}")
-            parts.append(f"$ {line}\n{printed.getvalue()}")
+            parts.append(f"$ {line}\n{printed.getvalue()}".replace(f"{self.folder}/", ""))
         return Shown("\n".join(parts))
 
     def block(self, kind: str, name: str, text: str, title: str) -> Shown:

@@ -1,7 +1,7 @@
 """What an effect does to a residual: planted in a shipped machine, run through the shipped scenarios, compared.
 
-The declared machine predicts torque and table position from the recorded motor motion, as `feeddrive diagnose` does. What
-is left is the effect's picture. Its imitators are then fitted in its place; what they leave says which scenario tells.
+The declared machine predicts torque and table position from the recorded motor motion, as `feeddrive diagnose` does.
+What is left is the picture. Its imitators are then fitted in its place; what they leave says which scenario tells.
 Results are kept in a folder under a digest of the package, since all effects together take some minutes.
 """
 
@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from page_runner import digest
 
 import feeddrive as fd
 from feeddrive.diagnosis.certainty.rehearsal import Rehearsal, rehearsals
@@ -22,7 +23,6 @@ from feeddrive.diagnosis.evidence import AxisEvidence, prepare
 from feeddrive.diagnosis.fit import Problem, fit
 from feeddrive.diagnosis.prediction import AxisPredictor
 from feeddrive.effects.base import Effect
-from page_runner import digest
 
 ROOT = Path(__file__).resolve().parents[2]
 AXIS = "bench_axis"
@@ -30,7 +30,7 @@ SENSORS = ROOT / "tests" / "data" / "bench" / "null_train.csv.gz"
 """A recording without any effect: its sensors' noise is that of the pictures."""
 
 FAITHFUL = 0.2
-"""Error of the declared machine about itself, over the noise, up to which a scenario is used: its square is 4 % of it."""
+"""Error of the declared machine about itself, over the noise, up to which a scenario is used: 4 % of its square."""
 
 SIZES: dict[str, dict[str, str]] = {
     "coulomb_asymmetry": {"delta_force": "10 N"},
@@ -140,7 +140,7 @@ def seen_by_scenarios(effect: Effect, imitators: list[Effect]) -> tuple[list[See
 
 @cache
 def comparable() -> frozenset[str]:
-    """Scenarios in which the declared machine predicts itself to a fifth of the noise, so that what is left is an effect."""
+    """Scenarios in which the declared machine predicts itself, so that what is left is an effect."""
     declared = fd.load(AXIS).plant
     found = rehearsals(declared, declared, [_sensors()])
     return frozenset(
@@ -171,7 +171,9 @@ def residual_figure(effect: Effect, run: Rehearsal) -> Any:
     left.plot(time, factor * errors[channel], color="#1f5f8b", linewidth=0.7)
     left.set(xlabel="time [s]", ylabel=f"measured − declared\n{words}", title=run.name)
     for way, colour, text in ((ahead, "#1f5f8b", "moving +"), (~ahead, "#c8641e", "moving −")):
-        right.plot(over[way], factor * errors[channel][way], ".", markersize=1.2, color=colour, label=text, rasterized=True)
+        right.plot(
+            over[way], factor * errors[channel][way], ".", markersize=1.2, color=colour, label=text, rasterized=True
+        )
     right.set(xlabel=label, title=f"over {label.split(' [')[0]}")
     right.legend(markerscale=8, fontsize=8, loc="best")
     return figure
@@ -209,8 +211,11 @@ def heat_figure(effect: Effect) -> Any:
         (panels[0], "_temperature", 1.0, "temperature, with − without [K]"),
         (panels[1], "growth", 1e6, "growth, with − without [µm]"),
     ):
-        names = [name for name in without.channels if name.endswith(ending) or name.startswith("table_growth") * (
-            ending == "growth")]
+        names = [
+            name
+            for name in without.channels
+            if name.endswith(ending) or name.startswith("table_growth") * (ending == "growth")
+        ]
         moved = {name: factor * (with_it[name] - without[name]) for name in names}
         largest = sorted(moved, key=lambda name: -float(np.abs(moved[name]).max()))[:4]
         for name in largest:

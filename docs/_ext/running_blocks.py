@@ -1,13 +1,14 @@
-"""The directives `{run}`, `{terminal}` and `{file}`: a page's blocks run while it is built, the output stands below them."""
+"""The directives `{run}`, `{terminal}`, `{file}`: blocks run while a page is built, the output stands below them."""
 
 from __future__ import annotations
 
+import textwrap
 from pathlib import Path
 from typing import Any, ClassVar
 
 from docutils import nodes
 from docutils.parsers.rst import directives
-from page_runner import Shown, kept_page
+from page_runner import WIDTH, Shown, kept_page
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
@@ -24,6 +25,8 @@ class BlockDirective(SphinxDirective):
     option_spec: ClassVar[dict[str, Any]] = {
         "caption": directives.unchanged,
         "lines": directives.nonnegative_int,
+        # the lines stand folded below their figure, where the figure is what matters
+        "below": directives.flag,
     }
 
     def run(self) -> list[nodes.Node]:
@@ -33,11 +36,14 @@ class BlockDirective(SphinxDirective):
         found: list[nodes.Node] = []
         if self.name == "file":
             found.append(nodes.paragraph("", "", nodes.literal("", self.arguments[0]), nodes.Text(":")))
+        typed = []
         if self.name in LANGUAGES:
-            found.append(nodes.literal_block(code, code, language=LANGUAGES[self.name], classes=["typed"]))
+            typed.append(nodes.literal_block(code, code, language=LANGUAGES[self.name], classes=["typed"]))
+        found += [] if "below" in self.options else typed
         if shown.text.strip():
             found.append(nodes.literal_block("", self._cut(shown.text), language="none", classes=["shown"]))
-        return [*found, *(self._figure(png, f"{number}-{i}") for i, png in enumerate(shown.figures, 1))]
+        found += [self._figure(png, f"{number}-{i}") for i, png in enumerate(shown.figures, 1)]
+        return [*found, *(_folded(typed) if "below" in self.options else [])]
 
     def _next(self) -> tuple[int, Shown]:
         """The output of this block; the first block of a page runs them all."""
@@ -45,12 +51,14 @@ class BlockDirective(SphinxDirective):
         if "blocks_shown" not in kept:
             page = Path(self.env.doc2path(self.env.docname))
             folder = Path(self.env.app.srcdir) / KEPT
-            kept["blocks_shown"] = iter(enumerate(kept_page(page.read_text(encoding="utf-8"), self.env.docname, folder), 1))
+            kept["blocks_shown"] = iter(
+                enumerate(kept_page(page.read_text(encoding="utf-8"), self.env.docname, folder), 1)
+            )
         found: tuple[int, Shown] = next(kept["blocks_shown"])
         return found
 
     def _cut(self, text: str) -> str:
-        lines = [line.rstrip() for line in text.strip("\n").splitlines()]
+        lines = [part for line in text.strip("\n").splitlines() for part in _wrapped(line.rstrip())]
         most = self.options.get("lines", len(lines))
         return "\n".join([*lines[:most], *(["…"] if len(lines) > most else [])])
 
@@ -64,6 +72,18 @@ class BlockDirective(SphinxDirective):
         if caption:
             figure += nodes.caption(caption, caption)
         return figure
+
+
+def _wrapped(line: str) -> list[str]:
+    """A sentence in lines of the width of a terminal; rows of a table stay as they are."""
+    if len(line) <= WIDTH or "  " in line.strip() or not line[:1].isalpha():
+        return [line]
+    return textwrap.wrap(line, WIDTH, break_long_words=False, break_on_hyphens=False)
+
+
+def _folded(typed: list[nodes.literal_block]) -> list[nodes.Node]:
+    opened = nodes.raw("", "<details><summary>The lines that made it</summary>", format="html")
+    return [opened, *typed, nodes.raw("", "</details>", format="html")]
 
 
 def setup(app: Sphinx) -> dict[str, Any]:

@@ -9,6 +9,7 @@ from typing import Any
 from feeddrive.files import write_bytes_atomically, write_text_atomically
 from feeddrive.plant.plant import Plant
 
+
 def is_folder(out: Path | None) -> bool:
     """Whether an --out means a folder: one that is there, or a name without an ending such as .json or .txt."""
     return out is not None and (out.is_dir() or not out.suffix)
