@@ -20,7 +20,7 @@ PIP_INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help demo test test-slow check recovery recovery-smoke fuzz bench lint types format develop clean
+.PHONY: help demo test test-slow check recovery recovery-smoke fuzz bench lint types format docs develop clean
 
 help: ## show this list
 	@echo "make TARGET, where TARGET is"
@@ -61,10 +61,14 @@ format: $(VENV)/.developing ## mend style and layout
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
 
+docs: $(VENV)/.documenting ## the documentation site, docs/_build/html; warnings are errors
+	$(ONE_THREAD) $(BIN)/python -m sphinx -W --keep-going -n -E -q docs docs/_build/html
+	@echo "docs/_build/html/index.html"
+
 develop: $(VENV)/.developing ## set up .venv for working on feeddrive
 
 clean: ## remove .venv, builds and caches
-	rm -rf $(VENV) build dist .hypothesis .mypy_cache .pytest_cache .ruff_cache
+	rm -rf $(VENV) build dist docs/_build docs/generated .hypothesis .mypy_cache .pytest_cache .ruff_cache
 	find . -path ./.git -prune -o -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # A stamp is touched only after its step has succeeded, so that a broken set-up is begun again.
@@ -83,4 +87,8 @@ $(VENV)/.developing: $(VENV)/.created pyproject.toml
 
 $(VENV)/.recovery: $(VENV)/.developing
 	$(PIP_INSTALL) -e '.[dev,recovery]'
+	@touch $@
+
+$(VENV)/.documenting: $(VENV)/.developing
+	$(PIP_INSTALL) -e '.[dev,docs]'
 	@touch $@

@@ -6,13 +6,8 @@ import json
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from feeddrive.files import write_bytes_atomically, write_text_atomically
 from feeddrive.plant.plant import Plant
-
-PLACES = 61
-"""Nut positions of the figure along the stroke."""
 
 
 def is_folder(out: Path | None) -> bool:
@@ -36,20 +31,8 @@ def write_folder(plant: Plant, position: float, content: dict[str, Any], folder:
     if plant.drive is None or not plant.chain.varies:
         return
     # Matplotlib takes time to import.
-    from feeddrive.parts.combined_stiffness import combined_stiffness
     from feeddrive.report.drawing import render
-    from feeddrive.report.figure_stiffness import participation_figure, stiffness_position_figure
+    from feeddrive.report.figure_stiffness import stiffness_figures
 
-    first = float(plant.chain.values["first_nut_position"])
-    low, high = plant.stroke or (-first, plant.drive.screw.length - first)
-    places = np.clip(first + np.linspace(low, high, PLACES), *_inside(plant.drive.screw.length))
-    for figure in (
-        participation_figure(combined_stiffness(plant.drive, first + position)),
-        stiffness_position_figure({plant.name: plant.drive}, places),
-    ):
+    for figure in stiffness_figures(plant, position):
         write_bytes_atomically(folder / f"{figure.stem}.png", render(figure).png)
-
-
-def _inside(length: float) -> tuple[float, float]:
-    """Ends between which the nut has screw on both sides [m]."""
-    return 1e-3 * length, 0.999 * length

@@ -126,7 +126,7 @@ class Axis:
 
     @cached_property
     def plant(self) -> Plant:
-        """The equations of motion: chain, effects, drive.
+        """The equations of motion, with chain, effects and drive.
 
         Raises:
             InputError: the file declares heat alone.
@@ -238,7 +238,7 @@ class Axis:
         2
         """
         places = quantities(at, "m", "at")
-        return Modes(self.name, mode_map(self.plant, np.array(places) if places else None))
+        return Modes(self.name, mode_map(self.plant, np.array(places) if places else None), self.plant)
 
     def stiffness(self, at: Quantity | None = None) -> Stiffness:
         """Static stiffness at the table with the motor held, and whose compliance it is.
@@ -252,7 +252,7 @@ class Axis:
         place = self.plant.middle if at is None else si(at, "m", "at")
         if not self.plant.chain.elastic:
             raise InputError("nothing is elastic in a rigid machine", self.name, "declare another structure")
-        return Stiffness(self.name, place, stiffness_budget(self.plant, place))
+        return Stiffness(self.name, place, stiffness_budget(self.plant, place), self.plant)
 
     def check(self, position_gain: Quantity | None = None) -> Check:
         """Rules of plausibility, values that differ from the part that the file names, and what is still a guess.

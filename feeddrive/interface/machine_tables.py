@@ -5,17 +5,21 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from feeddrive.interface.shown import Listing, Shown
 from feeddrive.plant.mode_map import ModeMap
+from feeddrive.plant.plant import Plant
 from feeddrive.plant.plausibility import Finding, Verdict
 from feeddrive.plant.rated_life import LifeRow
 from feeddrive.plant.stiffness_budget import StiffnessBudget
 from feeddrive.quantity import format_quantity
 from feeddrive.typing import FloatArray
+
+if TYPE_CHECKING:
+    from feeddrive.report.drawing import ReportFigure
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -25,10 +29,12 @@ class Modes(Shown):
     Attributes:
         axis_name: of the machine.
         map: everything that was computed, SI.
+        plant: of which it is the answer; drawn along its stroke.
     """
 
     axis_name: str
     map: ModeMap
+    plant: Plant
 
     @property
     def positions(self) -> FloatArray:
@@ -63,6 +69,12 @@ class Modes(Shown):
         headings = [key.partition(" [")[0] for key in records[0]]
         return Listing(f"{self.axis_name}: natural frequencies, motor held and free", headings, rows, records)
 
+    def _figures(self) -> Sequence[ReportFigure]:
+        from feeddrive.report.figure_modes import modes_figure
+
+        drawn = self.plant.chain.varies and self.plant.stroke is not None
+        return (modes_figure(self.plant),) if drawn else ()
+
 
 def _unit(key: str) -> str:
     return key.partition("[")[2].rstrip("]")
@@ -76,11 +88,13 @@ class Stiffness(Shown):
         axis_name: of the machine.
         position: of the table [m].
         budget: everything that was computed, SI.
+        plant: of which it is the answer; drawn where it is described by parts.
     """
 
     axis_name: str
     position: float
     budget: StiffnessBudget
+    plant: Plant
 
     def __float__(self) -> float:
         """Combined stiffness [N/m]."""
@@ -116,6 +130,11 @@ class Stiffness(Shown):
         ]  # fmt: skip
         title = f"{self.axis_name}: stiffness at the table, at {format_quantity(self.position, 'm')}"
         return Listing(title, ("part", "deformation", "felt at the table", "share of compliance"), rows, records)
+
+    def _figures(self) -> Sequence[ReportFigure]:
+        from feeddrive.report.figure_stiffness import stiffness_figures
+
+        return stiffness_figures(self.plant, self.position)
 
 
 @dataclass(frozen=True, repr=False, eq=False)

@@ -11,12 +11,16 @@ from feeddrive.errors import InputError
 from feeddrive.parts.combined_stiffness import CombinedStiffness, Deformation, combined_stiffness, stiffness_along
 from feeddrive.parts.screw_drive import BallScrewDrive
 from feeddrive.plant.held_frequency import held_frequency
+from feeddrive.plant.plant import Plant
 from feeddrive.report.drawing import ReportFigure, dress, legend_above, new_figure
 from feeddrive.report.people import fixed, significant, with_unit
 from feeddrive.typing import FloatArray
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+_PLACES = 61
+"""Nut positions of the figure along the stroke."""
 
 _SHADES = {
     Deformation.AXIAL: ("#0072b2", "#4c9ccb", "#8fc1de", "#bcd9ea", "#dcebf4"),
@@ -32,6 +36,28 @@ _LETTER, _LEAST_LETTERS = 0.0085, 7
 """Share that one letter of a label takes, and letters that any label has; a narrower part has its label below."""
 
 _LINES = (("#0072b2", "-"), ("#d55e00", "--"), ("#009e73", "-."), ("#cc79a7", ":"))
+
+
+def stiffness_figures(plant: Plant, position: float) -> tuple[ReportFigure, ...]:
+    """Whose compliance it is at a table position, then the stiffness along the stroke; none without parts of a screw.
+
+    Args:
+        plant: the machine.
+        position: of the table [m].
+
+    Raises:
+        InputError: a position off the screw.
+    """
+    if plant.drive is None or not plant.chain.varies:
+        return ()
+    first, length = float(plant.chain.values["first_nut_position"]), plant.drive.screw.length
+    low, high = plant.stroke or (-first, length - first)
+    # the nut has screw on both sides
+    places = np.clip(first + np.linspace(low, high, _PLACES), 1e-3 * length, 0.999 * length)
+    return (
+        participation_figure(combined_stiffness(plant.drive, first + position)),
+        stiffness_position_figure({plant.name: plant.drive}, places),
+    )
 
 
 def participation_figure(found: CombinedStiffness) -> ReportFigure:

@@ -125,7 +125,11 @@ def test_results_show_themselves() -> None:
     for result in (axis.modes(), axis.stiffness(), axis.check(), axis.bode(), fd.list_effects()):
         assert "\n" in repr(result)
         assert result._repr_html_().startswith("<table>")
-    assert "data:image/png;base64," in axis.bode()._repr_html_()
+    testbed = fd.load("kimm_testbed")
+    for result in (axis.bode(), testbed.modes(), testbed.stiffness()):  # those that are drawn
+        assert "data:image/png;base64," in result._repr_html_()
+    with pytest.raises(fd.InputError, match="nothing to draw"):
+        axis.stiffness().plot()  # three inertias: no parts whose compliance it is
 
 
 def test_numbers_are_those_of_the_state_space() -> None:

@@ -1,0 +1,102 @@
+"""Texts of the pages that are written from the package: commands, interface, files, scenarios."""
+
+from __future__ import annotations
+
+import inspect
+import os
+import re
+from pathlib import Path
+
+import feeddrive as fd
+from feeddrive.cli.main import COMMANDS, load
+
+ROOT = Path(__file__).resolve().parents[2]
+HELP_WIDTH = 80
+
+GROUPS = {
+    "An axis": ("load", "Axis", "effect", "Effect", "list_plants", "list_effects", "list_scenarios"),
+    "Under its controller": ("tune", "Servo", "run", "Run", "sweep", "Sweep"),
+    "Recordings": ("read", "Recording", "diagnose", "Diagnosed", "explain", "Explained", "ExplainedResponse"),
+    "Answers of an axis": ("Modes", "Stiffness", "Check", "Life", "Bode"),
+    "Heat": ("warm_up", "WarmUp"),
+    "Units and errors": ("si", "InputError", "ValidityWarning"),
+}
+"""Headings of the reference of the interface; a name that is not listed comes under the last one."""
+FURTHER = "Further names"
+
+
+def commands_page() -> str:
+    """Every command as its `--help` tells it."""
+    os.environ["COLUMNS"] = str(HELP_WIDTH)
+    parts = [
+        "# Commands\n",
+        "Every command takes `--json` (what it found, for programs) and `--out` (a folder for files and figures). "
+        "It ends with status 0, or with 2 and one line: what is wrong, where, and the remedy.\n",
+    ]
+    for name, entry in COMMANDS.items():
+        command = load(name)
+        with command.make_context(name, [], resilient_parsing=True) as context:
+            context.info_name = f"feeddrive {name}"
+            context.terminal_width = context.max_content_width = HELP_WIDTH
+            text = command.get_help(context)
+        parts.append(f"## `{name}`\n\n{entry.summary}\n\n```text\n{text.strip()}\n```\n")
+    return "\n".join(parts)
+
+
+def interface_page() -> str:
+    """Every public name with its documentation."""
+    listed = {name for names in GROUPS.values() for name in names}
+    groups = {**GROUPS, FURTHER: tuple(n for n in fd.__all__ if n not in listed and n != "__version__")}
+    parts = [
+        "# Python interface\n",
+        "`import feeddrive as fd`; these names, and nothing else, are the interface. [As a library](../../python.md) "
+        "shows them at work.\n",
+    ]
+    for words, names in groups.items():
+        present = [name for name in names if name in fd.__all__]
+        if present:
+            parts += [f"## {words}\n", "```{eval-rst}", *map(_documented, present), "```\n"]
+    return "\n".join(parts)
+
+
+def _documented(name: str) -> str:
+    value = getattr(fd, name)
+    if inspect.isclass(value):
+        bases = "\n   :no-members:" if issubclass(value, Exception) else ""
+        return f".. autoclass:: feeddrive.{name}{bases}\n"
+    return f".. autofunction:: feeddrive.{name}\n"
+
+
+def files_page() -> str:
+    """The files that people write: their keys where the package lists them, and those that are shipped, whole."""
+    parts = [
+        "# Files\n",
+        "All are TOML: data, nothing in it is evaluated. A dimensional value is a string with its unit; a bare number "
+        "is refused with the unit that it needs, an unknown key with the nearest known one.\n",
+    ]
+    if hasattr(fd, "keys"):
+        parts.append(f"## Keys\n\n```text\n{fd.keys()!r}\n```\n")
+    parts.append(
+        "## Shipped files, whole\n\nThe comments say what each key is. Take the nearest and change the numbers.\n"
+    )
+    for words, path in {
+        "Machine on three inertias": "plants/bench_axis.toml",
+        "Machine of parts": "plants/kimm_testbed.toml",
+        "Machine with belt, brake and counterbalance": "plants/vertical_axis.toml",
+        "One mass, with its controller": "plants/emps.toml",
+        "Heat alone": "plants/thermal_bench.toml",
+        "Motion and heat": "plants/warm_axis.toml",
+        "Mapping of a foreign file": "plants/emps_map.toml",
+        "Controller": "scenarios/controllers/bench_axis.toml",
+        "Scenario": "scenarios/circular_test.toml",
+        "Measured numbers": "scenarios/measured/kimm_testbed.toml",
+    }.items():
+        text = (ROOT / path).read_text(encoding="utf-8")
+        parts.append(f"### {words}\n\n`{path}`\n\n```toml\n{text.strip()}\n```\n")
+    return "\n".join(parts)
+
+
+def scenarios_page() -> str:
+    """The page on scenarios stands beside them."""
+    text = (ROOT / "scenarios" / "README.md").read_text(encoding="utf-8")
+    return re.sub(r"\]\((?!https?:|#)([^)]+)\)", r"](../../../scenarios/\1)", text)
