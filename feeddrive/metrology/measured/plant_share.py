@@ -14,7 +14,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feeddrive.effects.base import Effect
-from feeddrive.effects.thermal.base import number
 from feeddrive.errors import InputError
 from feeddrive.metrology.measured.measurements import LinearTest
 from feeddrive.plant.plant import Plant
@@ -98,7 +97,7 @@ def plant_share(test: LinearTest, plant: Plant) -> PlantShare:
 
 
 def _creeps(plant: Plant) -> bool:
-    smooth = any(number(one.values.get("smoothing_velocity", 0.0)) > 0 for one in plant.effects)
+    smooth = any(bool(np.any(np.greater(one.values.get("smoothing_velocity", 0.0), 0.0))) for one in plant.effects)
     return smooth and not any(one.name == "presliding" for one in plant.effects)
 
 
