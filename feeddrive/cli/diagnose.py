@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from feeddrive.errors import InputError
+
 
 def command(
     arguments: Annotated[
@@ -37,14 +39,20 @@ def command(
     at: Annotated[
         str, typer.Option("--at", help='Operating point of a frequency response, "x=200 mm,v=3 m/min".')
     ] = "",
+    controller: Annotated[
+        str | None, typer.Option("--controller", help="Controller file of a frequency response of the speed loop.")
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print diagnosis.json instead of the summary.")] = False,
 ) -> None:
     """Find what a machine's model lacks, from recordings of it, and report the error before and after."""
     from feeddrive.cli.explaining import are_no_recordings, explain_and_tell
 
     if earlier is None and are_no_recordings(arguments[1:]):
-        explain_and_tell(arguments[0], arguments[1], at, out, as_json)
+        explain_and_tell(arguments[0], arguments[1], at, controller, out, as_json)
         return
+    if controller is not None:
+        what = "is for a frequency response, and recordings over time are given"
+        raise InputError(what, "--controller", "leave it out; declare the controller in the plant file for --simulate")
     from feeddrive.cli.continuing import continued_job, first_job
     from feeddrive.cli.diagnosing import Options, run_job
 

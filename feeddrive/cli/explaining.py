@@ -37,7 +37,9 @@ def _is_no_recording(path: Path) -> bool:
         return False  # told where it is read as a recording
 
 
-def explain_and_tell(plant: str, measured: str, at: str, out: Path | None, as_json: bool) -> None:
+def explain_and_tell(
+    plant: str, measured: str, at: str, controller: str | None, out: Path | None, as_json: bool
+) -> None:
     """Trace the measurement to the plant file, write the files, and print the summary or the JSON.
 
     Raises:
@@ -47,7 +49,7 @@ def explain_and_tell(plant: str, measured: str, at: str, out: Path | None, as_js
         raise InputError("--out is missing", "", "give a folder for the report, such as --out report")
     refuse_unusable(out)
     with warnings_as_lines(), Console(stderr=True).status("reading") as status:
-        found = explain(load(plant), Path(measured), at=at, progress=status.update)
+        found = explain(load(plant), Path(measured), at=at, controller=controller, progress=status.update)
         with output_folder(out) as folder:
             found.save(folder)
     if as_json:

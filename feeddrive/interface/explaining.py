@@ -14,6 +14,7 @@ from feeddrive.interface.axis import Axis
 from feeddrive.interface.numbers import Explained
 from feeddrive.interface.responses import ExplainedResponse
 from feeddrive.plant.named_parts import with_named_parts
+from feeddrive.interface.servo import Servo, cascade_for
 from feeddrive.recording.formats.choosing import Wishes
 from feeddrive.recording.formats.opened import read_trace
 from feeddrive.recording.frequency_response import FrequencyResponse
@@ -26,6 +27,7 @@ def explain(
     measured: str | Path | FrequencyResponse,
     *,
     at: str = "",
+    controller: Servo | str | Path | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> Explained | ExplainedResponse:
     """Trace the difference of measured numbers, or of a measured frequency response, from an axis.
@@ -34,6 +36,7 @@ def explain(
         axis: as declared, without effects or values that were put in.
         measured: TOML file with `[[measured]]` tables, or a frequency response or its file.
         at: operating point of a frequency response, "x=200 mm, v=3 m/min"; the middle of the stroke in slow motion.
+        controller: of `tune`, or a controller or scenario file, under which a response of the speed loop was measured.
         progress: called with a word for what is being done.
 
     Raises:
@@ -57,7 +60,9 @@ def explain(
         raise InputError(what, str(measured), "give recordings over time to diagnose")
     point = export_point(axis.plant, at, "at")
     case = Case(point.position, point.linearised_at)
-    return ExplainedResponse(axis, diagnose_response(entries, axis.path, axis.plant, response, case, said))
+    cascade = None if controller is None else cascade_for(axis.plant, controller)
+    found = diagnose_response(entries, axis.path, axis.plant, response, case, said, cascade)
+    return ExplainedResponse(axis, found)
 
 
 MOST_BYTES = 20_000_000

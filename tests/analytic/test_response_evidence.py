@@ -8,11 +8,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.linalg import expm
 
 import feeddrive as fd
-from feeddrive.diagnosis.responses.response_result import diagnose_response
+from feeddrive.diagnosis.responses.response_result import ResponseResult, diagnose_response
 from feeddrive.recording.frequency_response import FrequencyResponse, write_response
 from feeddrive.servo.frequency_response import Case
+from feeddrive.typing import ComplexArray, FloatArray
 
 FREQUENCY = np.arange(8.0, 700.0, 2.0)
 AVERAGES = 16
@@ -26,8 +28,15 @@ GUIDE, SLOPE_SPEED = 300.0, 0.05
 """plants/bench_axis.toml, typed again; the point moves at 0.05 m/s, where the Coulomb levels have no slope any more."""
 
 
-def bench(seed: int, **changed: float) -> FrequencyResponse:
-    """Speed of the motor over its torque: three inertias, perhaps a mass on the table, a dead time, other values."""
+TICK, GAIN, RESET = 125e-6, 2.0, 12e-3
+"""Of the speed loop: tick [s], K_p [N m s/rad], T_n [s]; dead time of a tick, current loop of 1 kHz."""
+
+
+def bench(seed: int, loop: str = "", **changed: float) -> FrequencyResponse:
+    """Speed of the motor over its torque: three inertias, perhaps a mass on the table, a dead time, other values.
+
+    Where a loop is named, "command" or "error", the speed over that of the speed loop.
+    """
     values = {"motor": MOTOR, "screw": SCREW, "twist": TWIST, "axial": AXIAL, "table": TABLE, "delay": 0.0} | changed
     r = LEAD / (2 * math.pi)
     speed = SLOPE_SPEED / r
@@ -50,14 +59,68 @@ def bench(seed: int, **changed: float) -> FrequencyResponse:
     else:
         share = 3
     M, C, K = (matrix[:share, :share] for matrix in (mass, damping, stiffness))
+    if loop:
+        return measured(seed, looped(M, C, K, loop), f"speed_{loop}")
     s = 2j * math.pi * FREQUENCY
     exact = np.array([one * np.linalg.solve(M * one**2 + C * one + K, np.eye(share)[:, 0])[0] for one in s])
-    exact = exact * np.exp(-s * values["delay"])
+    return measured(seed, exact * np.exp(-s * values["delay"]), "motor_torque")
+
+
+def looped(M: FloatArray, C: FloatArray, K: FloatArray, loop: str) -> ComplexArray:
+    """The speed loop at `FREQUENCY`: PI by Euler, speed a difference of angles, torque held, a tick late, a lag."""
+    n, lag = len(M), 1 / (2 * math.pi * 1000)
+    whole = np.zeros((2 * n + 2, 2 * n + 2))  # coordinates, rates, torque, and its command, held
+    whole[:n, n : 2 * n] = np.eye(n)
+    whole[n : 2 * n, :n], whole[n : 2 * n, n : 2 * n] = -np.linalg.solve(M, K), -np.linalg.solve(M, C)
+    whole[n : 2 * n, 2 * n] = np.linalg.solve(M, np.eye(n)[:, 0])
+    whole[2 * n, 2 * n], whole[2 * n, 2 * n + 1] = -1 / lag, 1 / lag
+    step = expm(whole * TICK)
+    a, b = step[:-1, :-1], step[:-1, -1]
+    z = np.exp(2j * math.pi * FREQUENCY * TICK)
+    angle = np.array([np.linalg.solve(one * np.eye(len(a)) - a, b)[0] for one in z])
+    opened = (GAIN + GAIN / RESET * TICK / (z - 1)) * angle / z * (1 - 1 / z) / TICK
+    found: ComplexArray = opened if loop == "error" else opened / (1 + opened)
+    return found
+
+
+def measured(seed: int, exact: ComplexArray, given: str) -> FrequencyResponse:
+    """A response with scatter and the coherence that belongs to it."""
     generator = np.random.default_rng([20261122, seed])
     scatter = NOISE * np.sqrt(np.maximum(1.0, np.median(np.abs(exact)) / np.abs(exact)))
     coherence = 1 / (1 + 2 * AVERAGES * scatter**2)
-    error = scatter * (generator.standard_normal(len(s)) + 1j * generator.standard_normal(len(s)))
-    return FrequencyResponse("made", "motor_torque", "motor_speed", "", FREQUENCY, exact * np.exp(error), coherence)
+    error = scatter * (generator.standard_normal(len(exact)) + 1j * generator.standard_normal(len(exact)))
+    return FrequencyResponse("made", given, "motor_speed", "", FREQUENCY, exact * np.exp(error), coherence)
+
+
+CONTROLLER = f"""format = "feeddrive-controller/1"
+velocity_rate = "8 kHz"
+position_rate = "2 kHz"
+position_gain = "30 1/s"
+velocity_gain = "{GAIN} N m s/rad"
+reset_time = "{RESET} s"
+current_bandwidth = "1 kHz"
+dead_time = "{TICK} s"
+"""
+
+
+@pytest.mark.parametrize("loop", ["command", pytest.param("error", marks=pytest.mark.slow)])
+def test_speed_loop_is_compared_with_its_controller(loop: str, tmp_path: Path) -> None:
+    """Closed and open: nothing found where nothing is, a mass where one is, by the same oracle in matrices."""
+    (tmp_path / "controller.toml").write_text(CONTROLLER, encoding="utf-8")
+    for seed, changed in ((21, {}), (22, {"table": 200.0})):
+        write_response(bench(seed, loop, **changed), tmp_path / "frf.csv")
+        found = fd.explain(fd.load("bench_axis"), tmp_path / "frf.csv", at="x=0 mm, v=3 m/min",
+                           controller=tmp_path / "controller.toml").result  # fmt: skip
+        assert isinstance(found, ResponseResult)
+        assert [one.parameters[0].key for one in found.asserted] == (["table.mass"] if changed else [])
+        assert found.error_after == pytest.approx(found.scatter, rel=0.1)
+        if changed:
+            assert found.asserted[0].parameters[0].value == pytest.approx(200.0, rel=0.03)
+
+
+def test_speed_loop_without_its_controller_is_refused() -> None:
+    with pytest.raises(fd.InputError, match="give --controller FILE"):
+        result_of(bench(0, "command"))
 
 
 def result_of(response: FrequencyResponse):  # type: ignore[no-untyped-def]
@@ -128,7 +191,7 @@ def test_files_and_command(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"given": "speed_command"}, "motor_torque"),
+        ({"given": "motor_current"}, "motor_torque"),
         ({"output": "motor_position"}, "motor_speed"),
         ({"frequency": FREQUENCY[:10]}, "lines"),
         ({"values": np.zeros(len(FREQUENCY), dtype=complex)}, "zero"),

@@ -7,6 +7,9 @@
 | H | response of the plant linearised about the operating point, with as many waves of the screw as f needs | SI |
 | θ | logarithms of declared values over what is declared; dead time; mass, frequency, damping of a further mode | 1 |
 
+Of the mechanics H is the plant's own; of the speed loop, closed or open, that of plant and cascade as the drive
+samples them, current loop and dead time included.
+
 The logarithm weighs a line by its relative error, as coherence tells it, at a resonance as in a valley.
 """
 
@@ -14,11 +17,12 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+import control
 import numpy as np
 
 from feeddrive.diagnosis.numbers.declared_values import DeclaredValue, declared_values
@@ -32,7 +36,9 @@ from feeddrive.plant.plant import Plant
 from feeddrive.plant.resolution import resolved
 from feeddrive.plant.stiffness_budget import stiffness_budget
 from feeddrive.recording.frequency_response import FrequencyResponse
+from feeddrive.servo.cascade import Cascade
 from feeddrive.servo.frequency_response import Case, delay_of, transfer
+from feeddrive.servo.linear_loop import closed_velocity_loop, open_velocity_loop
 from feeddrive.servo.margins import frequency_response
 from feeddrive.simulate.scenario_overrides import with_overrides
 from feeddrive.typing import ComplexArray, FloatArray
@@ -48,6 +54,12 @@ MODE_SHARE, MODE_SHARE_SPREAD = 0.1, 1.2
 
 MODE_DAMPING, MODE_DAMPING_SPREAD = 0.02, 1.0
 """Damping ratio of a further mode: bolted steel and iron, known to a factor of three."""
+
+LOOPS: dict[str, Callable[[Plant, Cascade, float, float], control.StateSpace]] = {
+    "speed_command": closed_velocity_loop,
+    "speed_error": open_velocity_loop,
+}
+"""Inputs of the speed loop, to the measured speed: its set-point, loop closed; its error, loop open."""
 
 
 @dataclass(frozen=True)
@@ -79,6 +91,7 @@ class ResponseProblem:
         response: as measured, frequencies above zero.
         case: operating point.
         values: what may be other than declared.
+        cascade: the controller, where the response is one of its speed loop.
     """
 
     entries: Mapping[str, Any]
@@ -87,6 +100,7 @@ class ResponseProblem:
     response: FrequencyResponse
     case: Case
     values: tuple[DeclaredValue, ...]
+    cascade: Cascade | None = None
     _known: dict[bytes, ComplexArray] = field(default_factory=dict, init=False)
 
     @property
@@ -143,6 +157,9 @@ class ResponseProblem:
             plant = self.plant_at(coordinates, lines)
             frequency = self.response.frequency
             fine = resolved(self.case.on(plant), float(frequency[-1]), [self.case.position])
+            if self.cascade is not None:
+                loop = LOOPS[self.response.given](fine, self.cascade, self.case.velocity, self.case.position)
+                return frequency_response(loop, frequency)
             system = transfer(
                 fine, self.response.given, self.response.output, Case(self.case.position, self.case.velocity)
             )
@@ -157,20 +174,33 @@ class ResponseProblem:
 
 
 def response_problem(
-    entries: Mapping[str, Any], path: Path, plant: Plant, response: FrequencyResponse, case: Case
-) -> ResponseProblem:
+    entries: Mapping[str, Any], path: Path, plant: Plant, response: FrequencyResponse, case: Case,
+    cascade: Cascade | None = None,
+) -> ResponseProblem:  # fmt: skip
     """The problem of a plant file and a measured frequency response.
 
+    Args:
+        entries: of the plant file.
+        path: of it.
+        plant: read from it.
+        response: as measured.
+        case: operating point at which it was measured.
+        cascade: the controller under which a response of the speed loop was measured.
+
     Raises:
-        InputError: channels that the mechanics does not have, too few lines, values of zero, or a file that declares
-            nothing that could be other.
+        InputError: channels that are not compared, too few lines, values of zero, a response of the speed loop without
+            its controller, or a file that declares nothing that could be other.
     """
     where = response.source or response.name
-    for name, known, word in ((response.given, INPUTS, "from"), (response.output, OUTPUTS, "to")):
-        if name not in known:
-            mend = f"responses of the mechanics are compared; {word} is one of {', '.join(known)}"
-            raise InputError(f"a response {word} {name} is not compared", where, mend)
     used = response.positive
+    if response.given in LOOPS:
+        used = _of_the_loop(used, cascade, where)
+    else:
+        cascade = None
+        for name, known, word in ((response.given, (*INPUTS, *LOOPS), "from"), (response.output, OUTPUTS, "to")):
+            if name not in known:
+                mend = f"{word} is one of {', '.join(known)}"
+                raise InputError(f"a response {word} {name} is not compared", where, mend)
     if len(used.frequency) < FEWEST_LINES:
         raise InputError(f"{len(used.frequency)} lines above 0 Hz", where, f"measure at least {FEWEST_LINES}")
     if np.any(used.values == 0):
@@ -179,7 +209,24 @@ def response_problem(
     values = declared_values(entries, whole)
     if not values:
         raise InputError("declares nothing that could be other", str(path), "declare its parts")
-    return ResponseProblem(entries, path, plant, used, case, values)
+    return ResponseProblem(entries, path, plant, used, case, values, cascade)
+
+
+def _of_the_loop(response: FrequencyResponse, cascade: Cascade | None, where: str) -> FrequencyResponse:
+    """The lines of a response of the speed loop that its drive can show.
+
+    Raises:
+        InputError: another output than the motor's speed, or no controller.
+    """
+    if response.output != "motor_speed":
+        mend = "write to = motor_speed"
+        raise InputError(f"a response from {response.given} to {response.output} is not compared", where, mend)
+    if cascade is None:
+        what = f"a response from {response.given} is one of the speed loop, and the controller is not known"
+        raise InputError(what, where, "give --controller FILE with K_p, T_n, filters, rates and dead time")
+    below = response.frequency < 0.5 / cascade.sample_time
+    return replace(response, frequency=response.frequency[below], values=response.values[below],
+                   coherence=response.coherence[below])  # fmt: skip
 
 
 def _bounded(value: float, most: float) -> float:

@@ -28,6 +28,7 @@ from feeddrive.plant.effect_text import plant_text_with_effects
 from feeddrive.plant.plant import Plant
 from feeddrive.quantity import format_quantity
 from feeddrive.recording.frequency_response import FrequencyResponse
+from feeddrive.servo.cascade import Cascade
 from feeddrive.servo.frequency_response import Case
 from feeddrive.typing import ComplexArray, FloatArray
 
@@ -112,6 +113,7 @@ def diagnose_response(
     response: FrequencyResponse,
     case: Case,
     said: Callable[[str], None] = lambda text: None,
+    cascade: Cascade | None = None,
 ) -> ResponseResult:
     """Trace the difference of a measured frequency response from a plant file.
 
@@ -119,14 +121,15 @@ def diagnose_response(
         entries: of the plant file.
         path: of it.
         plant: read from it.
-        response: as measured, from an input to an output of the mechanics.
+        response: as measured, of the mechanics or of the speed loop.
         case: operating point at which it was measured.
         said: told what is going on.
+        cascade: the controller, where the response is one of its speed loop.
 
     Raises:
         InputError: as `response_problem`, and a plant that cannot be linearised at the operating point.
     """
-    search = search_response(response_problem(entries, path, plant, response, case), said)
+    search = search_response(response_problem(entries, path, plant, response, case, cascade), said)
     problem = search.problem
     fit = search.found
     weight = 1 / fit.variance

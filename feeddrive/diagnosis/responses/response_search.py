@@ -180,7 +180,7 @@ def _candidates(problem: ResponseProblem, found: ResponseFit, seen: Sequence[int
             promised.append((gain, problem.values[place].key, (*found.beyond, place), found.lines, found.coordinates))
     promised = sorted(promised, key=lambda one: -one[0])[:SCREENED]
     own = len(problem.values)
-    if not found.lines.delay and problem.response.given == "motor_torque":
+    if not found.lines.delay and problem.response.given != "cutting_force":
         start = np.insert(found.coordinates, own, 0.1)
         promised.append((0.0, "drive_delay", found.beyond, replace(found.lines, delay=True), start))
     for frequency in _mode_starts(problem, found):
