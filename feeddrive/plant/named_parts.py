@@ -80,7 +80,7 @@ def departures(entries: Mapping[str, Any], where: str) -> Iterator[Departure]:
             units = {key: _known(place[0], key).unit for key in part.sections.get(place[0], {})}
             yield from _differing(part, part.sections.get(place[0], {}), units, section, place, top)
     guide = _section(entries, ("guide",))
-    rated = catalogue().get(str((guide or {}).get("carriage", "")))
+    rated = None if guide is None else catalogue().get(str(guide.get("carriage", "")))
     if guide is not None and rated is not None and rated.kind == "guide":
         printed = {**rated.sections["guide"], "friction_coefficient": rated.further["friction_coefficient"]}
         units = {"seal_drag": "N", "friction_coefficient": "1"}
