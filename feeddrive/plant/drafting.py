@@ -138,7 +138,7 @@ def _sizes(text: str, unit: str, plain: str, where: str) -> list[float]:
     if not text[:1].isdigit():
         return []
     pieces = re.split(r"\s*[x×*]\s*", text.strip())
-    last = re.sub(r"[\d.\s]", "", pieces[-1]) or plain
+    last = re.sub(r"[\d.\s+-]", "", pieces[-1]) or plain
     found = [parse(one if re.search("[A-Za-z]", one) else f"{one} {last}", unit, where) for one in pieces]
     if not all(size > 0 for size in found):
         raise InputError(f'"{text}" is no size', where, "write positive values")

@@ -123,7 +123,7 @@ def test_diagnose_works_on_it_at_once(axis: Path, tmp_path: Path) -> None:
         (["--screw", "32"], "write diameter x lead"),
         (["--screw", "0 x 10 mm"], "write positive values"),
         (["--screw", "32 x -10 mm"], "write positive values"),
-        (["--screw", "32 x ten"], "does not begin with a number"),
+        (["--screw", "32 x ten"], 'unknown unit "ten"'),
         (["--motor", "0 W"], "write positive values"),
         (["--motor", "2 kg"], "W"),
         (["--name", 'a"b'], "without quotation marks"),
