@@ -53,7 +53,7 @@ COMMANDS: dict[str, Entry] = {
     "demo": Entry("demo", "Diagnose a shipped machine from a shipped recording."),
     "list": Entry("list_plants", "List the machines that come with feeddrive."),
     "init": Entry("init", "Write a plant file from a few words and the parts catalogue."),
-    "parts": Entry("parts", "List the parts catalogue: screws, bearings, guides, couplings, motors."),
+    "parts": Entry("parts", "List the parts catalogue, each value with its source."),
     "keys": Entry("keys", "Show what may stand in a file: keys, units, ranges, defaults."),
     "show": Entry("show", "Show a machine: stiffness budget, inertias, friction, modes."),
     "modes": Entry("modes", "Natural frequencies of a machine along its stroke."),

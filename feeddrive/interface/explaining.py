@@ -13,8 +13,8 @@ from feeddrive.export.point import export_point
 from feeddrive.interface.axis import Axis
 from feeddrive.interface.numbers import Explained
 from feeddrive.interface.responses import ExplainedResponse
-from feeddrive.plant.named_parts import with_named_parts
 from feeddrive.interface.servo import Servo, cascade_for
+from feeddrive.plant.named_parts import with_named_parts
 from feeddrive.recording.formats.choosing import Wishes
 from feeddrive.recording.formats.opened import read_trace
 from feeddrive.recording.frequency_response import FrequencyResponse

@@ -138,8 +138,11 @@ def _sizes(text: str, unit: str, plain: str, where: str) -> list[float]:
     if not text[:1].isdigit():
         return []
     pieces = re.split(r"\s*[x×*]\s*", text.strip())
-    last = re.sub(r"[\d.\s]", "", pieces[-1]) or plain
-    return [parse(one if re.search("[A-Za-z]", one) else f"{one} {last}", unit, where) for one in pieces]
+    last = re.sub(r"[\d.\s+-]", "", pieces[-1]) or plain
+    found = [parse(one if re.search("[A-Za-z]", one) else f"{one} {last}", unit, where) for one in pieces]
+    if not all(size > 0 for size in found):
+        raise InputError(f'"{text}" is no size', where, "write positive values")
+    return found
 
 
 def _screw(wanted: str, made: Drafted) -> CataloguePart:
@@ -288,6 +291,7 @@ def _guide(wishes: Wishes, made: Drafted) -> None:
     if not name:
         name = "25"
         made.guesses["guide.carriage"] = "rails of size 25"
+    name = re.sub(r"(?<=\d)\s*mm$", "", name)
     if name.isdecimal():
         sized = [one for one in _of_kind("guide") if one.further["rail"] == int(name)]
         known = [one for one in sized if "dynamic_rating" in one.further]

@@ -88,13 +88,13 @@ def read_drive(top: Table) -> BallScrewDrive:
         raise InputError("belt and gear are both declared", top.where, "keep the one between motor and screw")
     transmission = _part(top, wheels[0], Transmission, Transmission.values) if wheels else None
     coupling = _part(top, "coupling", Coupling, Coupling.values) if "coupling" in top.entries else None
-    support, mass = top.table("support"), top.table("table")
+    support, mass = top.table("support"), top.table("table").quantity("mass", "kg", "table_mass")
     housing = _given(support, "support", PART_VALUES["support"])
     screw, nut, supports, motor = _screw(top), _nut(top), _supports(top), _motor(top)
     return placed(
         f"{top.where}, table",
         lambda: BallScrewDrive(
-            screw=screw, nut=nut, supports=supports, table_mass=mass.quantity("mass", "kg", "table_mass"),
+            screw=screw, nut=nut, supports=supports, table_mass=mass,
             motor=motor, coupling=coupling, transmission=transmission,
             housing_stiffness=housing.get("housing_stiffness"),
         ),

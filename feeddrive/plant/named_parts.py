@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from feeddrive.errors import InputError
-from feeddrive.parts.catalogue.reading import CataloguePart, find_part
+from feeddrive.parts.catalogue.reading import CataloguePart, catalogue, find_part
 from feeddrive.parts.nut import CATALOGUE_VALUES
 from feeddrive.parts.values import PartValue
 from feeddrive.plant.drive_sections import BEARING_VALUES, PART_VALUES
@@ -72,22 +72,40 @@ def with_named_parts(entries: Mapping[str, Any], where: str) -> dict[str, Any]:
 
 def departures(entries: Mapping[str, Any], where: str) -> Iterator[Departure]:
     """Where a plant file writes a value otherwise than the part that it names; arguments and errors as above."""
+    top = str(entries.get("source", ""))
     for place in _PLACES:
         section = _section(entries, place)
-        if section is None or "part" not in section:
+        if section is not None and "part" in section:
+            part = _part(section, place, where)
+            units = {key: _known(place[0], key).unit for key in part.sections.get(place[0], {})}
+            yield from _differing(part, part.sections.get(place[0], {}), units, section, place, top)
+    guide = _section(entries, ("guide",))
+    rated = None if guide is None else catalogue().get(str(guide.get("carriage", "")))
+    if guide is not None and rated is not None and rated.kind == "guide":
+        printed = {**rated.sections["guide"], "friction_coefficient": rated.further["friction_coefficient"]}
+        units = {"seal_drag": "N", "friction_coefficient": "1"}
+        yield from _differing(rated, printed, units, guide, ("guide",), top)
+
+
+def _differing(
+    part: CataloguePart,
+    printed: Mapping[str, Any],
+    units: Mapping[str, str],
+    section: Mapping[str, Any],
+    place: tuple[str, ...],
+    source: str,
+) -> Iterator[Departure]:
+    """Values of one section that are written otherwise than printed."""
+    for key, told in printed.items():
+        if key not in section:
             continue
-        part = _part(section, place, where)
-        for key, printed in part.sections.get(place[0], {}).items():
-            if key not in section:
-                continue
-            value = _known(place[0], key)
-            dotted = ".".join((*place, key))
-            written, source = section[key], str(section.get("source", entries.get("source", "")))
-            if isinstance(written, Mapping):
-                written, source = written.get("value"), str(written.get("source", source))
-            number, told = parse(written, value.unit, dotted), parse(printed, value.unit, dotted)
-            if not math.isclose(number, told, rel_tol=_SAME):
-                yield Departure(dotted, part.name, number, told, value.unit, source)
+        dotted = ".".join((*place, key))
+        written, named = section[key], str(section.get("source", source))
+        if isinstance(written, Mapping):
+            written, named = written.get("value"), str(written.get("source", named))
+        number, catalogued = parse(written, units[key], dotted), parse(told, units[key], dotted)
+        if not math.isclose(number, catalogued, rel_tol=_SAME):
+            yield Departure(dotted, part.name, number, catalogued, units[key], named)
 
 
 def _section(entries: Mapping[str, Any], place: tuple[str, ...]) -> Mapping[str, Any] | None:

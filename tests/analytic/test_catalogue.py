@@ -179,7 +179,9 @@ def test_what_is_the_parts_own_value_is_no_departure() -> None:
     entries["ball_screw"]["lead"] = "1 cm"
     from feeddrive.plant.named_parts import departures
 
-    assert [one.key for one in departures(entries, "axis.toml")] == ["bearing.far.axial_stiffness"]
+    entries["guide"] = {"carriage": "HGH25HA", "carriages": 4, "seal_drag": "3.92 N", "friction_coefficient": 0.006}
+    found = {one.key: (one.written, one.catalogue) for one in departures(entries, "axis.toml")}
+    assert found == {"bearing.far.axial_stiffness": (7e8, 7.35e8), "guide.friction_coefficient": (0.006, 0.004)}
 
 
 def test_friction_of_a_rated_carriage() -> None:

@@ -328,6 +328,11 @@ def test_errors_quote_unit_and_range() -> None:
     bench["table"]["mass"] = 134
     with pytest.raises(InputError, match=r"bare number.*mass \[kg\] is mass that moves with the table.*usual 0.2 kg"):
         plant_from_entries(bench, PATH)
+    parts = copy.deepcopy(PLANTS[1])
+    parts["table"]["mass"] = 320
+    with pytest.raises(InputError, match="320 is a bare number") as refused:
+        plant_from_entries(parts, PATH)
+    assert refused.value.where == "machine.toml, table.mass"
     del bench["table"]["mass"]
     with pytest.raises(InputError, match=r"is missing.*mass \[kg\] is mass that moves with the table"):
         plant_from_entries(bench, PATH)

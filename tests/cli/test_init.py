@@ -121,6 +121,14 @@ def test_diagnose_works_on_it_at_once(axis: Path, tmp_path: Path) -> None:
     [
         (["--screw", "32x11"], "nearest are 32 mm x 10 mm"),
         (["--screw", "32"], "write diameter x lead"),
+        (["--screw", "0 x 10 mm"], "write positive values"),
+        (["--screw", "32 x -10 mm"], "write positive values"),
+        (["--screw", "32 x ten"], 'unknown unit "ten"'),
+        (["--motor", "0 W"], "write positive values"),
+        (["--motor", "2 kg"], "W"),
+        (["--name", 'a"b'], "without quotation marks"),
+        (["--bearing", "GWB AKD 18"], "is a coupling, not a bearing"),
+        (["--preload", "much"], "does not begin with a number"),
         (["--screw", "R32-10K5"], "near are R32-10K5-FDC-28.7"),
         (["--screw", ""], "write --screw '32 x 10 mm', or a name that `feeddrive parts screw` lists"),
         (["--motor", "500 W"], "nearest are SGM7J-06A (600 W"),
@@ -152,6 +160,7 @@ def test_every_refusal_carries_its_own_remedy(
     "options",
     [
         ["--structure", "three_inertias", "--orientation", "vertical", "--supports", "fixed-fixed"],
+        ["--screw", "25x10", "--guide", "20 mm", "--bearing", "17TAB04DF", "--coupling", "GWB AK 30"],
         ["--screw", "25x10", "--guide", "HSR-20R", "--motor", "SGMSH-20AA"],
         ["--screw", "R40-20K3-FSCDIN", "--stroke", "800 mm", "--guide", "HGH25CA"],
         ["--screw", "16x5", "--length", "400 mm", "--motor", "100 W", "--mass", "5 kg", "--guide", "15"],

@@ -56,7 +56,8 @@ def test_import_loads_nothing_heavy() -> None:
 
 
 _WITH_EXAMPLES = (
-    "axis", "design", "experiments", "motion", "shipped", "explaining", "quantities", "sweeping", "warm_up",
+    "axis", "design", "drafts", "experiments", "explaining", "keys", "motion", "quantities", "shipped", "sweeping",
+    "warm_up",
 )  # fmt: skip
 
 
