@@ -80,10 +80,9 @@ def run_job(job: Job, as_json: bool = False) -> Diagnosis:
     refuse_unusable(job.out)
     runs_of(job.out)  # refused now if it cannot be read, and not when all is done
     declared = _bytes(job.plant)
-    plant = read_machine(job.plant)
+    read_machine(job.plant)  # refused before the recordings are read
     fitted, judged = ([_read(source) for source in sources] for sources in (job.recordings, job.validation))
-    if any("screw_speed" in recording for recording in fitted):
-        plant = read_machine(job.plant, fitted)  # a file may declare motion and heat
+    plant = read_machine(job.plant, fitted)  # a file may declare motion and heat
     if _bytes(job.plant) != declared:
         raise InputError("was changed while it was read", str(job.plant), "diagnose again")
     with Console(stderr=True).status("reading") as status:

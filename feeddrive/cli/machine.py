@@ -1,30 +1,26 @@
-"""Plant files as the commands read them: a machine with masses and drives, or one that declares heat alone."""
+"""Plant files as the commands read them: a machine with masses and drives, its heat, or both."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
 
-from feeddrive.plant.entries import read_toml
-from feeddrive.plant.files import declares_heat_alone
+from feeddrive.interface.axis import load
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 from feeddrive.thermal.plant import ThermalPlant
-from feeddrive.thermal.whole_file import read_drive_plant, read_heat_plant
+from feeddrive.thermal.warm_plant import WarmPlant
 
 
-def read_machine(path: Path, recordings: Sequence[Recording] = ()) -> Plant | ThermalPlant:
+def read_machine(path: Path, recordings: Sequence[Recording] = ()) -> Plant | ThermalPlant | WarmPlant:
     """The machine of a plant file.
 
     Args:
         path: of the file.
-        recordings: of it; where a file declares motion and heat, temperatures without a motion mean the heat.
+        recordings: of it; where a file declares motion and heat, temperatures without a motion mean the heat, and a
+            log of hours with both means both.
 
     Raises:
-        InputError: as `read_drive_plant` and `read_heat_plant`.
+        InputError: as `feeddrive.interface.axis.load`.
     """
-    entries = read_toml(path, "plant file")
-    slow = bool(recordings) and all("screw_speed" in one and "motor_torque" not in one for one in recordings)
-    if declares_heat_alone(entries) or ("thermal" in entries and slow):
-        return read_heat_plant(path)
-    return read_drive_plant(path)
+    return load(path).machine(recordings)

@@ -43,13 +43,14 @@ from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 from feeddrive.thermal.plant import ThermalPlant
+from feeddrive.thermal.warm_plant import WarmPlant
 
 Said = Callable[[str], None]
 
 
 @one_thread()
 def diagnose(
-    plant: Plant | ThermalPlant,
+    plant: Plant | ThermalPlant | WarmPlant,
     recordings: Sequence[Recording],
     validation: Sequence[Recording] = (),
     split: float = 0.75,
@@ -146,7 +147,7 @@ class _Begun:
 
 
 def _begun(
-    plant: Plant | ThermalPlant, recordings: Sequence[Recording], validation: Sequence[Recording], split: float,
+    plant: Plant | ThermalPlant | WarmPlant, recordings: Sequence[Recording], validation: Sequence[Recording], split: float,
     hold: float | None, sentence: Callable[[float, float], str],
 ) -> _Begun:  # fmt: skip
     problem, judged, told = prepared(plant, recordings, validation, split, hold)

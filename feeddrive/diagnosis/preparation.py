@@ -11,6 +11,8 @@ from feeddrive.diagnosis.evidence import AxisEvidence, Evidence, prepare
 from feeddrive.diagnosis.fit import Problem
 from feeddrive.diagnosis.heat.evidence import left_out_channels, prepare_heat, within_range
 from feeddrive.diagnosis.heat.prediction import heat_predictor
+from feeddrive.diagnosis.heat.warm_evidence import prepare_warm
+from feeddrive.diagnosis.heat.warm_prediction import warm_predictor
 from feeddrive.diagnosis.prediction import AxisPredictor
 from feeddrive.diagnosis.torque_channel import refuse_what_is_no_torque
 from feeddrive.errors import InputError
@@ -18,13 +20,14 @@ from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording, check_against_lead, without_unfollowed_setpoint
 from feeddrive.recording.copies import refuse_copied_setpoint
 from feeddrive.thermal.plant import ThermalPlant
+from feeddrive.thermal.warm_plant import WarmPlant
 
 Prepared = tuple[Problem, list[Evidence], tuple[str, ...]]
 """The problem, what is judged, and what is to be said."""
 
 
 def prepared(
-    plant: Plant | ThermalPlant,
+    plant: Plant | ThermalPlant | WarmPlant,
     recordings: Sequence[Recording],
     validation: Sequence[Recording],
     split: float,
@@ -44,6 +47,11 @@ def prepared(
     """
     if isinstance(plant, ThermalPlant):
         return _prepared_heat(plant, recordings, validation, split)
+    if isinstance(plant, WarmPlant):
+        warm = tuple(prepare_warm(recording, plant, 1.0 if validation else split) for recording in recordings)
+        return Problem(plant, warm, warm_predictor(plant)), [
+            *(prepare_warm(recording, plant, 0.0) for recording in validation)
+        ] or [*warm], ()
     lead = 2 * np.pi * plant.chain.motor_radius
     for recording in (*recordings, *validation):
         _refuse_heat(recording)

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from feeddrive.diagnosis.heat.warm_evidence import is_warm_log
+from feeddrive.diagnosis.slow_rows import is_slow
 from feeddrive.effects.base import Effect
 from feeddrive.effects.catalogue import THERMAL_EFFECTS
 from feeddrive.effects.thermal.base import ThermalEffect
@@ -29,10 +31,13 @@ from feeddrive.plant.plant_schema import plant_table
 from feeddrive.plant.plausibility import check_plant
 from feeddrive.plant.rated_life import rated_life
 from feeddrive.plant.stiffness_budget import stiffness_budget
+from feeddrive.recording import Recording
 from feeddrive.simulate.scenario_overrides import with_overrides
+from feeddrive.thermal.coupling_section import coupling
 from feeddrive.thermal.files import SECTION, thermal_plant
 from feeddrive.thermal.plant import ThermalPlant
 from feeddrive.thermal.plausibility import check_thermal_plant
+from feeddrive.thermal.warm_plant import WarmPlant, warm_plant
 
 if TYPE_CHECKING:
     import casadi
@@ -144,6 +149,28 @@ class Axis:
         top = plant_table(self.entries, str(self.path))
         found = thermal_plant(top, self.path.stem)
         return found.with_effects(*(one for one in self.added if isinstance(one, ThermalEffect)))
+
+    @cached_property
+    def warm(self) -> WarmPlant:
+        """Motion and heat as one machine.
+
+        Raises:
+            InputError: the file does not declare masses, heat and how they are joined.
+        """
+        return warm_plant(self.plant, self.heat, coupling(Table(self.entries, str(self.path), Origins())))
+
+    def machine(self, recordings: Sequence[Recording] = ()) -> Plant | ThermalPlant | WarmPlant:
+        """What of the machine recordings are of: its motion, its heat, or both where a log of hours holds both."""
+        if not self.has_motion:
+            return self.heat
+        if not self.has_heat or not recordings:
+            return self.plant
+        if all("screw_speed" in one and "motor_torque" not in one for one in recordings):
+            return self.heat
+        joined = "coupling" in self.entries[SECTION]
+        if joined and all(is_slow(one) and is_warm_log(one, self.heat) for one in recordings):
+            return self.warm
+        return self.plant
 
     @property
     def name(self) -> str:

@@ -189,9 +189,7 @@ def diagnose(
     fitted, judged = _several(recording, "recording"), _several(validate, "validate")
     if not fitted:
         raise InputError("no recording is given", "recording", "give fd.read(...), or the path of a file")
-    slow = all("screw_speed" in one and "motor_torque" not in one for one in fitted)
-    machine = axis.heat if axis.has_heat and (slow or not axis.has_motion) else axis.plant
-    result, effects = find_what_lacks(machine, fitted, judged, split, simulate, progress or (lambda _: None), ())
+    result, effects = find_what_lacks(axis.machine(fitted), fitted, judged, split, simulate, progress or (lambda _: None), ())
     return Diagnosed(axis, result, tuple(effects))
 
 

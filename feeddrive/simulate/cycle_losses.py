@@ -35,7 +35,8 @@ from feeddrive.simulate.controlled import ControlledRun, TorqueLoop
 from feeddrive.simulate.timing import timing_of
 from feeddrive.typing import Expression, FloatArray
 
-_NAMES = ("nut", "bearings", "guide", "motor", "damping", "sources")
+POWERS = ("nut", "bearings", "guide", "motor", "damping", "sources")
+"""What takes power, in the order of `power_function`."""
 
 
 @dataclass(frozen=True)
@@ -81,11 +82,11 @@ def cycle_losses(plant: Plant, run: ControlledRun, loop: TorqueLoop, load: Float
         loop: of its torque.
         load: cutting force on the table along + motion at the ticks, (n,) [N]; none if None.
     """
-    function = _power_function(plant)
+    function = power_function(plant)
     shown = function.map(len(run.time))(run.states.T, run.time[None, :], ca.repmat(_values(plant), 1, len(run.time)))
     table = np.array(shown.full())
     step = np.diff(run.time)
-    works = {name: _integral(row, step) for name, row in zip(_NAMES, table, strict=False)}
+    works = {name: _integral(row, step) for name, row in zip(POWERS, table, strict=False)}
     pushed = 0.0 if load is None else -_integral(load * run.table_velocity, step)
     torque = motor_torque(plant, run, loop)
     work, squared = float(acting_torques(plant, torque) @ np.diff(run.motor_angle)), float(torque**2 @ step)
@@ -116,8 +117,8 @@ def _integral(values: FloatArray, step: FloatArray) -> float:
 
 
 @per_structure
-def _power_function(plant: Plant) -> ca.Function:
-    """(state, time, values) -> powers in the order of `_NAMES` [W], then E [J]."""
+def power_function(plant: Plant) -> ca.Function:
+    """(state, time, values) -> powers in the order of `POWERS` [W], then E [J]."""
     symbols = parameter_symbols(plant)
     n, chain = len(plant.chain.coordinates), plant.chain
     state, time = ca.SX.sym("state", 2 * n + bristle_count(plant)), ca.SX.sym("time")

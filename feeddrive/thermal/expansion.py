@@ -92,10 +92,17 @@ class Expansion:
         Raises:
             InputError: a position that is not on the shaft.
         """
-        good = 0 <= position <= self.edges[-1]
-        refuse_unless(bool(good), f"{position:g} m is not on the shaft", "position", "count from the front end")
-        grown = np.array([np.interp(position, self.edges, row) for row in self.free])
-        return grown - self.force * (1 / self.supports.front + position / self.stiffness)
+        return np.asarray(self.growths(np.array([position]))[:, 0])
+
+    def growths(self, positions: FloatArray) -> FloatArray:
+        """u at several places (m,) of the nut, (k, m) [m]; raises as `growth`."""
+        for position in positions:
+            good = 0 <= position <= self.edges[-1]
+            refuse_unless(bool(good), f"{position:g} m is not on the shaft", "position", "count from the front end")
+        after = np.clip(np.searchsorted(self.edges, positions), 1, len(self.edges) - 1)
+        share = (positions - self.edges[after - 1]) / (self.edges[after] - self.edges[after - 1])
+        grown = self.free[:, after - 1] * (1 - share) + self.free[:, after] * share
+        return np.asarray(grown - np.outer(self.force, 1 / self.supports.front + positions / self.stiffness))
 
     @property
     def tension_left(self) -> FloatArray:

@@ -54,6 +54,8 @@ class Laws:
             "front_bearing", "rear_bearing" and the labels of effects.
         acting: (speed [rad/s], start [s], step [s], rise of the recorded surroundings [K], rises of `FOLLOWED` (4) [K],
             temperature at the start [degC], parameters) -> (conductances of `PATHS`, inputs of `INPUTS`).
+        factors: (rises of `FOLLOWED`, temperature at the start, parameters) -> factors on the nut's load torque, on its
+            viscous torque, on that of the bearings.
         sensing: (time [s], parameters) -> (growth of the frame at `growth_places` [m], lags by channel and effect [s],
             conductance and capacity of each attached body [W/K, J/K]).
         lagging: channel to the rows of `sensing`'s lags.
@@ -63,6 +65,7 @@ class Laws:
 
     names: tuple[str, ...]
     acting: ca.Function
+    factors: ca.Function
     sensing: ca.Function
     lagging: Mapping[str, tuple[int, ...]]
     bodies: tuple[str, ...]
@@ -142,8 +145,11 @@ def _made(plant: ThermalPlant) -> Laws:
         ca.densify(ca.vertcat(*[u[name] for name in INPUTS])),
     ]
     acting = ca.Function("heat_laws", arguments, shown, [*[*given][:4], "rises", "cold", "p"], ["g", "u"])
+    named = dict(zip(FOLLOWED, ca.vertsplit(rises), strict=True))
+    factors = ca.Function("heat_factors", [rises, given["cold"], columns],
+                          [ca.vertcat(*_factors(plant, groups, named, given["cold"]))])  # fmt: skip
     sensing, lagging, bodies = _sensing(plant, groups, columns)
-    return Laws(names, acting, sensing, lagging, bodies, bool(ca.depends_on(shown[1], rises)))
+    return Laws(names, acting, factors, sensing, lagging, bodies, bool(ca.depends_on(shown[1], rises)))
 
 
 def _symbols(groups: Groups) -> tuple[dict[str, dict[str, Expression]], tuple[str, ...]]:
@@ -189,20 +195,10 @@ def _inputs(
     plant: ThermalPlant, groups: Mapping[str, Mapping[str, Expression]], run: Operation, air: Expression,
     rises: Mapping[str, Expression], cold: Expression,
 ) -> dict[str, Expression]:  # fmt: skip
-    load, oil, bearing_oil = ca.SX(1), ca.SX(1), ca.SX(1)
-    joined = plant.coupling
-    if joined is not None:
-        steel, diameter = plant.rig.steel, 2 * plant.rig.radius
-        share = 1 + joined.preload_slope(plant.preload, diameter, steel.expansion) * (rises[NUT] - rises[SHAFT])
-        mean = (1 - joined.rear_share) * rises[FRONT] + joined.rear_share * rises[REAR]
-        load = ca.fmax(share, 0)
-        oil = viscous_share(joined.nut_oil, cold + rises[NUT], plant.ambient)
-        bearing_oil = viscous_share(joined.bearing_oil, cold + mean, plant.ambient)
+    load, oil, bearing_oil = _factors(plant, groups, rises, cold)
     found: dict[str, Expression] = {AMBIENT: air, FRONT: ca.SX(0), REAR: ca.SX(0)}
     for effect in plant.effects:
         p = groups[effect.label]
-        load *= effect.load_factor(rises[NUT], p)
-        oil *= effect.viscous_factor(rises[NUT], p)
         found[AMBIENT] += effect.surroundings(run, p)
         for place, heat in effect.heats(run, p).items():
             found[place] += heat
@@ -216,6 +212,27 @@ def _inputs(
             torque = torque_law(run.speed, groups[group], by_load, by_oil)
             found[place] = found.get(place, 0) + groups[group]["heat_share"] * run.speed * torque
     return found
+
+
+def _factors(
+    plant: ThermalPlant, groups: Mapping[str, Mapping[str, Expression]], rises: Mapping[str, Expression],
+    cold: Expression,
+) -> tuple[Expression, Expression, Expression]:  # fmt: skip
+    """On the nut's load torque, on its viscous torque, on that of the bearings."""
+    load, oil, bearing_oil = ca.SX(1), ca.SX(1), ca.SX(1)
+    joined = plant.coupling
+    if joined is not None:
+        steel, diameter = plant.rig.steel, 2 * plant.rig.radius
+        share = 1 + joined.preload_slope(plant.preload, diameter, steel.expansion) * (rises[NUT] - rises[SHAFT])
+        mean = (1 - joined.rear_share) * rises[FRONT] + joined.rear_share * rises[REAR]
+        load = ca.fmax(share, 0)
+        oil = viscous_share(joined.nut_oil, cold + rises[NUT], plant.ambient)
+        bearing_oil = viscous_share(joined.bearing_oil, cold + mean, plant.ambient)
+    for effect in plant.effects:
+        p = groups[effect.label]
+        load *= effect.load_factor(rises[NUT], p)
+        oil *= effect.viscous_factor(rises[NUT], p)
+    return load, oil, bearing_oil
 
 
 def _sensing(

@@ -1,0 +1,148 @@
+"""A log of hours made ready for comparison: torque and table position where the motor turned uniformly, temperatures.
+
+Rows are compared as they are, at their instants, without a filter. All channels count at the same rows, those of uniform
+motion: thousands in an hour, so that temperatures lose nothing.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from feeddrive.diagnosis.heat.evidence import HEAT_BLOCK, MODEL_ERROR, HeatEvidence, model_error_of, smooth_noise
+from feeddrive.errors import InputError
+from feeddrive.recording import Recording
+from feeddrive.simulate.warm_log import WarmLog, thermometers, warm_log
+from feeddrive.thermal.plant import ThermalPlant
+from feeddrive.thermal.warm_plant import WarmPlant
+from feeddrive.typing import BoolArray, FloatArray
+
+MOTION = ("motor_torque", "table_position")
+
+TORQUE_ERROR = 2e-3
+"""Share of a torque that friction's law may miss while temperatures change: half of what a kelvin makes of an oil is
+1 %, and a surface stands for the oil to a few tenths of a kelvin."""
+
+
+MOST_ROWS = 1200
+"""Rows that are compared: what temperatures do in minutes they hold several times over, and each takes its time."""
+
+STILL = 300.0
+"""Seconds in which a machine warms along a straight line: its time constants are longer than half an hour."""
+
+
+@dataclass(frozen=True, eq=False)
+class WarmEvidence(HeatEvidence):
+    """A log of motion and temperatures.
+
+    Attributes:
+        log: what it tells of the motion.
+    """
+
+    log: WarmLog
+
+    @property
+    def motion_speed(self) -> FloatArray:
+        """Speed of the motor's strokes [rad/s], (n,)."""
+        return self.log.speed
+
+    def without_open(self, name: str, part: FloatArray, rows: BoolArray) -> FloatArray:
+        """One channel over its noise, (k,), without the zero of a scale or the gain of a thermometer."""
+        if name in MOTION:
+            part = part / self.noise[name]
+            return part - np.mean(part) if name in self.floating else part
+        return super().without_open(name, part, rows)
+
+    def missed(self, name: str) -> float:
+        """Rms of what model and sensor may miss of a channel."""
+        return self.model_error[name] if name in MOTION else super().missed(name)
+
+
+def is_warm_log(recording: Recording, heat: ThermalPlant) -> bool:
+    """Whether a recording holds a motion and temperatures of one machine."""
+    seen = any(channel in recording for channel in thermometers(heat))
+    return "motor_angle" in recording and seen and any(name in recording for name in MOTION)
+
+
+def prepare_warm(recording: Recording, plant: WarmPlant, share: float) -> WarmEvidence:
+    """Evidence of a log, its first `share` fitted and the rest judged.
+
+    Args:
+        recording: with a motor angle, a torque or table position, and temperatures that the plant's sensors read.
+        plant: the machine.
+        share: 1 to fit on all of it, 0 to judge on all of it.
+
+    Raises:
+        InputError: channels that are needed are missing, or no stroke tells its speed.
+    """
+    known = thermometers(plant.heat)
+    names = [*(name for name in MOTION if name in recording), *(name for name in known if name in recording)]
+    if not is_warm_log(recording, plant.heat):
+        mend = "record the motor angle, its torque or the table position, and a temperature that the plant has"
+        raise InputError("no log of motion and temperatures", recording.name, mend)
+    log = warm_log(recording, plant.heat.ambient)
+    with_air = recording if "ambient_temperature" in recording else _with_air(recording, log)
+    noise, missed = {}, {}
+    for name in names:
+        series = np.asarray(recording[name])
+        if name in MOTION:
+            beside = series - (plant.motion.chain.motor_radius * log.angle if name == "table_position" else 0.0)
+            noise[name] = _repeated(beside, log)
+            scale = float(np.sqrt(np.mean(series[log.uniform] ** 2)))
+            missed[name] = MODEL_ERROR["m"] if name == "table_position" else TORQUE_ERROR * scale
+        else:
+            noise[name] = known[name][1] or smooth_noise(series)
+            missed[name] = model_error_of(name, with_air)
+    time = log.time + log.step
+    kept = replace(log, uniform=_some(log.uniform))
+    return WarmEvidence(
+        recording=with_air,
+        measured={name: np.asarray(recording[name]) for name in names},
+        noise={name: float(np.hypot(noise[name], missed[name])) for name in names},
+        counted=kept.uniform,
+        fitted=time < share * time[-1] if share < 1 else np.ones(len(time), dtype=bool),
+        edge=0.5 / log.step,
+        block=HEAT_BLOCK,
+        thinning=1,
+        floating=tuple(name for name in names if name == "table_position"),
+        model_error=missed,
+        speed=np.abs(log.speed) * (log.share > 0),
+        ambient=log.ambient,
+        start_rows=0,
+        log=kept,
+    )
+
+
+def _some(rows: BoolArray) -> BoolArray:
+    """At most `MOST_ROWS` of some rows, evenly taken, (n,)."""
+    chosen = np.zeros(len(rows), dtype=bool)
+    places = np.flatnonzero(rows)
+    chosen[places[:: len(places) // MOST_ROWS + 1]] = True
+    return chosen
+
+
+def _with_air(recording: Recording, log: WarmLog) -> Recording:
+    return replace(recording, channels={**recording.channels, "ambient_temperature": log.ambient})
+
+
+def _repeated(series: FloatArray, log: WarmLog) -> float:
+    """Rms of the noise of a channel: what a smooth change with place and time leaves of like strokes.
+
+    Of each signed speed, within `STILL` seconds, a parabola over the angle and a line over time are taken out; what is
+    left counts by its degrees of freedom, and the median of all such stretches is taken.
+    """
+    found = []
+    number = (log.time // STILL).astype(np.int64)
+    for block in np.unique(number[log.uniform]):
+        for speed in np.unique(log.speed[log.uniform & (number == block)]):
+            rows = log.uniform & (number == block) & (log.speed == speed)
+            if rows.sum() < 10:
+                continue
+            x, t = log.angle[rows], log.time[rows]
+            columns = np.column_stack([np.ones(len(x)), x - x.mean(), (x - x.mean()) ** 2, t - t.mean()])
+            left = series[rows] - columns @ np.linalg.lstsq(columns, series[rows], rcond=None)[0]
+            found.append(float(left @ left) / (len(x) - 4))
+    if not found:
+        raise InputError("too few strokes alike to tell the noise of a channel", "the log", "log some minutes of them")
+    return float(np.sqrt(np.median(found)))

@@ -1,0 +1,144 @@
+"""What a machine of motion and heat predicts for a log of hours, and which effects on either are tried."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import ClassVar
+
+import numpy as np
+
+from feeddrive.diagnosis.candidates import CANDIDATES
+from feeddrive.diagnosis.fit import Problem
+from feeddrive.diagnosis.heat.candidates import HEAT_CANDIDATES
+from feeddrive.diagnosis.heat.materiality import is_material_heat
+from feeddrive.diagnosis.heat.prediction import heat_predictor
+from feeddrive.diagnosis.heat.warm_evidence import WarmEvidence
+from feeddrive.diagnosis.materiality import is_material
+from feeddrive.diagnosis.predictor import Predictor
+from feeddrive.diagnosis.remembered import Remembered
+from feeddrive.diagnosis.scene import AxisScene, Candidate
+from feeddrive.effects.base import Effect, Kind
+from feeddrive.plant.plant import Plant
+from feeddrive.simulate.driven import LoadMotion
+from feeddrive.simulate.program import StepReport
+from feeddrive.simulate.warm_log import WarmRun, simulate_log
+from feeddrive.thermal.model import HeatModel
+from feeddrive.thermal.plant import ThermalPlant
+from feeddrive.thermal.warm_plant import WarmPlant
+from feeddrive.typing import FloatArray
+
+IN_UNIFORM_MOTION = (
+    "friction_deviation", "constant_force", "position_spring", "coulomb_asymmetry", "viscous_asymmetry",
+    "stribeck", "friction_vs_position", "lead_error_cumulative", "stiffness_deviation", "backlash",
+)  # fmt: skip
+"""Effects on motion that show at rows of uniform motion. Masses and delays show while accelerating, ripples need a row
+many times a turn, and a warming that knows no temperature (`thermal_growth`, `viscous_warmup`) stands in for the heat
+that is declared here."""
+
+
+@dataclass(frozen=True)
+class WarmScene(AxisScene):
+    """A scene of motion, torque and temperatures."""
+
+    @property
+    def plant(self) -> Plant:
+        """The declared motion."""
+        machine = self.problem.plant
+        assert isinstance(machine, WarmPlant)
+        return machine.motion
+
+
+@dataclass
+class WarmPredictor(Predictor[WarmPlant, WarmEvidence]):
+    """Predicts logs with one reduced heat model and the plant's equations in uniform motion.
+
+    Not a frozen record: it remembers.
+
+    Attributes:
+        declared: whose heat the model was made for.
+        model: reduced.
+    """
+
+    retries: ClassVar[int] = 1
+    many: ClassVar[int] = 4  # as that of heat
+    chance: ClassVar[float] = 18.0
+
+    declared: ThermalPlant
+    model: HeatModel
+    _known: Remembered[WarmRun] = field(default_factory=lambda: Remembered(lambda run: run.size))
+
+    @property
+    def candidates(self) -> tuple[Candidate, ...]:
+        """Effects on heat, and those on motion that uniform motion shows."""
+        return (*HEAT_CANDIDATES, *(one for one in CANDIDATES if one.name in IN_UNIFORM_MOTION))
+
+    def run(self, plant: WarmPlant, evidence: WarmEvidence) -> WarmRun:
+        """What the plant does in the log."""
+        values = tuple((e.name, str(e.port), e.place, tuple(e.values.items())) for e in plant.effects)
+        return self._known.found(evidence.log, values, lambda: simulate_log(plant, self._model(plant), evidence.log))
+
+    def predict(self, plant: WarmPlant, evidence: WarmEvidence) -> dict[str, FloatArray]:
+        """Channel to its prediction, (n,) [N m, m, degC]."""
+        channels = self.run(plant, evidence).channels
+        return {name: channels[name] for name in evidence.channels}
+
+    def scene(self, problem: Problem, found: Sequence[Effect]) -> WarmScene:
+        """Residuals and motion with the effects found so far."""
+        plant = problem.plant.with_effects(*found)
+        residuals, runs = [], []
+        for evidence in problem.evidence:
+            predicted = problem.predictor.predict(plant, evidence)
+            residuals.append({name: evidence.measured[name] - predicted[name] for name in evidence.channels})
+            runs.append(self._motion(plant, evidence))  # type: ignore[arg-type]
+        return WarmScene(problem, tuple(found), tuple(residuals), tuple(runs))
+
+    def variables(self, plant: WarmPlant, evidence: WarmEvidence) -> dict[str, FloatArray]:
+        """Speed, position, time, and the predicted rise of the nut."""
+        radius = plant.motion.chain.motor_radius
+        return {
+            "table_velocity": radius * evidence.log.speed,
+            "table_position": radius * evidence.log.angle,
+            "time": evidence.log.time,
+            "nut_rise": self.run(plant, evidence).rises[:, 0],
+        }
+
+    def reference(self, name: str, plant: WarmPlant, evidence: WarmEvidence) -> FloatArray:
+        """The channel itself; of the table its motion beyond lead / 2 pi times the motor's."""
+        rows = evidence.judged_rows
+        if name != "table_position":
+            return np.asarray(evidence.measured[name][rows])
+        beyond = evidence.measured[name] - plant.motion.chain.motor_radius * evidence.log.angle
+        return np.asarray(beyond[rows] - np.mean(beyond[rows]))
+
+    def is_material(self, effect: Effect, plant: WarmPlant) -> bool:
+        """The physical minimum of either kind."""
+        if effect.kind is Kind.HEAT:
+            return is_material_heat(effect, plant.heat)
+        return is_material(effect, plant.motion)
+
+    def _model(self, plant: WarmPlant) -> HeatModel:
+        model = self.model
+        own = {body.name for body in self.declared.attached}
+        for body in plant.heat.attached:
+            if body.name not in own:
+                model = model.with_body(body)
+        return model
+
+    def _motion(self, plant: WarmPlant, evidence: WarmEvidence) -> LoadMotion:
+        """The motion as starts of candidates read it, (n,); its forces at uniform rows alone."""
+        log, found = evidence.log, self.run(plant, evidence).motion
+        radius = plant.motion.chain.motor_radius
+        torque = np.zeros(len(log.time))
+        torque[log.uniform] = found.torque
+        return LoadMotion(
+            time=log.time, motor_angle=log.angle, motor_speed=log.speed, screw_angle=log.angle, screw_speed=log.speed,
+            table_position=radius * log.angle, table_velocity=radius * log.speed, torque=torque,
+            force=np.zeros(len(log.time)), report=StepReport(0, 0, 0, 0, 0, 0.0, 0, 0.0, 0.0),
+        )  # fmt: skip
+
+
+def warm_predictor(plant: WarmPlant) -> WarmPredictor:
+    """The predictor of a machine: its heat reduced once, wide enough for every effect."""
+    wide = heat_predictor(plant.heat)
+    return WarmPredictor(plant.heat, wide.model)
