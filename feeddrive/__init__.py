@@ -18,6 +18,7 @@ __version__ = "0.1.0"
 
 _HOMES = {
     "Axis": "interface.axis",
+    "Bench": "interface.benching",
     "Bode": "interface.bode",
     "Check": "interface.machine_tables",
     "Diagnosed": "interface.diagnosed",
@@ -32,6 +33,7 @@ _HOMES = {
     "Sweep": "interface.sweeping",
     "ValidityWarning": "errors",
     "WarmUp": "interface.warm_up",
+    "bench": "interface.benching",
     "diagnose": "interface.diagnosed",
     "Explained": "interface.numbers",
     "effect": "interface.shipped",
