@@ -18,6 +18,7 @@ __version__ = "0.1.0"
 
 _HOMES = {
     "Axis": "interface.axis",
+    "Bench": "interface.benching",
     "Bode": "interface.bode",
     "Check": "interface.machine_tables",
     "Compensation": "interface.compensating",
@@ -42,6 +43,7 @@ _HOMES = {
     "ValidityWarning": "errors",
     "WarmUp": "interface.warm_up",
     "Watched": "interface.watching",
+    "bench": "interface.benching",
     "cascade": "interface.design",
     "compensate": "interface.compensating",
     "diagnose": "interface.diagnosed",

@@ -60,6 +60,7 @@ COMMANDS: dict[str, Entry] = {
     "bode": Entry("bode", "Frequency response of machine or loop; resonances, margins."),
     "lump": Entry("lump", "Write a machine of parts as the nearest three inertias."),
     "tune": Entry("tune", "Recommend gains and filters of a cascade, and say why."),
+    "bench": Entry("bench", "Write a page to try gains, filters, payload and effects on."),
     "thermal": Entry("thermal", "Warm a machine up: temperatures, error, time constants."),
     "check": Entry("check", "Check a machine against rules of plausibility."),
     "run": Entry("run", "Run a scenario: a machine under control; figures, metrics."),

@@ -99,7 +99,9 @@ def margins_of(frequency: FloatArray, response: ComplexArray, stable: bool) -> M
         response: complex, shape (n,).
         stable: whether the closed loop is; margins do not tell.
     """
-    magnitude, phase = np.log(np.abs(response)), np.unwrap(np.angle(response))
+    # a sampled low-pass is exactly zero at half the sample rate
+    magnitude = np.log(np.maximum(np.abs(response), np.finfo(float).tiny))
+    phase = np.unwrap(np.angle(response))
     turns = 2 * math.pi * np.round((phase[0] + math.pi / 2) / (2 * math.pi))  # begin near -90 deg
     found = _crossings(frequency, magnitude, phase - turns)
     gain = min(found[0], default=(math.inf, math.nan))

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from feeddrive.bench.equations import bench_equations
+from feeddrive.bench_page.equations import bench_equations
 from feeddrive.effects.base import Effect
 from feeddrive.effects.payload import Payload
 from feeddrive.errors import printable

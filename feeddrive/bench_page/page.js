@@ -76,7 +76,7 @@ function startPage() {
     setTimeout(() => URL.revokeObjectURL(link.href), 1000);
   }
   function changed() { if (!waiting) { waiting = true; requestAnimationFrame(draw); } }
-  function draw() {
+  function draw(atOnce) {
     waiting = false;
     const begin = performance.now();
     let loops = null, step = null;
@@ -89,27 +89,26 @@ function startPage() {
       return start;
     };
     clearTimeout(later);
-    if (slow > 25) later = setTimeout(() => { const t = performance.now(); circle(); slow = performance.now() - t; }, 0);
+    if (slow > 25 && atOnce !== true) later = setTimeout(() => { const t = performance.now(); circle(); slow = performance.now() - t; }, 0);
     else { const t = performance.now(); circle(); slow = performance.now() - t; }
     bench.took = performance.now() - begin;
   }
   function tell(loops, step, circle) {
     state.className = !loops || !loops.stable ? "bad" : "";
     state.textContent = !loops ? "No steady motion with these settings." : !loops.stable ? "The loop is unstable: nothing is run." : step && circle ? "" : "The motion did not end.";
-    const table = document.getElementById("numbers"), um = (v) => (1e6 * v).toFixed(2) + " µm", cell = (v) => (v === undefined || v === null || !isFinite(v) ? "–" : v);
+    const table = document.getElementById("numbers"), um = (v) => (1e6 * v).toFixed(2) + " µm";
     const now = [loops, step && step.figures, circle], old = ghost ? [ghost.loops, ghost.step && ghost.step.figures, ghost.circle] : [null, null, null];
     const line = ([l, s, c]) => [
       l ? l.velocity.margins.phase.toFixed(1) + "°" : "–", l ? l.velocity.margins.gain.toFixed(1) + " dB" : "–",
       l ? l.position.margins.phase.toFixed(1) + "°" : "–", l ? l.position.margins.gain.toFixed(1) + " dB" : "–",
       s ? (1e3 * s.settling).toFixed(1) + " ms" : "–", c ? um(c.deviation) : "–", c ? um(Math.max(...c.glitch.map(Math.abs))) : "–"];
-    const heads = ["", "velocity loop", "", "position loop", "", "settling", "circle", "glitch"];
+    const heads = ["", ["velocity loop", 2], ["position loop", 2], "settling", "circle", "glitch"];
     table.replaceChildren();
-    const add = (cells, tag, mark) => { const tr = document.createElement("tr"); cells.forEach((t, i) => { const td = document.createElement(tag); td.textContent = t; if (mark && mark(i)) td.className = "bad"; tr.append(td); }); table.append(tr); };
+    const add = (cells, tag, mark) => { const tr = document.createElement("tr"); cells.forEach((t, i) => { const td = document.createElement(tag); if (Array.isArray(t)) { td.colSpan = t[1]; td.textContent = t[0]; } else td.textContent = t; if (mark && mark(i)) td.className = "bad"; tr.append(td); }); table.append(tr); };
     add(heads, "th");
     const low = loops ? [loops.velocity.margins.phase < 30, loops.velocity.margins.gain < 6, loops.position.margins.phase < 30, loops.position.margins.gain < 6] : [];
     add(["now", ...line(now)], "td", (i) => low[i - 1]);
     if (old[0]) add(["at the start", ...line(old)], "td");
-    void cell;
   }
   bench.E = E; bench.S = S; bench.changed = changed; bench.draw = draw;
   build();

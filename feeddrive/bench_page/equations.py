@@ -17,7 +17,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from feeddrive.bench.javascript import javascript
+from feeddrive.bench_page.javascript import javascript
 from feeddrive.effects.base import TimingEffect, TransmissionEffect
 from feeddrive.errors import InputError
 from feeddrive.plant.chain import symbolic

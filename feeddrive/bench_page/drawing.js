@@ -24,7 +24,7 @@ function frame(s, box, x, y) {
   const fy = (v) => top + height * (y.high - v) / (y.high - y.low);
   g.lineWidth = 1; g.strokeStyle = colour("line"); g.fillStyle = colour("soft");
   const line = (x0, y0, x1, y1) => { g.beginPath(); g.moveTo(x0, y0); g.lineTo(x1, y1); g.stroke(); };
-  const across = x.ticks || (x.log ? [1, 3, 10, 30, 100, 300, 1000, 3000].filter((f) => f >= x.low && f <= x.high) : ticks(x.low, x.high, Math.max(2, width / 80)));
+  const across = x.ticks || (x.log ? [1, 3, 10, 30, 100, 300, 1000, 3000].filter((f) => f >= x.low && f <= x.high) : ticks(x.low, x.high, Math.max(2, width / 65)));
   g.textAlign = "center"; g.textBaseline = "top";
   for (const v of across) { line(fx(v), top, fx(v), top + height); if (x.label) g.fillText(plain(v), fx(v), top + height + 4); }
   g.textAlign = "right"; g.textBaseline = "middle";
@@ -47,7 +47,9 @@ function frame(s, box, x, y) {
         g.strokeStyle = colour(name); g.lineWidth = 3; line(fx(at), fy(from), fx(at), fy(to)); g.lineWidth = 1;
         g.fillStyle = colour(name); g.font = "600 12px system-ui, sans-serif"; g.textBaseline = "middle";
         const right = fx(at) > left + width - 70; g.textAlign = right ? "right" : "left";
-        g.fillText(text, fx(at) + (right ? -6 : 6), Math.min(top + height - 8, Math.max(top + 8, (fy(from) + fy(to)) / 2))); g.font = "12px system-ui, sans-serif";
+        const px = fx(at) + (right ? -7 : 7), py = Math.min(top + height - 9, Math.max(top + 9, (fy(from) + fy(to)) / 2)), wide = g.measureText(text).width;
+        g.globalAlpha = 0.85; g.fillStyle = colour("paper"); g.fillRect(px - (right ? wide + 2 : 2), py - 8, wide + 4, 16); g.globalAlpha = 1;
+        g.fillStyle = colour(name); g.fillText(text, px, py); g.font = "12px system-ui, sans-serif";
       });
     },
   };
@@ -98,7 +100,8 @@ function drawCircle(E, now, ghost) {
   for (const [one, name, wide] of [[ghost, "ghost", 1.2], [now, "v", 1.8]]) {
     if (!one) continue;
     g.strokeStyle = colour(name); g.lineWidth = wide; g.beginPath();
-    one.radial.forEach((v, i) => { const a = E.circle.angle[i], r = ring + 1e6 * v / unit * room, x = cx + r * Math.sin(a), y = cy - r * Math.cos(a); if (i) g.lineTo(x, y); else g.moveTo(x, y); });
+    const last = E.circle.angle[E.circle.angle.length - 1], from = E.circle.angle.findIndex((a) => a >= last - 2 * Math.PI);
+    one.radial.forEach((v, i) => { if (i < from) return; const a = E.circle.angle[i], r = ring + 1e6 * v / unit * room, x = cx + r * Math.sin(a), y = cy - r * Math.cos(a); if (i > from) g.lineTo(x, y); else g.moveTo(x, y); });
     g.stroke();
   }
   g.fillStyle = colour("soft"); g.textBaseline = "middle";

@@ -1,0 +1,103 @@
+"""The bench page of an axis: sliders for gains, filters, position, payload and effects; loops, step and circle at once."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from feeddrive.bench_page.page import BenchPage, bench_page
+from feeddrive.errors import InputError
+from feeddrive.files import DIAGNOSED, write_text_atomically
+from feeddrive.interface.axis import Axis, load
+from feeddrive.interface.diagnosed import Diagnosed
+from feeddrive.interface.quantities import Quantity, si
+from feeddrive.interface.servo import Servo, cascade_for, tune
+from feeddrive.servo.loop_response import refuse_unstable_case
+from feeddrive.servo.frequency_response import Case
+
+_MOST_BYTES = 200_000_000
+
+
+@dataclass(frozen=True)
+class Bench:
+    """A page on which an axis can be tried.
+
+    Attributes:
+        page: what it shows.
+    """
+
+    page: BenchPage
+
+    @property
+    def text(self) -> str:
+        """The page as HTML; it holds everything and fetches nothing."""
+        return bench_page(self.page)
+
+    def save(self, path: str | Path) -> Path:
+        """Write the page.
+
+        Raises:
+            InputError: the file cannot be written, or a plant without elastic chain.
+        """
+        target = Path(path)
+        write_text_atomically(target, self.text)
+        return target
+
+
+def bench(
+    axis: Axis,
+    *,
+    controller: Servo | str | Path | None = None,
+    diagnosis: Diagnosed | str | Path | None = None,
+    payload: Quantity = "100 kg",
+) -> Bench:
+    """The bench page of an axis.
+
+    Args:
+        axis: the machine.
+        controller: settings at the start: of `tune`, or a controller or scenario file; tuned if left out.
+        diagnosis: of the axis, or its folder: the page has the plant as diagnosed, the effects found first.
+        payload: largest mass on the table that can be chosen.
+
+    Raises:
+        InputError: a rigid axis, a controller that is unstable or cannot be read, a folder without diagnosis.
+
+    >>> import feeddrive as fd
+    >>> page = fd.bench(fd.load("bench_axis"), controller="scenarios/controllers/bench_axis.toml")
+    >>> page.text.startswith("<!DOCTYPE html>")
+    True
+    """
+    axis, found = _diagnosed(axis, diagnosis)
+    plant = axis.plant
+    heaviest = si(payload, "kg", "payload")
+    if not heaviest > 0:
+        raise InputError(f"{payload} is not above zero", "payload", "write a positive mass")
+    cascade = cascade_for(plant, controller) if controller is not None else tune(axis).cascade
+    refuse_unstable_case(plant, cascade, Case(plant.middle), "controller")
+    return Bench(BenchPage(plant, cascade, heaviest, found))
+
+
+def _diagnosed(axis: Axis, diagnosis: Diagnosed | str | Path | None) -> tuple[Axis, tuple[str, ...]]:
+    """The axis, as diagnosed where there is a diagnosis, and the names of what was found."""
+    if diagnosis is None:
+        return axis, ()
+    if isinstance(diagnosis, Diagnosed):
+        return diagnosis.plant, tuple(one.name for one in diagnosis.diagnosis.effects)
+    folder = Path(diagnosis)
+    content = _content(folder / "diagnosis.json")
+    named = [one.get("name") for one in content.get("effects", []) if isinstance(one, dict)]
+    return load(folder / DIAGNOSED), tuple(str(name) for name in named if name)
+
+
+def _content(path: Path) -> dict[str, Any]:
+    try:
+        if path.stat().st_size > _MOST_BYTES:
+            raise InputError("is too large for a diagnosis", str(path), "give the folder that `feeddrive diagnose` wrote")
+        content = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError):
+        content = None
+    if not isinstance(content, dict) or not str(content.get("format", "")).startswith("feeddrive-diagnosis/"):
+        raise InputError("is no diagnosis", str(path), "give the folder that `feeddrive diagnose` wrote")
+    return content
