@@ -12,7 +12,7 @@ from feeddrive import __version__
 from feeddrive.compensation.compensate import POINTS_PER_PERIOD, Compensated
 from feeddrive.compensation.forms import sinumerik_temp
 from feeddrive.compensation.forms.control import checked_axis, plain_line
-from feeddrive.compensation.lost_motion import CURE, flank_words, wind_up_words
+from feeddrive.compensation.lost_motion import CURE, NOTICED, flank_words, wind_up_words
 from feeddrive.compensation.prediction import Figures
 from feeddrive.compensation.recorded_deviations import difference_words
 from feeddrive.compensation.temperature import HeatTable
@@ -20,6 +20,9 @@ from feeddrive.metrology.circular import Circular
 from feeddrive.quantity import format_quantity
 
 Section = tuple[str, Sequence[str]]
+
+_OTHER = 0.1
+"""Share of the play by which a simulated reversal may differ before it is said."""
 
 
 def micrometres(value: float) -> str:
@@ -83,11 +86,19 @@ def left(done: Compensated) -> list[str]:
         names = ", ".join(done.of_time)
         lines.append(f"{names} changes with time and is in no table of positions: see --form sinumerik-temp.")
     lost = done.lost
-    if lost is not None and abs(lost.wind_up) >= done.control.resolution:
+    if lost is not None and abs(lost.wind_up) >= NOTICED:
         lines.append(f"{wind_up_words(lost)}. It is in no table: {CURE}.")
     if lost is not None and done.table.play > 0 and flank_words(lost):
         lines.append(flank_words(lost))
     both = done.prediction
+    if both is not None and lost is not None and done.table.play > 0:
+        stopped = abs(both.before.positioning.mean_reversal)
+        if abs(stopped - lost.play) > _OTHER * lost.play:
+            lines.append(
+                f"In the simulated stops the reversal is {micrometres(stopped)} and not the play of "
+                f"{micrometres(lost.play)}: the axis overshoots or the table coasts while it stops, and what is over "
+                "stays. A calmer position loop makes it less."
+            )
     if both is not None and both.after.contour > both.before.contour:
         lines.append(
             f"The circle gets worse, from {micrometres(both.before.contour)} to {micrometres(both.after.contour)}: on "
