@@ -15,7 +15,7 @@ from feeddrive.compensation.forms.control import Control
 from feeddrive.compensation.friction_values import FrictionValues, friction_values
 from feeddrive.compensation.lost_motion import LostMotion, lost_motion, refuse_wind_up, without_play
 from feeddrive.compensation.plant_deviations import PlantDeviations, plant_deviations
-from feeddrive.compensation.prediction import Applied, Figures, figures, motions
+from feeddrive.compensation.prediction import Applied, Figures, figures, motions, sticking
 from feeddrive.compensation.recorded_deviations import RecordedDeviations
 from feeddrive.compensation.repair import repaired
 from feeddrive.compensation.table import CompensationTable, Deviations, fitted, grid
@@ -170,14 +170,15 @@ def compensate_plant(
     loop = cascade_of(plant, cascade)
     test = motions(_stroke(plant, wishes, where), made.lost)
     applied = Applied(made.control, made.table, _limits(plant))
-    renewed = repaired(plant)
+    moved = sticking(plant, made.lost)
+    renewed = repaired(moved)
     prediction = Prediction(
-        figures(plant, loop, test), None if renewed is None else figures(renewed, loop, test),
-        figures(plant, loop, test, applied),
+        figures(moved, loop, test), None if renewed is None else figures(renewed, loop, test),
+        figures(moved, loop, test, applied),
     )  # fmt: skip
     if not beside:
         return replace(made, prediction=prediction)
-    friction = friction_values(plant, loop, test.circle, made.lost, applied) if made.lost.torque > 0 else None
+    friction = friction_values(moved, loop, test.circle, made.lost, applied) if made.lost.torque > 0 else None
     return replace(made, prediction=prediction, friction=friction, cogging=cogging_map(plant, loop))
 
 

@@ -22,7 +22,7 @@ from feeddrive.quantity import format_quantity
 Section = tuple[str, Sequence[str]]
 
 _OTHER = 0.1
-"""Share of the play by which a simulated reversal may differ before it is said."""
+"""Share of the play that may be lacking in a simulated reversal before it is said."""
 
 
 def micrometres(value: float) -> str:
@@ -93,11 +93,11 @@ def left(done: Compensated) -> list[str]:
     both = done.prediction
     if both is not None and lost is not None and done.table.play > 0:
         stopped = abs(both.before.positioning.mean_reversal)
-        if abs(stopped - lost.play) > _OTHER * lost.play:
+        if stopped < (1 - _OTHER) * lost.play:
             lines.append(
                 f"In the simulated stops the reversal is {micrometres(stopped)} and not the play of "
-                f"{micrometres(lost.play)}: the axis overshoots or the table coasts while it stops, and what is over "
-                "stays. A calmer position loop makes it less."
+                f"{micrometres(lost.play)}: the axis overshoots or the table coasts while it stops, and the value is "
+                "too large there. A calmer position loop makes it less."
             )
     if both is not None and both.after.contour > both.before.contour:
         lines.append(
