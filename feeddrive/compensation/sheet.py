@@ -21,6 +21,9 @@ from feeddrive.quantity import format_quantity
 
 Section = tuple[str, Sequence[str]]
 
+_THROWN = 0.25
+"""Share of the play by which a quadrant may go further inwards before it is said."""
+
 _OTHER = 0.1
 """Share of the play that may be lacking in a simulated reversal before it is said."""
 
@@ -99,13 +102,23 @@ def left(done: Compensated) -> list[str]:
                 f"{micrometres(lost.play)}: the axis overshoots or the table coasts while it stops, and the value is "
                 "too large there. A calmer position loop makes it less."
             )
-    if both is not None and both.after.contour > both.before.contour:
+    if both is not None and _thrown(done):
+        worst = min(both.after.circular.glitch)
         lines.append(
-            f"The circle gets worse, from {micrometres(both.before.contour)} to {micrometres(both.after.contour)}: on "
-            "reversal the value goes over so fast that the table is thrown across the play. Renew the preload, or let "
-            "the value go over more slowly."
+            f"On reversal the value goes over so fast that the table is thrown across the play, {micrometres(-worst)} "
+            f"inwards on the circle (largest contour error {micrometres(both.before.contour)} before, "
+            f"{micrometres(both.after.contour)} after). A slower reversal makes it less; renewing the preload cures it."
         )
     return lines
+
+
+def _thrown(done: Compensated) -> bool:
+    """Whether a quadrant goes inwards by a share of the play that it did not before."""
+    both = done.prediction
+    if both is None or done.table.play <= 0:
+        return False
+    deeper = min(both.before.circular.glitch) - min(both.after.circular.glitch)
+    return deeper > _THROWN * done.table.play
 
 
 def predicted_rows(done: Compensated) -> list[tuple[str, list[float | None]]]:
