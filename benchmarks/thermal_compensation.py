@@ -15,14 +15,6 @@ from itertools import product
 
 import numpy as np
 
-from feeddrive.files import find_plant
-from feeddrive.thermal.files import read_thermal_plant
-from feeddrive.thermal.full_model import full_model
-from feeddrive.thermal.grid import Cells
-from feeddrive.thermal.model import HeatModel
-from feeddrive.thermal.moving_family import moving_family
-from feeddrive.thermal.stepping import Stepper
-from feeddrive.thermal.warm_up import declared_rows
 from feeddrive.compensation.heat.thermal_deviation import deviating
 from feeddrive.compensation.heat.thermal_error import LeftOver, TableError, left_over, table_error
 from feeddrive.compensation.heat.thermal_line import LineTable, line_table, straight_line
@@ -32,6 +24,14 @@ from feeddrive.compensation.heat.thermal_placement import placements
 from feeddrive.compensation.heat.thermal_sensors import Sensor, mountable_places
 from feeddrive.compensation.heat.thermal_trial import TriedMachine, random_duty, tried_machine
 from feeddrive.compensation.heat.thermal_unknowns import Unknowns
+from feeddrive.files import find_plant
+from feeddrive.thermal.files import read_thermal_plant
+from feeddrive.thermal.full_model import full_model
+from feeddrive.thermal.grid import Cells
+from feeddrive.thermal.model import HeatModel
+from feeddrive.thermal.moving_family import moving_family
+from feeddrive.thermal.stepping import Stepper
+from feeddrive.thermal.warm_up import declared_rows
 from feeddrive.typing import FloatArray
 
 PLANT = read_thermal_plant(find_plant("thermal_bench"))

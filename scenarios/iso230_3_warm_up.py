@@ -19,6 +19,14 @@ from pathlib import Path
 
 import numpy as np
 
+from feeddrive.compensation.heat.thermal_error import LeftOver, TableError, left_over, table_error
+from feeddrive.compensation.heat.thermal_line import Convention, LineTable, line_table, straight_line
+from feeddrive.compensation.heat.thermal_observer import thermal_observer
+from feeddrive.compensation.heat.thermal_open_loop import compensation_model, model_alone
+from feeddrive.compensation.heat.thermal_placement import Placement, placements
+from feeddrive.compensation.heat.thermal_sensors import Sensor
+from feeddrive.compensation.heat.thermal_trial import TriedMachine, tried_machine
+from feeddrive.compensation.heat.thermal_unknowns import Unknowns
 from feeddrive.files import find_plant, write_bytes_atomically, write_text_atomically
 from feeddrive.metrology.axis_heating import AxisHeating, axis_heating
 from feeddrive.report.drawing import render
@@ -28,14 +36,6 @@ from feeddrive.thermal.grid import Cells
 from feeddrive.thermal.model import HeatModel
 from feeddrive.thermal.plant import ThermalPlant
 from feeddrive.thermal.rig import Body
-from feeddrive.compensation.heat.thermal_error import LeftOver, TableError, left_over, table_error
-from feeddrive.compensation.heat.thermal_line import Convention, LineTable, line_table, straight_line
-from feeddrive.compensation.heat.thermal_observer import thermal_observer
-from feeddrive.compensation.heat.thermal_open_loop import compensation_model, model_alone
-from feeddrive.compensation.heat.thermal_placement import Placement, placements
-from feeddrive.compensation.heat.thermal_sensors import Sensor
-from feeddrive.compensation.heat.thermal_trial import TriedMachine, tried_machine
-from feeddrive.compensation.heat.thermal_unknowns import Unknowns
 from feeddrive.typing import FloatArray
 
 RPM = math.pi / 30

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from feeddrive.compensation.forms.control import Control
 from feeddrive.compensation.friction_values import FrictionValues, friction_values
 from feeddrive.compensation.lost_motion import LostMotion, lost_motion, refuse_wind_up, without_play
 from feeddrive.compensation.plant_deviations import PlantDeviations, plant_deviations
-from feeddrive.compensation.prediction import Applied, Figures, figures, motions
+from feeddrive.compensation.prediction import Applied, Figures, figures, motions, sticking
 from feeddrive.compensation.recorded_deviations import RecordedDeviations
 from feeddrive.compensation.repair import repaired
 from feeddrive.compensation.table import CompensationTable, Deviations, fitted, grid
@@ -112,11 +112,47 @@ class Compensated:
         return float(max(np.max(np.abs(one)) for one in rest))
 
 
+def plant_table(
+    plant: Plant, wishes: Wishes, cascade: Cascade | None = None, unsure_of_play: str = "", where: str = ""
+) -> Compensated:  # fmt: skip
+    """The table of a plant, nothing simulated.
+
+    Args:
+        plant: with what was found.
+        wishes: form, points, reference, stroke.
+        cascade: its controller; the declared one if None.
+        unsure_of_play: why its backlash must not be taken for play; empty where it may.
+        where: file, for messages.
+
+    Raises:
+        InputError: nothing that a table may hold, limits of the control, no stroke, a loop that reads the scale.
+    """
+    place, wanted = where or plant.name, control(wishes.form, wishes.resolution)
+    stroke = _stroke(plant, wishes, place)
+    reference = _reference(wishes, stroke)
+    _refuse_scale(plant, cascade, place)
+    lost = lost_motion(plant, 0.5 * (stroke[0] + stroke[1]))
+    found = plant_deviations(plant, (min(stroke[0], reference), max(stroke[1], reference)))
+    known, refused = found.known, []
+    if unsure_of_play and lost.play > 0:
+        refused.append(unsure_of_play)
+        known = Deviations(known.positions, known.mean, known.mean)
+    has_lead = float(np.ptp(known.mean)) >= wanted.resolution
+    if not has_lead and refused:
+        raise InputError(f"no table is written: {unsure_of_play}", place, "record the experiment that tells them apart")
+    if not has_lead:
+        refuse_wind_up(lost, place, wanted.resolution)
+    table = _table(wanted, known, stroke, reference, wishes.every, found)
+    return Compensated(
+        plant.name, wishes, wanted, table, known.zeroed(reference), lost, found.of_time, tuple(refused), found.shortest
+    )  # fmt: skip
+
+
 def compensate_plant(
     plant: Plant, wishes: Wishes, cascade: Cascade | None = None, unsure_of_play: str = "", where: str = "",
     beside: bool = True,
 ) -> Compensated:  # fmt: skip
-    """The table of a plant, with its prediction.
+    """The table of a plant as `plant_table` gives it, with its prediction.
 
     Args:
         plant: with what was found.
@@ -127,37 +163,23 @@ def compensate_plant(
         beside: whether values for friction and cogging are wanted beside the table.
 
     Raises:
-        InputError: nothing that a table may hold, limits of the control, no stroke, a loop that reads the scale.
+        InputError: as `plant_table`; no controller that keeps the usual margins.
     """
-    place, wanted = where or plant.name, control(wishes.form, wishes.resolution)
-    stroke = _stroke(plant, wishes, place)
-    reference = _reference(wishes, stroke)
-    _refuse_scale(plant, cascade, place)
-    lost = lost_motion(plant, 0.5 * (stroke[0] + stroke[1]))
-    reach = (min(stroke[0], reference), max(stroke[1], reference))
-    found = plant_deviations(plant, reach)
-    known, refused = found.known, []
-    if unsure_of_play and lost.play > 0:
-        refused.append(unsure_of_play)
-        known = Deviations(known.positions, known.mean, known.mean)
-    has_lead = float(np.ptp(known.mean)) >= wanted.resolution
-    if not has_lead and unsure_of_play and lost.play > 0:
-        raise InputError(f"no table is written: {unsure_of_play}", place, "record the experiment that tells them apart")
-    if not has_lead:
-        refuse_wind_up(lost, place, wanted.resolution)
-    table = _table(wanted, known, stroke, reference, wishes.every, found)
+    made = plant_table(plant, wishes, cascade, unsure_of_play, where)
+    assert made.lost is not None
     loop = cascade_of(plant, cascade)
-    test, applied = motions(stroke, lost), Applied(wanted, table, _limits(plant))
-    worn = repaired(plant)
+    test = motions(_stroke(plant, wishes, where), made.lost)
+    applied = Applied(made.control, made.table, _limits(plant))
+    moved = sticking(plant, made.lost)
+    renewed = repaired(moved)
     prediction = Prediction(
-        figures(plant, loop, test), None if worn is None else figures(worn, loop, test),
-        figures(plant, loop, test, applied),
+        figures(moved, loop, test), None if renewed is None else figures(renewed, loop, test),
+        figures(moved, loop, test, applied),
     )  # fmt: skip
-    friction = friction_values(plant, loop, test.circle, lost, applied) if beside and lost.torque > 0 else None
-    return Compensated(
-        plant.name, wishes, wanted, table, known.zeroed(reference), lost, found.of_time, tuple(refused),
-        found.shortest, prediction, friction, cogging_map(plant, loop) if beside else None, None,
-    )  # fmt: skip
+    if not beside:
+        return replace(made, prediction=prediction)
+    friction = friction_values(moved, loop, test.circle, made.lost, applied) if made.lost.torque > 0 else None
+    return replace(made, prediction=prediction, friction=friction, cogging=cogging_map(plant, loop))
 
 
 def compensate_recording(name: str, found: RecordedDeviations, wishes: Wishes, shortest: float) -> Compensated:

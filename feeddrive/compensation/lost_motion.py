@@ -37,6 +37,9 @@ from feeddrive.quantity import format_quantity
 SLOW = 5e-3
 """Velocity at which lost motion is told [m/s]: 0.3 m/min, at which positioning tests approach their targets."""
 
+NOTICED = 1e-7
+"""Lost motion that a laser interferometer on a machine tells from none [m]."""
+
 CURE = (
     "stiffen it or lower its friction (preload, alignment, lubrication), close the position loop by a scale, or use "
     "friction feed-forward"
@@ -140,7 +143,7 @@ def refuse_wind_up(lost: LostMotion, where: str, least: float) -> None:
     """
     if lost.play >= least:
         return
-    if abs(lost.wind_up) < least:
+    if abs(lost.wind_up) < NOTICED:
         what = f"no lead error and no play of {format_quantity(least, 'm')} or more is known of this axis"
         raise InputError(what, where, "diagnose a recording over the whole stroke, and give its folder")
     raise InputError(f"no table is written: {wind_up_words(lost)}", where, CURE)

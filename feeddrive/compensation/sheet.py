@@ -12,7 +12,7 @@ from feeddrive import __version__
 from feeddrive.compensation.compensate import POINTS_PER_PERIOD, Compensated
 from feeddrive.compensation.forms import sinumerik_temp
 from feeddrive.compensation.forms.control import checked_axis, plain_line
-from feeddrive.compensation.lost_motion import CURE, flank_words, wind_up_words
+from feeddrive.compensation.lost_motion import CURE, NOTICED, flank_words, wind_up_words
 from feeddrive.compensation.prediction import Figures
 from feeddrive.compensation.recorded_deviations import difference_words
 from feeddrive.compensation.temperature import HeatTable
@@ -20,6 +20,12 @@ from feeddrive.metrology.circular import Circular
 from feeddrive.quantity import format_quantity
 
 Section = tuple[str, Sequence[str]]
+
+_THROWN = 0.25
+"""Share of the play by which a quadrant may go further inwards before it is said."""
+
+_OTHER = 0.1
+"""Share of the play that may be lacking in a simulated reversal before it is said."""
 
 
 def micrometres(value: float) -> str:
@@ -83,18 +89,36 @@ def left(done: Compensated) -> list[str]:
         names = ", ".join(done.of_time)
         lines.append(f"{names} changes with time and is in no table of positions: see --form sinumerik-temp.")
     lost = done.lost
-    if lost is not None and abs(lost.wind_up) >= done.control.resolution:
+    if lost is not None and abs(lost.wind_up) >= NOTICED:
         lines.append(f"{wind_up_words(lost)}. It is in no table: {CURE}.")
     if lost is not None and done.table.play > 0 and flank_words(lost):
         lines.append(flank_words(lost))
     both = done.prediction
-    if both is not None and both.after.contour > both.before.contour:
+    if both is not None and lost is not None and done.table.play > 0:
+        stopped = abs(both.before.positioning.mean_reversal)
+        if stopped < (1 - _OTHER) * lost.play:
+            lines.append(
+                f"In the simulated stops the reversal is {micrometres(stopped)} and not the play of "
+                f"{micrometres(lost.play)}: the axis overshoots or the table coasts while it stops, and the value is "
+                "too large there. A calmer position loop makes it less."
+            )
+    if both is not None and _thrown(done):
+        worst = min(both.after.circular.glitch)
         lines.append(
-            f"The circle gets worse, from {micrometres(both.before.contour)} to {micrometres(both.after.contour)}: on "
-            "reversal the value goes over so fast that the table is thrown across the play. Renew the preload, or let "
-            "the value go over more slowly."
+            f"On reversal the value goes over so fast that the table is thrown across the play, {micrometres(-worst)} "
+            f"inwards on the circle (largest contour error {micrometres(both.before.contour)} before, "
+            f"{micrometres(both.after.contour)} after). A slower reversal makes it less; renewing the preload cures it."
         )
     return lines
+
+
+def _thrown(done: Compensated) -> bool:
+    """Whether a quadrant goes inwards by a share of the play that it did not before."""
+    both = done.prediction
+    if both is None or done.table.play <= 0:
+        return False
+    deeper = min(both.before.circular.glitch) - min(both.after.circular.glitch)
+    return deeper > _THROWN * done.table.play
 
 
 def predicted_rows(done: Compensated) -> list[tuple[str, list[float | None]]]:

@@ -156,9 +156,11 @@ def compensate(
             be used; one line with the remedy.
 
     >>> import feeddrive as fd
-    >>> worn = fd.load("kimm_testbed").with_effects(fd.effect("lead_error_cumulative", slope="20 um/m"))
-    >>> fd.compensate(worn, "sinumerik-enc", axis="X1", every="100 mm").done.table.positions.size
-    11
+    >>> try:
+    ...     fd.compensate("kimm_testbed", "linuxcnc")  # friction and compliance, no play
+    ... except fd.InputError as refused:
+    ...     "wind-up, not play" in str(refused)
+    True
     """
     if form not in FORMS:
         raise InputError(f'no form "{form}"', "form", nearest(str(form), FORMS))

@@ -51,7 +51,7 @@ def _predicted(found: Actions) -> str:
         [words(name), *(number(DASH if one is None else error_text(one, "m")) for one in values)]
         for name, values in predicted_rows(found.predicted)
     ]
-    ends = found.predicted.table.positions[[0, -1]] * 1e3
+    ends = [1e3 * one for one in found.predicted.wishes.stroke or found.predicted.table.positions[[0, -1]].tolist()]
     note = (
         f"Simulated from {ends[0]:.4g} mm to {ends[1]:.4g} mm with the position loop closed at the motor, in slow "
         "motion; one approach per direction, so that nothing scatters. Repair renews preload; compensation is a table."

@@ -1,7 +1,7 @@
 """Readers and controls of compensation files, written from the makers' published rules alone.
 
-Nothing here is of `feeddrive`: a sign that is wrong in a writer must not be right again in its reader. Lengths are mm as
-in the files, unless said.
+Nothing here is of `feeddrive`: a sign that is wrong in a writer must not be right again in its reader. Lengths are mm
+as in the files, unless said.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 NUMBER = r"[-+]?[0-9]*\.?[0-9]+"
 
 
-# --- LinuxCNC: usrmotintf.cc (reading), command.c (EMCMOT_SET_JOINT_COMP), control.c (compute_screw_comp) ---------------
+# --- LinuxCNC: usrmotintf.cc (reading), command.c (EMCMOT_SET_JOINT_COMP), control.c (compute_screw_comp) ---
 
 
 @dataclass
@@ -84,7 +84,7 @@ class LinuxCncJoint:
         return position + self.given
 
 
-# --- SINUMERIK ---------------------------------------------------------------------------------------------------------
+# --- SINUMERIK ---
 
 
 def _variables(text: str) -> dict[str, str]:
@@ -142,7 +142,7 @@ def read_cec_tables(text: str, axis: str) -> dict[int, EvenTable]:
     return found
 
 
-# --- ISG kernel --------------------------------------------------------------------------------------------------------
+# --- ISG kernel ---
 
 
 def read_isg(text: str) -> list[tuple[int, int, int]]:
@@ -158,7 +158,7 @@ def read_isg(text: str) -> list[tuple[int, int, int]]:
     return [(a, b, c) for a, b, c in rows]
 
 
-# --- Heidenhain, CSV ---------------------------------------------------------------------------------------------------
+# --- Heidenhain, CSV ---
 
 
 def read_csv(text: str) -> tuple[list[str], list[list[float]]]:
@@ -167,7 +167,7 @@ def read_csv(text: str) -> tuple[list[str], list[list[float]]]:
     return lines[0].split(","), [[float(cell) for cell in line.split(",")] for line in lines[1:]]
 
 
-# --- FANUC -------------------------------------------------------------------------------------------------------------
+# --- FANUC ---
 
 
 @dataclass
@@ -212,13 +212,15 @@ def read_fanuc(text: str) -> FanucAxis:
     return FanucAxis(parameters, increments)
 
 
-# --- temperature: the text is run by this interpreter of its own few statements ----------------------------------------
+# --- temperature: the text is run by this interpreter of its own few statements ---
 
 
 def run_structured_text(text: str, temperature: float) -> tuple[float, float, float]:
     """K0 [mm], tan beta and P0 [mm] of the function block."""
     bare = re.sub(r"\(\*.*?\*\)", "", text, flags=re.S)
-    declared, body = bare.split("VAR\n")[1].split("END_VAR\n")
+    parts = re.search(r"^VAR\n(.*?)^END_VAR\n(.*)", bare, re.S | re.M)
+    assert parts
+    declared, body = parts[1], parts[2]
     arrays = {
         name: [0.0, *map(float, values.split(","))]
         for name, values in re.findall(r"(\w+) : ARRAY\[1\.\.\d+\] OF REAL := \[(.*?)\];", declared)

@@ -52,7 +52,7 @@ def test_table_is_zero_at_the_reference_and_holds_the_play() -> None:
     held = table()
     assert float(np.interp(REFERENCE, held.positions, held.mean)) == pytest.approx(0.0, abs=1e-15)
     assert held.play == pytest.approx(PLAY, rel=1e-9)
-    assert REFERENCE == pytest.approx(held.positions[np.argmin(np.abs(held.positions - REFERENCE))], abs=1e-15)
+    assert pytest.approx(held.positions[np.argmin(np.abs(held.positions - REFERENCE))], abs=1e-15) == REFERENCE
     for p in np.linspace(0, 0.5, 77):
         assert held.at(p) == pytest.approx(wanted_at(p) - PLAY / 2, abs=BETWEEN)
 
@@ -104,7 +104,7 @@ def test_ramp_is_that_of_linuxcnc() -> None:
 
 def test_linuxcnc_takes_256_points_and_no_more() -> None:
     many = fitted(known(), grid((0.0, 0.5), 0.5 / 256, 0.0), 0.0, 0.5 / 256)
-    with pytest.raises(InputError, match="257 points.* takes 256.*--every"):
+    with pytest.raises(InputError, match=r"257 points.* takes 256.*--every"):
         as_held(control("linuxcnc"), many)
 
 
@@ -194,7 +194,7 @@ def test_limits_of_points_and_slopes_are_kept() -> None:
     p = np.linspace(0.0, 0.5, 501)
     steep = fitted(Deviations(p, 0.02 * p, 0.02 * p), grid((0, 0.5), 0.01, 0.0), 0.0, 0.01)
     for form in ("sinumerik-enc", "sinumerik-cec", "heidenhain-csv"):
-        with pytest.raises(InputError, match="20 mm/m.*allows.*lead"):
+        with pytest.raises(InputError, match=r"20 mm/m.*allows.*lead"):
             as_held(control(form), steep)
     assert len(as_held(control("linuxcnc"), steep)) == 51  # which has no such limit
     with pytest.raises(InputError, match="check the units"):

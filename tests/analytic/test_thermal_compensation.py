@@ -7,10 +7,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from feeddrive.errors import InputError
-from feeddrive.thermal.full_model import full_model
-from feeddrive.thermal.rig import Body
-from feeddrive.thermal.warm_up import declared_rows, run
 from feeddrive.compensation.heat.thermal_error import LeftOver, left_over, table_error
 from feeddrive.compensation.heat.thermal_line import straight_line
 from feeddrive.compensation.heat.thermal_observer import Observation, thermal_observer
@@ -18,6 +14,10 @@ from feeddrive.compensation.heat.thermal_open_loop import compensation_model, mo
 from feeddrive.compensation.heat.thermal_sensors import Sensor
 from feeddrive.compensation.heat.thermal_trial import tried_machine
 from feeddrive.compensation.heat.thermal_unknowns import Unknowns
+from feeddrive.errors import InputError
+from feeddrive.thermal.full_model import full_model
+from feeddrive.thermal.rig import Body
+from feeddrive.thermal.warm_up import declared_rows, run
 from tests.analytic.thermal_compensation_cases import (
     BENCH,
     DUTY,

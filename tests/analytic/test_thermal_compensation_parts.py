@@ -7,11 +7,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from feeddrive.errors import InputError
-from feeddrive.thermal.expansion import fixed_fixed
-from feeddrive.thermal.full_model import full_model
-from feeddrive.thermal.rig import Body
-from feeddrive.thermal.warm_up import declared_rows
 from feeddrive.compensation.heat.thermal_augmented import Augmented, Row, Transition
 from feeddrive.compensation.heat.thermal_deviation import deviating
 from feeddrive.compensation.heat.thermal_error import table_error
@@ -21,6 +16,11 @@ from feeddrive.compensation.heat.thermal_placement import expected_deviation, pl
 from feeddrive.compensation.heat.thermal_sensors import Sensor, lagged, mountable_places
 from feeddrive.compensation.heat.thermal_trial import random_duty
 from feeddrive.compensation.heat.thermal_unknowns import Unknowns, stationary_step
+from feeddrive.errors import InputError
+from feeddrive.thermal.expansion import fixed_fixed
+from feeddrive.thermal.full_model import full_model
+from feeddrive.thermal.rig import Body
+from feeddrive.thermal.warm_up import declared_rows
 from feeddrive.typing import FloatArray
 from tests.analytic.thermal_compensation_cases import BENCH, ERROR, MODEL, RPM, STEP
 

@@ -40,7 +40,7 @@ def _load(_: CompensationTable, axis: str) -> tuple[str, ...]:
 LINUXCNC = Control(
     name="linuxcnc",
     title="LinuxCNC (COMP_FILE_TYPE 0)",
-    sign_rule="forward and reverse are actual positions, nominal + (actual - target); the control adds nominal - them",
+    sign_rule="forward, reverse = nominal + (actual - target), actual positions; the control adds nominal - actual",
     source="LinuxCNC src/emc/motion/command.c and control.c; docs/src/config/ini-config.adoc",
     resolution=1e-9,
     most_points=_MOST,
