@@ -73,11 +73,11 @@ class Watched(Shown):
 
     def listing(self) -> Listing:
         """One row per quantity: value at the end with its band, what it did, its limits."""
-        from feeddrive.report.trend_words import quantity_rows
+        from feeddrive.report.trend_words import quantity_rows, shown_quantities
 
         headings = ("quantity", "at first", "at last", "± one file", "what it did", "limits")
-        return Listing(self._title, headings, quantity_rows(self.trend), [_record(self.trend, one.name) for one in
-                                                                          self.trend.quantities])  # fmt: skip
+        records = [_record(self.trend, one.name) for one in shown_quantities(self.trend)]
+        return Listing(self._title, headings, quantity_rows(self.trend), records)
 
     @property
     def _title(self) -> str:
@@ -149,7 +149,7 @@ def watch(
         every: distance of the recordings, "1 day", where nothing tells their dates; they stand in the order of names.
         first: date of the first one, then.
         absolute: channels whose zero is kept from recording to recording, such as "table_position": an offset of the
-            table against the motor that moves is growth then.
+            table against the motor that moves is growth then. A plant's `[[sensor]]` may say `absolute = true` instead.
         limits: quantity to what it may move by, {"play": "10 µm", "coulomb": "20 %"}.
         search: diagnose the recordings before and after each change, which takes minutes; kept for the next time.
         progress: called with a word for what is being done.
@@ -166,7 +166,7 @@ def watch(
     target = Path(out) if out is not None else place.parent / f"{place.name or 'folder'}{PLACE}"
     options = Options(
         None if map is None else Path(map), decimal, stamp, read_moment(first, "first") if first else None,
-        None if every is None else _distance(every), _absolute(absolute), dict(limits or {}),
+        None if every is None else _distance(every), _absolute(absolute, plant), dict(limits or {}),
     )  # fmt: skip
     trend, kept = follow(plant.plant, plant.text, plant.entries, place, target, options, said)
     unknown = set(options.limits or {}) - {one.name for one in trend.quantities if one.watched}
@@ -187,12 +187,14 @@ def _distance(every: Quantity) -> timedelta:
     return timedelta(seconds=seconds)
 
 
-def _absolute(channels: str | tuple[str, ...] | list[str]) -> bool:
+def _absolute(channels: str | tuple[str, ...] | list[str], plant: Axis) -> bool:
+    """Whether the scale keeps its zero, by what is asked for or by what the plant's sensors declare."""
     given = [channels] if isinstance(channels, str) else list(channels)
     for one in given:
         if one not in ABSOLUTE:
             raise InputError(f'"{one}" has no zero to keep', "absolute", f"name {' or '.join(ABSOLUTE)}")
-    return "table_position" in given
+    declared = [sensor.channel for sensor in plant.plant.sensors if sensor.absolute]
+    return "table_position" in (*given, *declared)
 
 
 def _record(trend: Trend, name: str) -> dict[str, Any]:

@@ -83,6 +83,8 @@ def _moment(match: re.Match[str]) -> datetime | None:
 
 def _by_pattern(name: str, pattern: str) -> datetime:
     """A moment by a pattern of `strptime` that a part of the name meets, the longest part first."""
+    if not any(mark in pattern for mark in ("%d", "%j", "%c", "%x")):
+        raise InputError(f'the pattern "{pattern}" names no day', "stamp", "write it as for strptime: %Y%m%d_%H%M")
     for length in range(len(name), 0, -1):
         for begin in range(len(name) - length + 1):
             try:
