@@ -1,4 +1,4 @@
-"""Accuracy of an axis after ISO 230 from what was measured: tables of a laser or ball-bar, or recordings with a scale."""
+"""Accuracy of an axis after ISO 230, measured: tables of a laser or ball-bar, or recordings with a scale."""
 
 from __future__ import annotations
 

@@ -83,7 +83,9 @@ class Watched(Shown):
     def _title(self) -> str:
         trend = self.trend
         last = trend.when(float(trend.days[-1]))
-        return f"{self.axis.name}: {len(trend.used)} recordings from {trend.begin:%Y-%m-%d %H:%M} to {last:%Y-%m-%d %H:%M}"
+        return (
+            f"{self.axis.name}: {len(trend.used)} recordings from {trend.begin:%Y-%m-%d %H:%M} to {last:%Y-%m-%d %H:%M}"
+        )
 
     def record(self) -> dict[str, Any]:
         """Plain values for JSON, SI."""
@@ -95,13 +97,16 @@ class Watched(Shown):
                 for one, day in zip(trend.used, trend.days, strict=True)
             ],
             "not_used": [
-                {"file": one.key, "status": one.status, "reason": one.told} for one in trend.entries if one.status != USED
+                {"file": one.key, "status": one.status, "reason": one.told}
+                for one in trend.entries
+                if one.status != USED
             ],
             "quantities": [_record(trend, one.name) for one in trend.quantities],
             "events": [_event(trend, event, self.searched.get(i, "")) for i, event in enumerate(trend.events)],
             "odd": [{"quantity": name, "file": trend.used[i].key} for name, i in trend.odd],
             "growth": _growth(trend), "notes": list(trend.notes),
-            "seconds": {"reading": round(trend.seconds[0], 3), "all": round(trend.seconds[1], 3), "new_files": trend.fresh},
+            "seconds": {"reading": round(trend.seconds[0], 3), "all": round(trend.seconds[1], 3),
+                        "new_files": trend.fresh},
         }  # fmt: skip
 
     def save(self) -> Path:
@@ -254,4 +259,3 @@ def _growth(trend: Trend) -> dict[str, Any] | None:
 
 def _finite(value: float) -> float | None:
     return float(value) if math.isfinite(value) else None
-

@@ -110,7 +110,9 @@ def _share_words(share: PlantShare) -> str:
     """Which effects carry what is explained."""
     carried = {name: share.left.explains - one.explains for name, one in share.without.items()}
     order = sorted((name for name, value in carried.items() if value > 0.01), key=lambda name: -carried[name])
-    named = ", ".join(f"{name.replace('_', ' ')} {100 * carried[name]:.0f} %" for name in order) or "none of its effects"
+    named = (
+        ", ".join(f"{name.replace('_', ' ')} {100 * carried[name]:.0f} %" for name in order) or "none of its effects"
+    )
     creeps = (
         " Its friction is declared smooth in speed and lets the springs relax at rest: what they keep under friction "
         "(lost motion) is not in the plant's B."
@@ -127,7 +129,7 @@ def _method(found: Evaluated230) -> list[str]:
         return [
             "Deviation is actual minus target; s with n − 1; R↑ = 4 s↑; R = max(2 s↑ + 2 s↓ + |B|, R↑, R↓).",
             "A and E over both directions, M over the means of both, B the largest |mean↑ − mean↓|.",
-            "The measurement uncertainty that the standard asks for is that of the instrument and is not estimated here.",
+            "The uncertainty that the standard asks for is that of the instrument and is not estimated here.",
         ]
     if isinstance(found.test, DriftTest):
         return [

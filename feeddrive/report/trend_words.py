@@ -13,8 +13,8 @@ from feeddrive.trend.change_points import Found
 from feeddrive.trend.events import Change, Event
 from feeddrive.trend.limits import Limit
 from feeddrive.trend.quantities import Quantity
-from feeddrive.trend.watch import Trend
 from feeddrive.trend.warm_growth import Settles
+from feeddrive.trend.watch import Trend
 
 _CLOCK = 3.0
 """Days of recordings up to which dates are told with the time of day."""

@@ -1,12 +1,12 @@
 """Which courses a series holds, since when, and at what odds.
 
-Courses are added one after the other, the likeliest first, and moved to where they fit best beside the others; the set of
-highest evidence times prior odds is kept, and what no longer pays in it is dropped.
+Courses are added one after the other, the likeliest first, and moved to where they fit best beside the others; the
+set of highest evidence times prior odds is kept, and what no longer pays in it is dropped.
 
-Prior: in a whole watch one course of any kind, in any quantity, at any date, is as likely as none. So each of m candidates
-of a kind, of K kinds in Q quantities, has prior odds 1 / (Q K m). A Bayes factor exceeds c by chance with probability 1/c
-at most, at whatever moment one looks (J. Ville, 1939: it is a martingale where nothing changes), so that asserting at odds
-of 100 lets at most one watch in a hundred tell of a change that is none.
+Prior: in a whole watch one course of any kind, in any quantity, at any date, is as likely as none. So each of m
+candidates of a kind, of K kinds in Q quantities, has prior odds 1 / (Q K m). A Bayes factor exceeds c by chance with
+probability 1/c at most, at whatever moment one looks (J. Ville, 1939: it is a martingale where nothing changes), so
+that asserting at odds of 100 lets at most one watch in a hundred tell of a change that is none.
 """
 
 from __future__ import annotations
@@ -28,13 +28,13 @@ ASSERTED = 100.0
 
 KINDS = (JUMP, SLOPE, SETTLING, ODD)
 FEWEST = 8
-"""Recordings from which changes are looked for: two before, two after, and a scatter that is known to a third."""
+"""Recordings from which changes are looked for: two before, two after, and a scatter known to a third."""
 
 MOST = 12
 """Courses of one series at most; a machine on which more happened is told by its graph."""
 
 AHEAD = 2
-"""Courses that are added beyond the likeliest set before growing ends: a slow loss and a jump back pay together only."""
+"""Courses that are added beyond the likeliest set before growing ends: a loss and a jump back pay together only."""
 
 SWEEPS = 3
 """Times that all courses are moved beside the others; a sweep that moves none ends it."""
@@ -101,8 +101,8 @@ def course_of(series: Series, quantities: int) -> Course:
     band = np.sqrt(np.clip(np.einsum("ij,jk,ik->i", columns, spread, columns), 0, None))
     found = tuple(
         Found(
-            atom, search.odds_of(atoms, i), search.dates(atoms, i), float(mean[1 + i]), float(np.sqrt(spread[1 + i, 1 + i])),
-            search.time_constants(atoms, i),
+            atom, search.odds_of(atoms, i), search.dates(atoms, i), float(mean[1 + i]), float(np.sqrt(spread[1 + i, 1
+            + i])), search.time_constants(atoms, i),
         )
         for i, atom in enumerate(atoms)
     )  # fmt: skip
@@ -197,7 +197,9 @@ class _Search:
         about = np.log([atoms[i].time_constant for i in settling])
         simplex = np.vstack([about, *(about + 0.3 * row for row in np.eye(len(about)))])
         options = {"initial_simplex": simplex, "xatol": 1e-3, "fatol": 1e-2, "maxfev": 50 * len(about)}
-        return tried(minimize(lambda logs: -self.series.summed(tried(logs)), about, method="Nelder-Mead", options=options).x)
+        return tried(
+            minimize(lambda logs: -self.series.summed(tried(logs)), about, method="Nelder-Mead", options=options).x
+        )
 
     def odds_of(self, atoms: Sequence[Atom], place: int) -> float:
         """Odds of a course of any kind and date in the place of one, against none; 1e300 at most."""

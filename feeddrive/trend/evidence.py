@@ -4,9 +4,9 @@
 
     log p(y | X, K) = -1/2 log |K| - 1/2 log (1' K^-1 1) - (n-1)/2 log S0 - (n-1)/2 log(1 - n/(1+n) R^2) - k/2 log(1+n)
 
-S0 is the whitened sum of squares about the level, R^2 the share of it that the courses take. The prior of b holds as much
-information as one value (Zellner's g-prior, g = n; R. E. Kass and L. Wasserman, JASA 90, 1995), so that no size has to be
-set. Source of the closed form: F. Liang et al., Mixtures of g priors, JASA 103 (2008), eq. (5).
+S0 is the whitened sum of squares about the level, R^2 the share of it that the courses take. The prior of b holds as
+much information as one value (Zellner's g-prior, g = n; R. E. Kass and L. Wasserman, JASA 90, 1995): no size has to
+be set. Source of the closed form: F. Liang et al., Mixtures of g priors, JASA 103 (2008), eq. (5).
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class Timeline:
 
     @cached_property
     def white_tried(self) -> tuple[FloatArray, FloatArray]:
-        """Candidates in white noise, (h, n, m), and their squared lengths, (h, m); single precision: they are ranked."""
+        """Candidates in white noise, (h, n, m), and their squared lengths, (h, m); in single precision."""
         white = np.array([(one @ courses(self.tried, self.time)).astype(np.float32) for one in self.noise.whitening])
         return white, np.sum(white**2, axis=1, dtype=float)
 
@@ -121,15 +121,17 @@ class Series:
         count = len(self.values)
         level, about, size = self._about
         total = np.maximum(np.sum(about**2, axis=1), LEAST_LEFT)
-        columns = np.concatenate([level[:, :, None], self.line.noise.white(courses(list(atoms), self.line.time))], axis=2)
+        columns = np.concatenate(
+            [level[:, :, None], self.line.noise.white(courses(list(atoms), self.line.time))], axis=2
+        )
         basis, triangle = np.linalg.qr(columns)
         kept = np.abs(np.diagonal(triangle, axis1=1, axis2=2)) > 1e-9 * np.linalg.norm(columns, axis=1)
         basis = basis * kept[:, None, :]
         left = about - (basis @ (basis.transpose(0, 2, 1) @ about[:, :, None]))[:, :, 0]
         share = 1 - np.sum(left**2, axis=1) / total
         log = (
-            self.line.noise.log_prior - 0.5 * self.line.noise.log_determinant - 0.5 * np.log(size) - 0.5 * (count - 1) * np.log(total)
-            - 0.5 * (count - 1) * np.log(np.maximum(1 - count / (1 + count) * share, LEAST_LEFT))
+            self.line.noise.log_prior - 0.5 * self.line.noise.log_determinant - 0.5 * np.log(size) - 0.5 * (count - 1)
+            * np.log(total) - 0.5 * (count - 1) * np.log(np.maximum(1 - count / (1 + count) * share, LEAST_LEFT))
             - 0.5 * (np.sum(kept, axis=1) - 1) * np.log(1 + count)
         )  # fmt: skip
         return Parts(log, total, basis, left)

@@ -8,8 +8,8 @@
 | nu | share of the variance that wanders: lubrication, temperature of the hall |
 | tau | time within which it forgets |
 
-Neither nu nor tau is known: every model of a series is judged over all of a grid of them, and the size of K is integrated
-out. A series that wanders is thereby not taken for one that changes.
+Neither nu nor tau is known: every model of a series is judged over all of a grid of them, and the size of K is
+integrated out. A series that wanders is thereby not taken for one that changes.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from feeddrive.typing import FloatArray
 
 SHARES = (0.3, 0.6, 0.9)
 MEMORIES = (1.0, 3.0, 10.0, 30.0, 100.0)
-"""Of the wandering part, in usual distances of the recordings; half-decades from one file to as long as a year's half."""
+"""Of the wandering part, in usual distances of the recordings; half-decades from one file to half a year of days."""
 
 
 @dataclass(frozen=True, eq=False)

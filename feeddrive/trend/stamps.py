@@ -15,7 +15,8 @@ _NAME = re.compile(r"(?<!\d)(?P<year>(?:19|20)\d\d)[-_.]?(?P<month>0[1-9]|1[0-2]
                    + _TIME + r"(?!\d)")  # fmt: skip
 _ISO = re.compile(r"(?<!\d)(?P<year>(?:19|20)\d\d)-(?P<month>0[1-9]|1[0-2])-(?P<day>0[1-9]|[12]\d|3[01])"
                   r"(?:[T ](?P<hour>[01]\d|2[0-3]):(?P<minute>[0-5]\d)(?::(?P<second>[0-5]\d))?)?")  # fmt: skip
-_DOTTED = re.compile(r"(?<!\d)(?P<day>0?[1-9]|[12]\d|3[01])\.(?P<month>0?[1-9]|1[0-2])\.(?P<year>(?:19|20)\d\d)"
+_DOTTED = re.compile(r"(?<!\d)(?P<day>0?[1-9]|[12]\d|3[01])\.(?P<month>0?[1-9]|1[0-2])\."
+                     r"(?P<year>(?:19|20)\d\d)"
                      r"(?:[T ,;\t]+(?P<hour>[01]?\d|2[0-3]):(?P<minute>[0-5]\d)(?::(?P<second>[0-5]\d))?)?")  # fmt: skip
 _TOLD = re.compile(r"start|date|datum|time|zeit|record|created|stamp", re.IGNORECASE)
 _FILETIME = re.compile(r"Starttime of export\"?[\t;, ]+\"?(\d{17,19})(?!\d)")

@@ -73,7 +73,9 @@ def test_noise_of_a_grid_whitens_what_it_describes() -> None:
 def test_jump_and_slope_are_dated(line: Timeline) -> None:
     """A slope of -0.2 sigma a day from day 40 and a jump of 10 sigma back on day 80: either alone explains little."""
     t = line.time
-    found = found_in(line, 0.5 * np.random.default_rng(5).standard_normal(COUNT) - 0.1 * np.clip(t - 40, 0, None) + 5 * (t >= 80))
+    found = found_in(
+        line, 0.5 * np.random.default_rng(5).standard_normal(COUNT) - 0.1 * np.clip(t - 40, 0, None) + 5 * (t >= 80)
+    )
     kinds = {one.atom.kind: one for one in found.found}
     assert set(kinds) == {JUMP, SLOPE}
     assert kinds[JUMP].atom.date == 80

@@ -30,7 +30,9 @@ def test_page_table_and_json(folder: Path, capsys: pytest.CaptureFixture[str]) -
     shown = " ".join(capsys.readouterr().out.split())
     assert "Nothing changed in 3 recordings." in shown and "stiffness" in shown and "trend.html" in shown
     out = folder.parent / "days_watch"
-    assert {"trend.html", "trend.json", "trend.csv", "watch.npz", "trend_1.png"} <= {path.name for path in out.iterdir()}
+    assert {"trend.html", "trend.json", "trend.csv", "watch.npz", "trend_1.png"} <= {
+        path.name for path in out.iterdir()
+    }
     rows = (out / "trend.csv").read_text(encoding="utf-8").splitlines()
     assert rows[0].startswith("date,day [d],file,slope [m/m],play [m]") and len(rows) == 4
     assert main(["watch", str(folder), "--plant", plant, "--json"]) == 0

@@ -1,7 +1,7 @@
 """Changes of a machine that is recorded day by day are found, named and dated; where nothing changes nothing is told.
 
-The machine is that of `trend_machine`: closed form, sharing nothing with the package. Its sizes are those of a 5 kg cm^2
-drive with a 10 mm screw; day by day its drag scatters by 2 % and its lead by 1 µm/m, and strokes begin anywhere.
+The machine is that of `trend_machine`: closed form, sharing nothing with the package. Its sizes are those of a 5 kg
+cm^2 drive with a 10 mm screw; day by day its drag scatters by 2 % and its lead by 1 µm/m, and strokes begin anywhere.
 """
 
 from __future__ import annotations
@@ -111,7 +111,9 @@ def preload_and_jump(seed: int, begins: int, jumps: int, per_day: float) -> list
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("seed", "begins", "jumps", "per_day"), [(1, 70, 133, 0.0025), (2, 110, 40, 0.003), (3, 30, 160, 0.002)])
+@pytest.mark.parametrize(
+    ("seed", "begins", "jumps", "per_day"), [(1, 70, 133, 0.0025), (2, 110, 40, 0.003), (3, 30, 160, 0.002)]
+)
 def test_loss_of_preload_and_a_jump_of_backlash(
     axis: fd.Axis, seed: int, begins: int, jumps: int, per_day: float
 ) -> None:
@@ -160,7 +162,9 @@ def test_warm_up_seen_by_a_scale_of_a_micrometre(axis: fd.Axis, tmp_path: Path, 
     for number in range(250):
         hours = 12 * number / 250
         o, s = grown(hours)
-        state = machine.State(offset=o, slope=s, scale_step=1e-6, seed=1000 * seed + number, start=random.uniform(0, 3.7))
+        state = machine.State(
+            offset=o, slope=s, scale_step=1e-6, seed=1000 * seed + number, start=random.uniform(0, 3.7)
+        )
         moment = datetime(2026, 3, 1, 6) + timedelta(hours=hours)
         recording = machine.recording(state, seconds=5.0, channels=("motor_angle", "table_position"))
         write_recording(folder / f"w_{moment:%Y%m%d_%H%M%S}.csv", recording)
