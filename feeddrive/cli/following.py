@@ -12,6 +12,7 @@ from feeddrive.cli.output import escaped, table, warnings_as_lines
 from feeddrive.errors import InputError, printable
 from feeddrive.interface.axis import load
 from feeddrive.interface.watching import watch
+from feeddrive.report.trend_words import shown_quantities
 
 
 @dataclass(frozen=True)
@@ -51,7 +52,8 @@ def follow_and_tell(asked: Asked, as_json: bool) -> None:
     console = Console(soft_wrap=True, highlight=False)
     console.print(printable(found.verdict), markup=False)
     listing = found.listing()
-    console.print(table(listing.title, listing.headings, listing.rows), markup=False)
+    rows = [[one.name, *row[1:5]] for one, row in zip(shown_quantities(found.trend), listing.rows, strict=True)]
+    console.print(table(listing.title, listing.headings[:5], rows), markup=False)
     for note in found.trend.notes:
         console.print(printable(note), markup=False)
     waiting = sum(one.status != "used" for one in found.trend.entries)

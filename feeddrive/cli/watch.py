@@ -16,7 +16,9 @@ def command(
     out: Annotated[Path | None, typer.Option(help="Folder of the results; FOLDER_watch beside it if left out.")] = None,
     mapping: Annotated[Path | None, typer.Option("--map", help="Mapping file of foreign recordings.")] = None,
     decimal: Annotated[str, typer.Option(help="Decimal sign, where files do not tell.")] = "",
-    stamp: Annotated[str, typer.Option(help="Pattern of the date in names, '%Y%m%d_%H%M'; content or name tell else.")] = "",
+    stamp: Annotated[
+        str, typer.Option(help="Pattern of the date in names, '%Y%m%d_%H%M'; content or name tell else.")
+    ] = "",
     every: Annotated[str, typer.Option(help="Distance of recordings without dates, '1 day', in order of names.")] = "",
     first: Annotated[str, typer.Option(help="Date of the first of them, '2026-01-31 06:00'.")] = "",
     absolute: Annotated[
@@ -24,7 +26,8 @@ def command(
         typer.Option(help="Channel that keeps its zero, table_position: an offset that moves is growth then."),
     ] = None,
     limit: Annotated[
-        list[str] | None, typer.Option(help="What a quantity may move by: 'play=10 µm', 'coulomb=20 %'; again for others.")
+        list[str] | None,
+        typer.Option(help="What a quantity may move by: 'play=10 µm', 'coulomb=20 %'; again for others."),
     ] = None,
     search: Annotated[bool, typer.Option(help="Diagnose what is before and after each change; takes minutes.")] = False,
     as_json: JsonOption = False,
@@ -35,5 +38,7 @@ def command(
     """
     from feeddrive.cli.following import Asked, follow_and_tell
 
-    asked = Asked(folder, plant, out, mapping, decimal, stamp, every, first, tuple(absolute or ()), tuple(limit or ()), search)
+    asked = Asked(
+        folder, plant, out, mapping, decimal, stamp, every, first, tuple(absolute or ()), tuple(limit or ()), search
+    )
     follow_and_tell(asked, as_json)

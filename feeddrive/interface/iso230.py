@@ -1,4 +1,4 @@
-"""Accuracy of an axis after ISO 230 from what was measured: tables of a laser or ball-bar, or recordings with a scale."""
+"""Accuracy of an axis after ISO 230, measured: tables of a laser or ball-bar, or recordings with a scale."""
 
 from __future__ import annotations
 
@@ -93,9 +93,11 @@ class Iso230(Shown):
         Raises:
             InputError: the folder cannot be written.
         """
-        from feeddrive.report.iso230_page import write_iso230
+        from feeddrive.report.iso230_page import Evaluated230, write_iso230
 
-        return write_iso230(self, Path(folder))
+        shown = self.listing()
+        found = Evaluated230(self.name, self.part, shown.title, shown.rows, self.test, self.share, self.record())
+        return write_iso230(found, Path(folder))
 
     def _figures(self) -> Sequence[ReportFigure]:
         from feeddrive.report.figure_iso230 import iso230_figures

@@ -73,17 +73,19 @@ class Watched(Shown):
 
     def listing(self) -> Listing:
         """One row per quantity: value at the end with its band, what it did, its limits."""
-        from feeddrive.report.trend_words import quantity_rows
+        from feeddrive.report.trend_words import quantity_rows, shown_quantities
 
         headings = ("quantity", "at first", "at last", "± one file", "what it did", "limits")
-        return Listing(self._title, headings, quantity_rows(self.trend), [_record(self.trend, one.name) for one in
-                                                                          self.trend.quantities])  # fmt: skip
+        records = [_record(self.trend, one.name) for one in shown_quantities(self.trend)]
+        return Listing(self._title, headings, quantity_rows(self.trend), records)
 
     @property
     def _title(self) -> str:
         trend = self.trend
         last = trend.when(float(trend.days[-1]))
-        return f"{self.axis.name}: {len(trend.used)} recordings from {trend.begin:%Y-%m-%d %H:%M} to {last:%Y-%m-%d %H:%M}"
+        return (
+            f"{self.axis.name}: {len(trend.used)} recordings from {trend.begin:%Y-%m-%d %H:%M} to {last:%Y-%m-%d %H:%M}"
+        )
 
     def record(self) -> dict[str, Any]:
         """Plain values for JSON, SI."""
@@ -95,13 +97,16 @@ class Watched(Shown):
                 for one, day in zip(trend.used, trend.days, strict=True)
             ],
             "not_used": [
-                {"file": one.key, "status": one.status, "reason": one.told} for one in trend.entries if one.status != USED
+                {"file": one.key, "status": one.status, "reason": one.told}
+                for one in trend.entries
+                if one.status != USED
             ],
             "quantities": [_record(trend, one.name) for one in trend.quantities],
             "events": [_event(trend, event, self.searched.get(i, "")) for i, event in enumerate(trend.events)],
             "odd": [{"quantity": name, "file": trend.used[i].key} for name, i in trend.odd],
             "growth": _growth(trend), "notes": list(trend.notes),
-            "seconds": {"reading": round(trend.seconds[0], 3), "all": round(trend.seconds[1], 3), "new_files": trend.fresh},
+            "seconds": {"reading": round(trend.seconds[0], 3), "all": round(trend.seconds[1], 3),
+                        "new_files": trend.fresh},
         }  # fmt: skip
 
     def save(self) -> Path:
@@ -149,7 +154,7 @@ def watch(
         every: distance of the recordings, "1 day", where nothing tells their dates; they stand in the order of names.
         first: date of the first one, then.
         absolute: channels whose zero is kept from recording to recording, such as "table_position": an offset of the
-            table against the motor that moves is growth then.
+            table against the motor that moves is growth then. A plant's `[[sensor]]` may say `absolute = true` instead.
         limits: quantity to what it may move by, {"play": "10 µm", "coulomb": "20 %"}.
         search: diagnose the recordings before and after each change, which takes minutes; kept for the next time.
         progress: called with a word for what is being done.
@@ -166,7 +171,7 @@ def watch(
     target = Path(out) if out is not None else place.parent / f"{place.name or 'folder'}{PLACE}"
     options = Options(
         None if map is None else Path(map), decimal, stamp, read_moment(first, "first") if first else None,
-        None if every is None else _distance(every), _absolute(absolute), dict(limits or {}),
+        None if every is None else _distance(every), _absolute(absolute, plant), dict(limits or {}),
     )  # fmt: skip
     trend, kept = follow(plant.plant, plant.text, plant.entries, place, target, options, said)
     unknown = set(options.limits or {}) - {one.name for one in trend.quantities if one.watched}
@@ -187,12 +192,14 @@ def _distance(every: Quantity) -> timedelta:
     return timedelta(seconds=seconds)
 
 
-def _absolute(channels: str | tuple[str, ...] | list[str]) -> bool:
+def _absolute(channels: str | tuple[str, ...] | list[str], plant: Axis) -> bool:
+    """Whether the scale keeps its zero, by what is asked for or by what the plant's sensors declare."""
     given = [channels] if isinstance(channels, str) else list(channels)
     for one in given:
         if one not in ABSOLUTE:
             raise InputError(f'"{one}" has no zero to keep', "absolute", f"name {' or '.join(ABSOLUTE)}")
-    return "table_position" in given
+    declared = [sensor.channel for sensor in plant.plant.sensors if sensor.absolute]
+    return "table_position" in (*given, *declared)
 
 
 def _record(trend: Trend, name: str) -> dict[str, Any]:
@@ -252,4 +259,3 @@ def _growth(trend: Trend) -> dict[str, Any] | None:
 
 def _finite(value: float) -> float | None:
     return float(value) if math.isfinite(value) else None
-

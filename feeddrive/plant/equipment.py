@@ -11,7 +11,7 @@ from feeddrive.recording.channels import channel_unit
 
 SENSOR_KINDS = ("encoder", "scale", "tachometer", "current")
 SENSOR_PLACES = ("motor", "screw", "table")
-_SENSOR_KEYS = ("channel", "kind", "at", "resolution", "source")
+_SENSOR_KEYS = ("channel", "kind", "at", "resolution", "absolute", "source")
 _OF_HEAT = re.compile(r".*_temperature|table_growth_.*")
 _CONTROLLER_UNITS = {
     "position_gain": "1/s",
@@ -49,7 +49,10 @@ def _sensor(table: Table) -> Sensor:
         resolution = table.quantity("resolution", unit, f"{channel}.resolution")
     if resolution < 0:
         raise InputError("the resolution is negative", table.place("resolution"), "write it positive")
-    return Sensor(channel, table.choice("kind", SENSOR_KINDS), table.choice("at", SENSOR_PLACES), resolution)
+    absolute = table.entries.get("absolute", False)
+    if not isinstance(absolute, bool):
+        raise InputError(f"{absolute!r} is neither true nor false", table.place("absolute"), "write absolute = true")
+    return Sensor(channel, table.choice("kind", SENSOR_KINDS), table.choice("at", SENSOR_PLACES), resolution, absolute)
 
 
 def read_controller(top: Table) -> PositionVelocityController | DeclaredCascade | None:

@@ -30,6 +30,7 @@
     kind = "encoder"                 # encoder, scale, tachometer, current
     at = "motor"                     # motor, screw, table
     resolution = "1.5 µrad"          # may be left out
+    absolute = true                   # its zero is kept from recording to recording; may be left out
     [controller]
     kind = "position_velocity"
     position_gain = "160 1/s"

@@ -19,12 +19,20 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Sensor:
-    """A declared sensor: the channel that it writes, its kind, where it sits, its resolution [channel unit], or 0."""
+    """A declared sensor.
+
+    Attributes:
+        channel: that it writes.
+        kind, at: what it is, and where it sits.
+        resolution: [channel unit]; 0 where it is not declared.
+        absolute: whether its zero is the same in every recording.
+    """
 
     channel: str
     kind: str
     at: str
     resolution: float = 0.0
+    absolute: bool = False
 
 
 @dataclass(frozen=True)

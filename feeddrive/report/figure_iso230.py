@@ -25,7 +25,9 @@ _RIM = 0.35
 _COLOURS = (AFTER, BEFORE, "#009e73", "#cc79a7", "#7f7f00", MEASURED)
 
 
-def iso230_figures(test: LinearTest | DriftTest | CircleTest | Circular, share: PlantShare | None) -> list[ReportFigure]:
+def iso230_figures(
+    test: LinearTest | DriftTest | CircleTest | Circular, share: PlantShare | None
+) -> list[ReportFigure]:
     """The figures of a test, the standard's graph first."""
     if isinstance(test, LinearTest):
         drawn = [_linear(test)]
@@ -89,13 +91,15 @@ def _explained(test: LinearTest, share: PlantShare) -> ReportFigure:
     zero = float(np.mean([sides[name].mean - predicted[name] for name in sides]))
     for name, colour, label in (("up", AFTER, "along +"), ("down", BEFORE, "along −")):
         if name in sides:
-            axes.plot(1e3 * test.target, 1e6 * sides[name].mean, "o", color=colour, markersize=4, label=f"measured {label}")
+            measured = 1e6 * sides[name].mean
+            axes.plot(1e3 * test.target, measured, "o", color=colour, markersize=4, label=f"measured {label}")
             axes.plot(1e3 * test.target, 1e6 * (predicted[name] + zero), "-", color=colour, linewidth=1.2,
                       label=f"plant {label}")  # fmt: skip
     dress(axes, "target [mm]", "mean deviation [µm]")
     legend_above(axes, 4)
-    text = (f"The plant explains {100 * share.left.explains:.0f} % of the squared mean deviations; "
-            f"E {micrometres(share.measured.systematic)} of which {micrometres(share.left.systematic)} are left")  # fmt: skip
+    whole, left = micrometres(share.measured.systematic), micrometres(share.left.systematic)
+    explained = f"{100 * share.left.explains:.0f} %"
+    text = f"The plant explains {explained} of the squared mean deviations; E {whole} of which {left} are left"
     return ReportFigure("explained", "What the plant explains", text, figure)
 
 

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
 from feeddrive.files import write_bytes_atomically, write_text_atomically
+from feeddrive.metrology.circular import Circular
 from feeddrive.metrology.measured.measurements import CircleTest, DriftTest, LinearTest
 from feeddrive.metrology.measured.plant_share import PlantShare, Share
 from feeddrive.quantity import format_quantity
@@ -16,13 +19,32 @@ from feeddrive.report.html import page
 from feeddrive.report.markup import Cell, bullets, figure, number, paragraph, section, table, words
 from feeddrive.typing import FloatArray
 
-if TYPE_CHECKING:
-    from feeddrive.interface.iso230 import Iso230
-
 _TITLES = {2: "accuracy and repeatability of positioning", 3: "drift of an axis that warms itself", 4: "circular test"}
 
 
-def write_iso230(found: Iso230, folder: Path) -> Path:
+@dataclass(frozen=True, eq=False)
+class Evaluated230:
+    """A measured test, evaluated and ready to be written.
+
+    Attributes:
+        name, part: of what was measured, and of the standard (2, 3, 4).
+        title: name and standard.
+        rows: symbol and value of each figure, as shown.
+        test: what was measured; for one axis of a circle its figures.
+        share: what a plant explains; None without a plant.
+        record: content of the JSON.
+    """
+
+    name: str
+    part: int
+    title: str
+    rows: Sequence[Sequence[str]]
+    test: LinearTest | DriftTest | CircleTest | Circular
+    share: PlantShare | None
+    record: Mapping[str, Any]
+
+
+def write_iso230(found: Evaluated230, folder: Path) -> Path:
     """Write `iso230.json`, `report.html` and the figures into a folder.
 
     Raises:
@@ -32,15 +54,14 @@ def write_iso230(found: Iso230, folder: Path) -> Path:
     for picture in pictures:
         write_bytes_atomically(folder / f"{picture.stem}.png", picture.png)
     write_text_atomically(folder / "report.html", iso230_page(found, pictures))
-    write_text_atomically(folder / "iso230.json", json.dumps(found.record(), indent=2, ensure_ascii=False) + "\n")
+    write_text_atomically(folder / "iso230.json", json.dumps(found.record, indent=2, ensure_ascii=False) + "\n")
     return folder
 
 
-def iso230_page(found: Iso230, pictures: list[RenderedFigure]) -> str:
+def iso230_page(found: Evaluated230, pictures: list[RenderedFigure]) -> str:
     """The page as text."""
-    listing = found.listing()
     heads = [words("figure"), number("value")]
-    figures = table(heads, ([words(one), number(value)] for one, value in listing.rows))
+    figures = table(heads, ([words(one), number(value)] for one, value in found.rows))
     parts = [section("Graph", figure(pictures[0])), section("Figures", figures)]
     if isinstance(found.test, LinearTest):
         parts.append(section("Targets", _targets(found.test)))
@@ -48,7 +69,7 @@ def iso230_page(found: Iso230, pictures: list[RenderedFigure]) -> str:
         told = paragraph(_share_words(found.share))
         parts.append(section("What the plant explains", told, _shares(found.share), *map(figure, pictures[1:])))
     parts.append(section("How it was evaluated", bullets(_method(found))))
-    return page(f"{found.name}: {_TITLES[found.part]}", listing.title, "".join(parts))
+    return page(f"{found.name}: {_TITLES[found.part]}", found.title, "".join(parts))
 
 
 def _targets(test: LinearTest) -> str:
@@ -89,7 +110,9 @@ def _share_words(share: PlantShare) -> str:
     """Which effects carry what is explained."""
     carried = {name: share.left.explains - one.explains for name, one in share.without.items()}
     order = sorted((name for name, value in carried.items() if value > 0.01), key=lambda name: -carried[name])
-    named = ", ".join(f"{name.replace('_', ' ')} {100 * carried[name]:.0f} %" for name in order) or "none of its effects"
+    named = (
+        ", ".join(f"{name.replace('_', ' ')} {100 * carried[name]:.0f} %" for name in order) or "none of its effects"
+    )
     creeps = (
         " Its friction is declared smooth in speed and lets the springs relax at rest: what they keep under friction "
         "(lost motion) is not in the plant's B."
@@ -101,12 +124,12 @@ def _share_words(share: PlantShare) -> str:
     )
 
 
-def _method(found: Iso230) -> list[str]:
+def _method(found: Evaluated230) -> list[str]:
     if isinstance(found.test, LinearTest):
         return [
             "Deviation is actual minus target; s with n − 1; R↑ = 4 s↑; R = max(2 s↑ + 2 s↓ + |B|, R↑, R↓).",
             "A and E over both directions, M over the means of both, B the largest |mean↑ − mean↓|.",
-            "The measurement uncertainty that the standard asks for is that of the instrument and is not estimated here.",
+            "The uncertainty that the standard asks for is that of the instrument and is not estimated here.",
         ]
     if isinstance(found.test, DriftTest):
         return [

@@ -58,13 +58,15 @@ def trend_page(trend: Trend, searched: Mapping[int, str], title: str, pictures: 
         section("Files", paragraph(_counted(trend)), bullets(_unused(trend)), bullets(trend.notes)),
         section("How it was judged", bullets(_METHOD)),
     )
-    return page(title, "Recordings of one axis against its declared plant, compared at equal positions.", "".join(parts))
+    return page(
+        title, "Recordings of one axis against its declared plant, compared at equal positions.", "".join(parts)
+    )
 
 
 _METHOD = (
     "Odds compare a course (jump, slope, settling) with none, its size, the scatter and any wandering of the machine "
-    "integrated out, and count every date, kind and quantity that was tried. A change is told from 100 : 1: where nothing "
-    "changes, at most one watch in a hundred tells of one.",
+    "integrated out, and count every date, kind and quantity that was tried. A change is told from 100 : 1: where "
+    "nothing changes, at most one watch in a hundred tells of one.",
     "Limits from the first recordings are left by chance in one of a hundred steady years of 250 recordings.",
     "The band of a line is that of what was found; ± one file is the scatter of a single recording, 95 %.",
 )
@@ -103,8 +105,8 @@ def _odd(trend: Trend) -> list[str]:
 def _counted(trend: Trend) -> str:
     reading, whole = trend.seconds
     return (
-        f"{len(trend.used)} recordings are followed, {trend.fresh} of them or of those below read anew in {reading:.1f} s; "
-        f"{whole:.1f} s for all."
+        f"{len(trend.used)} recordings are followed. {trend.fresh} files were read anew, in {reading:.1f} s; all took "
+        f"{whole:.1f} s."
     )
 
 

@@ -13,8 +13,8 @@ from feeddrive.trend.change_points import Found
 from feeddrive.trend.events import Change, Event
 from feeddrive.trend.limits import Limit
 from feeddrive.trend.quantities import Quantity
-from feeddrive.trend.watch import Trend
 from feeddrive.trend.warm_growth import Settles
+from feeddrive.trend.watch import Trend
 
 _CLOCK = 3.0
 """Days of recordings up to which dates are told with the time of day."""
@@ -63,8 +63,7 @@ def course_words(quantity: Quantity, found: Found) -> str:
     if found.atom.kind == JUMP:
         return f"jumps by {size}"
     if found.atom.kind == SLOPE:
-        per, unit = (found.size * 30, "30 days") if abs(found.atom.date) >= 0 else (found.size, "day")
-        return f"changes by {signed(per, quantity.unit)} in {unit} more than before"
+        return f"changes by {signed(30 * found.size, quantity.unit)} in 30 days more than before"
     if found.atom.kind == ODD:
         return f"is {size} off in one recording"
     return f"settles by {size} with a time constant of {span_words(found.atom.time_constant)}"
@@ -91,14 +90,17 @@ def _settles(one: Settles, unit: str) -> str:
     return f"grows by {grown} with a time constant of {span_words(one.time_constant)} ({low} to {high})"
 
 
+def shown_quantities(trend: Trend) -> list[Quantity]:
+    """Those that a recording shows."""
+    return [one for one in trend.quantities if np.isfinite(one.values).any()]
+
+
 def quantity_rows(trend: Trend) -> list[list[str]]:
     """One row per quantity: first, last, scatter of a file, what it did, limits."""
     rows = []
-    for quantity in trend.quantities:
+    for quantity in shown_quantities(trend):
         here = quantity.values[np.isfinite(quantity.values)]
         course, limit = trend.courses.get(quantity.name), trend.limits.get(quantity.name)
-        if not len(here):
-            continue
         first, last = (here[0], here[-1]) if course is None else (course.fitted[0], course.fitted[-1])
         scatter = "" if course is None else f"± {size_words(1.96 * course.scatter, quantity.unit)}"
         did = "" if course is None else "; ".join(_dated(trend, quantity, one) for one in course.found) or "steady"

@@ -1,12 +1,12 @@
 """Which courses a series holds, since when, and at what odds.
 
-A course is added while the evidence summed over everything that could be added outweighs its prior; each is then moved to
-where it fits best beside the others, and dropped where it no longer pays.
+Courses are added one after the other, the likeliest first, and moved to where they fit best beside the others; the
+set of highest evidence times prior odds is kept, and what no longer pays in it is dropped.
 
-Prior: in a whole watch one course of any kind, in any quantity, at any date, is as likely as none. So each of m candidates
-of a kind, of K kinds in Q quantities, has prior odds 1 / (Q K m). A Bayes factor exceeds c by chance with probability 1/c
-at most, at whatever moment one looks (J. Ville, 1939: it is a martingale where nothing changes), so that asserting at odds
-of 100 lets at most one watch in a hundred tell of a change that is none.
+Prior: in a whole watch one course of any kind, in any quantity, at any date, is as likely as none. So each of m
+candidates of a kind, of K kinds in Q quantities, has prior odds 1 / (Q K m). A Bayes factor exceeds c by chance with
+probability 1/c at most, at whatever moment one looks (J. Ville, 1939: it is a martingale where nothing changes), so
+that asserting at odds of 100 lets at most one watch in a hundred tell of a change that is none.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import minimize
+from scipy.optimize import minimize, minimize_scalar
 from scipy.special import logsumexp
 
 from feeddrive.trend.atoms import JUMP, ODD, SETTLING, SLOPE, Atom
@@ -28,13 +28,19 @@ ASSERTED = 100.0
 
 KINDS = (JUMP, SLOPE, SETTLING, ODD)
 FEWEST = 8
-"""Recordings from which changes are looked for: two before, two after, and a scatter that is known to a third."""
+"""Recordings from which changes are looked for: two before, two after, and a scatter known to a third."""
 
 MOST = 12
 """Courses of one series at most; a machine on which more happened is told by its graph."""
 
-SWEEPS = 4
+AHEAD = 2
+"""Courses that are added beyond the likeliest set before growing ends: a loss and a jump back pay together only."""
+
+SWEEPS = 3
 """Times that all courses are moved beside the others; a sweep that moves none ends it."""
+
+LEAST_GAIN = 0.01
+"""Log evidence that a move has to bring: above what single precision leaves open."""
 
 
 @dataclass(frozen=True)
@@ -95,8 +101,8 @@ def course_of(series: Series, quantities: int) -> Course:
     band = np.sqrt(np.clip(np.einsum("ij,jk,ik->i", columns, spread, columns), 0, None))
     found = tuple(
         Found(
-            atom, search.odds_of(atoms, i), search.dates(atoms, i), float(mean[1 + i]), float(np.sqrt(spread[1 + i, 1 + i])),
-            search.time_constants(atoms, i),
+            atom, search.odds_of(atoms, i), search.dates(atoms, i), float(mean[1 + i]), float(np.sqrt(spread[1 + i, 1
+            + i])), search.time_constants(atoms, i),
         )
         for i, atom in enumerate(atoms)
     )  # fmt: skip
@@ -118,31 +124,45 @@ class _Search:
         return -np.log([self.quantities * len(KINDS) * many[atom.kind] for atom in tried])
 
     def grown(self) -> list[Atom]:
-        """Courses added one after the other while any pays."""
+        """The likeliest courses, added one after the other; opposite ones that hide each other are found together."""
+        best: list[Atom] = []
         atoms: list[Atom] = []
-        while len(atoms) < MOST:
-            now = float(logsumexp(self.series.evidence(atoms)))
-            more = self.series.with_one_more(atoms) + self.log_prior - now
-            if float(logsumexp(more)) < 0:
-                break
-            atoms.append(self.series.line.tried[int(np.argmax(more))])
-            atoms = self.refined(atoms)
-        return atoms
+        highest = self.likelihood(best)
+        while len(atoms) < min(MOST, len(best) + AHEAD):
+            more = self.series.with_one_more(atoms) + self.log_prior
+            atoms = self.moved(self.refined([*atoms, self.series.line.tried[int(np.argmax(more))]]))
+            reached = self.likelihood(atoms)
+            if reached > highest:
+                best, highest = list(atoms), reached
+        return best
 
-    def settled(self, atoms: list[Atom]) -> list[Atom]:
-        """Courses moved to where they fit best beside the others; those that no longer pay are dropped."""
-        for _ in range(SWEEPS):
+    def likelihood(self, atoms: Sequence[Atom]) -> float:
+        """Log of evidence times prior odds of a set of courses."""
+        return self.series.summed(atoms) + sum(map(self._prior_of, atoms))
+
+    def moved(self, atoms: list[Atom]) -> list[Atom]:
+        """Each course in turn where it fits best beside the others, until none moves."""
+        for _ in range(SWEEPS if len(atoms) > 1 else 0):
             before = list(atoms)
             for atom in before:
                 others = [one for one in atoms if one is not atom]
                 more = self.series.with_one_more(others) + self.log_prior
                 best = self.series.line.tried[int(np.argmax(more))]
-                held = float(logsumexp(self.series.evidence([*others, atom])))
-                pays = float(logsumexp(more)) > float(logsumexp(self.series.evidence(others)))
-                moved = float(np.max(more)) > held + self._prior_of(atom)
-                atoms = self.refined([*others, best if moved else atom]) if pays else others
-            if atoms == before:
+                held = self.series.summed([*others, atom]) + self._prior_of(atom)
+                better = float(np.max(more)) > held + LEAST_GAIN
+                atoms = self.refined([*others, best]) if better else [*others, atom]
+            if set(atoms) == set(before):
                 break
+        return self.polished(atoms)
+
+    def settled(self, atoms: list[Atom]) -> list[Atom]:
+        """Courses less those that no longer pay beside the others, the others moved again."""
+        while atoms:
+            odds = [self.odds_of(atoms, place) for place in range(len(atoms))]
+            if min(odds) >= 1:
+                break
+            del atoms[int(np.argmin(odds))]
+            atoms = self.moved(atoms)
         return atoms
 
     def _prior_of(self, atom: Atom) -> float:
@@ -150,9 +170,22 @@ class _Search:
         return -float(np.log(self.quantities * len(KINDS) * sum(one.kind == atom.kind for one in tried)))
 
     def refined(self, atoms: list[Atom]) -> list[Atom]:
-        """The courses with their best time constants, those that settle."""
+        """The last course, where it settles, with its best time constant beside the others."""
+        last = atoms[-1]
+        if last.kind != SETTLING:
+            return atoms
+
+        def worse(log: float) -> float:
+            return -self.series.summed([*atoms[:-1], replace(last, time_constant=float(np.exp(log)))])
+
+        about = float(np.log(last.time_constant))
+        best = minimize_scalar(worse, bounds=(about - 1.0, about + 1.0), method="bounded", options={"xatol": 1e-3})
+        return [*atoms[:-1], replace(last, time_constant=float(np.exp(best.x)))]
+
+    def polished(self, atoms: list[Atom]) -> list[Atom]:
+        """Time constants of several that settle, moved together."""
         settling = [i for i, atom in enumerate(atoms) if atom.kind == SETTLING]
-        if not settling:
+        if len(settling) < 2:
             return atoms
 
         def tried(logs: FloatArray) -> list[Atom]:
@@ -161,20 +194,19 @@ class _Search:
                 found[i] = replace(atoms[i], time_constant=float(np.exp(log)))
             return found
 
-        def worse(logs: FloatArray) -> float:
-            return -float(logsumexp(self.series.evidence(tried(logs))))
-
         about = np.log([atoms[i].time_constant for i in settling])
         simplex = np.vstack([about, *(about + 0.3 * row for row in np.eye(len(about)))])
-        options = {"initial_simplex": simplex, "xatol": 1e-4, "fatol": 1e-3, "maxfev": 60 * len(about)}
-        return tried(minimize(worse, about, method="Nelder-Mead", options=options).x)
+        options = {"initial_simplex": simplex, "xatol": 1e-3, "fatol": 1e-2, "maxfev": 50 * len(about)}
+        return tried(
+            minimize(lambda logs: -self.series.summed(tried(logs)), about, method="Nelder-Mead", options=options).x
+        )
 
     def odds_of(self, atoms: Sequence[Atom], place: int) -> float:
         """Odds of a course of any kind and date in the place of one, against none; 1e300 at most."""
         others = [atom for i, atom in enumerate(atoms) if i != place]
         more = self.series.with_one_more(others) + self.log_prior
-        alone = float(logsumexp(self.series.evidence(others)))
-        refined = float(logsumexp(self.series.evidence(atoms))) + self._prior_of(atoms[place])
+        alone = self.series.summed(others)
+        refined = self.series.summed(atoms) + self._prior_of(atoms[place])
         return float(np.exp(min(float(logsumexp([*more, refined])) - alone, 690.0)))
 
     def dates(self, atoms: Sequence[Atom], place: int) -> tuple[float, float]:
@@ -183,7 +215,7 @@ class _Search:
         others = [one for i, one in enumerate(atoms) if i != place]
         if atom.kind == SETTLING:
             near = [replace(atom, date=float(date)) for date in time[: len(time) - 2]]
-            logs = np.array([float(logsumexp(self.series.evidence([*others, one]))) for one in _around(near, atom)])
+            logs = np.array([self.series.summed([*others, one]) for one in _around(near, atom)])
             dates = np.array([one.date for one in _around(near, atom)])
         else:
             chosen = [i for i, one in enumerate(self.series.line.tried) if one.kind == atom.kind]
@@ -203,7 +235,7 @@ class _Search:
         spread = np.linspace(-1.0, 1.0, 9)
         for _ in range(3):  # narrower about what weighs
             tried = [replace(atom, time_constant=float(atom.time_constant * np.exp(s))) for s in spread]
-            logs = np.array([float(logsumexp(self.series.evidence([*others, one]))) for one in tried])
+            logs = np.array([self.series.summed([*others, one]) for one in tried])
             weighing = spread[logs > logs.max() - 8]
             low, high = float(weighing.min()), float(weighing.max())
             step = float(spread[1] - spread[0])

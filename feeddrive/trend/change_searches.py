@@ -1,4 +1,4 @@
-"""The full search, where the state changed and nowhere else: the last recording before a change against one after it."""
+"""The full search, where the state changed alone: the last recording before a change against one after it."""
 
 from __future__ import annotations
 
@@ -49,7 +49,9 @@ def beside(trend: Trend, event: Event, number: int) -> tuple[Entry | None, Entry
     used = trend.used
     later = [other.dates[0] for other in trend.events[number + 1 :] if other.dates[0] > event.dates[1]]
     before = np.flatnonzero((trend.days < event.dates[0]) & _with_passes(used))
-    after = np.flatnonzero((trend.days > event.dates[1]) & (trend.days < min(later, default=np.inf)) & _with_passes(used))
+    after = np.flatnonzero(
+        (trend.days > event.dates[1]) & (trend.days < min(later, default=np.inf)) & _with_passes(used)
+    )
     if event.kind == "jump" and len(after):
         after = after[:1]  # the next one; later ones may have other reasons
     return (used[before[-1]] if len(before) else None), (used[after[-1]] if len(after) else None)

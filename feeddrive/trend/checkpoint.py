@@ -22,7 +22,7 @@ NAME = "watch.npz"
 FORMAT = "feeddrive-watch/1"
 
 USED, COPY, BROKEN, WAITING, UNDATED = "used", "copy", "broken", "waiting", "undated"
-"""What becomes of a file; one that waits or has no date is asked again the next time."""
+"""What becomes of a file; one that waits is asked again the next time."""
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ def load_checkpoint(folder: Path, plant: str) -> tuple[Checkpoint, str]:
     if not path.is_file():
         return Checkpoint(plant), ""
     try:
-        with np.load(path, allow_pickle=False) as held:
+        with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as held:
             content = json.loads(bytes(held["index"]).decode())
             numbers: FloatArray = held["numbers"]
         if content["format"] != FORMAT:

@@ -1,4 +1,4 @@
-"""What happened to the machine: changes of several quantities at the same time are one event, named by what they share."""
+"""What happened to the machine: changes of quantities at the same time are one event, named by what they share."""
 
 from __future__ import annotations
 

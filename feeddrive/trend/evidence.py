@@ -4,9 +4,9 @@
 
     log p(y | X, K) = -1/2 log |K| - 1/2 log (1' K^-1 1) - (n-1)/2 log S0 - (n-1)/2 log(1 - n/(1+n) R^2) - k/2 log(1+n)
 
-S0 is the whitened sum of squares about the level, R^2 the share of it that the courses take. The prior of b holds as much
-information as one value (Zellner's g-prior, g = n; R. E. Kass and L. Wasserman, JASA 90, 1995), so that no size has to be
-set. Source of the closed form: F. Liang et al., Mixtures of g priors, JASA 103 (2008), eq. (5).
+S0 is the whitened sum of squares about the level, R^2 the share of it that the courses take. The prior of b holds as
+much information as one value (Zellner's g-prior, g = n; R. E. Kass and L. Wasserman, JASA 90, 1995): no size has to
+be set. Source of the closed form: F. Liang et al., Mixtures of g priors, JASA 103 (2008), eq. (5).
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ import numpy as np
 from scipy.special import logsumexp
 
 from feeddrive.trend.atoms import Atom, candidates, courses
-from feeddrive.trend.noise import Noise, noises
+from feeddrive.trend.noise import Noise, noise_of
 from feeddrive.typing import FloatArray
 
 LEAST_LEFT = 1e-12
@@ -39,9 +39,9 @@ class Timeline:
     variance: FloatArray
 
     @cached_property
-    def settings(self) -> tuple[Noise, ...]:
-        """The noise that may be."""
-        return noises(self.time, self.variance)
+    def noise(self) -> Noise:
+        """The noise that may be, h settings."""
+        return noise_of(self.time, self.variance)
 
     @cached_property
     def tried(self) -> tuple[Atom, ...]:
@@ -49,10 +49,27 @@ class Timeline:
         return candidates(self.time)
 
     @cached_property
-    def white_tried(self) -> tuple[FloatArray, ...]:
-        """Candidates in white noise, (n, m) for each setting, in single precision: they are only ranked."""
-        columns = courses(self.tried, self.time)
-        return tuple(noise.white(columns).astype(np.float32) for noise in self.settings)
+    def white_tried(self) -> tuple[FloatArray, FloatArray]:
+        """Candidates in white noise, (h, n, m), and their squared lengths, (h, m); in single precision."""
+        white = np.array([(one @ courses(self.tried, self.time)).astype(np.float32) for one in self.noise.whitening])
+        return white, np.sum(white**2, axis=1, dtype=float)
+
+
+@dataclass(frozen=True, eq=False)
+class Parts:
+    """A set of courses in white noise, one of each for every setting.
+
+    Attributes:
+        evidence: log p(y, K | atoms), (h,).
+        total: S0, (h,).
+        basis: orthonormal, of level and courses, (h, n, 1 + k).
+        left: what they leave of the values, (h, n).
+    """
+
+    evidence: FloatArray
+    total: FloatArray
+    basis: FloatArray
+    left: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,61 +85,69 @@ class Series:
     values: FloatArray
 
     def evidence(self, atoms: Sequence[Atom]) -> FloatArray:
-        """log p(y | atoms, K) for each setting of the noise, (h,)."""
-        return np.array([self._parts(atoms, noise)[0] for noise in self.line.settings])
+        """log p(y, K | atoms) for each setting of the noise, (h,)."""
+        return self._parts(atoms).evidence
+
+    def summed(self, atoms: Sequence[Atom]) -> float:
+        """log p(y | atoms), settings of the noise summed out."""
+        return float(logsumexp(self.evidence(atoms)))
 
     def with_one_more(self, atoms: Sequence[Atom]) -> FloatArray:
         """log p(y | atoms and one candidate), settings of the noise summed out, (m,)."""
         count = len(self.values)
         shrink = count / (1 + count)
-        found = np.empty((len(self.line.settings), len(self.line.tried)))
-        for row, (noise, white) in enumerate(zip(self.line.settings, self.line.white_tried, strict=True)):
-            given, total, basis, left = self._parts(atoms, noise)
-            inside = (basis.T.astype(np.float32) @ white).astype(float)
-            length = np.einsum("ij,ij->j", white, white, dtype=float)
-            beyond = length - np.sum(inside**2, axis=0)
-            possible = beyond > 1e-5 * length  # single precision
-            along = (left.astype(np.float32) @ white).astype(float)
-            gain = np.where(possible, along**2 / np.where(possible, beyond, 1.0), 0.0) / total
-            before = 1 - shrink * (1 - float(left @ left) / total)
-            after = np.clip(before - shrink * gain, LEAST_LEFT, None)
-            better = -0.5 * (count - 1) * (np.log(after) - np.log(before)) - 0.5 * np.log(1 + count)
-            found[row] = given + np.where(possible, better, -np.inf)
-        summed: FloatArray = logsumexp(found, axis=0)
+        given = self._parts(atoms)
+        white, length = self.line.white_tried
+        inside = given.basis.transpose(0, 2, 1).astype(np.float32) @ white
+        beyond = length - np.sum(inside**2, axis=1, dtype=float)
+        possible = beyond > 1e-5 * length  # single precision
+        along = (given.left[:, None, :].astype(np.float32) @ white)[:, 0, :].astype(float)
+        gain = np.where(possible, along**2 / np.where(possible, beyond, 1.0), 0.0) / given.total[:, None]
+        before = (1 - shrink * (1 - np.sum(given.left**2, axis=1) / given.total))[:, None]
+        after = np.clip(before - shrink * gain, LEAST_LEFT, None)
+        better = -0.5 * (count - 1) * (np.log(after) - np.log(before)) - 0.5 * np.log(1 + count)
+        summed: FloatArray = logsumexp(given.evidence[:, None] + np.where(possible, better, -np.inf), axis=0)
         return summed
 
-    def _parts(self, atoms: Sequence[Atom], noise: Noise) -> tuple[float, float, FloatArray, FloatArray]:
-        """Log evidence, S0, an orthonormal basis of level and courses, and what they leave, in white noise."""
+    @cached_property
+    def _about(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """In white noise, of each setting: the level, (h, n); the values less their level, (h, n); its size, (h,)."""
+        white = self.line.noise.white(np.column_stack([np.ones(len(self.values)), self.values]))
+        level, whole = white[:, :, 0], white[:, :, 1]
+        size = np.sum(level**2, axis=1)
+        return level, whole - level * (np.sum(level * whole, axis=1) / size)[:, None], size
+
+    def _parts(self, atoms: Sequence[Atom]) -> Parts:
         count = len(self.values)
-        level = noise.white(np.ones(count))
-        whole = noise.white(self.values)
-        size = float(level @ level)
-        about = whole - level * (float(level @ whole) / size)
-        total = max(float(about @ about), LEAST_LEFT)
-        columns = np.column_stack([level, noise.white(courses(list(atoms), self.line.time))])
+        level, about, size = self._about
+        total = np.maximum(np.sum(about**2, axis=1), LEAST_LEFT)
+        columns = np.concatenate(
+            [level[:, :, None], self.line.noise.white(courses(list(atoms), self.line.time))], axis=2
+        )
         basis, triangle = np.linalg.qr(columns)
-        kept = np.abs(np.diag(triangle)) > 1e-9 * np.linalg.norm(columns, axis=0)
-        basis = basis[:, kept]
-        left = about - basis @ (basis.T @ about)
-        share = 1 - float(left @ left) / total
+        kept = np.abs(np.diagonal(triangle, axis1=1, axis2=2)) > 1e-9 * np.linalg.norm(columns, axis=1)
+        basis = basis * kept[:, None, :]
+        left = about - (basis @ (basis.transpose(0, 2, 1) @ about[:, :, None]))[:, :, 0]
+        share = 1 - np.sum(left**2, axis=1) / total
         log = (
-            -0.5 * noise.log_determinant - 0.5 * np.log(size) - 0.5 * (count - 1) * np.log(total)
-            - 0.5 * (count - 1) * np.log(max(1 - count / (1 + count) * share, LEAST_LEFT))
-            - 0.5 * (int(kept.sum()) - 1) * np.log(1 + count)
+            self.line.noise.log_prior - 0.5 * self.line.noise.log_determinant - 0.5 * np.log(size) - 0.5 * (count - 1)
+            * np.log(total) - 0.5 * (count - 1) * np.log(np.maximum(1 - count / (1 + count) * share, LEAST_LEFT))
+            - 0.5 * (np.sum(kept, axis=1) - 1) * np.log(1 + count)
         )  # fmt: skip
-        return log, total, basis, left
+        return Parts(log, total, basis, left)
 
     def estimate(self, atoms: Sequence[Atom]) -> tuple[FloatArray, FloatArray, float]:
         """Level and sizes of the courses, (1 + k,), their covariance, and the scatter of a value about them.
 
         Over the settings of the noise, each by its evidence.
         """
-        weights = np.exp(self.evidence(atoms) - logsumexp(self.evidence(atoms)))
+        logs = self.evidence(atoms)
+        weights = np.exp(logs - logsumexp(logs))
         columns = np.column_stack([np.ones(len(self.values)), courses(list(atoms), self.line.time)])
         freedom = max(1, len(self.values) - columns.shape[1])
         sizes, spreads, scatters = [], [], []
-        for noise in self.line.settings:
-            white, y = noise.white(columns), noise.white(self.values)
+        for whitening in self.line.noise.whitening:
+            white, y = whitening @ columns, whitening @ self.values
             inverse = np.linalg.pinv(white.T @ white)
             size = inverse @ (white.T @ y)
             variance = float(np.sum((y - white @ size) ** 2)) / freedom

@@ -1,4 +1,4 @@
-"""Limits of what is watched: those that a person gives, that a plant file's tolerance sets, or that the first weeks show."""
+"""Limits of what is watched: given by a person, set by a plant file's tolerance, or shown by the first weeks."""
 
 from __future__ import annotations
 
@@ -47,7 +47,12 @@ class Limit:
 
 
 def limit_of(
-    quantity: Quantity, course: Course, days: FloatArray, given: Mapping[str, str], entries: Mapping[str, Any], watched: int
+    quantity: Quantity,
+    course: Course,
+    days: FloatArray,
+    given: Mapping[str, str],
+    entries: Mapping[str, Any],
+    watched: int,
 ) -> Limit | None:
     """The limits of a quantity; None where nothing sets any.
 

@@ -8,8 +8,8 @@
 | nu | share of the variance that wanders: lubrication, temperature of the hall |
 | tau | time within which it forgets |
 
-Neither nu nor tau is known: every model of a series is judged over all of a grid of them, and the size of K is integrated
-out. A series that wanders is thereby not taken for one that changes.
+Neither nu nor tau is known: every model of a series is judged over all of a grid of them, and the size of K is
+integrated out. A series that wanders is thereby not taken for one that changes.
 """
 
 from __future__ import annotations
@@ -23,28 +23,30 @@ from feeddrive.typing import FloatArray
 
 SHARES = (0.3, 0.6, 0.9)
 MEMORIES = (1.0, 3.0, 10.0, 30.0, 100.0)
-"""Of the wandering part, in usual distances of the recordings; half-decades from one file to as long as a year's half."""
+"""Of the wandering part, in usual distances of the recordings; half-decades from one file to half a year of days."""
 
 
 @dataclass(frozen=True, eq=False)
 class Noise:
-    """One setting of the grid.
+    """All settings of the grid, h of them.
 
     Attributes:
-        factor: lower Cholesky factor of K, (n, n).
-        log_determinant: of K.
+        whitening: inverse of the lower Cholesky factor of each K, (h, n, n).
+        log_determinant: of each K, (h,).
+        log_prior: of each setting, (h,): a machine that does not wander is as likely as one that does in any way.
     """
 
-    factor: FloatArray
-    log_determinant: float
+    whitening: FloatArray
+    log_determinant: FloatArray
+    log_prior: FloatArray
 
     def white(self, columns: FloatArray) -> FloatArray:
-        """Columns, (n,) or (n, k), as they are where the noise is white and of size one."""
-        found: FloatArray = solve_triangular(self.factor, columns, lower=True, check_finite=False)
+        """Columns, (n, k), as they are where the noise is white and of size one, (h, n, k)."""
+        found: FloatArray = self.whitening @ columns
         return found
 
 
-def noises(time: FloatArray, variance: FloatArray) -> tuple[Noise, ...]:
+def noise_of(time: FloatArray, variance: FloatArray) -> Noise:
     """The settings of the grid.
 
     Args:
@@ -54,9 +56,11 @@ def noises(time: FloatArray, variance: FloatArray) -> tuple[Noise, ...]:
     usual = float(np.median(np.diff(time)))
     apart = np.abs(time[:, None] - time[None, :]) / usual
     settings = [(0.0, 1.0), *((share, memory) for share in SHARES for memory in MEMORIES)]
-    found = []
+    inverses, logs = [], []
     for share, memory in settings:
         wandering = share * np.exp(-apart / memory) if share else 0.0
         factor = cholesky(np.diag((1 - share) * variance) + wandering, lower=True)
-        found.append(Noise(factor, 2 * float(np.sum(np.log(np.diag(factor))))))
-    return tuple(found)
+        inverses.append(solve_triangular(factor, np.eye(len(time)), lower=True))
+        logs.append(2 * float(np.sum(np.log(np.diag(factor)))))
+    prior = np.log([0.5, *([0.5 / (len(settings) - 1)] * (len(settings) - 1))])
+    return Noise(np.array(inverses), np.array(logs), prior)

@@ -2,10 +2,11 @@
 
     minimise  sum_i |y_i - A_i theta_i - B_i beta|^2 + sum_i |s theta_i / w|^2        over theta_i, beta
 
-With the triangle [R11 R12 z1; 0 R22 z2] of recording i the maps see R22, z2 alone, and theta_i follows from R11 theta_i =
-z1 - R12 beta: the sum over hundreds of recordings is one small least-squares problem. A level or slope that a map could hold
-as well as a term is the term's (maps have mean zero over their places, that of the lead slope zero too). The last sum is a weak prior
-of width w, so that a recording that does not show a term says nothing of it and not anything.
+With the triangle [R11 R12 z1; 0 R22 z2] of recording i the maps see R22, z2 alone, and theta_i follows from R11
+theta_i = z1 - R12 beta: hundreds of recordings are one small least-squares problem. A level or slope that a map
+could hold as well as a term is the term's (maps have mean zero over their places, that of the lead slope zero too).
+The last sum is a weak prior of width w, so that a recording that does not show a term says nothing of it and not
+anything.
 """
 
 from __future__ import annotations
@@ -19,8 +20,8 @@ from feeddrive.trend.regressors import TERMS, Grid, Pass
 from feeddrive.typing import FloatArray
 
 INFLATION = 30.0
-"""Samples that tell as much as one of white noise: what is left is a fault of the model, alike over a good part of a stroke.
-Sets how a prior weighs against rows, no result."""
+"""Samples that tell as much as one of white noise: what is left is a fault of the model, alike over a good part of a
+stroke. Sets how a prior weighs against rows, no result."""
 
 SHOWN = 0.5
 """Share of the prior's width below which a term is told by a recording: its rows say more than the prior does."""
@@ -96,9 +97,7 @@ def _placed(one: Pass, low: int, hats: int) -> FloatArray:
     return np.concatenate([at, hats + at])
 
 
-def _maps(
-    passes: Sequence[Pass], count: int, low: int, hats: int, places: FloatArray, middle: float
-) -> FloatArray:
+def _maps(passes: Sequence[Pass], count: int, low: int, hats: int, places: FloatArray, middle: float) -> FloatArray:
     """The common maps, (2 hats,)."""
     rows, right = [], []
     for one in passes:

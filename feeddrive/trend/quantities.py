@@ -118,7 +118,8 @@ def _travel(terms: _Terms, plant: Plant, grid: Grid, absolute: bool) -> list[Qua
         found.append(Quantity("offset", "table against motor at position 0", "m", zero - zero[np.isfinite(zero)][0],
                               offset[1], ("structure_growth",)))  # fmt: skip
     found.append(Quantity("slope", "travel per length beyond the lead", "m/m", slope[0], slope[1],
-                          ("thermal_growth", "lead_error_cumulative"), "effect.lead_error_cumulative.slope"))  # fmt: skip
+                          ("thermal_growth", "lead_error_cumulative"),
+                          "effect.lead_error_cumulative.slope"))  # fmt: skip
     found.append(Quantity("play", "backlash (play of the transmission)", "m", play[0], play[1],
                           ("backlash", "preload_loss"), "effect.backlash.width"))  # fmt: skip
     if plant.chain.elastic:

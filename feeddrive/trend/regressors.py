@@ -42,7 +42,7 @@ SETTLED_WAY = 0.2e-3
 """Way of the motor after a reversal [m]: several times any play, wind-up and presliding distance (some 10 µm each)."""
 
 SETTLED_PERIODS = 3.0
-"""Time after a change of the force's sign, in periods of the band's edge: its filter has forgotten the crossing then."""
+"""Time after a change of the force's sign, in periods of the band's edge: its filter has forgotten it then."""
 
 MAP_CELLS = 24
 """Cells of the maps over the stroke: finer than any smooth lead or friction curve, and 50 values beside the terms."""
@@ -152,7 +152,9 @@ class _Columns:
         if channel == "motor_torque":
             rest, explained = rest / radius, predicted[used] / radius
         else:
-            explained = predicted[used] - radius * evidence.band.filter(evidence.motion.angle[evidence.motion.samples])[used]
+            explained = (
+                predicted[used] - radius * evidence.band.filter(evidence.motion.angle[evidence.motion.samples])[used]
+            )
         declared = _regularised(terms, explained)
         first, hats, maps = _hats(position, self.grid, np.sign(speed[used]))
         triangle = np.linalg.qr(np.column_stack([terms, maps, rest]), mode="r")
@@ -222,5 +224,3 @@ def _hats(position: FloatArray, grid: Grid, side: FloatArray) -> tuple[int, int,
     columns[rows, below - first] = 1 - share
     columns[rows, below - first + 1] = share
     return first, hats, np.column_stack([columns, columns * side[:, None]])
-
-

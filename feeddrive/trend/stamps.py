@@ -15,7 +15,8 @@ _NAME = re.compile(r"(?<!\d)(?P<year>(?:19|20)\d\d)[-_.]?(?P<month>0[1-9]|1[0-2]
                    + _TIME + r"(?!\d)")  # fmt: skip
 _ISO = re.compile(r"(?<!\d)(?P<year>(?:19|20)\d\d)-(?P<month>0[1-9]|1[0-2])-(?P<day>0[1-9]|[12]\d|3[01])"
                   r"(?:[T ](?P<hour>[01]\d|2[0-3]):(?P<minute>[0-5]\d)(?::(?P<second>[0-5]\d))?)?")  # fmt: skip
-_DOTTED = re.compile(r"(?<!\d)(?P<day>0?[1-9]|[12]\d|3[01])\.(?P<month>0?[1-9]|1[0-2])\.(?P<year>(?:19|20)\d\d)"
+_DOTTED = re.compile(r"(?<!\d)(?P<day>0?[1-9]|[12]\d|3[01])\.(?P<month>0?[1-9]|1[0-2])\."
+                     r"(?P<year>(?:19|20)\d\d)"
                      r"(?:[T ,;\t]+(?P<hour>[01]?\d|2[0-3]):(?P<minute>[0-5]\d)(?::(?P<second>[0-5]\d))?)?")  # fmt: skip
 _TOLD = re.compile(r"start|date|datum|time|zeit|record|created|stamp", re.IGNORECASE)
 _FILETIME = re.compile(r"Starttime of export\"?[\t;, ]+\"?(\d{17,19})(?!\d)")
@@ -83,6 +84,8 @@ def _moment(match: re.Match[str]) -> datetime | None:
 
 def _by_pattern(name: str, pattern: str) -> datetime:
     """A moment by a pattern of `strptime` that a part of the name meets, the longest part first."""
+    if not any(mark in pattern for mark in ("%d", "%j", "%c", "%x")):
+        raise InputError(f'the pattern "{pattern}" names no day', "stamp", "write it as for strptime: %Y%m%d_%H%M")
     for length in range(len(name), 0, -1):
         for begin in range(len(name) - length + 1):
             try:

@@ -137,13 +137,19 @@ def follow(
         InputError: no folder, or no recording in it that can be used.
     """
     begun = time.monotonic()
-    identity = hashlib.sha256(repr((text, str(options.mapping), options.decimal)).encode()).hexdigest()
+    identity = _identity(text, options)
     kept, remark = load_checkpoint(out, identity)
     kept, fresh, notes = _read_new(plant, folder, out, options, kept, said)
     reading = time.monotonic() - begun
     said("comparing at equal positions")
-    trend = _trend(plant, entries, options, kept, (remark, *notes))
+    trend = trend_of(plant, entries, options, kept, (remark, *notes))
     return replace(trend, seconds=(reading, time.monotonic() - begun), fresh=fresh), kept
+
+
+def _identity(text: str, options: Options) -> str:
+    """Checksum of all that decides what is kept of a file."""
+    of_dates = (options.stamp, options.every is None)
+    return hashlib.sha256(repr((text, str(options.mapping), options.decimal, of_dates)).encode()).hexdigest()
 
 
 def _read_new(
@@ -177,7 +183,7 @@ def _read_new(
 
 def _known(entry: Entry | None, source: Source) -> bool:
     """Whether a file was read as it is."""
-    if entry is None or entry.status in (WAITING, UNDATED):
+    if entry is None or entry.status == WAITING:
         return False
     return (entry.size, entry.changed) == (source.size, source.changed)
 
@@ -232,9 +238,21 @@ def _dated(kept: Checkpoint, options: Options) -> list[tuple[datetime, Entry]]:
     return sorted(found, key=lambda pair: (pair[0], pair[1].key))
 
 
-def _trend(
+def trend_of(
     plant: Plant, declared: Mapping[str, Any], options: Options, kept: Checkpoint, notes: tuple[str, ...]
 ) -> Trend:
+    """What all recordings that were passed say.
+
+    Args:
+        plant: as declared.
+        declared: entries of the plant file, for tolerances.
+        options: how the folder is to be understood.
+        kept: all passes.
+        notes: what is to be said beside.
+
+    Raises:
+        InputError: no recording can be used.
+    """
     dated = _dated(kept, options)
     if not dated:
         reasons = sorted({one.told for one in kept.entries.values()})

@@ -102,8 +102,8 @@ PRINTED_DOWN = """-10.00009902 -10.00009402 -10.00008202 -10.00009102 -10.000094
 PRINTED = {"B": 1.22, "mean B": 0.54, "M": 2.77, "R": 6.882, "E↑": 2.46, "E↓": 3.3, "R↑": 5.033, "R↓": 6.29,
            "A↑": 6.428, "A↓": 8.881}  # fmt: skip
 """10^-5 mm. Report of an acceptance test of a motion system at the Paul Scherrer Institute, 8 December 2023 (repository
-paulscherrerinstitute/ecmccfg, examples/test/fat_sat/report.md). Its R is that of the table over positions, R(5); what it
-prints in bold for R, E and A of both directions takes the worse direction, which is not the standard's definition."""
+paulscherrerinstitute/ecmccfg, examples/test/fat_sat/report.md). Its R here is that of its table over positions, R(5);
+what it prints in bold for R, E and A of both directions takes the worse direction, which is not the standard's."""
 
 
 def test_printed_example(tmp_path: Path) -> None:
@@ -150,7 +150,7 @@ def test_drift_in_rows(tmp_path: Path) -> None:
     rows += [f"{t + late},{place},{0.1 * (t + late) * (1 + place / 100)}" for t in range(0, 201, 5)
              for late, place in ((0, 0), (1, 100))]  # fmt: skip
     found = fd.iso230(written(tmp_path, "\n".join(rows) + "\n"), stop="199 min").figures_si()
-    # straight lines in time: interpolation is exact; from the first common time, 5 min, to the last before the stop, 195
+    # straight lines in time: interpolation is exact; common times of the first target are 5 to 200 min
     assert found["range at 0 mm, whole test"] == pytest.approx(0.1e-6 * 195, rel=1e-12)
     assert found["range at 100 mm, whole test"] == pytest.approx(0.2e-6 * 195, rel=1e-12)
 
@@ -261,9 +261,7 @@ def test_circle_of_one_axis_with_its_run_up() -> None:
 def test_what_makes_no_test_is_refused_in_one_line(tmp_path: Path, text: str, said: str) -> None:
     with pytest.raises(fd.InputError, match=said) as told:
         fd.iso230(written(tmp_path, text))
-    assert "\n" not in str(told.value) and "table.csv" in str(told.value) or "ISO 230" in str(told.value) or (
-        "stop" in str(told.value) or "circular" in str(told.value)
-    )
+    assert "\n" not in str(told.value)
 
 
 PLANT = """format = "feeddrive-plant/1"
@@ -309,6 +307,12 @@ def test_page_holds_graph_and_figures(tmp_path: Path) -> None:
     axis = fd.load(written(tmp_path, PLANT, "plant.toml"))
     fd.iso230(staircase(30e-6, 4e-6), plant=axis).save(tmp_path / "out")
     page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
-    for word in ("Bidirectional accuracy", "What the plant explains", "16 µm", "lead error cumulative", "data:image/png"):
+    for word in (
+        "Bidirectional accuracy",
+        "What the plant explains",
+        "16 µm",
+        "lead error cumulative",
+        "data:image/png",
+    ):
         assert word in page, word
     assert (tmp_path / "out" / "iso230.json").is_file() and (tmp_path / "out" / "positioning.png").is_file()

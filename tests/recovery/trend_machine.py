@@ -34,7 +34,7 @@ lead = "{LEAD * 1e3} mm"
 inertia = "{0.2 * INERTIA} kg m^2"
 
 [transmission]
-torsional_stiffness = "20000 N m/rad"
+torsional_stiffness = "400000 N m/rad"
 torsional_damping = "0.1 N m s/rad"
 axial_stiffness = "{STIFFNESS * 1e-6} N/µm"
 axial_damping = "8000 N s/m"

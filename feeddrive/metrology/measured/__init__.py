@@ -1,1 +1,1 @@
-"""Metrology of measurements: tables of a laser or ball-bar, and recordings with a scale, brought to the standards' forms."""
+"""Metrology of measurements: tables of a laser or ball-bar, and recordings with a scale."""

@@ -3,7 +3,7 @@
 | part | columns | remarks |
 |---|---|---|
 | -2 | `target`, `direction` (+1, -1), `deviation` or `position`; runs in their order, or numbered by `run` | |
-| -2 | `target`, `up 1`, `down 1`, `up 2`, ... : deviations (µm and below) or positions, see `# readings = positions` | |
+| -2 | `target`, `up 1`, `down 1`, `up 2`, ... : deviations, or positions | `# readings = positions` |
 | -3 | `time`, `target`, `deviation` | `# stop = 240 min`, when the axis stops |
 | -3 | `time`, `at 0 mm`, `at 250 mm`, ... : deviations | `# stop = 240 min` |
 | -4 | `angle`, `radius` or `radial` (radius less nominal), perhaps `direction` (+1 counter-clockwise) | `# radius` |
@@ -20,8 +20,8 @@ import re
 import numpy as np
 
 from feeddrive.errors import InputError
-from feeddrive.metrology.measured.readings import Readings
 from feeddrive.metrology.measured.measurements import CircleTest, DriftTest, LinearTest
+from feeddrive.metrology.measured.readings import Readings
 from feeddrive.quantity import parse
 from feeddrive.typing import FloatArray
 

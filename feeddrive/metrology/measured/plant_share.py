@@ -1,15 +1,16 @@
 """What of E, M and B a plant explains, and by which of its effects.
 
 The plant's motor goes to the targets as a control with a motor encoder sends it, from both sides, and the table's
-deviation is read at rest: lead errors, growth, play, and what the springs give way under the friction left at a stop. The
-same without one effect says what that effect explains. The zero of a scale is free: the mean difference of measured and
-predicted deviations is no error.
+deviation is read at rest: lead errors, growth, play, and what the springs give way under the friction left at a stop.
+The same without one effect says what that effect explains. The zero of a scale is free: the mean difference of
+measured and predicted deviations is no error.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -59,7 +60,8 @@ class PlantShare:
         left: of the measurement less the plant's deviations.
         without: label of an effect to what is left where the plant lacks it.
         up, down: the plant's deviations, (m,) [m].
-        creeps: whether declared friction at the table is smooth in speed, so that it lets a wound-up spring relax at rest:
+        creeps: whether declared friction at the table is smooth in speed, so that it lets a wound-up spring relax at
+        rest:
             the plant then has no lost motion of its springs, where a bristle would keep it.
     """
 
@@ -90,7 +92,9 @@ def plant_share(test: LinearTest, plant: Plant) -> PlantShare:
     for effect in plant.effects:
         fewer = _without(plant, effect)
         if fewer is not None:
-            without[effect.label or effect.name] = _share(test, test.less(*fewer_deviations(fewer, test.target, up, down)))
+            without[effect.label or effect.name] = _share(
+                test, test.less(*fewer_deviations(fewer, test.target, up, down))
+            )
     return PlantShare(
         _share(test, zero), _share(test, alone), _share(test, test.less(up, down)), without, up, down, _creeps(plant)
     )  # fmt: skip
@@ -101,7 +105,9 @@ def _creeps(plant: Plant) -> bool:
     return smooth and not any(one.name == "presliding" for one in plant.effects)
 
 
-def fewer_deviations(plant: Plant, target: FloatArray, up: FloatArray, down: FloatArray) -> tuple[FloatArray, FloatArray]:
+def fewer_deviations(
+    plant: Plant, target: FloatArray, up: FloatArray, down: FloatArray
+) -> tuple[FloatArray, FloatArray]:
     """Deviations of a plant with an effect less; those given where it cannot be followed without the effect."""
     try:
         return predicted_deviations(plant, target)
@@ -120,7 +126,9 @@ def _without(plant: Plant, effect: Effect) -> Plant | None:
 def _share(test: LinearTest, left: LinearTest) -> Share:
     before, after = _means(test), _means(left)
     power = float(np.sum(before**2))
-    explains = round(1 - float(np.sum(after**2)) / power, 9) + 0.0 if power > 0 else 0.0  # + 0.0: no minus before a zero
+    explains = (
+        round(1 - float(np.sum(after**2)) / power, 9) + 0.0 if power > 0 else 0.0
+    )  # + 0.0: no minus before a zero
     both = left.both
     if both is None:
         (side,) = left.sides.values()
@@ -161,7 +169,7 @@ def _staircase(places: FloatArray, radius: float) -> tuple[FloatArray, Sequence[
     rest = round(DWELL / SAMPLE)
     angle, read = [np.full(rest, places[0])], [slice(rest // 2, rest)]
     begun = rest
-    for one, other in zip(places[:-1], places[1:], strict=True):
+    for one, other in pairwise(places):
         # a minimum-jerk move is 1.875 times as fast in its middle as on average
         count = round(max(LEAST_MOVE, 1.875 * abs(other - one) * radius / SPEED) / SAMPLE)
         s = np.arange(1, count + 1) / count

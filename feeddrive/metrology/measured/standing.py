@@ -1,8 +1,8 @@
 """Tests of ISO 230 from recordings with a scale: where the axis stood, which way it came, how far it was off.
 
-The target is the set-point; without one it is what the motor's encoder says, lead / 2 pi times its angle, which is where
-a control without a scale believes the table to be. The deviation is that of the scale, averaged over the second half of
-a stop.
+The target is the set-point; without one it is what the motor's encoder says, lead / 2 pi times its angle, which is
+where a control without a scale believes the table to be. The deviation is that of the scale, averaged over the second
+half of a stop.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ from feeddrive.recording import Recording
 from feeddrive.typing import FloatArray
 
 SHORTEST_STOP = 0.1
-"""Of the set-point [s]: half of it is averaged, which is a few periods of the slowest mode of an axis, 40 Hz and more."""
+"""Of the set-point [s]: half of it is averaged, a few periods of the slowest mode of an axis, 40 Hz and more."""
 
 SLOWEST = 1e-3
 """Speed of the motor's position below which an axis without a set-point stands [m/s]."""
 
 HOUR = 3600.0
 SINE = 1e-3
-"""Share of the radius that a sine may leave (rms) for the motion to be a circle: 5 µm of 5 mm, where friction leaves them."""
+"""Share of the radius that a sine may leave (rms) for the motion to be a circle: 5 µm of 5 mm are friction's."""
 
 
 @dataclass(frozen=True)
@@ -92,7 +92,7 @@ def stops_of(recording: Recording, target: FloatArray, position: FloatArray | No
 
 
 def part_of_recording(recording: Recording, target: FloatArray) -> int:
-    """Which part of ISO 230 the motion of a recording is for: a sine is 4, stops over more than an hour are 3, else 2."""
+    """Which part of ISO 230 a recording is for: a sine is 4, stops over more than an hour are 3, else 2."""
     if circle_angle(recording, target) is not None:
         return 4
     return 3 if recording.duration > HOUR else 2
