@@ -12,7 +12,7 @@ from rich.table import Table
 
 from feeddrive import __version__
 from feeddrive.cli.boding import quantities
-from feeddrive.cli.output import deliver, table, tell_written, warnings_as_lines
+from feeddrive.cli.output import deliver, table, tell_written, warnings_as_lines, working
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant, find_scenario_or_controller, write_bytes_atomically, write_text_atomically
 from feeddrive.output_folder import output_folder, refuse_unusable
@@ -74,7 +74,8 @@ def run(wanted: Wanted, as_json: bool, out: Path | None) -> None:
         places = quantities(wanted.positions, "m", "--positions")
         loads = quantities(wanted.payload, "kg", "--payload")
         cases = operating_points(plant, places, loads, parse(wanted.velocity, "m/s", "--velocity"))
-        found = recommend(plant, drive, cases, demand)
+        with working(f"tuning {plant.name}: velocity loop, filters, position loop at {len(cases)} operating points"):
+            found = recommend(plant, drive, cases, demand)
     content = _content(plant, found)
     if out is not None:
         with output_folder(out) as folder:

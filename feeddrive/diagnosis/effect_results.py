@@ -10,7 +10,7 @@ from feeddrive.diagnosis.certainty.uncertainty import Interval
 from feeddrive.diagnosis.cross_validation import LEAST_GAIN
 from feeddrive.diagnosis.judge import Share
 from feeddrive.diagnosis.physical_reading import physical_reading
-from feeddrive.diagnosis.result import EffectResult, ParameterResult, RefusedEffect
+from feeddrive.diagnosis.result import EffectResult, ParameterResult, RefusedEffect, error_without
 from feeddrive.diagnosis.search import Search
 from feeddrive.effects.base import Effect
 
@@ -70,8 +70,9 @@ def _curve_and_bump(effect: Effect) -> dict[str, ParameterResult]:
 
 
 def _evidence(effect: Effect, share: Share) -> str:
-    channels = ", ".join(f"{value:.1%} of {name}" for name, value in share.explains.items() if value > 0.001)
-    seen = f"Explains {channels} on data not fitted" if channels else "Explains nothing on the judged data"
+    larger = {name: error_without(value) for name, value in share.explains.items() if value > 0.001}
+    channels = ", ".join(f"that of {name} {factor:.3g} times" for name, factor in larger.items())
+    seen = f"Without it the error on data not fitted is larger: {channels}" if channels else "It lowers no judged error"
     idle = "; it does not carry to them" if share.shows else "; they could hardly show it"
     more = "" if share.carries else idle
     return f"{seen}{more}. It shows as a function of {effect.signature.variable}."

@@ -12,7 +12,7 @@ from feeddrive.report.figure_unexplained import STEM
 from feeddrive.report.figures import render_figures
 from feeddrive.report.markup import figure, paragraph, section, text
 from feeddrive.report.people import share_text
-from feeddrive.report.records import recordings_section, stamp_section, tried_section
+from feeddrive.report.records import UNKNOWN, Occasion, form_section, recordings_section, stamp_section, tried_section
 from feeddrive.report.section_changes import changes_section, since_section
 from feeddrive.report.section_unexplained import unexplained_section
 from feeddrive.report.sections import (
@@ -25,28 +25,35 @@ from feeddrive.report.simulated import simulation_section
 from feeddrive.report.style import STYLE
 
 
-def write_report(diagnosis: Diagnosis, path: Path, rendered: tuple[RenderedFigure, ...] | None = None) -> None:
+def write_report(
+    diagnosis: Diagnosis,
+    path: Path,
+    rendered: tuple[RenderedFigure, ...] | None = None,
+    occasion: Occasion = UNKNOWN,
+) -> None:
     """Write the report as one file without scripts or outside resources; an old one is replaced as a whole.
 
     Args:
         diagnosis: what was found.
         path: the HTML file; its folder is made if need be.
         rendered: figures drawn before by `render_figures`; drawn here if left away.
+        occasion: when and by which command it was made.
 
     Raises:
         InputError: the file cannot be written.
     """
     figures = render_figures(diagnosis) if rendered is None else rendered
-    write_text_atomically(path, report_page(diagnosis, figures))
+    write_text_atomically(path, report_page(diagnosis, figures, occasion))
 
 
-def report_page(diagnosis: Diagnosis, figures: tuple[RenderedFigure, ...]) -> str:
+def report_page(diagnosis: Diagnosis, figures: tuple[RenderedFigure, ...], occasion: Occasion = UNKNOWN) -> str:
     """The page as text, in the order in which a servo engineer asks."""
     tried = "".join(figure(one) for one in figures if one.stem == "tried")
     explaining = "".join(figure(one) for one in figures if one.stem.startswith(("explains", "curve")))
     left = "".join(figure(one) for one in figures if one.stem.startswith(STEM))
     others = [one for one in figures if not one.stem.startswith(("explains", "curve", "tried", STEM))]
     sections = (
+        form_section(diagnosis, occasion),
         verdict_section(diagnosis),
         error_section(diagnosis),
         effects_section(diagnosis) + explaining,
@@ -58,7 +65,7 @@ def report_page(diagnosis: Diagnosis, figures: tuple[RenderedFigure, ...]) -> st
         unexplained_section(diagnosis, left),
         tried_section(diagnosis, tried),
         recordings_section(diagnosis),
-        stamp_section(diagnosis),
+        stamp_section(diagnosis, occasion),
     )
     return page(f"Diagnosis of {diagnosis.plant}", _under_title(diagnosis), "".join(sections))
 
