@@ -129,7 +129,7 @@ def _command(job: Job) -> str:
 def _today() -> str:
     """The day, or that of SOURCE_DATE_EPOCH, so that a report can be made again as it was."""
     given = os.environ.get("SOURCE_DATE_EPOCH", "")
-    return time.strftime("%Y-%m-%d", time.gmtime(int(given)) if given.isdigit() else None)
+    return time.strftime("%Y-%m-%d", time.gmtime(int(given)) if given.isdigit() else time.localtime())
 
 
 def _bytes(plant: Path) -> bytes:

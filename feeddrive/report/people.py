@@ -139,7 +139,7 @@ def times_text(factor: float) -> str:
     """How many times larger something is; beyond a thousand only that it is."""
     if math.isnan(factor):
         return DASH
-    return f"> 1000{SPACE}×" if factor > 1000.0 else f"{significant(factor, 2 if factor < 10 else 3)}{SPACE}×"
+    return f"> 1000{SPACE}×" if factor > 1000.0 else f"{significant(factor)}{SPACE}×"
 
 
 def error_text(number: float, unit: str) -> str:

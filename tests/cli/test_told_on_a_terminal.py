@@ -10,10 +10,11 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from feeddrive.cli import output
+from feeddrive.cli import diagnosing, output
+from feeddrive.cli.diagnosing import Job, Source
 from feeddrive.cli.main import main
 from feeddrive.effects.catalogue import EFFECTS
-from feeddrive.files import shipped_scenarios
+from feeddrive.files import find_plant, shipped_scenarios
 from feeddrive.report.words import effect_words
 
 QUICK_WITH_OUT = (
@@ -59,6 +60,20 @@ def test_width_of_a_pipe_is_that_of_its_reader(
     assert framed and max(map(len, framed)) <= width
     assert all(line[-1] in "┓┃┩│┘" for line in framed)  # nothing is cut off
     assert all(name in "\n".join(lines) for name in EFFECTS)  # no name is broken
+
+
+def test_report_tells_the_command_that_makes_it_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Typed again, it is the job that it was made from."""
+    typed = ["a b.csv", "--validate", "c.csv", "--map", "m.toml", "--decimal", ",", "--simulate", "--out", "report"]
+    files = tuple(Source(Path(one), Path("m.toml"), ",") for one in ("a b.csv", "c.csv"))
+    job = Job(find_plant("bench_axis"), files[:1], files[1:], Path("report"), simulate=True)
+    assert shlex.split(diagnosing._command(job)) == ["feeddrive", "diagnose", "bench_axis", *typed]
+    alone = Job(Path("my.toml"), (Source(Path("a.csv")),), (), Path("report"), 0.6)
+    assert diagnosing._command(alone) == "feeddrive diagnose my.toml a.csv --split 0.6 --out report"
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "86400")
+    assert diagnosing._today() == "1970-01-02"
+    monkeypatch.delenv("SOURCE_DATE_EPOCH")
+    assert re.fullmatch(r"20\d\d-[01]\d-[0-3]\d", diagnosing._today())
 
 
 def test_title_is_one_line_above_a_narrow_table() -> None:
