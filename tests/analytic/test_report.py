@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
+from feeddrive.diagnosis.effect_results import _why_not
 from feeddrive.diagnosis.result import (
     ChannelSeries,
     Diagnosis,
@@ -26,6 +27,7 @@ from feeddrive.diagnosis.result import (
     error_without,
 )
 from feeddrive.errors import InputError
+from feeddrive.report.drawing import dress, new_figure
 from feeddrive.report.figure_effects import curve_figures
 from feeddrive.report.figures import render_figures, report_figures, save_figures
 from feeddrive.report.html import report_page, write_report
@@ -169,6 +171,17 @@ def test_no_word_is_broken_in_a_narrow_window() -> None:
     assert set(broken) == {"code.hash", "pre"}
 
 
+def test_numbers_of_a_scale_stand_as_they_are() -> None:
+    """Micrometres about 250 mm used to be written as 0.004 under "+2.4999e2"."""
+    figure = new_figure(2.0)
+    axes = figure.subplots()
+    axes.plot([0.0, 1.0], [249.994, 250.0003])
+    dress(axes, "time [s]", "position [mm]")
+    figure.canvas.draw()
+    labels = [one.get_text() for one in axes.get_yticklabels()]
+    assert axes.yaxis.get_offset_text().get_text() == "" and any(label.startswith("249.99") for label in labels)
+
+
 def test_band_is_named_where_it_is_drawn(found: Diagnosis) -> None:
     effect = EffectResult("friction_vs_position", {
         "position": ParameterResult([0.0, 0.1, 0.2], "m"),
@@ -180,6 +193,21 @@ def test_band_is_named_where_it_is_drawn(found: Diagnosis) -> None:
     effect = dataclasses.replace(effect, parameters={**effect.parameters, "delta_force": wide})
     curve = curve_figures(dataclasses.replace(found, effects=(effect,)))[0]
     assert "the band is the 95 % interval" in curve.caption and curve.figure.axes[0].collections
+
+
+@pytest.mark.parametrize(
+    ("trial", "others", "words"),
+    [
+        (Trial(2, "payload", 0.0979, 0.0095, False), [Trial(2, "backlash", 0.55, 0.01, True)], "backlash by 55.00%"),
+        (Trial(2, "payload", 0.01, 0.0095, False), [], "within the scatter of the blocks (1.5 times 0.95%)"),
+        (Trial(2, "payload", 0.0979, 0.0095, False), [], "too small to matter"),
+        (Trial(1, "payload", 0.2, 0.01, True), [], "taken in round 1 and no longer paid"),
+        (Trial(1, "payload", 0.004, 0.01, False), [], "less than the 0.5% asked for"),
+        (Trial(1, "payload", -0.01, 0.01, False), [], "does not lower"),
+    ],
+)
+def test_reason_of_a_refusal_is_one_reason(trial: Trial, others: list[Trial], words: str) -> None:
+    assert words in _why_not(trial, [trial, *others])
 
 
 def test_no_effect_but_error_above_noise_is_not_called_complete() -> None:
