@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import hashlib
+import os
+import shlex
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -12,7 +15,7 @@ from rich.console import Console
 from rich.table import Table
 
 from feeddrive.cli.machine import read_machine
-from feeddrive.cli.output import escaped
+from feeddrive.cli.output import escaped, working
 from feeddrive.compensation.actions import actions
 from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.ledger.continued import Earlier, changed_since
@@ -21,12 +24,14 @@ from feeddrive.diagnosis.outputs import diagnosis_json, write_outputs
 from feeddrive.diagnosis.result import Diagnosis
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError, printable
+from feeddrive.files import shipped_plants
 from feeddrive.output_folder import output_folder, refuse_unusable, take_away
 from feeddrive.recording import Recording, read_recording
 from feeddrive.report.certainty import experiment_sentences
 from feeddrive.report.figures import render_figures, save_figures
 from feeddrive.report.html import write_report
 from feeddrive.report.people import error_text, share_text
+from feeddrive.report.records import Occasion, used_sentence
 from feeddrive.report.simulated import simulation_lines
 from feeddrive.report.verdict import verdict_sentences
 
@@ -85,8 +90,7 @@ def run_job(job: Job, as_json: bool = False) -> Diagnosis:
     plant = read_machine(job.plant, fitted)  # a file may declare motion and heat
     if _bytes(job.plant) != declared:
         raise InputError("was changed while it was read", str(job.plant), "diagnose again")
-    with Console(stderr=True).status("reading") as status:
-        said = status.update
+    with working("reading") as said:
         result, effects = diagnose(plant, fitted, judged, job.split, job.simulate, said, job.start)
         result = _since(result, job)
         said("predicting what a repair and a compensation bring")
@@ -96,7 +100,8 @@ def run_job(job: Job, as_json: bool = False) -> Diagnosis:
         with output_folder(job.out) as folder:
             write_outputs(result, effects, declared.decode("utf-8").replace("\r\n", "\n"), folder)
             save_figures(result, folder, pictures)
-            write_report(result, folder / "report.html", pictures, todo)
+            occasion = Occasion(_command(job), _today())
+            write_report(result, folder / "report.html", pictures, occasion, todo)
             # Read now: another diagnosis may have written here meanwhile.
             there = runs_of(job.out)
             take_away(folder, written_earlier(there))  # a figure that this run has no reason to draw
@@ -107,6 +112,27 @@ def run_job(job: Job, as_json: bool = False) -> Diagnosis:
     else:
         _print_summary(result, job.out / "report.html")
     return result
+
+
+def _command(job: Job) -> str:
+    """The line that makes a diagnosis again; none for one that takes up an earlier one, whose ledger tells its runs."""
+    if job.earlier is not None:
+        return ""
+    words = ["feeddrive", "diagnose", job.plant.stem if job.plant in shipped_plants() else str(job.plant)]
+    words += [str(source.path) for source in job.recordings]
+    for source in job.validation:
+        words += ["--validate", str(source.path)]
+    first = job.recordings[0]  # files typed together are read alike
+    words += ["--map", str(first.mapping)] if first.mapping is not None else []
+    words += ["--decimal", first.decimal] if first.decimal is not None else []
+    words += [] if job.validation else ["--split", f"{job.split:g}"]
+    return shlex.join([*words, *(["--simulate"] if job.simulate else []), "--out", str(job.out)])
+
+
+def _today() -> str:
+    """The day, or that of SOURCE_DATE_EPOCH, so that a report can be made again as it was."""
+    given = os.environ.get("SOURCE_DATE_EPOCH", "")
+    return time.strftime("%Y-%m-%d", time.gmtime(int(given)) if given.isdigit() else time.localtime())
 
 
 def _bytes(plant: Path) -> bytes:
@@ -160,6 +186,7 @@ def _print_summary(result: Diagnosis, report: Path) -> None:
         shares = [share_text(figures.relative) for figures in (channel.before, channel.after)]
         table.add_row(channel.name, errors[0], errors[1], *shares, errors[2])
     console.print(table)
+    say(used_sentence(result))
     for effect in result.effects:
         say(f"{effect.name}: {effect.evidence} {effect.reading}")
     for sentence in result.kept.since:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from feeddrive.cli.output import table, warnings_as_lines
+from feeddrive.cli.output import table, warnings_as_lines, working
 from feeddrive.diagnosis.numbers.measured_file import holds_measured_numbers
 from feeddrive.errors import InputError, printable
 from feeddrive.interface.axis import load
@@ -48,8 +48,8 @@ def explain_and_tell(
     if out is None:
         raise InputError("--out is missing", "", "give a folder for the report, such as --out report")
     refuse_unusable(out)
-    with warnings_as_lines(), Console(stderr=True).status("reading") as status:
-        found = explain(load(plant), Path(measured), at=at, controller=controller, progress=status.update)
+    with warnings_as_lines(), working("reading") as said:
+        found = explain(load(plant), Path(measured), at=at, controller=controller, progress=said)
         with output_folder(out) as folder:
             found.save(folder)
     if as_json:

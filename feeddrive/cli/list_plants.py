@@ -8,18 +8,20 @@ from feeddrive.cli.machine import read_machine
 from feeddrive.cli.output import JsonOption, OutOption, deliver, table
 from feeddrive.effects.catalogue import EFFECTS, THERMAL_EFFECTS
 from feeddrive.files import shipped_plants, shipped_scenarios
+from feeddrive.plant.entries import parse_toml
 from feeddrive.plant.plant import Plant
+from feeddrive.report.words import effect_words
 
 
 def command(as_json: JsonOption = False, out: OutOption = None) -> None:
     """List the machines, scenarios and effects that come with feeddrive."""
-    plants, effects, scenarios = _plants(), _effects(), [path.stem for path in shipped_scenarios()]
+    plants, effects, scenarios = _plants(), _effects(), _scenarios()
     tables = [
         table("Plants", ("name", "machine", "structure"), [list(plant.values()) for plant in plants]),
-        table("Scenarios", ("name",), [[name] for name in scenarios]),
-        table("Effects", ("name", "kind", "port", "keys"), [_effect_row(effect) for effect in effects]),
+        table("Scenarios", ("name", "what happens"), list(scenarios.items())),
+        table("Effects", ("name", "what it is", "port", "keys"), [_effect_row(effect) for effect in effects]),
     ]
-    content = {"plants": plants, "scenarios": scenarios, "effects": effects}
+    content = {"plants": plants, "scenarios": list(scenarios), "effects": effects}
     deliver(content, [shown for shown in tables if shown.row_count], as_json, out)
 
 
@@ -33,6 +35,12 @@ def _plants() -> list[dict[str, str]]:
         }
         for name, plant in plants
     ]
+
+
+def _scenarios() -> dict[str, str]:
+    """Name to what the file says of itself."""
+    files = {path.stem: parse_toml(path.read_text(encoding="utf-8"), str(path)) for path in shipped_scenarios()}
+    return {name: str(entries.get("description", "")) for name, entries in files.items()}
 
 
 def _effects() -> list[dict[str, Any]]:
@@ -50,4 +58,4 @@ def _effects() -> list[dict[str, Any]]:
 
 def _effect_row(effect: dict[str, Any]) -> list[str]:
     keys = ", ".join([*filter(None, [effect["place"]]), *(f"{key} [{unit}]" for key, unit in effect["keys"].items())])
-    return [effect["name"], effect["kind"], ", ".join(effect["ports"]), keys]
+    return [effect["name"], effect_words(effect["name"]), ", ".join(effect["ports"]), keys]

@@ -5,15 +5,17 @@ from __future__ import annotations
 import io
 import json
 import math
+import os
 import sys
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 from rich.console import Console, RenderableType
+from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from feeddrive.errors import ValidityWarning, printable, quoted
@@ -25,15 +27,19 @@ OutOption = Annotated[Path | None, typer.Option("--out", help="File to write to,
 LONGEST_LINE = 800
 """Letters of a warning, or of where the files are."""
 
+_LONGEST_NAME = 32
+"""Letters of a name that a table never breaks; paths are longer."""
+
 _WIDTH = 120
-"""Of tables in a file or a pipe, in letters."""
+"""Of tables in a file, and in a pipe whose reader names no width in COLUMNS; in letters."""
 
 
 def table(title: str, headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Table:
-    """A table with a title; every cell is text."""
+    """A table with a title; every cell is text. A narrow terminal breaks sentences, never names in the first column."""
     made = Table(title=printable(title), title_justify="left", title_style="bold")
-    for heading in headings:
-        made.add_column(printable(heading), overflow="fold")
+    kept = bool(rows) and all(" " not in row[0] and len(row[0]) <= _LONGEST_NAME for row in rows)
+    for number, heading in enumerate(headings):
+        made.add_column(printable(heading), overflow="fold", no_wrap=kept and not number)
     for row in rows:
         made.add_row(*map(_printable_lines, row))
     return made
@@ -58,8 +64,27 @@ def deliver(content: dict[str, Any], tables: Sequence[RenderableType], as_json: 
     elif text is not None:
         typer.echo(text, nl=False)
     else:
-        width = None if sys.stdout.isatty() else _WIDTH
+        width = None if sys.stdout.isatty() or os.environ.get("COLUMNS", "").isdigit() else _WIDTH
         _print(Console(markup=False, highlight=False, emoji=False, width=width), tables)
+
+
+@contextmanager
+def working(on: str) -> Iterator[Callable[[str], None]]:
+    """On a terminal a line with what is being done and the time since the start; nothing in a pipe.
+
+    Args:
+        on: what is done first.
+
+    Yields:
+        Called with what is done next.
+    """
+    if not sys.stderr.isatty():
+        yield lambda text: None
+        return
+    columns = (SpinnerColumn(), TextColumn("{task.description}", markup=False), TimeElapsedColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as shown:
+        task = shown.add_task(printable(on), total=None)
+        yield lambda text: shown.update(task, description=printable(text))
 
 
 def tell_written(out: Path | None, as_json: bool) -> None:
@@ -120,4 +145,8 @@ def _as_text(tables: Sequence[RenderableType]) -> str:
 
 def _print(console: Console, tables: Sequence[RenderableType]) -> None:
     for shown in tables:
+        if isinstance(shown, Table) and shown.title:
+            # above the table and not inside its width, where it would be broken
+            title, shown.title = str(shown.title), None
+            console.print(title, style="bold")
         console.print(shown)

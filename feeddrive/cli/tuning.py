@@ -12,8 +12,8 @@ from rich.table import Table
 
 from feeddrive import __version__
 from feeddrive.cli.boding import quantities
+from feeddrive.cli.output import deliver, table, tell_written, warnings_as_lines, working
 from feeddrive.cli.tuning_drive import drive_content, drive_tables, write_drive
-from feeddrive.cli.output import deliver, table, tell_written, warnings_as_lines
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant, find_scenario_or_controller, write_bytes_atomically, write_text_atomically
 from feeddrive.interface.servo import Servo
@@ -81,7 +81,8 @@ def run(wanted: Wanted, as_json: bool, out: Path | None) -> None:
         places = quantities(wanted.positions, "m", "--positions")
         loads = quantities(wanted.payload, "kg", "--payload")
         cases = operating_points(plant, places, loads, parse(wanted.velocity, "m/s", "--velocity"))
-        servo = Servo(plant, recommend(plant, drive, cases, demand))
+        with working(f"tuning {plant.name}: velocity loop, filters, position loop at {len(cases)} operating points"):
+            servo = Servo(plant, recommend(plant, drive, cases, demand))
         typed = servo.to_drive(wanted.form) if wanted.form else None
         retuned = servo.compare(wanted.present, wanted.form) if wanted.present is not None else None
     found = servo.recommendation

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from feeddrive import __version__
-from feeddrive.cli.output import deliver, tell_written, warnings_as_lines
+from feeddrive.cli.output import deliver, tell_written, warnings_as_lines, working
 from feeddrive.cli.warming_tables import thermal_tables
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant, write_bytes_atomically, write_text_atomically
@@ -59,7 +59,8 @@ def warm_and_tell(name: str, asked: Asked, as_json: bool, out: Path | None) -> N
     refuse_unusable(out)
     with warnings_as_lines():
         plant = _plant(name, asked.stroke)
-        found = study(plant, _duty(plant, asked), _band(asked.within), asked.order)
+        with working(f"warming {plant.name} up: full and reduced model"):
+            found = study(plant, _duty(plant, asked), _band(asked.within), asked.order)
     lumps = network(plant.rig, found.conductances, asked.segments, (*plant.bodies, *plant.attached))
     content = thermal_content(found, lumps)
     if out is not None:

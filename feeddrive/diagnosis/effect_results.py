@@ -7,10 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from feeddrive.diagnosis.certainty.uncertainty import Interval
-from feeddrive.diagnosis.cross_validation import LEAST_GAIN
+from feeddrive.diagnosis.cross_validation import LEAST_GAIN, SIGNIFICANCE
 from feeddrive.diagnosis.judge import Share
 from feeddrive.diagnosis.physical_reading import physical_reading
-from feeddrive.diagnosis.result import EffectResult, ParameterResult, RefusedEffect
+from feeddrive.diagnosis.result import EffectResult, ParameterResult, RefusedEffect, Trial, error_without
 from feeddrive.diagnosis.search import Search
 from feeddrive.effects.base import Effect
 
@@ -70,8 +70,9 @@ def _curve_and_bump(effect: Effect) -> dict[str, ParameterResult]:
 
 
 def _evidence(effect: Effect, share: Share) -> str:
-    channels = ", ".join(f"{value:.1%} of {name}" for name, value in share.explains.items() if value > 0.001)
-    seen = f"Explains {channels} on data not fitted" if channels else "Explains nothing on the judged data"
+    larger = {name: error_without(value) for name, value in share.explains.items() if value > 0.001}
+    channels = ", ".join(f"that of {name} {factor:.3g} times" for name, factor in larger.items())
+    seen = f"Without it the error on data not fitted is larger: {channels}" if channels else "It lowers no judged error"
     idle = "; it does not carry to them" if share.shows else "; they could hardly show it"
     more = "" if share.carries else idle
     return f"{seen}{more}. It shows as a function of {effect.signature.variable}."
@@ -89,16 +90,24 @@ def refused_effects(found: Search) -> tuple[RefusedEffect, ...]:
             refused.append(RefusedEffect(candidate.name, found.impossible[candidate.name]))
         elif candidate.name in best:
             trial = best[candidate.name]
-            refused.append(RefusedEffect(candidate.name, _why_not(trial.gain, trial.standard_error)))
+            refused.append(RefusedEffect(candidate.name, _why_not(trial, found.trials)))
         else:
             refused.append(RefusedEffect(candidate.name, "it could not be fitted to these recordings"))
     return tuple(refused)
 
 
-def _why_not(gain: float, error: float) -> str:
-    if gain <= 0:
+def _why_not(trial: Trial, trials: Sequence[Trial]) -> str:
+    """Why a candidate was not kept, from its last round."""
+    lowers = f"it lowers the squared error on data not fitted by {trial.gain:.2%}"
+    winner = next((one for one in trials if one.round == trial.round and one.taken), None)
+    if trial.gain <= 0:
         return "it does not lower the error on data not fitted"
-    if gain <= LEAST_GAIN:
-        return f"it lowers the squared error on data not fitted by {gain:.2%}, less than the {LEAST_GAIN:.1%} asked for"
-    scatter = f"within the scatter of the blocks ({error:.2%}), or others did better"
-    return f"it lowers the squared error by {gain:.2%}, {scatter}"
+    if trial.gain <= LEAST_GAIN:
+        return f"{lowers}, less than the {LEAST_GAIN:.1%} asked for"
+    if trial.taken:
+        return f"it was taken in round {trial.round} and no longer paid beside what was found after it"
+    if winner is not None:
+        return f"{lowers}, {winner.name} by {winner.gain:.2%}; after that it was worth no further trial"
+    if trial.gain <= SIGNIFICANCE * trial.standard_error:
+        return f"{lowers}, within the scatter of the blocks ({SIGNIFICANCE:g} times {trial.standard_error:.2%})"
+    return f"{lowers}, but it is too small to matter on this machine, or chance gives the best of many as much"

@@ -62,6 +62,10 @@ def dress(axes: Axes, x_label: str, y_label: str, title: str = "") -> None:
     axes.tick_params(labelsize=8.5, color="#888888")
     axes.spines[["top", "right"]].set_visible(False)
     axes.spines[["left", "bottom"]].set_color("#888888")
+    for one in (axes.xaxis, axes.yaxis):
+        written = one.get_major_formatter()
+        if hasattr(written, "set_useOffset"):  # a number of a scale is read off as it stands
+            written.set_useOffset(False)
     axes.grid(True, color="#e4e4e4", linewidth=0.6)
     axes.set_axisbelow(True)
 

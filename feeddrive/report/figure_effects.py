@@ -35,10 +35,11 @@ def explains_figure(diagnosis: Diagnosis) -> ReportFigure | None:
     for i, (axes, channel) in enumerate(zip(panels, channels, strict=False)):
         _explains_panel(axes, channel, diagnosis.effects, first=i % columns == 0)
     caption = (
-        "How much of the squared error each effect takes away on data not fitted, all other effects refitted without "
-        "it. Shares need not add up to 100 %. A long bar is an effect that nothing else can replace."
+        "Each effect is left out by itself and all others are fitted again: the share of the squared error on data "
+        "not fitted that is there only because it is missing. Effects overlap, so the bars do not add up. "
+        "A long bar is an effect that nothing else can replace; the table gives the same as a factor."
     )
-    return ReportFigure("explains", "What each effect explains", caption, figure)
+    return ReportFigure("explains", "What each effect alone can explain", caption, figure)
 
 
 def _explains_panel(axes: Axes, channel: str, effects: tuple[EffectResult, ...], first: bool) -> None:
@@ -142,11 +143,13 @@ def _curve_figure(effect: EffectResult) -> ReportFigure | None:
     axes = figure.subplots()
     places = [value * x_scale.factor for value in x.value]
     axes.plot(places, [value * y_scale.factor for value in y.value], "o-", color=AFTER, ms=3.5, lw=1.4)
+    band = ""
     if isinstance(y.ci95, list) and len(y.ci95) == len(y.value):
         low, high = ([pair[end] * y_scale.factor for pair in y.ci95] for end in (0, 1))
         axes.fill_between(places, low, high, color=AFTER, alpha=0.2, lw=0.0)
+        band = "; the band is the 95 % interval"
     dress(axes, axis_label(plain(x_key), x_scale.unit), axis_label(plain(y_key), y_scale.unit))
     words = effect_words(effect.name)
     ends = ", ".join(fixed(places[end], 0) for end in (0, -1))
-    caption = f"Fitted curve from {ends.replace(', ', ' to ')} {x_scale.unit}; the band is the 95 % interval."
+    caption = f"Fitted curve from {ends.replace(', ', ' to ')} {x_scale.unit}{band}."
     return ReportFigure(f"curve_{stem_of(effect.name)}", f"Fitted curve: {words}", caption, figure)

@@ -71,7 +71,7 @@ def _scaled(table: SweepTable, name: str) -> tuple[FloatArray, str]:
     largest = float(np.nanmax(np.abs(values))) if np.isfinite(values).any() else 0.0
     factor, _, unit = shown_unit(largest, table.units[name])
     label = plain(name.replace(".", " ", 1))
-    return factor * values, f"{label}\n[{unit}]" if unit else label
+    return factor * values, f"{label}\n[{unit or '1'}]"
 
 
 def _number(value: float | None) -> float:

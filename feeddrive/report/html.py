@@ -13,7 +13,7 @@ from feeddrive.report.figure_unexplained import STEM
 from feeddrive.report.figures import render_figures
 from feeddrive.report.markup import figure, paragraph, section, text
 from feeddrive.report.people import share_text
-from feeddrive.report.records import recordings_section, stamp_section, tried_section
+from feeddrive.report.records import UNKNOWN, Occasion, form_section, recordings_section, stamp_section, tried_section
 from feeddrive.report.section_actions import actions_section
 from feeddrive.report.section_changes import changes_section, since_section
 from feeddrive.report.section_unexplained import unexplained_section
@@ -28,30 +28,38 @@ from feeddrive.report.style import STYLE
 
 
 def write_report(
-    diagnosis: Diagnosis, path: Path, rendered: tuple[RenderedFigure, ...] | None = None, todo: Actions | None = None
-) -> None:  # fmt: skip
+    diagnosis: Diagnosis,
+    path: Path,
+    rendered: tuple[RenderedFigure, ...] | None = None,
+    occasion: Occasion = UNKNOWN,
+    todo: Actions | None = None,
+) -> None:
     """Write the report as one file without scripts or outside resources; an old one is replaced as a whole.
 
     Args:
         diagnosis: what was found.
         path: the HTML file; its folder is made if need be.
         rendered: figures drawn before by `render_figures`; drawn here if left away.
+        occasion: when and by which command it was made.
         todo: what to do, and what it brings.
 
     Raises:
         InputError: the file cannot be written.
     """
     figures = render_figures(diagnosis) if rendered is None else rendered
-    write_text_atomically(path, report_page(diagnosis, figures, todo))
+    write_text_atomically(path, report_page(diagnosis, figures, occasion, todo))
 
 
-def report_page(diagnosis: Diagnosis, figures: tuple[RenderedFigure, ...], todo: Actions | None = None) -> str:
+def report_page(
+    diagnosis: Diagnosis, figures: tuple[RenderedFigure, ...], occasion: Occasion = UNKNOWN, todo: Actions | None = None
+) -> str:
     """The page as text, in the order in which a servo engineer asks."""
     tried = "".join(figure(one) for one in figures if one.stem == "tried")
     explaining = "".join(figure(one) for one in figures if one.stem.startswith(("explains", "curve")))
     left = "".join(figure(one) for one in figures if one.stem.startswith(STEM))
     others = [one for one in figures if not one.stem.startswith(("explains", "curve", "tried", STEM))]
     sections = (
+        form_section(diagnosis, occasion),
         verdict_section(diagnosis),
         error_section(diagnosis),
         actions_section(diagnosis, todo),
@@ -64,7 +72,7 @@ def report_page(diagnosis: Diagnosis, figures: tuple[RenderedFigure, ...], todo:
         unexplained_section(diagnosis, left),
         tried_section(diagnosis, tried),
         recordings_section(diagnosis),
-        stamp_section(diagnosis),
+        stamp_section(diagnosis, occasion),
     )
     return page(f"Diagnosis of {diagnosis.plant}", _under_title(diagnosis), "".join(sections))
 

@@ -135,6 +135,13 @@ def share_text(share: float) -> str:
     return with_unit(fixed(percent, 0 if abs(percent) >= 99.95 else 1), "%")
 
 
+def times_text(factor: float) -> str:
+    """How many times larger something is; beyond a thousand only that it is."""
+    if math.isnan(factor):
+        return DASH
+    return f"> 1000{SPACE}×" if factor > 1000.0 else f"{significant(factor)}{SPACE}×"
+
+
 def error_text(number: float, unit: str) -> str:
     """An error of a channel with three significant digits and its unit."""
     scale = scale_for_error(unit)

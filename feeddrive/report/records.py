@@ -2,15 +2,41 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from feeddrive import __version__
-from feeddrive.diagnosis.result import Diagnosis, FileStamp, JudgedRecording, Trial
+from feeddrive.diagnosis.result import ChannelSeries, Diagnosis, FileStamp, JudgedRecording, Trial
 from feeddrive.report.markup import Cell, bullets, catalogue_name, number, paragraph, section, table, text, words
 from feeddrive.report.people import fixed, share_text, significant, with_unit
 from feeddrive.report.words import effect_words, plain
+from feeddrive.typing import BoolArray
 
 _MOST_TRIALS = 8
+
+
+@dataclass(frozen=True)
+class Occasion:
+    """When and how a diagnosis was made; empty where it is not known.
+
+    Attributes:
+        command: line that makes it again.
+        date: of the report.
+    """
+
+    command: str = ""
+    date: str = ""
+
+
+UNKNOWN = Occasion()
+
+
+def form_section(diagnosis: Diagnosis, occasion: Occasion) -> str:
+    """What a report is filed under: the machine and the date, and lines to write on."""
+    fields = {"Machine": diagnosis.plant, "Serial number": "", "Recorded on": "", "Report of": occasion.date}
+    cells = "".join(f"<div><dt>{text(key)}</dt><dd>{text(value)}</dd></div>" for key, value in fields.items())
+    return f'<dl class="form">{cells}</dl>\n'
 
 
 def tried_section(diagnosis: Diagnosis, pictures: str) -> str:
@@ -62,11 +88,29 @@ def recordings_section(diagnosis: Diagnosis) -> str:
     return section("The recordings", table(heads, rows) if rows else "", notes, _rehomed(diagnosis.rehomed))
 
 
+def used_sentence(diagnosis: Diagnosis) -> str:
+    """Which part of the judged recordings the errors are of; empty where there is none."""
+    shares = {}
+    for channel in diagnosis.channels:
+        usable = [_usable(one) for recording in diagnosis.recordings for one in recording.channels
+                  if one.name == channel.name and one.measured.size]  # fmt: skip
+        if usable:
+            shares[channel.name] = float(np.mean(np.concatenate(usable)))
+    if not shares:
+        return ""
+    listed = ", ".join(f"{share_text(1.0 - share)} of {plain(name)}" for name, share in shares.items())
+    return f"Not used of the judged recordings: {listed} (the cut ends, flawed rows, and what cannot be predicted)."
+
+
+def _usable(one: ChannelSeries) -> BoolArray:
+    return np.isfinite(one.measured - one.before)
+
+
 def _recording_row(recording: JudgedRecording) -> list[Cell]:
     """Length of a recording and the part of it that was used."""
     duration = float(recording.time[-1] - recording.time[0]) if recording.time.size else 0.0
     used = [
-        f"{plain(one.name)} {share_text(float(np.mean(np.isfinite(one.measured - one.before))))}"
+        f"{plain(one.name)} {share_text(float(np.mean(_usable(one))))}"
         for one in recording.channels
         if one.measured.size
     ]
@@ -84,9 +128,10 @@ def _rehomed(names: tuple[str, ...]) -> str:
     )
 
 
-def stamp_section(diagnosis: Diagnosis) -> str:
-    """Version, plant and files, so that the result can be had again."""
+def stamp_section(diagnosis: Diagnosis, occasion: Occasion) -> str:
+    """Version, plant, command and files, so that the result can be had again."""
     who = paragraph(f"feeddrive {__version__}, plant {diagnosis.plant}.")
+    who += f"<pre>{text(occasion.command)}</pre>\n" if occasion.command else ""
     heads = [words("Use"), words("File"), words("SHA-256")]
     rows = [_stamp_row("fitted", one) for one in diagnosis.fit]
     rows += [_stamp_row("judged", one) for one in diagnosis.validate]

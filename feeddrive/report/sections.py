@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from feeddrive.diagnosis.result import ChannelResult, Diagnosis, EffectResult, ErrorFigures
+from feeddrive.diagnosis.result import ChannelResult, Diagnosis, EffectResult, ErrorFigures, error_without
 from feeddrive.report.markup import (
     Cell,
     catalogue_name,
@@ -16,16 +16,27 @@ from feeddrive.report.markup import (
     words,
 )
 from feeddrive.report.parameters import parameter_text
-from feeddrive.report.people import DASH, Scale, band_text, scale_for_error, share_text, significant, with_unit
+from feeddrive.report.people import (
+    DASH,
+    Scale,
+    band_text,
+    scale_for_error,
+    share_text,
+    significant,
+    times_text,
+    with_unit,
+)
+from feeddrive.report.records import used_sentence
 from feeddrive.report.verdict import is_noise, verdict_sentences
 from feeddrive.report.words import effect_words, plain
 
 
 def verdict_section(diagnosis: Diagnosis) -> str:
-    """The verdict in a box, the main finding in bold."""
+    """The verdict in a box, the main finding in bold; calm only where nothing was found and nothing is left."""
     first, *others = verdict_sentences(diagnosis)
-    clean = diagnosis.channels and all(is_noise(channel) for channel in diagnosis.channels)
-    lines = "".join(paragraph(sentence) for sentence in others)
+    noise = diagnosis.channels and all(is_noise(channel) for channel in diagnosis.channels)
+    clean = noise and diagnosis.nothing_missing and not diagnosis.changes.changes
+    lines = "".join(paragraph(sentence) for sentence in others) + paragraph(used_sentence(diagnosis), "note")
     return f'<div class="verdict{" clean" if clean else ""}">{paragraph(first, "main")}{lines}</div>\n'
 
 
@@ -73,11 +84,15 @@ def effects_section(diagnosis: Diagnosis) -> str:
     if not diagnosis.effects:
         return section("Effects found", paragraph("None: no effect was added to the declared plant."))
     channels = [channel.name for channel in diagnosis.channels]
-    heads = [words("Effect"), words("Parameter"), number("value"), number("95 % interval"), words("Explains"),
+    heads = [words("Effect"), words("Parameter"), number("value"), number("95 % interval"), words("Error without it"),
              words("Carries over")]  # fmt: skip
     rows = [row for effect in diagnosis.effects for row in _effect_rows(effect, channels)]
     stories = "".join(_story(effect) for effect in diagnosis.effects)
-    note = paragraph("Carries over: it also lowers the error on data not fitted.", "note")
+    note = paragraph(
+        "Error without it: how many times larger the rms error on data not fitted is when this effect alone is left "
+        "out and the others are fitted again. Carries over: it lowers that error.",
+        "note",
+    )
     return section("Effects found", table(heads, rows, "effects"), note, f"<dl>{stories}</dl>" if stories else "")
 
 
@@ -88,7 +103,7 @@ def _effect_rows(effect: EffectResult, channels: list[str]) -> list[list[Cell]]:
     cells = cells or [[words(DASH), words(""), words("")]]
     name = Cell(f"<b>{text(effect_words(effect.name))}</b><br>{catalogue_name(effect.name)}")
     ordered = sorted(effect.explains, key=lambda one: channels.index(one) if one in channels else len(channels))
-    shares = [f"{text(plain(one))} {text(share_text(effect.explains[one]))}" for one in ordered]
+    shares = [f"{text(plain(one))} {text(times_text(error_without(effect.explains[one])))}" for one in ordered]
     first = [name, *cells[0], Cell("<br>".join(shares) or DASH), words("yes" if effect.carries else "no")]
     return [first, *([words(""), *row, words(""), words("")] for row in cells[1:])]
 

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
+from feeddrive.diagnosis.effect_results import _why_not
 from feeddrive.diagnosis.result import (
     ChannelSeries,
     Diagnosis,
@@ -23,11 +24,19 @@ from feeddrive.diagnosis.result import (
     RefusedEffect,
     Trial,
     Unexplained,
+    error_without,
 )
 from feeddrive.errors import InputError
+from feeddrive.report.drawing import dress, new_figure
+from feeddrive.report.figure_effects import curve_figures
 from feeddrive.report.figures import render_figures, report_figures, save_figures
 from feeddrive.report.html import report_page, write_report
-from feeddrive.report.verdict import verdict_sentences
+from feeddrive.report.people import share_text, times_text
+from feeddrive.report.records import Occasion, used_sentence
+from feeddrive.report.sections import verdict_section
+from feeddrive.report.style import STYLE
+from feeddrive.report.verdict import is_noise, verdict_sentences
+from feeddrive.report.words import plain as words
 from tests.analytic import report_examples as examples
 
 NASTY = '<script>alert("1")</script> & $x_{ $'
@@ -123,6 +132,82 @@ def test_nothing_missing_is_said_plainly() -> None:
     checked(text)
     assert "None: no effect was added" in text and "Nothing above the sensor noise" in text
     assert "→" not in text  # before and after are the same plant, so no pair of figures is shown
+
+
+def test_calm_box_is_for_machines_without_a_fault(found: Diagnosis) -> None:
+    """Two faults that are explained down to noise are two faults."""
+    clean = examples.nothing_missing()
+    quiet = dataclasses.replace(clean, effects=found.effects)
+    assert all(is_noise(channel) for channel in quiet.channels)
+    assert 'class="verdict clean"' in verdict_section(clean)
+    assert 'class="verdict clean"' not in verdict_section(quiet)
+
+
+def test_worth_of_an_effect_is_a_factor_of_the_error() -> None:
+    # rms 1 with it and 10 without: 1 - 0.01 is explained; the factor is their quotient by definition
+    assert error_without(1 - 1 / 10**2) == pytest.approx(10.0, rel=1e-12)
+    assert error_without(0.0) == 1.0 and math.isinf(error_without(1.0)) and math.isnan(error_without(math.nan))
+    assert plain(times_text(error_without(0.9996))) == "50.0 ×"  # told apart from 0.996, 15.8 ×: both were "100 %"
+    assert plain(times_text(error_without(0.996))) == "15.8 ×"
+    assert plain(times_text(math.inf)) == "> 1000 ×"
+    assert error_without(-3.0) == 0.5  # an effect that makes the judged error larger
+
+
+def test_page_says_what_was_not_used_and_how_to_make_it_again(found: Diagnosis) -> None:
+    series = found.recordings[0].channels[0]
+    share = 1 - np.isfinite(series.measured - series.before).mean()
+    assert f"{share_text(float(share))} of {words(series.name)}" in used_sentence(found)
+    page = report_page(found, (), Occasion('feeddrive diagnose a.toml "b <1>.csv"', "2024-05-06"))
+    checked(page)
+    assert "feeddrive diagnose a.toml &quot;b &lt;1&gt;.csv&quot;" in page
+    assert "2024-05-06" in page and "Serial number" in page and "<dd>axis_x</dd>" in page
+    assert page.index("Not used of the judged recordings") < page.index("<h2>")
+
+
+def test_no_word_is_broken_in_a_narrow_window() -> None:
+    """`anywhere` lets a column shrink to one letter; only checksums and command lines may break inside a word."""
+    rules = re.findall(r"([^{}]+)\{([^{}]*)\}", STYLE)
+    broken = [selector.strip() for selector, body in rules if "overflow-wrap: anywhere" in body]
+    assert set(broken) == {"code.hash", "pre"}
+
+
+def test_numbers_of_a_scale_stand_as_they_are() -> None:
+    """Micrometres about 250 mm used to be written as 0.004 under "+2.4999e2"."""
+    figure = new_figure(2.0)
+    axes = figure.subplots()
+    axes.plot([0.0, 1.0], [249.994, 250.0003])
+    dress(axes, "time [s]", "position [mm]")
+    figure.canvas.draw()
+    labels = [one.get_text() for one in axes.get_yticklabels()]
+    assert axes.yaxis.get_offset_text().get_text() == "" and any(label.startswith("249.99") for label in labels)
+
+
+def test_band_is_named_where_it_is_drawn(found: Diagnosis) -> None:
+    effect = EffectResult("friction_vs_position", {
+        "position": ParameterResult([0.0, 0.1, 0.2], "m"),
+        "delta_force": ParameterResult([0.0, 5.0, 0.0], "N"),
+    }, {}, True, "")  # fmt: skip
+    curve = curve_figures(dataclasses.replace(found, effects=(effect,)))[0]
+    assert "band" not in curve.caption and not curve.figure.axes[0].collections
+    wide = dataclasses.replace(effect.parameters["delta_force"], ci95=[(-1.0, 1.0), (4.0, 6.0), (-1.0, 1.0)])
+    effect = dataclasses.replace(effect, parameters={**effect.parameters, "delta_force": wide})
+    curve = curve_figures(dataclasses.replace(found, effects=(effect,)))[0]
+    assert "the band is the 95 % interval" in curve.caption and curve.figure.axes[0].collections
+
+
+@pytest.mark.parametrize(
+    ("trial", "others", "words"),
+    [
+        (Trial(2, "payload", 0.0979, 0.0095, False), [Trial(2, "backlash", 0.55, 0.01, True)], "backlash by 55.00%"),
+        (Trial(2, "payload", 0.01, 0.0095, False), [], "within the scatter of the blocks (1.5 times 0.95%)"),
+        (Trial(2, "payload", 0.0979, 0.0095, False), [], "too small to matter"),
+        (Trial(1, "payload", 0.2, 0.01, True), [], "taken in round 1 and no longer paid"),
+        (Trial(1, "payload", 0.004, 0.01, False), [], "less than the 0.5% asked for"),
+        (Trial(1, "payload", -0.01, 0.01, False), [], "does not lower"),
+    ],
+)
+def test_reason_of_a_refusal_is_one_reason(trial: Trial, others: list[Trial], words: str) -> None:
+    assert words in _why_not(trial, [trial, *others])
 
 
 def test_no_effect_but_error_above_noise_is_not_called_complete() -> None:

@@ -133,6 +133,13 @@ def test_results_show_themselves() -> None:
         axis.stiffness().plot()  # three inertias: no parts whose compliance it is
 
 
+def test_every_scale_of_a_sweep_has_its_unit() -> None:
+    swept = fd.sweep("step_position", vary={"controller.position_gain": "40:60:2 1/s"})
+    labels = [axes.get_ylabel() for axes in swept.plot().axes]
+    assert any(label.endswith("[1]") for label in labels)  # the overshoot is a pure number
+    assert all(re.search(r"\[[^]]+\]$", label) for label in labels)
+
+
 def test_numbers_are_those_of_the_state_space() -> None:
     """The curve is |C (jw - A)^-1 B| of the linearisation, computed here by NumPy alone."""
     axis = fd.load("bench_axis")
