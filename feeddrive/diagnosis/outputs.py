@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from feeddrive import __version__
+from feeddrive.diagnosis.calibration.calibrated_result import calibrated_record
 from feeddrive.diagnosis.recordings.change_outputs import changes_record
 from feeddrive.diagnosis.result import ChannelResult, Diagnosis, EffectResult, ErrorFigures, ParameterResult
 from feeddrive.diagnosis.simulated.simulation_record import simulation_record
@@ -58,6 +59,7 @@ def diagnosis_record(diagnosis: Diagnosis) -> dict[str, Any]:
         "validate": [{"file": stamp.file, "sha256": stamp.sha256} for stamp in diagnosis.validate],
         "channels": [_channel(channel) for channel in diagnosis.channels],
         "effects": [_effect(effect) for effect in diagnosis.effects],
+        "calibrated": calibrated_record(diagnosis.calibrated),
         "refused": [{"name": refused.name, "reason": refused.reason} for refused in diagnosis.refused],
         "ambiguous": [list(names) for names in diagnosis.ambiguous],
         "ambiguous_reasons": [

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from feeddrive.diagnosis.calibration.calibrated_result import CalibratedResult
 from feeddrive.diagnosis.certainty.certainty_result import Ambiguity, Correlation, NextExperiment
 from feeddrive.diagnosis.ledger.result import Kept
 from feeddrive.diagnosis.recordings.change_result import RecordingChanges
@@ -160,6 +161,7 @@ class Diagnosis:
     next_experiments: tuple[NextExperiment, ...] = ()
     changes: RecordingChanges = field(default_factory=RecordingChanges)
     kept: Kept = field(default_factory=Kept)
+    calibrated: tuple[CalibratedResult, ...] = ()
 
     @property
     def nothing_missing(self) -> bool:

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from feeddrive import __version__
-from feeddrive.diagnosis.numbers.explanations import ASSERTED
+from feeddrive.diagnosis.tolerances import ASSERTED
 from feeddrive.diagnosis.numbers.plant_text import with_written_values
 from feeddrive.diagnosis.responses.response_problem import (
     DELAY_SIZE,
