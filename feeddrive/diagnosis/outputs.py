@@ -13,6 +13,7 @@ import numpy as np
 
 from feeddrive import __version__
 from feeddrive.diagnosis.calibration.calibrated_result import calibrated_record
+from feeddrive.diagnosis.calibration.plant_text import with_calibrated_values
 from feeddrive.diagnosis.recordings.change_outputs import changes_record
 from feeddrive.diagnosis.result import ChannelResult, Diagnosis, EffectResult, ErrorFigures, ParameterResult
 from feeddrive.diagnosis.simulated.simulation_record import simulation_record
@@ -39,7 +40,8 @@ def write_outputs(diagnosis: Diagnosis, effects: Sequence[Effect], plant_text: s
     count = len(effects) - len(diagnosis.effects) - len(tables)
     changed = ["as in the last recording; see changes in diagnosis.json"] * count
     remarks = [*(result.evidence for result in diagnosis.effects), *changed, *tables]
-    write_text_atomically(folder / "plant_after.toml", plant_text_with_effects(plant_text, effects, remarks))
+    mended = plant_text_with_effects(with_calibrated_values(plant_text, diagnosis.calibrated), effects, remarks)
+    write_text_atomically(folder / "plant_after.toml", mended)
     write_text_atomically(folder / "prediction.csv", prediction_table(diagnosis))
     write_text_atomically(folder / "diagnosis.json", diagnosis_json(diagnosis))
 

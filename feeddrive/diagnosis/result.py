@@ -165,9 +165,10 @@ class Diagnosis:
 
     @property
     def nothing_missing(self) -> bool:
-        """True when the declared plant is enough, or all that is known of it."""
+        """True when the declared plant is enough as it is, or all that is known of it."""
         differs = any(change.fitted for change in self.changes.changes)
-        return not self.effects and not differs and not any(left.carried for left in self.unexplained.values())
+        tables = any(left.carried for left in self.unexplained.values())
+        return not (self.effects or differs or tables or self.calibrated)
 
 
 def error_figures(error: FloatArray, reference_rms: float) -> ErrorFigures:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
+from feeddrive.diagnosis.calibration.plant_text import with_calibrated_values
 from feeddrive.diagnosis.diagnose import diagnose as find_what_lacks
 from feeddrive.diagnosis.outputs import diagnosis_record, write_outputs
 from feeddrive.diagnosis.result import Diagnosis
@@ -113,8 +114,9 @@ class Diagnosed(Shown):
 
     @property
     def plant(self) -> Axis:
-        """The axis with what was found."""
-        axis = axis_of_text(plant_text_with_effects(self.axis.text, (*self.axis.added, *self.found)), self.axis.path)
+        """The axis with its declared values as calibrated, and with what was found."""
+        text = with_calibrated_values(self.axis.text, self.diagnosis.calibrated)
+        axis = axis_of_text(plant_text_with_effects(text, (*self.axis.added, *self.found)), self.axis.path)
         return axis.with_values(dict(self.axis.values)) if self.axis.values else axis
 
     def record(self) -> dict[str, Any]:

@@ -13,6 +13,7 @@ from feeddrive.report.figures import render_figures
 from feeddrive.report.markup import figure, paragraph, section, text
 from feeddrive.report.people import share_text
 from feeddrive.report.records import recordings_section, stamp_section, tried_section
+from feeddrive.report.section_calibrated import calibrated_section
 from feeddrive.report.section_changes import changes_section, since_section
 from feeddrive.report.section_unexplained import unexplained_section
 from feeddrive.report.sections import (
@@ -50,6 +51,7 @@ def report_page(diagnosis: Diagnosis, figures: tuple[RenderedFigure, ...]) -> st
         verdict_section(diagnosis),
         error_section(diagnosis),
         effects_section(diagnosis) + explaining,
+        calibrated_section(diagnosis),
         changes_section(diagnosis) + since_section(diagnosis),
         ambiguous_section(diagnosis) + experiments_section(diagnosis),
         correlation_section(diagnosis),

@@ -154,25 +154,26 @@ class Calibrated:
 
     Attributes:
         value: which.
-        mean, deviation: of its coordinate, given the recordings.
+        coordinate: most likely, as the plant has it.
+        deviation: of the coordinate, given the recordings.
         log_odds: of being beyond its tolerance.
     """
 
     value: CalibratedValue
-    mean: float
+    coordinate: float
     deviation: float
     log_odds: float
 
     @property
     def number(self) -> float:
         """Most likely value [SI]."""
-        return self.value.declared * self.value.factor(self.mean)
+        return self.value.declared * self.value.factor(self.coordinate)
 
     @property
     def ci95(self) -> tuple[float, float]:
         """Interval of 95 % [SI]."""
         half = 1.96 * self.deviation
-        low, high = (self.value.declared * self.value.factor(self.mean + way * half) for way in (-1, 1))
+        low, high = (self.value.declared * self.value.factor(self.coordinate + way * half) for way in (-1, 1))
         return low, high
 
 
@@ -198,10 +199,11 @@ def calibrated_list(problem: Problem, found: Fit) -> tuple[Calibrated, ...]:
     mean = covariance @ (weight @ (columns.T @ (residual + whitened.offset)))
     named, count = len(found.effects), len(problem.predictor.candidates) + len(known.values)
     prior = log_prior_odds(named, count)
+    settled = whitened.most_likely(residual)
     result = []
     for i, value in enumerate(known.values):
         odds = prior + log_odds_beyond(float(mean[i]), float(covariance[i, i]), max(BEYOND / value.deviation, 1.0))
-        result.append(Calibrated(value, float(mean[i]), math.sqrt(float(covariance[i, i])), odds))
+        result.append(Calibrated(value, float(settled[i]), math.sqrt(float(covariance[i, i])), odds))
     return tuple(result)
 
 

@@ -76,6 +76,7 @@ class CalibratedValue:
         deviation: standard deviation of the logarithm of value over declared.
         name: effect that says so beyond the tolerance; empty where none does.
         place: of that effect.
+        written: where it stands in a plant file: dotted key, unit and declared value [SI] of each.
     """
 
     key: str
@@ -85,6 +86,7 @@ class CalibratedValue:
     deviation: float
     name: str = ""
     place: str = ""
+    written: tuple[tuple[str, str, float], ...] = ()
 
     @property
     def tolerance(self) -> float:
@@ -100,7 +102,7 @@ _CHAIN = (
     ("table_mass", "table mass", "kg", MASS, "payload", ""),
     ("motor_inertia", "motor inertia", "kg m^2", MASS, "inertia_deviation", "motor"),
     ("screw_inertia", "screw inertia", "kg m^2", MASS, "inertia_deviation", "screw"),
-    ("inertia_per_length", "screw inertia", "kg m^2/m", MASS, "inertia_deviation", "screw"),
+    ("inertia_per_length", "screw inertia per length", "kg m", MASS, "inertia_deviation", "screw"),
     ("axial_stiffness", "axial stiffness", "N/m", STIFFNESS, "stiffness_deviation", "all"),
     ("nut_stiffness", "nut stiffness", "N/m", STIFFNESS, "stiffness_deviation", "nut"),
     ("bearing_stiffness", "bearing stiffness", "N/m", STIFFNESS, "stiffness_deviation", "bearing"),
@@ -118,10 +120,12 @@ _CHAIN = (
 def calibrated_values(plant: Plant) -> tuple[CalibratedValue, ...]:
     """The declared values of a plant that are fitted; none where all are exact."""
     chain, found = plant.chain.values, []
+    sections = {one.key: f"{one.section}.{one.section_key}" for one in (*plant.chain.required, *plant.chain.optional)}
     for key, words, unit, kind, name, place in _CHAIN if plant.chain.elastic else _CHAIN[:1]:
         if chain.get(key, 0.0) > 0:
             deviation = _deviation(plant, (key,), kind, chain[key], unit)
-            found.append(CalibratedValue(key, words, unit, chain[key], deviation, name, place))
+            written = ((sections[key], unit, chain[key]),)
+            found.append(CalibratedValue(key, words, unit, chain[key], deviation, name, place, written))
     for port, whose in ((Port.TABLE, "guide"), (Port.SCREW, "screw")):
         level = declared_level(plant, port) > 0
         for keys, words, present in (
@@ -134,18 +138,32 @@ def calibrated_values(plant: Plant) -> tuple[CalibratedValue, ...]:
                 deviation = _deviation(plant, places, FRICTION, 1.0, "1")
                 name = "" if keys is _WIDTH else "friction_deviation"
                 key = f"{port}.{keys[0]}"
-                found.append(CalibratedValue(key, f"{words} of the {whose}", "1", 1.0, deviation, name, str(port)))
+                words = f"{words} of the {whose}"
+                written = _written(plant, port, keys)
+                found.append(CalibratedValue(key, words, "1", 1.0, deviation, name, str(port), written))
     constant = plant.torque_constant or 1.0
     unit = "N m/A" if plant.torque_constant else "1"
     of = ("torque_constant", "motor.torque_constant", "motor_inertia", "table_mass")
     deviation = _deviation(plant, of[:2] if plant.torque_constant else of[2:], TORQUE_CONSTANT, constant, unit)
-    found.append(CalibratedValue("torque_constant", "torque constant", unit, constant, deviation))
+    written = (("motor.torque_constant", unit, constant),) if plant.torque_constant else ()
+    found.append(CalibratedValue("torque_constant", "torque constant", unit, constant, deviation, written=written))
     return tuple(one for one in found if one.deviation > 0)
 
 
 def _friction_places(plant: Plant, port: Port, keys: Sequence[str]) -> tuple[str, ...]:
     effects = [e for e in plant.effects if isinstance(e, FrictionEffect) and e.declared and e.port == port]
     return tuple(f"{e.label}.{key}" for e in effects for key in keys if e.values.get(key, 0.0))
+
+
+def _written(plant: Plant, port: Port, keys: Sequence[str]) -> tuple[tuple[str, str, float], ...]:
+    """Where the friction of a port stands in a plant file."""
+    return tuple(
+        (f"effect.{e.label}.{key}", e.parameter(key).unit, float(e.values[key]))  # type: ignore[arg-type]
+        for e in plant.effects
+        if isinstance(e, FrictionEffect) and e.declared and e.port == port and e.label == e.name
+        for key in keys
+        if e.values.get(key, 0.0)
+    )
 
 
 def _deviation(plant: Plant, keys: Sequence[str], kind: Kind, declared: float, unit: str) -> float:
