@@ -117,7 +117,8 @@ def _turns(found: Search) -> list[_Turn]:
     """Candidates that were nearly taken, the nearest first."""
     turns = []
     for number in range(len(found.before)):
-        taken = next((t for t in found.trials if t.round == number + 1 and t.taken), None)
+        # a declared value that was named took the place of no candidate
+        taken = next((t for t in found.trials if t.round == number + 1 and t.taken and t.gain > 0), None)
         for attempt in found.rounds[number] if taken is not None else ():
             near = attempt.comparison.gain / taken.gain if taken is not None else 0.0
             if taken is not None and attempt.name not in taken.name.split(" with ") and attempt.comparison.pays:
