@@ -6,7 +6,7 @@ away, a soft spring, a resonance of strong damping) lowers the error by that alo
 motion that is expected given what was measured, window by window and frequency by frequency (Wiener, Extrapolation,
 Interpolation, and Smoothing (1949)):
 
-    E[A | A_m] = G A_m,   G = max(1 - N / P, 0),   var(A | A_m) = G N,   N = step²/12 Σw² |2 sin(ω h / 2)|⁴
+    E[A | A_m] = max(1 - N / P, 0) A_m,   N = step²/12 Σw² |2 sin(ω h / 2)|⁴
 
 | symbol | meaning |
 |---|---|
@@ -17,8 +17,8 @@ Interpolation, and Smoothing (1949)):
 
 The error that is left is independent of the motion that is simulated, so that it draws no value towards none (Carroll
 et al., Measurement Error in Nonlinear Models (2006), chapter 4). It adds to the residual what the declared plant makes of
-it: a drawn error of variance G N is simulated, and each channel is weighed, frequency by frequency, by the sensor's
-noise over both,
+it: an error that the same encoder would make is drawn and simulated, and each channel is weighed, frequency by
+frequency, by the sensor's noise over both,
 
     gain(f) = 1 / √(1 + S_encoder(f) / S_sensor(f))
 """
@@ -60,7 +60,7 @@ MATERIAL = 0.1
 """Variance that the encoder adds to a channel, over its sensor's, from which it is carried: errors grow by 5 %."""
 
 SEED = 12
-"""Of the drawn error; its spectrum is averaged over so many windows that any will do."""
+"""Of where the steps of the drawn encoder lie; all of them are passed, so that any will do."""
 
 
 @dataclass(frozen=True)
@@ -92,7 +92,8 @@ def encoder_error(plant: Plant, recording: Recording, band: Band, noise: dict[st
     if step <= 0 or round(WINDOW / sample_time) < 16 or len(angle) < 4 * round(WINDOW / sample_time):
         return None
     time: FloatArray = np.arange(len(angle), dtype=np.float64) * sample_time
-    expected, left = expected_and_left(angle, step, sample_time)
+    expected = expected_motion(angle, step, sample_time)
+    left = drawn_error(expected, step, sample_time)
     motion = motor_motion(time, expected)
     try:
         runs = [simulate_driven(plant, one) for one in (motion, motor_motion(time, expected + left))]
@@ -113,8 +114,19 @@ def encoder_error(plant: Plant, recording: Recording, band: Band, noise: dict[st
     return EncoderError(motion, gains, added)
 
 
-def expected_and_left(angle: FloatArray, step: float, sample_time: float) -> tuple[FloatArray, FloatArray]:
-    """The motor angle that is expected given one measured in steps, and a draw of the error that is left.
+def drawn_error(expected: FloatArray, step: float, sample_time: float) -> FloatArray:
+    """The error that the expected motion would have if it were the true one, measured by the same encoder, (n,) [rad].
+
+    Slow motion and rest make an error that is slow: it is drawn by measuring, not as white noise.
+    """
+    true = expected + step * np.random.default_rng(SEED).uniform()
+    measured = step * np.round(true / step)
+    drawn: FloatArray = expected_motion(measured, step, sample_time) - true
+    return drawn
+
+
+def expected_motion(angle: FloatArray, step: float, sample_time: float) -> FloatArray:
+    """The motor angle that is expected given one measured in steps.
 
     Args:
         angle: as measured [rad], shape (n,).
@@ -122,7 +134,7 @@ def expected_and_left(angle: FloatArray, step: float, sample_time: float) -> tup
         sample_time: [s].
 
     Returns:
-        Angle and error [rad], shape (n,) each.
+        Angle [rad], shape (n,).
     """
     length = 2 * round(0.5 * WINDOW / sample_time)
     window = np.sqrt(hann(length, sym=False))
@@ -132,13 +144,11 @@ def expected_and_left(angle: FloatArray, step: float, sample_time: float) -> tup
     difference = (2 * np.sin(0.5 * omega)) ** 2
     noise = step**2 / 12 * float(window @ window) * difference**2
     power = uniform_filter(np.abs(spectra) ** 2 / np.where(noise > 0, noise, 1.0), (ALONG_TIME, ALONG_FREQUENCY))
-    error = np.where(power > SHOWN, 1 / np.maximum(power, SHOWN), 1.0)  # 1 - G
+    error = np.where(power > SHOWN, 1 / np.maximum(power, SHOWN), 1.0)  # share of the steps
     error[:, omega < 2 * math.pi * SURE_MOTION * sample_time] = 0.0
     # minus the second difference, summed twice, is the angle
     taken = _added(-error * spectra / np.where(difference > 0, difference, 1.0), window, len(angle))
-    drawn = step * np.random.default_rng(SEED).uniform(-0.5, 0.5, len(angle))
-    draws = np.fft.rfft(_frames(drawn, length) * window, axis=1)
-    return angle - taken, _added(np.sqrt(1 - error) * draws, window, len(angle))
+    return angle - taken
 
 
 def _frames(series: FloatArray, length: int) -> FloatArray:

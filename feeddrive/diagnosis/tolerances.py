@@ -80,6 +80,8 @@ def written_share(tolerance: str, number: float, unit: str, where: str) -> float
     try:
         return parse(text, "1", where)
     except InputError:
+        if unit == "1":
+            raise
         return parse(text, unit, where) / number
 
 

@@ -47,7 +47,7 @@ def calibrated(problem: Problem) -> Problem:
         before, start = start, recalibrated(start, ())
         if np.max(np.abs(_moved(before, start)), initial=0.0) < ENOUGH:
             break
-    return start
+    return recalibrated(start.levelled(), ())
 
 
 def recalibrated(problem: Problem, effects: Sequence[Effect]) -> Problem:

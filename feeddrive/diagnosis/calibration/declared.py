@@ -143,8 +143,11 @@ def calibrated_values(plant: Plant) -> tuple[CalibratedValue, ...]:
                 found.append(CalibratedValue(key, words, "1", 1.0, deviation, name, str(port), written))
     constant = plant.torque_constant or 1.0
     unit = "N m/A" if plant.torque_constant else "1"
-    of = ("torque_constant", "motor.torque_constant", "motor_inertia", "table_mass")
-    deviation = _deviation(plant, of[:2] if plant.torque_constant else of[2:], TORQUE_CONSTANT, constant, unit)
+    if plant.torque_constant:
+        deviation = _deviation(plant, ("motor.torque_constant",), TORQUE_CONSTANT, constant, unit)
+    else:  # a torque that the drive records is its current times a constant of the same data sheet as the masses
+        sources = {plant.origins.get(key, "") for key in ("motor_inertia", "table_mass") if key in chain}
+        deviation = deviation_of(max(TORQUE_CONSTANT.usual(_WRITTEN.sub("", source)) for source in sources))
     written = (("motor.torque_constant", unit, constant),) if plant.torque_constant else ()
     found.append(CalibratedValue("torque_constant", "torque constant", unit, constant, deviation, written=written))
     return tuple(one for one in found if one.deviation > 0)

@@ -47,6 +47,8 @@ def preload_loss(scene: AxisScene) -> list[list[Effect]]:
     for i, limit in enumerate(limits):  # one after the other: all at once are four times the recording
         stretch = _in_band(scene, np.clip(force, -limit, limit) / stiffness)
         energy = float(stretch @ stretch)
+        if energy <= 0:  # the force never comes near zero, as on a vertical axis
+            continue
         slopes[i] = float(stretch @ lag) / energy
         shares[i] = slopes[i] ** 2 * energy / float(lag @ lag)
     best = int(np.argmax(np.where(slopes > 0, shares, 0.0)))
