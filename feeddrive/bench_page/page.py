@@ -25,7 +25,7 @@ from feeddrive.servo.cascade import Cascade
 from feeddrive.servo.filters import Filter, notch
 from feeddrive.servo.frequency_response import grid
 from feeddrive.servo.margins import GROWTH
-from feeddrive.simulate.trial_motions import RADIUS, HEIGHT, STEP_AT, Trial, circle_about, step_at
+from feeddrive.simulate.trial_motions import HEIGHT, RADIUS, STEP_AT, Trial, circle_about, step_at
 
 _SCRIPTS = ("linear.js", "loop.js", "engine.js", "bench.js", "drawing.js", "page.js")
 _LOWEST, _HIGHEST = 1.0, 4000.0

@@ -32,6 +32,7 @@ from feeddrive.report.figures import render_figures, save_figures
 from feeddrive.report.html import write_report
 from feeddrive.report.people import error_text, share_text
 from feeddrive.report.records import Occasion, used_sentence
+from feeddrive.report.section_calibrated import calibrated_lines
 from feeddrive.report.simulated import simulation_lines
 from feeddrive.report.verdict import verdict_sentences
 
@@ -189,6 +190,8 @@ def _print_summary(result: Diagnosis, report: Path) -> None:
     say(used_sentence(result))
     for effect in result.effects:
         say(f"{effect.name}: {effect.evidence} {effect.reading}")
+    for line in calibrated_lines(result):
+        say(line)
     for sentence in result.kept.since:
         say(f"since the earlier diagnosis: {sentence}")
     for one in result.alike:

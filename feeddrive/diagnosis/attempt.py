@@ -171,7 +171,7 @@ def with_short_blocks(problem: Problem) -> Problem:
 
 def with_predictable(problem: Problem, effects: Sequence[Effect]) -> Problem:
     """The problem without the samples that tell nothing of a plant with these effects."""
-    plant = problem.plant.with_effects(*effects)
+    plant = problem.machine(effects)
     kept = tuple(e.where_predictable(problem.predictor.to_fit(plant, e)) for e in problem.evidence)
     if any(not e.fit_rows.any() for e in kept):
         return problem

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feeddrive.blas_threads import one_thread
+from feeddrive.diagnosis.calibration.calibrated_result import calibrated_results
 from feeddrive.diagnosis.certainty.ambiguity import Rival, ambiguous_sets, other_places, rivals_of
 from feeddrive.diagnosis.certainty.correlation import correlation
 from feeddrive.diagnosis.certainty.next_experiment import next_experiments
@@ -114,6 +115,7 @@ def diagnose(
         recordings=judged_recordings(found.problem, rest.judged),
         simulation=refinement.reported(rest.judged if rest.effects else judged),
         changes=compared.changes,
+        calibrated=calibrated_results(found.problem, found.fit),
         kept=kept_of(found, known),
         alike=alike,
         next_experiments=next_experiments(found, settled.rivals, spans),
@@ -205,15 +207,15 @@ def _settled(
 
 def _judged(found: Search, evidence: Sequence[Evidence]) -> tuple[list[Judged], tuple[str, ...]]:
     """The recordings to judge on, their position-locked effects re-homed where the encoder's zero differs."""
-    declared = found.problem.plant
-    after = declared.with_effects(*found.fit.effects)
+    problem = found.problem.settled(found.fit.effects)
+    declared, after = problem.plant, problem.machine(found.fit.effects)
     judged, rehomed = [], []
     for one in evidence:
-        homed = rehomed_plant(found.problem, found.fit.effects, one)
+        homed = rehomed_plant(problem, found.fit.effects, one)
         if homed is None:
-            judged.append(prepared_for_judging(found.problem, one, declared, after))
+            judged.append(prepared_for_judging(problem, one, declared, after))
         else:
-            judged.append(prepared_for_judging(found.problem, homed.evidence, declared, homed.plant, homed.shift))
+            judged.append(prepared_for_judging(problem, homed.evidence, declared, homed.plant, homed.shift))
             rehomed.append(f"{one.recording.name}: {homed.statement}")
     return judged, tuple(rehomed)
 
@@ -222,7 +224,7 @@ def _notes(fitted: Sequence[Evidence], judged: Sequence[Evidence], found: Search
     ready = dict.fromkeys((*fitted, *judged))  # a recording may be both
     notes = [f"{evidence.recording.name}: {note}" for evidence in ready for note in evidence.recording.notes]
     declared = found.problem.plant
-    notes += found.problem.predictor.told(declared, declared.with_effects(*found.fit.effects))
+    notes += found.problem.predictor.told(declared, found.problem.machine(found.fit.effects))
     unseen = {name for name, reason in found.impossible.items() if reason == WITHOUT_TORQUE}
     if unseen:
         notes.append(without_torque_sentence(unseen))

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+import math
+from dataclasses import dataclass, field, replace
 from typing import Self
 
 import numpy as np
 
 from feeddrive.diagnosis.band import END_CUT, Band, comparison_band, held, sensor_noise
+from feeddrive.diagnosis.encoder_error import encoder_error
 from feeddrive.diagnosis.flawed_rows import refuse_little_left, sound_rows, without_copied_position
 from feeddrive.diagnosis.slow_rows import is_slow, known_motion, refuse_unknown_motion, sentence
 from feeddrive.diagnosis.timing import lagging
@@ -93,7 +95,17 @@ class Evidence:
             series: channel to measurement, prediction or their difference, (n,) each.
             rows: the samples, (n,).
         """
-        return np.concatenate([self.without_open(name, series[name][rows], rows) for name in self.channels])
+        return np.concatenate(
+            [self.without_open(name, self.evened(name, series[name])[rows], rows) for name in self.channels]
+        )
+
+    def known_to(self, name: str) -> float:
+        """Rms of what the sensors add to a channel in the band."""
+        return self.noise[name]
+
+    def evened(self, name: str, series: FloatArray) -> FloatArray:
+        """A channel, (n,), with each frequency weighed by how well it is known there."""
+        return series
 
     def without_open(self, name: str, part: FloatArray, rows: BoolArray) -> FloatArray:
         """One channel over its noise, (k,), without what its sensor leaves open: the zero of a scale."""
@@ -118,19 +130,34 @@ class AxisEvidence(Evidence):
         band: of the comparison.
         scaled_from: channel that the motor torque is only proportional to; empty where the torque is known.
         zero: table position where the motor angle is zero [m], for a chain that depends on it; 0 where it is not known.
+        gains: channel to the gain of each frequency of its whole series, where the encoder's error shows in it.
+        added: channel to the rms in the band that the encoder's error adds to its noise; as `gains`.
     """
 
     motion: MotorMotion
     band: Band
     scaled_from: str = ""
     zero: float = 0.0
+    gains: dict[str, FloatArray] = field(default_factory=dict)
+    added: dict[str, float] = field(default_factory=dict)
+
+    def known_to(self, name: str) -> float:
+        """Rms of what sensor and encoder add to a channel in the band."""
+        return math.hypot(self.noise[name], self.added.get(name, 0.0))
+
+    def evened(self, name: str, series: FloatArray) -> FloatArray:
+        """A channel, (n,), with each frequency weighed by sensor noise over that and the encoder's error."""
+        if name not in self.gains:
+            return series
+        known = np.isfinite(series)
+        mean = float(np.mean(series[known])) if known.any() else 0.0  # apart, so that gaps do not make steps
+        filled = np.where(known, series - mean, 0.0)
+        evened: FloatArray = np.fft.irfft(np.fft.rfft(filled) * self.gains[name], len(series))
+        return np.where(known, evened + self.gains[name][0] * mean, series)
 
     def placed(self, plant: Plant) -> Plant:
         """The plant with its nut where it stood: simulated positions count from the zero of the motor angle."""
-        if not self.zero:
-            return plant
-        values = {**plant.chain.values, "first_nut_position": plant.chain.values["first_nut_position"] + self.zero}
-        return replace(plant, chain=replace(plant.chain, values=values))
+        return _placed(plant, self.zero)
 
     @property
     def motion_speed(self) -> FloatArray:
@@ -143,7 +170,9 @@ class AxisEvidence(Evidence):
         channels = {**self.recording.channels, name: scale * self.recording[name]}
         measured = {**self.measured, name: scale * self.measured[name]}
         noise = {**self.noise, name: abs(scale) * self.noise[name]}
-        return replace(self, recording=replace(self.recording, channels=channels), measured=measured, noise=noise)
+        added = {**self.added, name: abs(scale) * self.added[name]} if name in self.added else self.added
+        recording = replace(self.recording, channels=channels)
+        return replace(self, recording=recording, measured=measured, noise=noise, added=added)
 
 
 def prepare(recording: Recording, plant: Plant, share: float, hold: float | None = None) -> AxisEvidence:
@@ -185,10 +214,13 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
         counted &= known
     counted &= sound_rows(recording, plant.torque_limit, band)
     refuse_little_left(counted, recording)
+    noise = {name: sensor_noise(series, band) for name, series in raw.items()}
+    zero = _zero_of_angle(recording, plant)
+    encoder = None if slow else encoder_error(_placed(plant, zero), recording, band, noise)
     return AxisEvidence(
         recording,
         {name: band.filter(series) for name, series in acting.items()},
-        {name: sensor_noise(series, band) for name, series in raw.items()},
+        noise,
         counted,
         time < share * time[-1] if share < 1 else np.ones(len(time), dtype=bool),
         band.edge,
@@ -196,11 +228,21 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
         band.thinning,
         tuple(name for name in measured_names if name == "table_position"),
         {},
-        motor_motion(time, recording["motor_angle"]),
+        encoder.motion if encoder is not None else motor_motion(time, recording["motor_angle"]),
         band,
         scaled_from,
-        _zero_of_angle(recording, plant),
+        zero,
+        encoder.gains if encoder is not None else {},
+        encoder.added if encoder is not None else {},
     )
+
+
+def _placed(plant: Plant, zero: float) -> Plant:
+    """The plant with its nut a way [m] further along."""
+    if not zero:
+        return plant
+    values = {**plant.chain.values, "first_nut_position": plant.chain.values["first_nut_position"] + zero}
+    return replace(plant, chain=replace(plant.chain, values=values))
 
 
 def _zero_of_angle(recording: Recording, plant: Plant) -> float:

@@ -10,12 +10,16 @@ it bends a little, as simulations are what costs time.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from feeddrive.diagnosis.calibration.calibration import Calibration, Whitener, whitener
+from feeddrive.diagnosis.calibration.declared import with_values
 from feeddrive.diagnosis.coordinates import coordinate_ends, numbers, read_coordinates, value_slopes, write_coordinates
 from feeddrive.diagnosis.evidence import Evidence
 from feeddrive.diagnosis.predictor import Machine, Predictor
@@ -39,6 +43,10 @@ STRAIGHT = 0.03
 
 BENT = 0.5
 """Bend above which the slope is computed anew; below, it is corrected along the step (Broyden, 1965)."""
+
+LEVEL = 0.8
+"""Residual over the noise that a channel is said to have, below which the noise is put right: a level that is read from
+the quietest tenth of the blocks is known to some per cent."""
 
 FREE = 1e-6
 """Damping that does not hold a step back."""
@@ -77,31 +85,103 @@ class Fit:
 
 @dataclass(frozen=True)
 class Problem:
-    """Declared plant, recordings, and what predicts them."""
+    """Declared plant, recordings, what predicts them, and the declared values that are fitted within their tolerances.
+
+    Attributes:
+        plant: as declared.
+        evidence: recordings.
+        predictor: of their kind of machine.
+        calibration: of the declared values; None where all are taken as exact.
+    """
 
     plant: Machine
     evidence: tuple[Evidence, ...]
     predictor: Predictor[Any, Any]
+    calibration: Calibration | None = None
+
+    def machine(self, effects: Sequence[Effect] = ()) -> Any:
+        """The plant with its declared values as calibrated, and further effects."""
+        return self._calibrated.with_effects(*effects)
+
+    @cached_property
+    def _calibrated(self) -> Machine:
+        if self.calibration is None or not isinstance(self.plant, Plant):
+            return self.plant
+        return with_values(self.plant, self.calibration.values, self.calibration.coordinates)
+
+    @cached_property
+    def whitener(self) -> Whitener | None:
+        """What takes away the part of a series that declared values within their tolerances may stand for."""
+        known = self.calibration
+        if known is None or not known.values:
+            return None
+        count = len(known.values)
+        columns = np.empty((sum(int(e.thinned(e.fit_rows).sum()) * len(e.channels) for e in self.evidence), count))
+        for i in range(count):
+            parts = [
+                e.weighted({name: known.slopes[e.recording][name][:, i] for name in e.channels}, e.thinned(e.fit_rows))
+                for e in self.evidence
+            ]
+            columns[:, i] = np.concatenate(parts)
+        return whitener(columns, known.coordinates, known.variance)
+
+    def levelled(self, effects: Sequence[Effect] = ()) -> Problem:
+        """The problem with no channel's noise above what is left of it: a sensor adds no more than the residual holds.
+
+        The noise is read from fourth differences, which in a stiff loop hold what the drive does as well.
+        """
+        residual, first, evidence = self.residual(effects), 0, []
+        for e in self.evidence:
+            count, noise = int(e.thinned(e.fit_rows).sum()), dict(e.noise)
+            for name in e.channels:
+                left = float(np.mean(residual[first : first + count] ** 2))
+                if 0 < left < LEVEL**2:
+                    noise[name] *= math.sqrt(left)
+                first += count
+            evidence.append(replace(e, noise=noise))
+        return replace(self, evidence=tuple(evidence))
+
+    def unwhitened(self, effects: Sequence[Effect]) -> FloatArray:
+        """Measured less predicted over the noise at the fitted samples of all recordings."""
+        plant, parts = self.machine(effects), []
+        for e in self.evidence:
+            predicted = self.predictor.predict(plant, e)
+            rows = e.thinned(e.fit_rows)
+            parts.append(e.weighted(e.measured, rows) - e.weighted(predicted, rows))
+        return np.concatenate(parts)
 
     def predicted(self, effects: Sequence[Effect]) -> FloatArray:
-        """Weighted prediction at the fitted samples of all recordings."""
-        plant = self.plant.with_effects(*effects)
-        return np.concatenate(
+        """Weighted prediction at the fitted samples of all recordings, whitened."""
+        plant = self.machine(effects)
+        rows = np.concatenate(
             [e.weighted(self.predictor.predict(plant, e), e.thinned(e.fit_rows)) for e in self.evidence]
         )
+        known = self.whitener
+        return rows if known is None else known.applied(rows - known.offset)
 
     def possible(self, effects: Sequence[Effect]) -> bool:
         """Whether the plant with these effects is one that a file may hold: its friction takes power everywhere."""
-        plant = self.plant.with_effects(*effects)
+        plant = self.machine(effects)
         return not isinstance(plant, Plant) or is_passive(plant)
 
     def measured(self) -> FloatArray:
-        """Weighted measurement at the fitted samples of all recordings."""
-        return np.concatenate([e.weighted(e.measured, e.thinned(e.fit_rows)) for e in self.evidence])
+        """Weighted measurement at the fitted samples of all recordings, whitened."""
+        rows = np.concatenate([e.weighted(e.measured, e.thinned(e.fit_rows)) for e in self.evidence])
+        return rows if self.whitener is None else self.whitener.applied(rows)
 
     def residual(self, effects: Sequence[Effect]) -> FloatArray:
-        """Weighted residual at the fitted samples of all recordings."""
+        """Weighted residual at the fitted samples of all recordings, whitened."""
         return self.measured() - self.predicted(effects)
+
+    def settled(self, effects: Sequence[Effect]) -> Problem:
+        """The problem with its declared values as they are most likely with these effects."""
+        if self.whitener is None or self.calibration is None:
+            return self
+        residual = self.unwhitened(effects)
+        if not np.all(np.isfinite(residual)):
+            return self
+        coordinates = self.whitener.most_likely(residual)
+        return replace(self, calibration=replace(self.calibration, coordinates=coordinates))
 
     @property
     def difference(self) -> float:

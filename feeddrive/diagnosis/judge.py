@@ -29,7 +29,7 @@ class Judged:
 
     def with_effects(self, problem: Problem, effects: Sequence[Effect]) -> Machine:
         """The declared plant with other effects than those found, counted from this recording's zero."""
-        return problem.plant.with_effects(*shifted(effects, self.shift))
+        return problem.settled(effects).machine(shifted(effects, self.shift))
 
 
 def shifted(effects: Sequence[Effect], shift: float) -> list[Effect]:
@@ -73,7 +73,7 @@ def channel_results(problem: Problem, judged: Sequence[Judged]) -> tuple[Channel
         after = np.concatenate([error_series(problem, j.after, j.evidence)[name] for j in parts])
         reference = np.concatenate([problem.predictor.reference(name, j.before, j.evidence) for j in parts])
         scale = float(np.sqrt(np.mean(reference**2)))
-        noise = float(np.sqrt(np.mean([j.evidence.noise[name] ** 2 for j in parts])))
+        noise = float(np.sqrt(np.mean([j.evidence.known_to(name) ** 2 for j in parts])))
         band = (0.0, parts[0].evidence.edge)
         figures = error_figures(before, scale), error_figures(after, scale)
         results.append(ChannelResult(name, channel_unit(name, ""), band, noise, *figures))

@@ -12,6 +12,8 @@ from typing import Any
 import numpy as np
 
 from feeddrive import __version__
+from feeddrive.diagnosis.calibration.calibrated_result import calibrated_record
+from feeddrive.diagnosis.calibration.plant_text import with_calibrated_values
 from feeddrive.diagnosis.recordings.change_outputs import changes_record
 from feeddrive.diagnosis.result import ChannelResult, Diagnosis, EffectResult, ErrorFigures, ParameterResult
 from feeddrive.diagnosis.simulated.simulation_record import simulation_record
@@ -38,7 +40,8 @@ def write_outputs(diagnosis: Diagnosis, effects: Sequence[Effect], plant_text: s
     count = len(effects) - len(diagnosis.effects) - len(tables)
     changed = ["as in the last recording; see changes in diagnosis.json"] * count
     remarks = [*(result.evidence for result in diagnosis.effects), *changed, *tables]
-    write_text_atomically(folder / "plant_after.toml", plant_text_with_effects(plant_text, effects, remarks))
+    mended = plant_text_with_effects(with_calibrated_values(plant_text, diagnosis.calibrated), effects, remarks)
+    write_text_atomically(folder / "plant_after.toml", mended)
     write_text_atomically(folder / "prediction.csv", prediction_table(diagnosis))
     write_text_atomically(folder / "diagnosis.json", diagnosis_json(diagnosis))
 
@@ -58,6 +61,7 @@ def diagnosis_record(diagnosis: Diagnosis) -> dict[str, Any]:
         "validate": [{"file": stamp.file, "sha256": stamp.sha256} for stamp in diagnosis.validate],
         "channels": [_channel(channel) for channel in diagnosis.channels],
         "effects": [_effect(effect) for effect in diagnosis.effects],
+        "calibrated": calibrated_record(diagnosis.calibrated),
         "refused": [{"name": refused.name, "reason": refused.reason} for refused in diagnosis.refused],
         "ambiguous": [list(names) for names in diagnosis.ambiguous],
         "ambiguous_reasons": [

@@ -8,6 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from feeddrive.diagnosis.calibration.declared import torque_gain
 from feeddrive.diagnosis.candidates import CANDIDATES
 from feeddrive.diagnosis.evidence import AxisEvidence
 from feeddrive.diagnosis.fit import Problem
@@ -52,7 +53,7 @@ class AxisPredictor(Predictor[Plant, AxisEvidence]):
     def predict(self, plant: Plant, evidence: AxisEvidence) -> dict[str, FloatArray]:
         """Channel to predicted series in the band, shape (n,), SI."""
         run = self.load_motion(plant, evidence)
-        torque = asked_torques(plant, run.torque + motor_sources(plant, run))
+        torque = torque_gain(plant) * asked_torques(plant, run.torque + motor_sources(plant, run))
         raw = {"motor_torque": torque, "table_position": run.table_position}
         step = evidence.recording.sample_time
         series = {name: evidence.band.filter(raw[name]) for name in evidence.channels}
@@ -88,7 +89,7 @@ class AxisPredictor(Predictor[Plant, AxisEvidence]):
 
     def scene(self, problem: Problem, found: Sequence[Effect]) -> AxisScene:
         """Residuals and motion of the load side with the effects found so far."""
-        plant = problem.plant.with_effects(*found)
+        plant = problem.machine(found)
         assert isinstance(plant, Plant)
         residuals, runs = [], []
         for evidence in problem.evidence:

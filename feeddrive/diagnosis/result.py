@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from feeddrive.diagnosis.calibration.calibrated_result import CalibratedResult
 from feeddrive.diagnosis.certainty.certainty_result import Ambiguity, Correlation, NextExperiment
 from feeddrive.diagnosis.ledger.result import Kept
 from feeddrive.diagnosis.recordings.change_result import RecordingChanges
@@ -174,12 +175,14 @@ class Diagnosis:
     next_experiments: tuple[NextExperiment, ...] = ()
     changes: RecordingChanges = field(default_factory=RecordingChanges)
     kept: Kept = field(default_factory=Kept)
+    calibrated: tuple[CalibratedResult, ...] = ()
 
     @property
     def nothing_missing(self) -> bool:
-        """True when the declared plant is enough, or all that is known of it."""
+        """True when the declared plant is enough as it is, or all that is known of it."""
         differs = any(change.fitted for change in self.changes.changes)
-        return not self.effects and not differs and not any(left.carried for left in self.unexplained.values())
+        tables = any(left.carried for left in self.unexplained.values())
+        return not (self.effects or differs or tables or self.calibrated)
 
 
 def error_figures(error: FloatArray, reference_rms: float) -> ErrorFigures:

@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 from feeddrive.diagnosis.attempt import PROMISE, Attempt, refined, started, together
 from feeddrive.diagnosis.coordinates import read_coordinates
 from feeddrive.diagnosis.cross_validation import LEAST_GAIN, compare_left_out
-from feeddrive.diagnosis.fit import Fit
+from feeddrive.diagnosis.fit import Fit, Problem
 from feeddrive.diagnosis.folds import block_numbers
 from feeddrive.diagnosis.pairs import linear_pair
 from feeddrive.diagnosis.scene import Scene
@@ -74,7 +74,7 @@ def one_round(scene: Scene, found: Fit, impossible: dict[str, str]) -> list[Atte
     for candidate in scene.problem.predictor.candidates:
         if _already(candidate.name, found.effects):
             continue
-        reason = candidate.needs(scene)
+        reason = _calibrated(scene.problem, candidate.name) or candidate.needs(scene)
         if reason:
             impossible[candidate.name] = reason
         else:
@@ -90,6 +90,13 @@ def one_round(scene: Scene, found: Fit, impossible: dict[str, str]) -> list[Atte
         others = [attempt for attempt in best if attempt.name not in names]
         best = _best_per_name(sorted([*joint, *others], key=lambda a: -a.comparison.gain))
     return best
+
+
+def _calibrated(problem: Problem, name: str) -> str:
+    """Why an effect is not tried that only says that declared values are other: they are fitted in every set."""
+    known = problem.calibration
+    words = [one.words for one in known.values if one.name == name] if known is not None else []
+    return f"{' and '.join(words)}: fitted within the tolerance of the declared value, and named beyond it" if words else ""
 
 
 def _promising_refined(scene: Scene, attempts: list[Attempt], pool: ThreadPoolExecutor) -> list[Attempt]:

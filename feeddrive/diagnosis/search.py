@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feeddrive.diagnosis.attempt import JOINT_ITERATIONS, Attempt, together
+from feeddrive.diagnosis.calibration.calibrate import beyond_tolerance, calibrated, recalibrated
 from feeddrive.diagnosis.coordinates import read_coordinates
 from feeddrive.diagnosis.cross_validation import (
     LEAST_GAIN,
@@ -83,6 +84,8 @@ def search(problem: Problem, said: Callable[[str], None] = lambda text: None) ->
     Returns:
         The effects found, fitted together, and the ledger of the search.
     """
+    said("fitting declared values within their tolerances")
+    problem = calibrated(problem)
     best = _greedy(problem, said)
     for turn in _turns(best)[: problem.predictor.retries]:
         if not _is_doubtful(best):
@@ -114,7 +117,8 @@ def _turns(found: Search) -> list[_Turn]:
     """Candidates that were nearly taken, the nearest first."""
     turns = []
     for number in range(len(found.before)):
-        taken = next((t for t in found.trials if t.round == number + 1 and t.taken), None)
+        # a declared value that was named took the place of no candidate
+        taken = next((t for t in found.trials if t.round == number + 1 and t.taken and t.gain > 0), None)
         for attempt in found.rounds[number] if taken is not None else ():
             near = attempt.comparison.gain / taken.gain if taken is not None else 0.0
             if taken is not None and attempt.name not in taken.name.split(" with ") and attempt.comparison.pays:
@@ -154,18 +158,33 @@ def _greedy(problem: Problem, said: Callable[[str], None], turn: _Turn | None = 
         trials += [_trial(len(rounds), attempt, attempt.name == taken) for attempt in attempts]
         attempts = []  # their series do not stay through the next round
         if winner is None:
-            break
+            beyond = beyond_tolerance(problem, found)
+            if beyond is None:
+                break
+            problem, effect = beyond
+            problem, found = _refitted(problem, fit(problem, (*found.effects, effect)))
+            trials.append(Trial(len(rounds), effect.name, 0.0, 0.0, True))
+            continue
         problem, found = winner.problem, winner.fit
         if found.held:  # fitted while the others stayed: the slopes of all are needed from here on
             found = fit(problem, found.effects, iterations=0)
+        problem, found = _refitted(problem, found)
         found = _without_idle(problem, found, 0 if pair is not None else 1)
         said(f"found so far: {', '.join(effect.name for effect in found.effects)}")
         names = tuple(sorted(effect.name for effect in found.effects))
         if names in met or _is_behind(found, len(rounds), turn):  # the new ones only take each other's place
             break
         met.add(names)
-    found = fit(problem, found.effects)
+    problem, found = _refitted(problem, fit(problem, found.effects))
     return Search(problem, found, tuple(trials), tuple(rounds), impossible, tuple(before))
+
+
+def _refitted(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
+    """Declared values and effects fitted in turn, with new slopes of the values."""
+    if problem.calibration is None:
+        return problem, found
+    problem = recalibrated(problem, found.effects)
+    return problem, fit(problem, found.effects, iterations=JOINT_ITERATIONS)
 
 
 def _is_behind(found: Fit, rounds: int, turn: _Turn | None) -> bool:

@@ -14,8 +14,8 @@ from feeddrive.interface.axis import Axis, load
 from feeddrive.interface.diagnosed import Diagnosed
 from feeddrive.interface.quantities import Quantity, si
 from feeddrive.interface.servo import Servo, cascade_for, tune
-from feeddrive.servo.loop_response import refuse_unstable_case
 from feeddrive.servo.frequency_response import Case
+from feeddrive.servo.loop_response import refuse_unstable_case
 
 _MOST_BYTES = 200_000_000
 

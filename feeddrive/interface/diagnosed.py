@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 from feeddrive.compensation.actions import Actions, actions
+from feeddrive.diagnosis.calibration.plant_text import with_calibrated_values
 from feeddrive.diagnosis.diagnose import diagnose as find_what_lacks
 from feeddrive.diagnosis.outputs import diagnosis_record, write_outputs
 from feeddrive.diagnosis.result import Diagnosis
@@ -114,8 +115,9 @@ class Diagnosed(Shown):
 
     @property
     def plant(self) -> Axis:
-        """The axis with what was found."""
-        axis = axis_of_text(plant_text_with_effects(self.axis.text, (*self.axis.added, *self.found)), self.axis.path)
+        """The axis with its declared values as calibrated, and with what was found."""
+        text = with_calibrated_values(self.axis.text, self.diagnosis.calibrated)
+        axis = axis_of_text(plant_text_with_effects(text, (*self.axis.added, *self.found)), self.axis.path)
         return axis.with_values(dict(self.axis.values)) if self.axis.values else axis
 
     def record(self) -> dict[str, Any]:
@@ -130,7 +132,7 @@ class Diagnosed(Shown):
         """
         from feeddrive.report.html import write_report
 
-        write_report(self.diagnosis, Path(path), None, self._actions())
+        write_report(self.diagnosis, Path(path), todo=self._actions())
         return Path(path)
 
     def save(self, folder: str | Path) -> Path:
@@ -146,7 +148,7 @@ class Diagnosed(Shown):
         pictures = render_figures(self.diagnosis)
         write_outputs(self.diagnosis, self.found, self.axis.text, place)
         save_figures(self.diagnosis, place, pictures)
-        write_report(self.diagnosis, place / "report.html", pictures, self._actions())
+        write_report(self.diagnosis, place / "report.html", pictures, todo=self._actions())
         return place
 
     def _actions(self) -> Actions:

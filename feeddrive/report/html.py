@@ -15,6 +15,7 @@ from feeddrive.report.markup import figure, paragraph, section, text
 from feeddrive.report.people import share_text
 from feeddrive.report.records import UNKNOWN, Occasion, form_section, recordings_section, stamp_section, tried_section
 from feeddrive.report.section_actions import actions_section
+from feeddrive.report.section_calibrated import calibrated_section
 from feeddrive.report.section_changes import changes_section, since_section
 from feeddrive.report.section_unexplained import unexplained_section
 from feeddrive.report.sections import (
@@ -64,6 +65,7 @@ def report_page(
         error_section(diagnosis),
         actions_section(diagnosis, todo),
         effects_section(diagnosis) + explaining,
+        calibrated_section(diagnosis),
         changes_section(diagnosis) + since_section(diagnosis),
         ambiguous_section(diagnosis) + experiments_section(diagnosis),
         correlation_section(diagnosis),

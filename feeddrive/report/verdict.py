@@ -44,8 +44,9 @@ def _main_finding(diagnosis: Diagnosis) -> str:
         return f"The declared plant lacks something of no known name: {tables}."
     if diagnosis.changes.changes:
         return "No effect is missing in every recording, but the recordings differ."
+    within = ", its values calibrated within their tolerances," if diagnosis.calibrated else ""
     if all(is_noise(channel) for channel in diagnosis.channels):
-        return "Nothing is missing: the declared plant explains the recording down to sensor noise."
+        return f"Nothing is missing: the declared plant{within} explains the recording down to sensor noise."
     return "No known effect was found that the declared plant lacks, but it does not explain the recording fully."
 
 

@@ -14,6 +14,7 @@ class Controller:
 
     position_gain [1/s], speed_gain [N m s/rad], integral_time [s], torque_limit [N m].
     soft_speed_gain: for axes with a delay, which would make speed_gain oscillate on the torsional mode.
+    speed_share: of a new difference quotient in the measured speed, 1 without a filter.
     """
 
     position_gain: float
@@ -21,16 +22,20 @@ class Controller:
     integral_time: float
     torque_limit: float
     soft_speed_gain: float
+    speed_share: float = 1.0
 
 
 @dataclass(frozen=True)
 class Sensors:
-    """What the recording adds: torque_noise [N m rms], encoder_bits, scale_step [m], scale_noise [m rms]."""
+    """What the recording adds: torque_noise [N m rms], encoder_bits, scale_step [m], scale_noise [m rms].
+
+    torque_step: resolution of the recorded torque [N m], 0 for none."""
 
     torque_noise: float = 0.04
     encoder_bits: int = 22
     scale_step: float = 10e-9
     scale_noise: float = 15e-9
+    torque_step: float = 0.0
 
     def noisier(self, factor: float) -> Sensors:
         """Return the sensors with `factor` times the noise; their steps stay."""
@@ -44,7 +49,8 @@ class AxisParameters:
     Guide friction: guide_coulomb * tanh(v / guide_velocity) + guide_viscous * v.
     Nut drag: nut_coulomb * tanh(w / drag_speed) + nut_power * sign(w) |w|^(2/3); bearing drag: bearing_coulomb * tanh.
     travel: (lowest, highest) table position of the long strokes [m]; top_speed [m/s]; acceleration [m/s^2];
-    chirp_amplitude: injected torque [N m]; sample_time [s].
+    chirp_amplitude: injected torque [N m]; sample_time [s]. ratio: motor turns per screw turn.
+    fall: acceleration of fall against positive motion [m/s^2], counterbalance [N] against it.
     """
 
     lead: float
@@ -69,6 +75,9 @@ class AxisParameters:
     controller: Controller
     sensors: Sensors = field(default_factory=Sensors)
     sample_time: float = 5e-4
+    ratio: float = 1.0
+    fall: float = 0.0
+    counterbalance: float = 0.0
 
     @property
     def transmission(self) -> float:

@@ -81,6 +81,37 @@ class Constants(NamedTuple):
     later_friction: float = 0.0
     later_time: float = 0.0
     cable_drag: float = 0.0
+    ratio: float = 1.0
+    """Motor turns per screw turn; torsional stiffness and damping are those at the screw."""
+    fall: float = 0.0
+    """Acceleration of fall against positive motion [m/s^2]."""
+    counterbalance: float = 0.0
+    asymmetry_width: float = 0.0
+    asymmetry_power: float = 1.0
+    asymmetry_speed: float = 1.0
+    stribeck_kind: float = 0.0
+    """0: Gaussian; 1: 1 / (1 + |v / vs|); 2: exp(-|v / vs|)."""
+    bristle_power: float = 0.0
+    """0: elasto-plastic; else Dahl's exponent."""
+    bump_kind: float = 0.0
+    """0: Gaussian; 1: 1 / (1 + u^2); 2: half a wave of a cosine; 3: flat with soft edges."""
+    warmup_slow_share: float = 0.0
+    warmup_slow_time: float = 1.0
+    load_power: float = 1.0
+    load_reference: float = 1.0
+    passing_second: float = 0.0
+    ripple_second: float = 0.0
+    droop_power: float = 2.0
+    spring_reach: float = 0.0
+    gap_softness: float = 0.0
+    travel_second: float = 0.0
+    lead_curve: float = 0.0
+    growth_slow_share: float = 0.0
+    growth_slow_time: float = 1.0
+    stroke_power: float = 1.0
+    preload_smooth: float = 0.0
+    mode_speed: float = 0.0
+    """Speed at which the damper of the further mass saturates [m/s]; 0: linear."""
 
 
 def declared_constants(axis: AxisParameters) -> Constants:

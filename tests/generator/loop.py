@@ -18,7 +18,7 @@ Array = npt.NDArray[np.float64]
 class Sampling(NamedTuple):
     """What the loop needs beside the plant: sample_time, longest_step [s], encoder_step [rad], gains and limit.
 
-    reading: how long after the controller's instant the recorder reads [s], from 0 to below sample_time.
+    speed_share: of a new difference quotient in the measured speed. reading: how long after the controller's instant the recorder reads [s], from 0 to below sample_time.
     """
 
     sample_time: float
@@ -29,11 +29,14 @@ class Sampling(NamedTuple):
     integral_time: float
     torque_limit: float
     reading: float = 0.0
+    speed_share: float = 1.0
 
 
 @compiled
 def acting(torque: float, c: Constants) -> float:
     """Return the torque that a command [N m] brings about."""
+    if c.droop_power != 2.0:
+        return torque * (1.0 - c.droop * abs(torque) ** c.droop_power)
     return torque * (1.0 - c.droop * torque * torque)
 
 
@@ -100,12 +103,16 @@ def compiled_closed_loop(
     integral = 0.0
     old_angle = round(state.angle / s.encoder_step) * s.encoder_step
     old_setpoint = setpoint[0]
+    radius = c.transmission / c.ratio
+    speed = 0.0
     for i in range(count):
         keep(states, i, state)
         angle = round(state.angle / s.encoder_step) * s.encoder_step
-        wanted_speed = (setpoint[i] - old_setpoint) / (c.transmission * s.sample_time)
-        wanted_speed += s.position_gain * (setpoint[i] / c.transmission - angle)
-        error = wanted_speed - (angle - old_angle) / s.sample_time
+        wanted_speed = (setpoint[i] - old_setpoint) / (radius * s.sample_time)
+        wanted_speed += s.position_gain * (setpoint[i] / radius - angle)
+        quotient = (angle - old_angle) / s.sample_time
+        speed = quotient if s.speed_share == 1.0 else speed + s.speed_share * (quotient - speed)
+        error = wanted_speed - speed
         asked = s.speed_gain * error + integral + injected[i]
         torque[i] = min(max(asked, -s.torque_limit), s.torque_limit)
         integral += s.sample_time / s.integral_time * (s.speed_gain * error + torque[i] - asked)

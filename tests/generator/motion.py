@@ -22,26 +22,51 @@ def further_mass(state: State, c: Constants) -> tuple[float, float]:
     """Return the force [N] of the further mass on the table and the mass's acceleration [m/s^2]."""
     if c.mode_mass == 0.0:
         return 0.0, 0.0
-    damper = 2.0 * c.mode_damping * (state.mass_velocity - state.velocity)
+    sliding = state.mass_velocity - state.velocity
+    if c.mode_speed != 0.0:
+        sliding = c.mode_speed * math.tanh(sliding / c.mode_speed)
+    damper = 2.0 * c.mode_damping * sliding
     acceleration = -c.mode_rate * (c.mode_rate * state.mass_deflection + damper)
     return -c.mode_mass * acceleration, acceleration
+
+
+@compiled
+def twist_of(state: State, c: Constants) -> float:
+    """Return the torque [N m] that motor and screw exchange, at the screw."""
+    twist = c.torsional_stiffness * (state.angle / c.ratio - state.screw_angle)
+    return twist + c.torsional_damping * (state.speed / c.ratio - state.screw_speed)
+
+
+@compiled
+def ripple_of(state: State, c: Constants) -> float:
+    """Return the ripple torque of the motor [N m], against positive motion."""
+    if c.ripple_amplitude == 0.0:
+        return 0.0
+    phase = c.ripple_order * state.angle + c.ripple_phase
+    ripple = c.ripple_amplitude * math.sin(phase)
+    if c.ripple_second != 0.0:
+        ripple += c.ripple_second * c.ripple_amplitude * math.sin(2.0 * phase)
+    return ripple
 
 
 @compiled
 def slopes(state: State, torque: float, side: int, c: Constants) -> State:
     """Return the time derivative of the state under the motor torque [N m], the gap's side being `side`."""
     force, load, push = nut_forces(state, side, c)
-    twist = c.torsional_stiffness * (state.angle - state.screw_angle)
-    twist += c.torsional_damping * (state.speed - state.screw_speed)
-    ripple = 0.0
-    if c.ripple_amplitude != 0.0:
-        ripple = c.ripple_amplitude * math.sin(c.ripple_order * state.angle + c.ripple_phase)
+    twist = twist_of(state, c)
     friction, bristle = table_friction(state, c)
-    resisting = c.constant_force + c.spring_stiffness * (state.position - c.spring_zero) + unlisted_force(state, c)
+    resisting = c.constant_force + unlisted_force(state, c)
+    if c.spring_reach == 0.0:
+        resisting += c.spring_stiffness * (state.position - c.spring_zero)
+    else:
+        resisting += c.spring_stiffness * c.spring_reach * math.tanh((state.position - c.spring_zero) / c.spring_reach)
+    if c.fall != 0.0:
+        # A further mass on a spring hangs too.
+        resisting += (c.table_mass + c.mode_mass) * c.fall - c.counterbalance
     pull, mass_acceleration = further_mass(state, c)
     return State(
         state.speed,
-        (torque - twist - ripple) / c.motor_inertia,
+        (torque - twist / c.ratio - ripple_of(state, c)) / c.motor_inertia,
         state.screw_speed,
         (twist - load - screw_drag(state, force, c)) / c.screw_inertia,
         state.velocity,

@@ -122,11 +122,11 @@ def setpoint_and_chirp(profile: Profile, sample_time: float) -> tuple[Array, Arr
         time = _sample_times(cycles / frequency, sample_time)
         parts.append(middle + amplitude * np.sin(2.0 * math.pi * frequency * time))
     time = _sample_times(profile.swing_seconds, sample_time)
-    blend = _smooth_step(time / BLEND_SECONDS)
+    blend = smooth_step(time / BLEND_SECONDS)
     parts.append(middle + blend * profile.swing * np.sin(2.0 * math.pi * time / profile.swing_period))
     setpoint = np.concatenate(parts)
     chirp = np.zeros_like(setpoint)
-    chirp[-time.size :] = profile.chirp_amplitude * _chirp(time - BLEND_SECONDS)
+    chirp[-time.size :] = profile.chirp_amplitude * chirp(time - BLEND_SECONDS, CHIRP_HZ)
     return setpoint, chirp
 
 
@@ -151,15 +151,15 @@ def _stroke_positions(profile: Profile, sample_time: float) -> Array:
     return profile.start + np.cumsum(speed_sequence) * sample_time
 
 
-def _smooth_step(share: Array) -> Array:
+def smooth_step(share: Array) -> Array:
     """Return a step from 0 to 1 whose first two derivatives vanish at both ends."""
     s = np.clip(share, 0.0, 1.0)
     return s**3 * (10.0 - 15.0 * s + 6.0 * s**2)
 
 
-def _chirp(time: Array) -> Array:
-    """Return a logarithmic sine sweep over CHIRP_HZ, zero for negative time, faded at both ends."""
-    low, high = CHIRP_HZ
+def chirp(time: Array, hertz: tuple[float, float]) -> Array:
+    """Return a logarithmic sine sweep between two frequencies, zero for negative time [s], faded at both ends."""
+    low, high = hertz
     seconds = float(time[-1])
     ratio = math.log(high / low)
     phase = 2.0 * math.pi * low * seconds / ratio * (np.exp(np.maximum(time, 0.0) / seconds * ratio) - 1.0)

@@ -69,6 +69,7 @@ def sampling_of(axis: AxisParameters, constants: Constants, longest_step: float 
         control.integral_time,
         control.torque_limit,
         lateness(axis.sample_time, constants).reading,
+        control.speed_share,
     )
 
 
@@ -88,9 +89,9 @@ def encoder_step(sensors: Sensors) -> float:
 
 def state_at_rest(setpoint: float, constants: Constants) -> State:
     """Return the unloaded state in which the motor stands at the set-point [m] and the nut carries no force."""
-    angle = setpoint / constants.transmission
-    travel = constants.travel_amplitude * math.sin(constants.travel_order * angle + constants.travel_phase)
-    return State(angle, 0.0, angle, 0.0, (setpoint + travel) / (1.0 - constants.lead_slope), 0.0)
+    screw = setpoint / constants.transmission
+    travel = constants.travel_amplitude * math.sin(constants.travel_order * screw + constants.travel_phase)
+    return State(constants.ratio * screw, 0.0, screw, 0.0, (setpoint + travel) / (1.0 - constants.lead_slope), 0.0)
 
 
 def measured(torque: Array, angle: Array, position: Array, sensors: Sensors, seed: int) -> dict[str, Array]:
@@ -99,10 +100,15 @@ def measured(torque: Array, angle: Array, position: Array, sensors: Sensors, see
     noisy = position + sensors.scale_noise * random.standard_normal(torque.size)
     increment = encoder_step(sensors)
     return {
-        "motor_torque": torque + sensors.torque_noise * random.standard_normal(torque.size),
+        "motor_torque": stepped(torque + sensors.torque_noise * random.standard_normal(torque.size), sensors.torque_step),
         "motor_angle": np.round(angle / increment) * increment,
         "table_position": np.round(noisy / sensors.scale_step) * sensors.scale_step,
     }
+
+
+def stepped(values: Array, step: float) -> Array:
+    """Return `values` in steps; as they are where the step is 0."""
+    return np.asarray(np.round(values / step) * step) if step > 0.0 else values
 
 
 def write_csv(path: Path, data: dict[str, Array]) -> None:

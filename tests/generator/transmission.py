@@ -19,7 +19,29 @@ def growth(time: float, c: Constants) -> tuple[float, float]:
     if c.growth_strain == 0.0:
         return c.lead_slope, 0.0
     left = c.growth_strain * math.exp(-time / c.growth_time)
-    return c.lead_slope + c.growth_strain - left, left / c.growth_time
+    if c.growth_slow_share == 0.0:
+        return c.lead_slope + c.growth_strain - left, left / c.growth_time
+    slow = c.growth_slow_share * c.growth_strain * math.exp(-time / c.growth_slow_time)
+    left *= 1.0 - c.growth_slow_share
+    return c.lead_slope + c.growth_strain - left - slow, left / c.growth_time + slow / c.growth_slow_time
+
+
+@compiled
+def travel_error(angle: float, c: Constants) -> tuple[float, float]:
+    """Return the periodic lead error [m] at a screw angle and its derivative [m/rad]."""
+    phase = c.travel_order * angle + c.travel_phase
+    error, slope = c.travel_amplitude * math.sin(phase), c.travel_amplitude * c.travel_order * math.cos(phase)
+    if c.travel_second != 0.0:
+        error += c.travel_second * c.travel_amplitude * math.sin(2.0 * phase)
+        slope += 2.0 * c.travel_second * c.travel_amplitude * c.travel_order * math.cos(2.0 * phase)
+    return error, slope
+
+
+@compiled
+def curved_lead(position: float, c: Constants) -> tuple[float, float]:
+    """Return what of the cumulative lead error is no straight line [m], and its derivative."""
+    far = position - c.stroke_low
+    return c.lead_slope * c.lead_curve * far * far, 2.0 * c.lead_slope * c.lead_curve * far
 
 
 @compiled
@@ -27,7 +49,9 @@ def stretch(state: State, c: Constants) -> float:
     """Return nut travel minus table position [m], free play included."""
     travel = 0.0
     if c.travel_amplitude != 0.0:
-        travel = c.travel_amplitude * math.sin(c.travel_order * state.screw_angle + c.travel_phase)
+        travel, _ = travel_error(state.screw_angle, c)
+    if c.lead_curve != 0.0:
+        travel += curved_lead(state.position, c)[0]
     strain, _ = growth(state.time, c)
     return c.transmission * state.screw_angle + travel - (1.0 - strain) * state.position
 
@@ -35,6 +59,8 @@ def stretch(state: State, c: Constants) -> float:
 @compiled
 def side_of(state: State, c: Constants) -> int:
     """Return which flank the stretch touches: -1, 0 or +1."""
+    if c.gap_softness != 0.0:
+        return 0
     play = stretch(state, c)
     if play > 0.5 * c.gap:
         return 1
@@ -52,11 +78,23 @@ def spring(e: float, position: float, c: Constants) -> tuple[float, float]:
     k, slope = c.axial_stiffness, 0.0
     if c.stroke_share != 0.0:
         slope = -c.stroke_share * c.axial_stiffness / (c.stroke_high - c.stroke_low)
-        k += slope * (position - c.stroke_low)
+        if c.stroke_power == 1.0:
+            k += slope * (position - c.stroke_low)
+        else:
+            reach = max((position - c.stroke_low) / (c.stroke_high - c.stroke_low), 0.0)
+            k -= c.stroke_share * c.axial_stiffness * reach**c.stroke_power
+            slope *= c.stroke_power * reach ** (c.stroke_power - 1.0)
+    if c.gap_softness != 0.0:
+        half = 0.5 * c.gap
+        above = math.sqrt((e - half) ** 2 + c.gap_softness**2)
+        below = math.sqrt((e + half) ** 2 + c.gap_softness**2)
+        return k * (e + 0.5 * (above - below)), 0.0
     if c.preload_force == 0.0:
         return k * e, -0.5 * slope * e * e
     soft = c.preload_ratio * k
     edge = c.preload_force / soft
+    if c.preload_smooth != 0.0:
+        return k * (e - (1.0 - c.preload_ratio) * edge * math.tanh(e / edge)), 0.0
     if abs(e) <= edge:
         return soft * e, -0.5 * slope * c.preload_ratio * e * e
     force = math.copysign(c.preload_force + k * (abs(e) - edge), e)
@@ -64,16 +102,30 @@ def spring(e: float, position: float, c: Constants) -> tuple[float, float]:
 
 
 @compiled
+def soft_touch(e: float, c: Constants) -> float:
+    """Return the share of the contacts that touch at a stretch [m] where the free play has a soft edge."""
+    half = 0.5 * c.gap
+    above = (e - half) / math.sqrt((e - half) ** 2 + c.gap_softness**2)
+    below = (e + half) / math.sqrt((e + half) ** 2 + c.gap_softness**2)
+    return 1.0 + 0.5 * (above - below)
+
+
+@compiled
 def nut_forces(state: State, side: int, c: Constants) -> tuple[float, float, float]:
     """Return the transmitted force [N], the torque it asks of the screw [N m] and its force on the table [N]."""
-    if side == 0 and c.gap != 0.0:
+    soft = c.gap_softness != 0.0
+    if side == 0 and c.gap != 0.0 and not soft:
         return 0.0, 0.0, 0.0
     ratio = c.transmission
     if c.travel_amplitude != 0.0:
-        phase = c.travel_order * state.screw_angle + c.travel_phase
-        ratio += c.travel_amplitude * c.travel_order * math.cos(phase)
+        ratio += travel_error(state.screw_angle, c)[1]
     strain, strain_rate = growth(state.time, c)
     reach = 1.0 - strain
-    force, pull = spring(stretch(state, c) - 0.5 * side * c.gap, state.position, c)
-    force += c.axial_damping * (ratio * state.screw_speed - reach * state.velocity + strain_rate * state.position)
+    if c.lead_curve != 0.0:
+        reach -= curved_lead(state.position, c)[1]
+    e = stretch(state, c) - 0.5 * side * c.gap
+    force, pull = spring(e, state.position, c)
+    touch = soft_touch(e, c) if soft else 1.0
+    rate = ratio * state.screw_speed - reach * state.velocity + strain_rate * state.position
+    force += touch * c.axial_damping * rate
     return force, ratio * force, reach * force + pull

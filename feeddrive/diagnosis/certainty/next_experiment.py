@@ -82,7 +82,7 @@ def next_experiments(
     asked = bool(doubts) or any(rivals)
     if not asked or not evidence or not isinstance(plant, Plant) or any(is_shift(effect) for effect in effects):
         return ()
-    ready = rehearsals(plant, plant.with_effects(*effects), evidence)
+    ready = rehearsals(plant, found.problem.machine(effects), evidence)
     settled = [_apart(found, alike, ready) for alike in rivals if alike]
     known = [_better_known(found, doubt, ready) for doubt in doubts]
     return (*settled, *known)

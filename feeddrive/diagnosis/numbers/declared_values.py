@@ -1,20 +1,6 @@
 """Declared values of a plant file that may be other than declared: which, how well each is known, what would settle it.
 
-A tolerance is two standard deviations of the logarithm of value over declared. It is that of the file where one is
-written (`tolerance = "5 %"`); else it follows from what the value is and how its source calls it:
-
-| kind of value | from a catalogue or drawing | "assumed", "guess", "typical" | "measured" |
-|---|---|---|---|
-| stiffness of nut, bearing, coupling, shaft | 20 % | 50 % | 2 % |
-| diameter that carries (no root diameter is declared) | 5 % | 5 % | 2 % |
-| root diameter, lengths | 1 % | 20 % | 2 % |
-| mass, inertia | 5 % | 30 % | 2 % |
-| friction | 30 % | 50 % | 2 % |
-| damping | 100 % | 100 % | 20 % |
-| what no file declares: bracket and housing, as a share of the whole compliance | 5 % | | |
-
-The shares are judgements of what a catalogue, a drawing or an assumption is worth, taken from no standard; they decide
-from which difference on a value is called other than declared, so a tolerance that is written takes their place.
+Tolerances are those of `feeddrive.diagnosis.tolerances`.
 """
 
 from __future__ import annotations
@@ -24,25 +10,22 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from feeddrive.errors import InputError
+from feeddrive.diagnosis.tolerances import (
+    CARRYING,
+    DAMPING,
+    FRICTION,
+    LENGTH,
+    MASS,
+    MISSING,
+    STIFFNESS,
+    Kind,
+    deviation_of,
+    written_share,
+)
 from feeddrive.quantity import parse
 
-_UNSURE = ("assumed", "guess", "typical", "estimate")
 _LEAST_SHARE = 1e-4  # of the compliance; a stiffer part than that counts as rigid
-
-
-@dataclass(frozen=True)
-class Kind:
-    """How well a kind of value is known: shares, from a catalogue, and where its source is unsure."""
-
-    catalogue: float
-    unsure: float
-    measured: float = 0.02
-
-
-STIFFNESS, CARRYING, LENGTH = Kind(0.20, 0.50), Kind(0.05, 0.05), Kind(0.01, 0.20)
-MASS, FRICTION, MISSING = Kind(0.05, 0.30), Kind(0.30, 0.50), Kind(0.05, 0.05)
-DAMPING = Kind(1.0, 1.0, 0.2)
+_LEAST_TOLERANCE = 1e-6  # of a value that is exact, so that its prior has a width
 
 
 @dataclass(frozen=True)
@@ -186,24 +169,9 @@ def _value(written: Any, place: _Place, source: str) -> DeclaredValue | None:
     number = parse(written, place.unit, place.key)
     if not number > 0:
         return None
-    share = _share(tolerance, number, place) if tolerance else _usual(place.kind, source)
-    return DeclaredValue(place.key, place.unit, place.words, number, 0.5 * math.log1p(share), place.settled_by)
-
-
-def _usual(kind: Kind, source: str) -> float:
-    words = source.lower()
-    if any(word in words for word in _UNSURE):
-        return kind.unsure
-    return kind.measured if words.startswith("measured") else kind.catalogue
-
-
-def _share(tolerance: str, number: float, place: _Place) -> float:
-    text = tolerance.removeprefix("±").strip()
-    try:
-        share = parse(text, "1", place.key)
-    except InputError:
-        share = parse(text, place.unit, place.key) / number
-    return max(share, 1e-6)
+    share = written_share(tolerance, number, place.unit, place.key) if tolerance else place.kind.usual(source)
+    deviation = deviation_of(max(share, _LEAST_TOLERANCE))
+    return DeclaredValue(place.key, place.unit, place.words, number, deviation, place.settled_by)
 
 
 def _frictions(entries: Mapping[str, Any]) -> list[DeclaredValue]:

@@ -42,6 +42,7 @@ from scipy.stats import chi2
 
 from feeddrive.diagnosis.numbers.declared_values import DeclaredValue, declared_values
 from feeddrive.diagnosis.numbers.measured_file import MeasuredNumber
+from feeddrive.diagnosis.tolerances import BEYOND, WIDEST
 from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.plant.files import plant_from_entries
 from feeddrive.plant.plant import Plant
@@ -49,10 +50,6 @@ from feeddrive.plant.stiffness_budget import stiffness_budget
 from feeddrive.simulate.scenario_overrides import with_overrides
 from feeddrive.typing import FloatArray
 
-WIDEST = math.log(4.0)
-"""Of a value beyond its tolerance, either way; more is another machine or a slip of a unit."""
-
-BEYOND = WIDEST / 1.96
 MOST = 2
 """Values beyond their tolerances at once: a third one would need more numbers than anyone measures."""
 
@@ -65,9 +62,6 @@ value beyond it, some ten times as far, is lost in their noise."""
 
 STEP = 1e-3
 """Of the differences, in coordinates whose tolerances are some hundredths."""
-
-ASSERTED = 20 / 21
-"""Odds of 20 to 1 (Royall, Statistical Evidence (1997), section 1.6)."""
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,6 @@ from scipy.stats import chi2
 from feeddrive import __version__
 from feeddrive.diagnosis.numbers.declared_values import DeclaredValue
 from feeddrive.diagnosis.numbers.explanations import (
-    ASSERTED,
     Explanation,
     NumbersProblem,
     SingleCause,
@@ -27,6 +26,7 @@ from feeddrive.diagnosis.numbers.explanations import (
 from feeddrive.diagnosis.numbers.measured_file import MeasuredNumber
 from feeddrive.diagnosis.numbers.next_number import NextNumber, mixed, next_numbers
 from feeddrive.diagnosis.numbers.plant_text import with_written_values
+from feeddrive.diagnosis.tolerances import ASSERTED
 from feeddrive.plant.plant import Plant
 from feeddrive.quantity import format_quantity
 from feeddrive.typing import FloatArray

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from feeddrive.diagnosis.calibration.calibrate import with_recordings
 from feeddrive.diagnosis.fit import Problem
 from feeddrive.diagnosis.judge import Judged, error_series, judged_channels, share_of
 from feeddrive.diagnosis.recordings.change_report import Question, parameter_changes
@@ -57,7 +58,7 @@ def judged_changes(found: Search, judged: Sequence[Judged]) -> JudgedChanges | N
     apart = [one for one in judged if not one.evidence.fitted.any()]
     if not apart:
         return None
-    problem = _together(found.problem, apart)
+    problem = _together(found.problem, found.fit.effects, apart)
     first = len(found.problem.evidence)
     changes = find_changes(problem, found.fit.effects, range(first, first + len(apart)))
     if not changes.targets:
@@ -71,7 +72,7 @@ def judged_changes(found: Search, judged: Sequence[Judged]) -> JudgedChanges | N
     stated = parameter_changes(problem, changes, questions)
     rehomed = {one.evidence.recording.name for one in apart if one.shift}
     stated = tuple(one for one in stated if not (one.parameter == "phase" and one.recording in rehomed))
-    allowed = [Judged(j.evidence, j.before, problem.plant.with_effects(*changes.fit.effects)) for j in judged]
+    allowed = [Judged(j.evidence, j.before, problem.machine(changes.fit.effects)) for j in judged]
     carrying = replace(found.problem, predictor=problem.predictor)
     count = len(without_shifts(found.fit.effects))
     numbers = [question.here for question in questions]
@@ -79,10 +80,10 @@ def judged_changes(found: Search, judged: Sequence[Judged]) -> JudgedChanges | N
     return JudgedChanges(changes, stated, carries, _explained(carrying, judged, allowed), carrying, tuple(allowed))
 
 
-def _together(problem: Problem, apart: Sequence[Judged]) -> Problem:
+def _together(problem: Problem, effects: Sequence[Effect], apart: Sequence[Judged]) -> Problem:
     """Fitted and judged recordings in one problem, all of them fitted."""
     more = [replace(j.evidence, fitted=np.ones(len(j.evidence.fitted), dtype=bool)) for j in apart]
-    return replace(numbered(problem, more), evidence=(*problem.evidence, *more))
+    return with_recordings(numbered(problem, more), effects, more)
 
 
 def _carries(
@@ -95,7 +96,7 @@ def _carries(
         for effect in effects
         if not (isinstance(effect, RecordingShift) and effect.recording in numbers and effect.target.meets(mine))
     ]
-    plant = problem.plant.with_effects(*own)
+    plant = problem.machine(own)
     return bool(share_of(problem, [Judged(j.evidence, j.before, plant) for j in judged], own, index).carries)
 
 

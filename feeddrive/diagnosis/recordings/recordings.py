@@ -156,7 +156,7 @@ class RecordingPredictor(Predictor[Any, Any]):
         """What starts are read from, every recording with its own machine."""
         parts = []
         for evidence in problem.evidence:
-            own = self.machine(problem.plant.with_effects(*found), evidence)
+            own = self.machine(problem.machine(found), evidence)
             count = len(own.effects) - len(without_shifts(found))
             declared = replace(own, effects=own.effects[:count])
             parts.append(self.inner.scene(Problem(declared, (evidence,), self.inner), own.effects[count:]))

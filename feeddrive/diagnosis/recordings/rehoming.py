@@ -50,10 +50,10 @@ def rehomed_plant(problem: Problem, effects: Sequence[Effect], evidence: Evidenc
     first = replace(evidence, counted=evidence.counted & _first_part(evidence))
     if first.judged_rows.sum() < 2 / evidence.recording.sample_time:
         return None
-    base, blocks = judged_residual(problem, [(problem.plant.with_effects(*effects), first)])
+    base, blocks = judged_residual(problem, [(problem.machine(effects), first)])
 
     def error(shift: float) -> float:
-        plant = problem.plant.with_effects(*shifted(effects, shift))
+        plant = problem.machine(shifted(effects, shift))
         residual, _ = judged_residual(problem, [(plant, first)])
         return float(residual @ residual)
 
@@ -61,7 +61,7 @@ def rehomed_plant(problem: Problem, effects: Sequence[Effect], evidence: Evidenc
     best = float(min(grid, key=error))
     width = 2 * np.pi / SCAN
     found = minimize_scalar(error, bounds=(best - width, best + width), method="bounded", options={"maxiter": 12})
-    plant = problem.plant.with_effects(*shifted(effects, float(found.x)))
+    plant = problem.machine(shifted(effects, float(found.x)))
     gain = compare_left_out(base, judged_residual(problem, [(plant, first)])[0], blocks, WORTH)
     if not gain.pays:
         return None

@@ -123,7 +123,7 @@ def _faded(rows: BoolArray, sample_time: float) -> FloatArray:
 
 def _responses(scene: AxisScene, frequency: FloatArray) -> dict[str, ComplexArray]:
     """Table position and motor torque per force on the table with the motor's motion as it is; complex, shape (n,)."""
-    plant = scene.plant.with_effects(*scene.found)
+    plant = scene.problem.machine(scene.found)
     p, x = plant.chain_values(), plant.middle
     chain = plant.chain
     M, C, K = (np.array(matrix(p, x), dtype=float) for matrix in (chain.mass, chain.damping, chain.stiffness))

@@ -6,7 +6,8 @@ The floor is the sensor noise in the band as `band.white_noise` reads it: the te
 quantile lies below the mean by z_0.1 times the scatter of a block's level, which for fourth differences of white noise
 is 5.25 / m of the square (m samples a block, 5.25 = 2 sum R_k^2 / R_0^2); here it is put right, and its own scatter is
 counted. A quantised motor angle moves the predicted table by up to r q / sqrt(12), more or less of which is in the band
-with the speed: half of its square is taken for noise, and half for doubt. The rms scatters with the blocks of time,
+with the speed: half of its square is taken for noise, and half for doubt. Where the steps matter (`encoder_error`) what
+they add is drawn, and counted as noise and as doubt. The rms scatters with the blocks of time,
 which counts correlation inside them.
 """
 
@@ -82,6 +83,8 @@ def noise_floor(evidence: Evidence, channel: str, radius: float = 0.0) -> Floor:
     spread = math.sqrt(QUANTILE * (1 - QUANTILE) / blocks) / DENSITY * level
     corrected = noise / (1 - LOWER * level)
     half = 0.5 * (radius * angle_step(evidence.recording["motor_angle"])) ** 2 / 12 if radius else 0.0
+    if channel in evidence.added:  # known to what the drawn error says of it
+        half = evidence.added[channel] ** 2
     rms = math.sqrt(corrected**2 + missed**2 + half)
     doubt = math.hypot(2 * spread * corrected**2, half)  # of the square
     return Floor(rms, doubt / (2 * rms) if rms > 0 else 0.0)

@@ -30,7 +30,7 @@ def analysis_of(
     problem: Problem, effects: Sequence[Effect], judged: Sequence[Judged], channel: ChannelResult
 ) -> Analysis:
     """What is left of a channel with these effects in the plant, taken apart; `judged` have them in the plant after."""
-    plant = problem.plant.with_effects(*effects)
+    plant = problem.machine(effects)
     fitted = views_of(problem, [(plant, evidence) for evidence in problem.evidence], channel.name, False)
     seen = views_of(problem, [(j.after, j.evidence) for j in judged], channel.name, True)
     radius = plant.chain.motor_radius if isinstance(plant, Plant) else 0.0

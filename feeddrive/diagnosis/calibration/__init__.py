@@ -1,0 +1,1 @@
+"""Calibration before diagnosis: declared values fitted within their tolerances in every set of effects."""

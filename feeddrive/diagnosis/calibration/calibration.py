@@ -1,0 +1,113 @@
+"""Declared values as nuisance coordinates of every fit: marginalised, not fitted one by one.
+
+    y = f(θ, c0) + K (c - c0) + e,   c ~ N(0, 1),   e ~ N(0, λ)
+    -2 log p(y|θ) = r' A r / λ + const,   r = y - f(θ, c0) + K c0,   A = (1 + K K'/λ)^-1 = W'W
+    ĉ = (K'K + λ)^-1 K' r
+
+| symbol | meaning | unit |
+|---|---|---|
+| y, f | measured and predicted channels over their noise, in the band | 1 |
+| θ | coordinates of a set of effects | 1 |
+| c | logarithms of declared values over what is declared, over their deviation, `declared` | 1 |
+| c0, K | values at which the prediction is linear, its slope there, shared by all sets of a round | 1 |
+| λ | variance of a row that stands for one independent value | 1 |
+
+Every measured and predicted series of a fit passes W, so that an effect is worth what no declared value within its
+tolerance does as well, in every set, at no simulation more. Source: Lindley and Smith, J. Roy. Statist. Soc. B 34
+(1972) 1, for the marginal likelihood of a linear model.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from feeddrive.diagnosis.calibration.declared import CalibratedValue
+from feeddrive.recording import Recording
+from feeddrive.typing import FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Calibration:
+    """Declared values that are fitted, and the slopes of every recording with them.
+
+    Attributes:
+        values: that are fitted.
+        coordinates: c0, (k,).
+        slopes: recording to channel to its slope with c, (n, k), SI.
+        variance: λ.
+    """
+
+    values: tuple[CalibratedValue, ...]
+    coordinates: FloatArray
+    slopes: Mapping[Recording, Mapping[str, FloatArray]]
+    variance: float
+
+
+@dataclass(frozen=True, eq=False)
+class Whitener:
+    """W for the rows of a problem.
+
+    Attributes:
+        columns: K over the noise at those rows, (m, k).
+        basis: left singular vectors of K, (m, k).
+        kept: what W leaves along each, (k,).
+        offset: K c0, (m,).
+        variance: λ.
+    """
+
+    columns: FloatArray
+    basis: FloatArray
+    kept: FloatArray
+    offset: FloatArray
+    variance: float
+
+    def applied(self, rows: FloatArray) -> FloatArray:
+        """W times rows, (m,)."""
+        result: FloatArray = rows - self.basis @ ((1 - self.kept) * (self.basis.T @ rows))
+        return result
+
+    def most_likely(self, residual: FloatArray) -> FloatArray:
+        """ĉ for y - f, (m,)."""
+        normal = self.columns.T @ self.columns + self.variance * np.eye(self.columns.shape[1])
+        found: FloatArray = np.linalg.solve(normal, self.columns.T @ (residual + self.offset))
+        return found
+
+
+def whitener(columns: FloatArray, coordinates: FloatArray, variance: float) -> Whitener:
+    """W of slopes over the noise, (m, k), with c0, (k,), and λ."""
+    basis, sizes, _ = np.linalg.svd(columns, full_matrices=False)
+    kept = np.sqrt(variance / (sizes**2 + variance))
+    return Whitener(columns, basis, kept, columns @ coordinates, variance)
+
+
+def log_odds_beyond(mean: float, variance: float, width: float) -> float:
+    """Log of p(y | beyond) / p(y | within) of one coordinate.
+
+    With p(c|y) = N(m, V) under N(0, 1) within tolerance, and N(0, w²) beyond it,
+
+        p(y|beyond) / p(y|within) = 1/w E[exp(a c²/2)] = exp(a m² / 2 (1 - a V)) / (w √(1 - a V)),   a = 1 - 1/w²
+
+    Args:
+        mean, variance: of the coordinate, declared values within tolerance.
+        width: w, of a value beyond its tolerance, in deviations.
+    """
+    a = 1 - 1 / width**2
+    left = max(1 - a * variance, 1 / width**2)
+    return float(0.5 * a * mean**2 / left - 0.5 * np.log(left) - np.log(width))
+
+
+def log_prior_odds(named: int, count: int) -> float:
+    """Log prior odds that one more of `count` candidates is there, `named` being named: one is expected at even odds.
+
+    p(S) = B(1 + |S|, 2K - |S|) / B(1, K) gives p(S + 1) / p(S) = (1 + |S|) / (2K - |S| - 1). Source: Scott and Berger,
+    Ann. Statist. 38 (2010) 2587.
+    """
+    return float(np.log((1 + named) / max(2 * count - named - 1, 1)))
+
+
+def joined(parts: Sequence[FloatArray]) -> FloatArray:
+    """Rows of all recordings one after the other."""
+    return np.concatenate(parts) if len(parts) > 1 else parts[0]

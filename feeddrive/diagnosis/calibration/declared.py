@@ -1,0 +1,225 @@
+"""Declared values of a plant in motion that are fitted within their tolerances, and the plant with other values.
+
+    value = declared * exp(deviation * c),   c ~ N(0, 1) before anything is measured
+
+| value | named beyond its tolerance |
+|---|---|
+| table mass; inertia of motor and of screw | payload; inertia_deviation |
+| axial stiffness, or that of nut, bearings and drive where the chain knows them apart | stiffness_deviation |
+| Coulomb and viscous friction of table and of screw | friction_deviation |
+| torsional stiffness, damping, width of the sign change of friction, torque constant | no effect says so |
+
+Friction is one factor a port, on all that is declared there. A rigid machine shows one mass: its inertias are not told
+from it. Tolerances: `feeddrive.diagnosis.tolerances`.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from feeddrive.diagnosis.declared_friction import declared_level, declared_viscous
+from feeddrive.diagnosis.tolerances import (
+    DAMPING,
+    FRICTION,
+    MASS,
+    STIFFNESS,
+    TORQUE_CONSTANT,
+    Kind,
+    deviation_of,
+    written_share,
+)
+from feeddrive.effects.base import DriveEffect, Effect, FrictionEffect, Parameter, Port, Signature, Value
+from feeddrive.effects.friction_deviation import FrictionDeviation
+from feeddrive.effects.inertia_deviation import InertiaDeviation, declared_inertia
+from feeddrive.effects.payload import Payload
+from feeddrive.effects.stiffness_deviation import StiffnessDeviation
+from feeddrive.plant.plant import Plant
+from feeddrive.typing import Expression, FloatArray
+
+FARTHEST = 3.0
+"""Logarithm of a value over the declared one at most, a factor of twenty, so that every plant on the way is a machine."""
+
+_WRITTEN = re.compile(r"± ([^,(]+)")
+_COULOMB, _VISCOUS, _WIDTH = ("coulomb",), ("viscous",), ("smoothing_velocity", "smoothing_speed")
+
+
+class TorqueGain(DriveEffect):
+    """A torque constant other than declared: the torque that is recorded over the one that acts."""
+
+    name = "torque_gain"
+    parameters = (Parameter("gain", "1", 0.0, 100.0, size=1.0),)
+    signature = Signature(("motor_torque",), "motor torque")
+    additive = True
+
+    def droop(self, p: Mapping[str, Expression]) -> Expression:
+        """A gain is no loss."""
+        return 0.0
+
+
+def torque_gain(plant: Plant) -> float:
+    """Recorded over acting torque; 1 as declared."""
+    return math.prod(float(e.values["gain"]) for e in plant.effects if isinstance(e, TorqueGain))  # type: ignore[arg-type]
+
+
+@dataclass(frozen=True)
+class CalibratedValue:
+    """A declared value that is fitted within its tolerance.
+
+    Attributes:
+        key: value of the chain, `port.friction` of a port, or `torque_constant`.
+        words: for sentences.
+        unit: SI unit.
+        declared: the value [SI]; 1 for a factor on several.
+        deviation: standard deviation of the logarithm of value over declared.
+        name: effect that says so beyond the tolerance; empty where none does.
+        place: of that effect.
+        written: where it stands in a plant file: dotted key, unit and declared value [SI] of each.
+    """
+
+    key: str
+    words: str
+    unit: str
+    declared: float
+    deviation: float
+    name: str = ""
+    place: str = ""
+    written: tuple[tuple[str, str, float], ...] = ()
+
+    @property
+    def tolerance(self) -> float:
+        """As a share: twice the deviation."""
+        return math.expm1(2 * self.deviation)
+
+    def factor(self, coordinate: float) -> float:
+        """Value over declared at a coordinate."""
+        return math.exp(min(max(self.deviation * coordinate, -FARTHEST), FARTHEST))
+
+
+_CHAIN = (
+    ("table_mass", "table mass", "kg", MASS, "payload", ""),
+    ("motor_inertia", "motor inertia", "kg m^2", MASS, "inertia_deviation", "motor"),
+    ("screw_inertia", "screw inertia", "kg m^2", MASS, "inertia_deviation", "screw"),
+    ("inertia_per_length", "screw inertia per length", "kg m", MASS, "inertia_deviation", "screw"),
+    ("axial_stiffness", "axial stiffness", "N/m", STIFFNESS, "stiffness_deviation", "all"),
+    ("nut_stiffness", "nut stiffness", "N/m", STIFFNESS, "stiffness_deviation", "nut"),
+    ("bearing_stiffness", "bearing stiffness", "N/m", STIFFNESS, "stiffness_deviation", "bearing"),
+    ("far_bearing_stiffness", "far bearing stiffness", "N/m", STIFFNESS, "stiffness_deviation", "far_bearing"),
+    ("drive_stiffness", "torsional stiffness of the drive", "N m/rad", STIFFNESS, "stiffness_deviation", "drive"),
+    ("torsional_stiffness", "torsional stiffness", "N m/rad", STIFFNESS, "", ""),
+    ("axial_damping", "axial damping", "N s/m", DAMPING, "", ""),
+    ("nut_damping", "axial damping", "N s/m", DAMPING, "", ""),
+    ("torsional_damping", "torsional damping", "N m s/rad", DAMPING, "", ""),
+    ("drive_damping", "torsional damping", "N m s/rad", DAMPING, "", ""),
+)
+"""Value of a chain, its words and unit, its kind, the effect that says that it is other, and where that acts."""
+
+
+def calibrated_values(plant: Plant) -> tuple[CalibratedValue, ...]:
+    """The declared values of a plant that are fitted; none where all are exact."""
+    chain, found = plant.chain.values, []
+    sections = {one.key: f"{one.section}.{one.section_key}" for one in (*plant.chain.required, *plant.chain.optional)}
+    for key, words, unit, kind, name, place in _CHAIN if plant.chain.elastic else _CHAIN[:1]:
+        if chain.get(key, 0.0) > 0:
+            deviation = _deviation(plant, (key,), kind, chain[key], unit)
+            written = ((sections[key], unit, chain[key]),)
+            found.append(CalibratedValue(key, words, unit, chain[key], deviation, name, place, written))
+    for port, whose in ((Port.TABLE, "guide"), (Port.SCREW, "screw")):
+        level = declared_level(plant, port) > 0
+        for keys, words, present in (
+            (_COULOMB, "Coulomb friction", level),
+            (_VISCOUS, "viscous friction", declared_viscous(plant, port) > 0),
+            (_WIDTH, "width of the sign change", level),
+        ):
+            places = _friction_places(plant, port, keys)
+            if present and places:
+                deviation = _deviation(plant, places, FRICTION, 1.0, "1")
+                name = "" if keys is _WIDTH else "friction_deviation"
+                key = f"{port}.{keys[0]}"
+                words = f"{words} of the {whose}"
+                written = _written(plant, port, keys)
+                found.append(CalibratedValue(key, words, "1", 1.0, deviation, name, str(port), written))
+    constant = plant.torque_constant or 1.0
+    unit = "N m/A" if plant.torque_constant else "1"
+    if plant.torque_constant:
+        deviation = _deviation(plant, ("motor.torque_constant",), TORQUE_CONSTANT, constant, unit)
+    else:  # a torque that the drive records is its current times a constant of the same data sheet as the masses
+        sources = {plant.origins.get(key, "") for key in ("motor_inertia", "table_mass") if key in chain}
+        deviation = deviation_of(max(TORQUE_CONSTANT.usual(_WRITTEN.sub("", source)) for source in sources))
+    written = (("motor.torque_constant", unit, constant),) if plant.torque_constant else ()
+    found.append(CalibratedValue("torque_constant", "torque constant", unit, constant, deviation, written=written))
+    return tuple(one for one in found if one.deviation > 0)
+
+
+def _friction_places(plant: Plant, port: Port, keys: Sequence[str]) -> tuple[str, ...]:
+    effects = [e for e in plant.effects if isinstance(e, FrictionEffect) and e.declared and e.port == port]
+    return tuple(f"{e.label}.{key}" for e in effects for key in keys if e.values.get(key, 0.0))
+
+
+def _written(plant: Plant, port: Port, keys: Sequence[str]) -> tuple[tuple[str, str, float], ...]:
+    """Where the friction of a port stands in a plant file."""
+    return tuple(
+        (f"effect.{e.label}.{key}", e.parameter(key).unit, float(e.values[key]))  # type: ignore[arg-type]
+        for e in plant.effects
+        if isinstance(e, FrictionEffect) and e.declared and e.port == port and e.label == e.name
+        for key in keys
+        if e.values.get(key, 0.0)
+    )
+
+
+def _deviation(plant: Plant, keys: Sequence[str], kind: Kind, declared: float, unit: str) -> float:
+    """The widest of several values of one kind."""
+    shares = []
+    for key in keys:
+        origin = plant.origins.get(key, "")
+        written = _WRITTEN.search(origin)
+        shares.append(written_share(written.group(1), declared, unit, key) if written else kind.usual(origin))
+    return deviation_of(max(shares))
+
+
+def with_values(plant: Plant, values: Sequence[CalibratedValue], coordinates: FloatArray) -> Plant:
+    """The plant with other declared values, (k,) coordinates."""
+    chain, frictions, gain = dict(plant.chain.values), dict[tuple[str, str], float](), 1.0
+    for value, coordinate in zip(values, coordinates, strict=True):
+        factor = value.factor(float(coordinate))
+        port, _, friction = value.key.partition(".")
+        if value.key == "torque_constant":
+            gain = factor
+        elif friction:
+            frictions[port, friction] = factor
+        else:
+            chain[value.key] *= factor
+    effects = tuple(_with_friction(effect, frictions) for effect in plant.effects)
+    more = (TorqueGain.of(gain=1 / gain),) if gain != 1.0 else ()
+    return replace(plant, chain=replace(plant.chain, values=chain), effects=(*effects, *more))
+
+
+def _with_friction(effect: Effect, factors: Mapping[tuple[str, str], float]) -> Effect:
+    if not (isinstance(effect, FrictionEffect) and effect.declared):
+        return effect
+    changed: dict[str, Value] = {}
+    for keys in (_COULOMB, _VISCOUS, _WIDTH):
+        factor = factors.get((str(effect.port), keys[0]), 1.0)
+        present = [key for key in keys if isinstance(effect.values.get(key), float | int)]
+        changed |= {key: factor * float(effect.values[key]) for key in present}  # type: ignore[arg-type]
+    return effect.with_values(**changed) if changed else effect
+
+
+def as_effect(plant: Plant, value: CalibratedValue, coordinate: float) -> Effect:
+    """The effect that says that a value is other than declared."""
+    factor = value.factor(coordinate)
+    match value.name:
+        case "payload":
+            return Payload.of(mass=(factor - 1) * value.declared)
+        case "inertia_deviation":
+            declared = declared_inertia(plant.chain.values, value.place)
+            return InertiaDeviation.of(None, value.place, inertia=(factor - 1) * declared)
+        case "stiffness_deviation":
+            return StiffnessDeviation.of(None, value.place, factor=factor)
+        case "friction_deviation":
+            port = Port(value.place)
+            coulomb = value.key.endswith(_COULOMB[0])
+            return FrictionDeviation.of(port, coulomb_factor=factor if coulomb else 1.0, viscous_factor=1.0 if coulomb else factor)
+    raise ValueError(f"no effect says that {value.words} is other than declared")

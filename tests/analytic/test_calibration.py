@@ -1,0 +1,112 @@
+"""Declared values as nuisance coordinates: the marginal likelihood, the odds of a value beyond its tolerance, the plant."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.stats import norm
+
+from feeddrive.diagnosis.calibration.calibration import log_odds_beyond, log_prior_odds, whitener
+from feeddrive.diagnosis.calibration.declared import CalibratedValue, as_effect, calibrated_values, with_values
+from feeddrive.diagnosis.tolerances import MASS, deviation_of
+from feeddrive.files import plants_folder
+from feeddrive.plant.files import read_plant
+from tests.generator.drawn_drives import drawn_drive
+from tests.recovery.rigid_runs import MASS as RIGID_MASS
+from tests.recovery.rigid_runs import PLANT
+
+RANDOM = np.random.default_rng(3)
+
+
+def test_whitened_square_is_that_of_the_marginal_likelihood() -> None:
+    columns, rows, variance = RANDOM.standard_normal((40, 3)) * [1.0, 30.0, 0.01], RANDOM.standard_normal(40), 1.7
+    known = whitener(columns, np.zeros(3), variance)
+    covariance = np.eye(40) + columns @ columns.T / variance
+    white = known.applied(rows)
+    assert white @ white == pytest.approx(rows @ np.linalg.solve(covariance, rows), rel=1e-9)
+
+
+def test_most_likely_values_do_not_depend_on_where_the_slopes_were_taken() -> None:
+    columns, truth = RANDOM.standard_normal((200, 2)), np.array([0.4, -1.1])
+    measured = columns @ truth
+    for start in (np.zeros(2), np.array([2.0, 1.0])):
+        known = whitener(columns, start, 1e-6)
+        found = known.most_likely(measured - columns @ start)
+        assert found == pytest.approx(truth, abs=1e-6)  # a prior of 1e-6 of the information of 200 rows moves no more
+
+
+@pytest.mark.parametrize(("mean", "variance", "width"), [(0.1, 0.5, 5.0), (4.0, 0.01, 28.0), (2.5, 0.2, 5.0)])
+def test_odds_beyond_tolerance_are_those_of_the_integrals(mean: float, variance: float, width: float) -> None:
+    """p(c|y) ~ N(c; 0, 1) N(c; x, s²): what it is under the other prior is an integral."""
+
+    def ratio(c: float) -> float:
+        logs = norm.logpdf(c, 0, width) - norm.logpdf(c) + norm.logpdf(c, mean, math.sqrt(variance))
+        return math.exp(logs)
+
+    # the posterior of mean and variance lies far inside these ends, also where the other prior draws it outwards
+    direct = quad(ratio, -60, 60, points=[0.0, mean], limit=400)[0]
+    assert log_odds_beyond(mean, variance, width) == pytest.approx(math.log(direct), abs=1e-6)
+
+
+def test_what_is_not_seen_has_even_odds() -> None:
+    assert log_odds_beyond(0.0, 1.0, 20.0) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_prior_odds_fall_with_the_candidates() -> None:
+    assert log_prior_odds(0, 1) == 0.0  # one candidate, even odds
+    assert log_prior_odds(0, 30) == pytest.approx(-math.log(59))
+
+
+@pytest.mark.parametrize(
+    ("source", "share"),
+    [("catalogue", 0.05), ("assumed: steel", 0.30), ("measured by weighing", 0.02), ("simulated axis", 0.0)],
+)
+def test_tolerance_of_a_mass_by_its_source(source: str, share: float) -> None:
+    assert MASS.usual(source) == share
+
+
+def plant_of(text: str, folder: Path):  # type: ignore[no-untyped-def]
+    path = folder / "plant.toml"
+    path.write_text(text, encoding="utf-8")
+    return read_plant(path)
+
+
+def test_simulated_plants_are_exact(tmp_path: Path) -> None:
+    assert calibrated_values(read_plant(plants_folder() / "bench_axis.toml")) == ()
+
+
+def test_written_tolerances_come_first(tmp_path: Path) -> None:
+    text = PLANT.replace(f'mass = "{RIGID_MASS} kg"', f'mass = {{ value = "{RIGID_MASS} kg", tolerance = "6 kg" }}')
+    known = {value.key: value for value in calibrated_values(plant_of(text, tmp_path))}
+    assert known["table_mass"].deviation == pytest.approx(deviation_of(6 / RIGID_MASS))
+    assert known["table.coulomb"].tolerance == pytest.approx(0.30)
+
+
+def test_every_value_of_a_machine_of_parts_is_moved_alone(tmp_path: Path) -> None:
+    plant = plant_of(drawn_drive(5), tmp_path)
+    values = calibrated_values(plant)
+    for place, value in enumerate(values):
+        coordinates = np.zeros(len(values))
+        coordinates[place] = 1.0
+        moved = with_values(plant, values, coordinates)
+        chain = {key for key, number in moved.chain.values.items() if number != plant.chain.values[key]}
+        effects = [one for one, was in zip(moved.effects, plant.effects, strict=False) if one.values != was.values]
+        assert chain == ({value.key} & set(plant.chain.values))
+        assert bool(effects) == ("." in value.key)
+        assert (len(moved.effects) > len(plant.effects)) == (value.key == "torque_constant")
+
+
+def test_the_effect_that_names_a_value_does_the_same(tmp_path: Path) -> None:
+    plant = plant_of(drawn_drive(5), tmp_path)
+    named: list[CalibratedValue] = [value for value in calibrated_values(plant) if value.name]
+    assert {value.name for value in named} >= {"payload", "inertia_deviation", "stiffness_deviation"}
+    for value in named:
+        if value.name == "friction_deviation":
+            continue  # another effect on top, not another value of the chain
+        named_plant = plant.with_effects(as_effect(plant, value, 2.0))
+        moved = with_values(plant, [value], np.array([2.0]))
+        assert named_plant.chain_values()[value.key] == pytest.approx(moved.chain.values[value.key], rel=1e-12)

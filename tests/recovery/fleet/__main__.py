@@ -1,0 +1,57 @@
+"""Command line: python -m tests.recovery.fleet --seeds 1:40 --out DIR [--resume]; see --help."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from tests.recovery.fleet.run import cases_done, run_missing
+from tests.recovery.fleet.state import fleet_state
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run what is asked for; 0 when done."""
+    options = _parser().parse_args(arguments)
+    if options.write:
+        from tests.recovery.fleet.case import case
+
+        for seed in options.seeds:
+            case(seed).write(options.out / str(seed))
+        return 0
+    if not options.resume and cases_done(options.out):
+        print(f"error: {options.out} holds results; say --resume to go on, or name another folder", file=sys.stderr)
+        return 2
+    run_missing(options.seeds, options.out, options.workers, options.limit, options.minutes, print_line)
+    return 0
+
+
+def print_line(text: str) -> None:
+    """Print at once, also into a file."""
+    print(text, flush=True)
+
+
+def seeds_of(text: str) -> list[int]:
+    """Return the seeds of "1:40" (both included) or "3,17,29"."""
+    result: list[int] = []
+    for part in text.split(","):
+        first, _, last = part.partition(":")
+        result += range(int(first), int(last or first) + 1)
+    return result
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="python -m tests.recovery.fleet", description=__doc__)
+    parser.add_argument("--seeds", type=seeds_of, required=True, help="1:40, or 3,17; below 100000 for development")
+    parser.add_argument("--out", type=Path, required=True, help="folder of results.jsonl")
+    parser.add_argument("--resume", action="store_true", help=f"go on where it stopped (state {fleet_state()})")
+    parser.add_argument("--write", action="store_true", help="write plant, recordings and truth of each seed, no more")
+    parser.add_argument("--workers", type=int, default=1)
+    parser.add_argument("--limit", type=float, default=300.0, help="processor seconds of one diagnosis")
+    parser.add_argument("--minutes", type=float, default=0.0, help="begin no case later than this")
+    return parser
+
+
+if __name__ == "__main__":
+    sys.exit(main())
