@@ -157,7 +157,7 @@ class Axis:
         Raises:
             InputError: the file does not declare masses, heat and how they are joined.
         """
-        return warm_plant(self.plant, self.heat, coupling(Table(self.entries, str(self.path), Origins())))
+        return warm_plant(self.plant, self.heat, coupling(plant_table(self.entries, str(self.path))))
 
     def machine(self, recordings: Sequence[Recording] = ()) -> Plant | ThermalPlant | WarmPlant:
         """What of the machine recordings are of: its motion, its heat, or both where a log of hours holds both."""
