@@ -192,6 +192,8 @@ def _sensor() -> Section:
                 " nut's position", kind=Kind.TEXT, required=True),
             Key("resolution", "smallest step, in the unit of the channel", minimum=0.0),
             Key("noise", "rms of a thermometer or a growth scale; read off the recording if left out", minimum=0.0),
+            Key("absolute", "whether its zero is the same in every recording, so that an offset that moves is growth",
+                kind=Kind.SWITCH, default="false"),
             SOURCE,
         ),
         listed=True,
