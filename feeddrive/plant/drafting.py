@@ -16,7 +16,7 @@ from feeddrive.parts.catalogue.reading import CataloguePart, catalogue, find_par
 from feeddrive.parts.preload_torque import ideal_torque
 from feeddrive.parts.supports import Support
 from feeddrive.plant.entries import nearest_choice
-from feeddrive.plant.guide_section import CARRIAGES
+from feeddrive.plant.guide_section import CARRIAGES, TURNING
 from feeddrive.quantity import format_quantity, parse
 
 STRUCTURES = ("distributed_screw", "three_inertias")
@@ -323,19 +323,20 @@ def _drags(made: Drafted, screw: CataloguePart, preload: float) -> None:
     torque = (1 / _EFFICIENCY - _EFFICIENCY) * float(ideal_torque(preload, lead))
     near = catalogue()[made.sections["bearing.near"]["part"]]
     printed = near.further.get("starting_torque")
+    turning = f"{TURNING / (lead / (2 * math.pi)):.3g} rad/s"  # where the guide turns, seen at the screw
     made.sections["effect"] = []
     if torque > 0:
         why = f"preload torque of a screw with an efficiency of {_EFFICIENCY:g}"
-        made.sections["effect"].append(_drag("nut_drag", torque, f"guess: {why}"))
+        made.sections["effect"].append(_drag("nut_drag", torque, turning, f"guess: {why}"))
         made.guesses["nut_drag.coulomb"] = why
     if printed is not None:
         start = (2 if "bearing.far" in made.sections else 1) * parse(printed, "N m", near.name)
-        made.sections["effect"].append(_drag("bearing_drag", start, f"starting torque, {near.origin}"))
+        made.sections["effect"].append(_drag("bearing_drag", start, turning, f"starting torque, {near.origin}"))
 
 
-def _drag(name: str, torque: float, source: str) -> dict[str, Any]:
+def _drag(name: str, torque: float, turning: str, source: str) -> dict[str, Any]:
     coulomb = {"value": format_quantity(torque, "N m"), "source": source}
-    return {"name": name, "coulomb": coulomb, "smoothing_speed": "0.15 rad/s"}
+    return {"name": name, "coulomb": coulomb, "smoothing_speed": turning}
 
 
 def _written(value: float, unit: str) -> str:
