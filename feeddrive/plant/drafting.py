@@ -12,11 +12,12 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from feeddrive.errors import InputError
+from feeddrive.parts.catalogue.choosing import away, chosen_motor, chosen_screw, newton, of_kind
 from feeddrive.parts.catalogue.reading import CataloguePart, catalogue, find_part
 from feeddrive.parts.preload_torque import ideal_torque
 from feeddrive.parts.supports import Support
 from feeddrive.plant.entries import nearest_choice
-from feeddrive.plant.guide_section import CARRIAGES
+from feeddrive.plant.guide_section import CARRIAGES, TURNING
 from feeddrive.quantity import format_quantity, parse
 
 STRUCTURES = ("distributed_screw", "three_inertias")
@@ -97,7 +98,8 @@ def drafted(wishes: Wishes) -> Drafted:
     """
     _refuse_missing(wishes)
     made = Drafted()
-    motor, screw = _motor(wishes.motor, made), _screw(wishes.screw, made)
+    (motor, why_motor), (screw, why_screw) = chosen_motor(wishes.motor), chosen_screw(wishes.screw)
+    made.guesses |= {key: why for key, why in (("motor.part", why_motor), ("ball_screw.part", why_screw)) if why}
     made.sections["motor"] = {"part": motor.name}
     made.remarks["motor"] = motor.size
     _coupling(wishes, motor, made)
@@ -129,80 +131,12 @@ def _refuse_missing(wishes: Wishes) -> None:
             raise InputError(f'"{word}" is not possible', f"--{name}", nearest_choice(word, words))
 
 
-def _of_kind(kind: str) -> list[CataloguePart]:
-    return [part for part in catalogue().values() if part.kind == kind]
-
-
-def _sizes(text: str, unit: str, plain: str, where: str) -> list[float]:
-    """Sizes such as "32 x 10 mm" or "400 W" [unit], `plain` where no unit is written; none where it is a name."""
-    if not text[:1].isdigit():
-        return []
-    pieces = re.split(r"\s*[x×*]\s*", text.strip())
-    last = re.sub(r"[\d.\s+-]", "", pieces[-1]) or plain
-    found = [parse(one if re.search("[A-Za-z]", one) else f"{one} {last}", unit, where) for one in pieces]
-    if not all(size > 0 for size in found):
-        raise InputError(f'"{text}" is no size', where, "write positive values")
-    return found
-
-
-def _screw(wanted: str, made: Drafted) -> CataloguePart:
-    sizes = _sizes(wanted, "m", "mm", "--screw")
-    if not sizes:
-        return find_part(wanted, "screw", "--screw")
-    if len(sizes) != 2:
-        raise InputError(f'"{wanted}" is no size of a screw', "--screw", "write diameter x lead, such as '32 x 10 mm'")
-    diameter, lead = sizes
-    near = sorted(_of_kind("screw"), key=lambda one: (_away(one, diameter, lead), "nut" not in one.sections))
-    fitting = [part for part in near if _away(part, diameter, lead) < 1e-6]
-    if not fitting:
-        offered = ", ".join(list(dict.fromkeys(part.size.split(",")[0] for part in near))[:4])
-        what = f"the catalogue holds no screw of {wanted}"
-        raise InputError(what, "--screw", f"nearest are {offered}; take one, and change its values in the file")
-    stiff = [part for part in fitting if "nut" in part.sections] or fitting
-    chosen = min(stiff, key=lambda part: _newton(part, "ball_screw", "dynamic_rating"))
-    if len(fitting) > 1:
-        others = ", ".join(part.name for part in fitting if part is not chosen)
-        made.guesses["ball_screw.part"] = f"{chosen.name}, the lightest of its size with a known nut; also {others}"
-    return chosen
-
-
-def _away(part: CataloguePart, diameter: float, lead: float) -> float:
-    """How far a screw is from a size, 0 where it is of it."""
-    own = parse(part.further["nominal_diameter"], "m", part.name)
-    return abs(math.log(own / diameter)) + abs(math.log(parse(part.sections["ball_screw"]["lead"], "m", "") / lead))
-
-
-def _newton(part: CataloguePart, section: str, key: str) -> float:
-    return parse(part.sections[section][key], "N", part.name)
-
-
-def _motor(wanted: str, made: Drafted) -> CataloguePart:
-    sizes = _sizes(wanted, "W", "W", "--motor")
-    if not sizes:
-        return find_part(wanted, "motor", "--motor")
-    near = sorted(_of_kind("motor"), key=lambda one: abs(math.log(_power(one) / sizes[0])))
-    fitting = [part for part in near if abs(_power(part) / sizes[0] - 1) < 0.01]
-    if not fitting:
-        offered = ", ".join(f"{part.name} ({part.size})" for part in near[:3])
-        raise InputError(f"the catalogue holds no motor of {wanted}", "--motor", f"nearest are {offered}")
-    # The widest of them: the most inertia suits a screw, whose inertia is several times that of a small rotor.
-    chosen = max(fitting, key=lambda part: parse(part.sections["motor"]["rotor_inertia"], "kg m^2", ""))
-    if len(fitting) > 1:
-        others = ", ".join(part.name for part in fitting if part is not chosen)
-        made.guesses["motor.part"] = f"{chosen.name}, of the motors of {wanted} that of the most inertia; also {others}"
-    return chosen
-
-
-def _power(part: CataloguePart) -> float:
-    return parse(part.further["rated_power"], "W", part.name)
-
-
 def _coupling(wishes: Wishes, motor: CataloguePart, made: Drafted) -> None:
     if wishes.coupling:
         part = find_part(wishes.coupling, "coupling", "--coupling")
     else:
         peak = parse(motor.sections["motor"]["torque_limit"], "N m", motor.name)
-        strong = [one for one in _of_kind("coupling") if parse(one.further["rated_torque"], "N m", "") >= peak]
+        strong = [one for one in of_kind("coupling") if parse(one.further["rated_torque"], "N m", "") >= peak]
         part = min(strong, key=lambda one: parse(one.further["rated_torque"], "N m", ""))
         why = f"{part.name}, the smallest that carries the motor's peak torque"
         made.guesses["coupling.part"] = why
@@ -230,8 +164,8 @@ def _supports(wishes: Wishes, screw: CataloguePart, made: Drafted) -> None:
     if wishes.bearing:
         part = find_part(wishes.bearing, "bearing", "--bearing")
     else:
-        seated = [one for one in _of_kind("bearing") if parse(one.further["bore"], "m", "") <= _JOURNAL * root]
-        part = max(seated or _of_kind("bearing")[:1], key=lambda one: parse(one.further["bore"], "m", ""))
+        seated = [one for one in of_kind("bearing") if parse(one.further["bore"], "m", "") <= _JOURNAL * root]
+        part = max(seated or of_kind("bearing")[:1], key=lambda one: parse(one.further["bore"], "m", ""))
         made.guesses["bearing.near.part"] = f"{part.name}, the widest whose shoulder the screw can carry"
     made.sections["bearing.near"] = {"part": part.name}
     made.remarks["bearing.near"] = part.size
@@ -241,7 +175,7 @@ def _supports(wishes: Wishes, screw: CataloguePart, made: Drafted) -> None:
 
 def _nut(wishes: Wishes, screw: CataloguePart, made: Drafted) -> float:
     """The nut; its preload [N]."""
-    rating = _newton(screw, "ball_screw", "dynamic_rating")
+    rating = newton(screw, "ball_screw", "dynamic_rating")
     preload = wishes.preload if wishes.preload is not None else _PRELOAD_SHARE * rating
     if "nut" in screw.sections:
         made.sections["nut"] = {"part": screw.name}
@@ -250,7 +184,7 @@ def _nut(wishes: Wishes, screw: CataloguePart, made: Drafted) -> float:
         else:
             made.guess("nut", "preload", _written(preload, "N"), "5 % of the dynamic rating")
         return preload
-    like = min((one for one in _of_kind("screw") if "nut" in one.sections), key=lambda one: _unlike(one, screw))
+    like = min((one for one in of_kind("screw") if "nut" in one.sections), key=lambda one: _unlike(one, screw))
     stiffness = 0.4 * parse(like.sections["nut"]["catalogue_stiffness"], "N/m", like.name)
     why = f"of this nut nothing is printed; half of what {like.name} really has, for a single nut"
     made.guess("nut", "axial_stiffness", format_quantity(stiffness, "N/m"), why)
@@ -260,8 +194,8 @@ def _nut(wishes: Wishes, screw: CataloguePart, made: Drafted) -> float:
 def _unlike(one: CataloguePart, other: CataloguePart) -> float:
     size = parse(other.further["nominal_diameter"], "m", "")
     lead = parse(other.sections["ball_screw"]["lead"], "m", "")
-    ratings = _newton(one, "ball_screw", "dynamic_rating") / _newton(other, "ball_screw", "dynamic_rating")
-    return _away(one, size, lead) + 0.1 * abs(math.log(ratings))
+    ratings = newton(one, "ball_screw", "dynamic_rating") / newton(other, "ball_screw", "dynamic_rating")
+    return away(one, size, lead) + 0.1 * abs(math.log(ratings))
 
 
 def _table(wishes: Wishes, made: Drafted) -> None:
@@ -293,10 +227,10 @@ def _guide(wishes: Wishes, made: Drafted) -> None:
         made.guesses["guide.carriage"] = "rails of size 25"
     name = re.sub(r"(?<=\d)\s*mm$", "", name)
     if name.isdecimal():
-        sized = [one for one in _of_kind("guide") if one.further["rail"] == int(name)]
+        sized = [one for one in of_kind("guide") if one.further["rail"] == int(name)]
         known = [one for one in sized if "dynamic_rating" in one.further]
         if not known:
-            rails = sorted({one.further["rail"] for one in _of_kind("guide")})
+            rails = sorted({one.further["rail"] for one in of_kind("guide")})
             mend = f"write one of {', '.join(map(str, rails))}, or a name that `feeddrive parts guide` lists"
             raise InputError(f"the catalogue holds no carriage of size {name}", "--guide", mend)
         part = max(known, key=lambda one: parse(one.further["static_rating"], "N", ""))
@@ -323,19 +257,20 @@ def _drags(made: Drafted, screw: CataloguePart, preload: float) -> None:
     torque = (1 / _EFFICIENCY - _EFFICIENCY) * float(ideal_torque(preload, lead))
     near = catalogue()[made.sections["bearing.near"]["part"]]
     printed = near.further.get("starting_torque")
+    turning = f"{TURNING / (lead / (2 * math.pi)):.3g} rad/s"  # where the guide turns, seen at the screw
     made.sections["effect"] = []
     if torque > 0:
         why = f"preload torque of a screw with an efficiency of {_EFFICIENCY:g}"
-        made.sections["effect"].append(_drag("nut_drag", torque, f"guess: {why}"))
+        made.sections["effect"].append(_drag("nut_drag", torque, turning, f"guess: {why}"))
         made.guesses["nut_drag.coulomb"] = why
     if printed is not None:
         start = (2 if "bearing.far" in made.sections else 1) * parse(printed, "N m", near.name)
-        made.sections["effect"].append(_drag("bearing_drag", start, f"starting torque, {near.origin}"))
+        made.sections["effect"].append(_drag("bearing_drag", start, turning, f"starting torque, {near.origin}"))
 
 
-def _drag(name: str, torque: float, source: str) -> dict[str, Any]:
+def _drag(name: str, torque: float, turning: str, source: str) -> dict[str, Any]:
     coulomb = {"value": format_quantity(torque, "N m"), "source": source}
-    return {"name": name, "coulomb": coulomb, "smoothing_speed": "0.15 rad/s"}
+    return {"name": name, "coulomb": coulomb, "smoothing_speed": turning}
 
 
 def _written(value: float, unit: str) -> str:

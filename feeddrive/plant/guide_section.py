@@ -51,7 +51,8 @@ _OF_RATING = (*_SHARED, "preload_class", "preload", "friction_coefficient")
 MOST = 1000
 """Of carriages, and of balls in a row."""
 
-_TURNING = 5e-4  # where tanh of the guide friction turns unless it is said [m/s]
+TURNING = 5e-4
+"""Where tanh of the guide friction turns unless it is said [m/s]."""
 
 
 def guide_friction_of(top: Table, gravity: float, before: Sequence[Effect]) -> list[tuple[Effect, str]]:
@@ -77,7 +78,7 @@ def guide_friction_of(top: Table, gravity: float, before: Sequence[Effect]) -> l
     coefficients = COEFFICIENTS[table.choice("coefficients", COEFFICIENTS, "A")]
     count = table.whole("carriages", 1, MOST)
     seal = table.quantity("seal_drag", "N", "guide.seal_drag") if "seal_drag" in table.entries else 0.0
-    load, turning = _load(top, gravity, count), _TURNING
+    load, turning = _load(top, gravity, count), TURNING
     if "smoothing_velocity" in table.entries:
         turning = table.quantity("smoothing_velocity", "m/s", "guide.smoothing_velocity")
     effect = placed(table.where, lambda: guide_effect(guide, coefficients, count, load, seal, turning))
@@ -129,7 +130,7 @@ def _rated_friction(top: Table, gravity: float) -> tuple[Effect, str]:
     drag = _or_printed(table, "seal_drag", part.sections["guide"]["seal_drag"])
     coefficient = _or_printed(table, "friction_coefficient", part.further["friction_coefficient"])
     load, preload = _load(top, gravity, count), _preload(table, part)
-    turning = table.quantity("smoothing_velocity") if "smoothing_velocity" in table.entries else _TURNING
+    turning = table.quantity("smoothing_velocity") if "smoothing_velocity" in table.entries else TURNING
     one = placed(table.where, lambda: rated_friction(load, preload, coefficient, drag))
     shown = f"{format_quantity(load, 'N')} and a preload of {format_quantity(preload, 'N')} each"
     origin = f"computed from {count} carriages {part.name} under {shown}; {part.source}"

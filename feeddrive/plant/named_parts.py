@@ -79,9 +79,9 @@ def departures(entries: Mapping[str, Any], where: str) -> Iterator[Departure]:
             part = _part(section, place, where)
             units = {key: _known(place[0], key).unit for key in part.sections.get(place[0], {})}
             yield from _differing(part, part.sections.get(place[0], {}), units, section, place, top)
-    guide = _section(entries, ("guide",))
-    rated = None if guide is None else catalogue().get(str(guide.get("carriage", "")))
-    if guide is not None and rated is not None and rated.kind == "guide":
+    guide = _section(entries, ("guide",)) or {}
+    rated = catalogue().get(str(guide.get("carriage", "")))
+    if rated is not None and rated.kind == "guide":
         printed = {**rated.sections["guide"], "friction_coefficient": rated.further["friction_coefficient"]}
         units = {"seal_drag": "N", "friction_coefficient": "1"}
         yield from _differing(rated, printed, units, guide, ("guide",), top)
@@ -100,9 +100,10 @@ def _differing(
         if key not in section:
             continue
         dotted = ".".join((*place, key))
-        written, named = section[key], str(section.get("source", source))
-        if isinstance(written, Mapping):
-            written, named = written.get("value"), str(written.get("source", named))
+        entry, named = section[key], str(section.get("source", source))
+        if isinstance(entry, Mapping):
+            named = str(entry.get("source", named))
+        written = entry.get("value") if isinstance(entry, Mapping) else entry
         number, catalogued = parse(written, units[key], dotted), parse(told, units[key], dotted)
         if not math.isclose(number, catalogued, rel_tol=_SAME):
             yield Departure(dotted, part.name, number, catalogued, units[key], named)
