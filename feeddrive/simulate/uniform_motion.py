@@ -43,19 +43,19 @@ class UniformMotion:
 
     Attributes:
         torque: of the motor, without timing effects [N m].
-        table_position, screw_angle: [m, rad].
+        table_position: [m].
         powers: taken by the parts of `cycle_losses.POWERS` [W], to each (k,).
     """
 
     torque: FloatArray
     table_position: FloatArray
-    screw_angle: FloatArray
     powers: dict[str, FloatArray]
 
 
 def uniform_motion(
-    plant: Plant, angle: FloatArray, speed: FloatArray, time: FloatArray, values: FloatArray | None = None
-) -> UniformMotion:
+    plant: Plant, angle: FloatArray, speed: FloatArray, time: FloatArray, values: FloatArray | None = None,
+    with_powers: bool = True,
+) -> UniformMotion:  # fmt: skip
     """Uniform motion at k rows.
 
     Args:
@@ -63,6 +63,7 @@ def uniform_motion(
         angle, speed: of the motor, the speed never zero, (k,) [rad, rad/s].
         time: from the start, (k,) [s].
         values: of its parameters, a column each row, (p, k); None for its own everywhere.
+        with_powers: whether powers are worked out.
     """
     count, n = len(angle), len(plant.chain.coordinates)
     p = np.tile(np.array(parameter_values(plant))[:, None], count) if values is None else values
@@ -83,12 +84,13 @@ def uniform_motion(
         if settled.all():
             break
     bad = ~(settled & np.all(np.isfinite(unknown), axis=0))
-    rates = np.outer(rigid, radius * speed)
-    powers = ca.DM(power_function(plant)(np.vstack([unknown[:n], rates, unknown[n + 1 :]]), time[None, :], p)).full()
-    screw = _screw(plant)(unknown[:n], p)
-    found = np.where(bad, np.nan, unknown)
-    named = {name: np.where(bad, np.nan, row) for name, row in zip(POWERS, powers, strict=False)}
-    return UniformMotion(found[n], found[n - 1], np.where(bad, np.nan, ca.DM(screw).full()[0]), named)
+    found, named = np.where(bad, np.nan, unknown), {}
+    if with_powers:
+        rates = np.outer(rigid, radius * speed)
+        state = np.vstack([unknown[:n], rates, unknown[n + 1 :]])
+        powers = ca.DM(power_function(plant)(state, time[None, :], p)).full()
+        named = {name: np.where(bad, np.nan, row) for name, row in zip(POWERS, powers, strict=False)}
+    return UniformMotion(found[n], found[n - 1], named)
 
 
 @per_structure
@@ -105,12 +107,3 @@ def _newton(plant: Plant) -> ca.Function:
     residual = ca.vertcat(xdot[n : 2 * n], ca.mtimes(motor, unknown[:n]) - given[0], xdot[2 * n :] if count else [])
     slope = ca.densify(ca.jacobian(residual, unknown))
     return ca.Function("uniform", [unknown, given, symbols.vector], [unknown - ca.solve(slope, residual)])
-
-
-@per_structure
-def _screw(plant: Plant) -> ca.Function:
-    """(q, p) -> screw angle."""
-    symbols = parameter_symbols(plant)
-    q = ca.SX.sym("q", len(plant.chain.coordinates))
-    row = ca.horzcat(*plant.chain.screw(chain_symbols(plant, symbols)))
-    return ca.Function("screw", [q, symbols.vector], [ca.mtimes(row, q)])

@@ -21,6 +21,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.interpolate import RegularGridInterpolator
+from scipy.ndimage import uniform_filter1d
 
 from feeddrive.errors import InputError
 from feeddrive.plant.equations import parameter_values
@@ -136,6 +137,12 @@ def thermometers(heat: ThermalPlant) -> dict[str, tuple[str, float]]:
     return {channel_of(output): (output, 0.0) for output in FOLLOWED}
 
 
+def steady_mean(series: FloatArray, step: float) -> FloatArray:
+    """Mean over `HEAT_STEP` about each row, (n,): a seat's skin warms with each stroke, and the network does not."""
+    width = 2 * int(0.5 * HEAT_STEP / step) + 1
+    return np.asarray(uniform_filter1d(series, width, mode="nearest"))
+
+
 @dataclass(frozen=True, eq=False)
 class WarmRun:
     """What the plant does in a log.
@@ -156,17 +163,21 @@ class WarmRun:
         return sum(series.nbytes for series in self.channels.values()) + 6 * self.motion.torque.nbytes
 
 
-def simulate_log(plant: WarmPlant, model: HeatModel, log: WarmLog) -> WarmRun:
+def simulate_log(
+    plant: WarmPlant, model: HeatModel, log: WarmLog, powers: Mapping[str, FloatArray] | None = None
+) -> WarmRun:
     """Temperatures, table position and torque of a machine in a log.
 
     Args:
         plant: the machine.
         model: its reduced heat model, bodies of effects attached; it may be asked again and again.
         log: of its motor.
+        powers: of its motion (`friction_powers`), where they are known already.
     """
     laws, values, cold = laws_of(plant.heat), values_of(plant.heat), float(log.ambient[0])
     each = max(int(HEAT_STEP / log.step), 1)
-    rows = _heat_rows(plant, model, laws, values, log, each)
+    powers = powers or friction_powers(plant, log)
+    rows = _heat_rows(plant, model, laws, values, log, each, powers)
     states = np.vstack([np.zeros(model.order), run(model, rows)])
     times = rows.step * np.arange(len(states))
 
@@ -180,7 +191,7 @@ def simulate_log(plant: WarmPlant, model: HeatModel, log: WarmLog) -> WarmRun:
         read = cold + at_rows(states @ model.readings[output])
         for i in laws.lagging.get(channel, ()):
             read = lagging(read, cold, float(lags[i, 0]), log.step)
-        channels[channel] = read
+        channels[channel] = steady_mean(read, log.step)
     motion = _motion(plant, laws, values, log, rises, cold)
     radius = plant.motion.chain.motor_radius
     for name, series, elsewhere in (
@@ -203,7 +214,7 @@ def _motion(
     p = np.tile(np.array(parameter_values(plant.motion))[:, None], int(rows.sum()))
     for name, factor in plant.followed().items():
         p[name] *= factors[factor]
-    return uniform_motion(plant.motion, log.angle[rows], log.speed[rows], log.time[rows], p)
+    return uniform_motion(plant.motion, log.angle[rows], log.speed[rows], log.time[rows], p, with_powers=False)
 
 
 def _grown(
@@ -224,8 +235,9 @@ def _grown(
 
 
 def _heat_rows(
-    plant: WarmPlant, model: HeatModel, laws: Laws, values: FloatArray, log: WarmLog, each: int
-) -> Rows:
+    plant: WarmPlant, model: HeatModel, laws: Laws, values: FloatArray, log: WarmLog, each: int,
+    powers: Mapping[str, FloatArray],
+) -> Rows:  # fmt: skip
     """What acts on the network, means over `each` rows of the log."""
     count, cold = len(log.time), float(log.ambient[0])
     group = (np.arange(count) // each).astype(np.int64)
@@ -240,11 +252,13 @@ def _heat_rows(
     signed, which = _distinct(log.speed)
     shares = np.column_stack([mean(log.share * (which == kind) * (log.speed != 0)) for kind in range(len(signed))])
     conductances, inputs = (np.zeros((len(names), groups)) for names in (PATHS, INPUTS))
-    for speed, share in ((0.0, 1 - shares.sum(axis=1)), *zip(signed, shares.T, strict=True)):
+    alike = _alike(shares)
+    for i, speed in enumerate((*signed, 0.0)):
         g, u = laws.acting(np.full((1, groups), speed), *given)
-        conductances, inputs = conductances + share * g.full(), inputs + share * u.full()
+        own, mean_of_alike = (of[:, i] if i < len(signed) else 1 - of.sum(axis=1) for of in (shares, alike))
+        conductances, inputs = conductances + mean_of_alike * g.full(), inputs + own * u.full()
     found = dict(zip(INPUTS, inputs, strict=True))
-    own = {name: shares @ table for name, table in _powers(plant, log, signed).items()}
+    own = {name: shares @ table for name, table in powers.items()}
     bodies = {"motor": own["motor"][:, 0] + mean(_winding(plant, log)), plant.coupling.guide_heat_to: own["guide"][:, 0]}
     for name, heat in bodies.items():
         if name in model.input_names:
@@ -253,6 +267,18 @@ def _heat_rows(
     base = np.column_stack([found[name] for name in (NUT, FRONT, REAR)])
     return Rows(whole, dict(zip(PATHS, conductances, strict=True)), found,
                 _Following(laws, values, cold, base, own["nut"], own["bearings"], rear))  # fmt: skip
+
+
+def _alike(shares: FloatArray) -> FloatArray:
+    """Shares of time, (k, speeds), those that agree to a twentieth by their mean: films so, heats never.
+
+    A film that is a fortieth off for a step and right in the mean moves no temperature, and each costs a propagator.
+    """
+    _, which = np.unique(np.round(shares / 0.05), axis=0, return_inverse=True)
+    which = which.ravel()
+    sums = np.zeros((which.max() + 1, shares.shape[1]))
+    np.add.at(sums, which, shares)
+    return np.asarray((sums / np.bincount(which)[:, None])[which])
 
 
 class _Following:
@@ -286,8 +312,9 @@ def _winding(plant: WarmPlant, log: WarmLog) -> FloatArray:
     return np.asarray(log.torque**2 / constant**2)
 
 
-def _powers(plant: WarmPlant, log: WarmLog, signed: FloatArray) -> dict[str, FloatArray]:
-    """Friction powers of a part while it turns at some speeds, with the slopes by the three factors, (k, 4) [W]."""
+def friction_powers(plant: WarmPlant, log: WarmLog) -> dict[str, FloatArray]:
+    """Friction powers of the parts at the speeds of a log, with the slopes by the three factors, (k, 4) [W]."""
+    signed, _ = _distinct(log.speed)
     middle = np.full(len(signed), float(np.mean(log.angle)))
     started = np.zeros(len(signed))
     whole = np.tile(np.array(parameter_values(plant.motion))[:, None], len(signed))

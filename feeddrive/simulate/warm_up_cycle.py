@@ -15,12 +15,15 @@ from feeddrive.simulate.controlled import ControlledRun, ControlledState, Torque
 from feeddrive.simulate.cutting_force import held
 from feeddrive.simulate.cycle_losses import CycleLosses, cycle_losses
 from feeddrive.simulate.scenario import Scenario
+from feeddrive.thermal.contact_conductance import conductance_at_preload
 from feeddrive.thermal.coupling import Changes, Coupling, Temperatures
 from feeddrive.thermal.expansion import expansion
 from feeddrive.thermal.full_model import FRONT, NUT, REAR, SHAFT
-from feeddrive.thermal.model import HeatModel, Path
+from feeddrive.thermal.laws import FOLLOWED, INPUTS, PATHS, laws_of, values_of
+from feeddrive.thermal.model import AMBIENT, HeatModel, Path
 from feeddrive.thermal.plant import ThermalPlant
 from feeddrive.thermal.rig import Travel
+from feeddrive.thermal.warm_plant import warm_plant
 from feeddrive.thermal.warmed_plant import warmed
 from feeddrive.typing import FloatArray
 
@@ -89,7 +92,8 @@ class ServoCycle:
         low, high = (coupling.nut_at_zero + float(end) for end in (motion.position.min(), motion.position.max()))
         thermal.rig.refuse_travel(Travel(low, high))
         self.thermal = replace(thermal, rig=replace(thermal.rig, travel=Travel(low, high)))
-        _refuse_what_is_not_followed(coupling, thermal)
+        _refuse_unknown_body(coupling, thermal)
+        self.silent = warm_plant(scenario.plant, self.thermal, coupling).heat
         kept = [
             stop for stop in scenario.trajectory.stops if stop.direction != 0 and stop.leave <= self.duration + tick
         ]
@@ -103,20 +107,29 @@ class ServoCycle:
         """The full thermal model with the nut averaged over this cycle's travel."""
         return self.thermal.full_model()
 
-    def at(self, model: HeatModel, state: FloatArray) -> Cycle:
-        """Run the cycle at the temperatures of a thermal state, (n,) [K over the start]."""
+    def at(self, model: HeatModel, state: FloatArray, time: float = 0.0) -> Cycle:
+        """Run the cycle at the temperatures of a thermal state, (n,) [K over the start], `time` [s] after the start."""
         rig, start = self.thermal.rig, self.thermal.ambient
         nut, shaft, front, rear = (start + float(model.readings[name] @ state) for name in (NUT, SHAFT, FRONT, REAR))
         changes = self.coupling.changes(
             Temperatures(nut, shaft, front, rear), start, self.thermal.preload, 2 * rig.radius, rig.steel.expansion
         )
+        for effect in self.thermal.effects:
+            changes = replace(
+                changes,
+                preload=changes.preload * float(effect.load_factor(nut - start, effect.values)),
+                nut_viscous=changes.nut_viscous * float(effect.viscous_factor(nut - start, effect.values)),
+            )
         grown = expansion(rig, np.asarray(model.profile @ state), model.edges)
         low, high = (float(grown.growth(place)[0]) for place in (rig.travel.low, rig.travel.high))
         slope = (high - low) / rig.travel.stroke
         plant = warmed(self.scenario.plant, changes, slope, self.coupling.nut_stiffness)
         run = self._run(plant)
-        growth = np.array([float(grown.growth(self.coupling.nut_at_zero + stop)[0]) for stop in self.stops])
-        return self._told(model, changes, plant, run, growth, slope)
+        places = [self.coupling.nut_at_zero + stop for stop in self.stops]
+        growth = np.array([float(grown.growth(place)[0]) for place in places])
+        frame = [sum(float(e.growth(place, time, e.values)) for e in self.thermal.effects) for place in places]
+        told = self._told(model, changes, plant, run, growth, slope, time)
+        return replace(told, stop_errors=told.stop_errors + np.array(frame))
 
     def _run(self, plant: Plant) -> ControlledRun:
         """From where the last cycle ended; the very first one is run twice, so that it begins as it ends."""
@@ -129,19 +142,32 @@ class ServoCycle:
         return run
 
     def _told(
-        self, model: HeatModel, changes: Changes, plant: Plant, run: ControlledRun, growth: FloatArray, slope: float
+        self, model: HeatModel, changes: Changes, plant: Plant, run: ControlledRun, growth: FloatArray, slope: float,
+        time: float,
     ) -> Cycle:  # fmt: skip
         losses = cycle_losses(plant, run, self.loop, self.load)
         preload = self.thermal.preload * changes.preload
         speeds = run.table_velocity / self.thermal.lead
-        films = self.thermal.conductances(speeds, preload)
+        films, added = self._acting(speeds, preload, time)
         heats, power = self._shared(losses, model.input_names)
+        more = sum(heat for name, heat in added.items() if name != AMBIENT)
+        heats = {**heats, **{name: heats.get(name, 0.0) + heat for name, heat in added.items()}}
+        power = replace(power, winding=power.winding + more, into_network=power.into_network + more)
         mean_speed = float(np.mean(np.abs(speeds)))
         return Cycle(
-            changes, heats, {path: float(np.mean(values)) for path, values in films.items()}, power, losses,
+            changes, heats, films, power, losses,
             losses.nut / losses.duration / mean_speed, losses.bearings / losses.duration / mean_speed,
             (losses.squared_torque / losses.duration) ** 0.5, preload, growth, self._errors(run, growth, slope),
         )  # fmt: skip
+
+    def _acting(self, speeds: FloatArray, preload: float, time: float) -> tuple[dict[Path, float], dict[str, float]]:
+        """Mean conductances of a cycle, and what effects add: heats [W] and the rise of the surroundings [K]."""
+        laws, values = laws_of(self.silent), values_of(self.silent)
+        rest = np.zeros((len(FOLLOWED), len(speeds)))
+        g, u = laws.acting(speeds[None, :], time, self.duration, 0.0, rest, self.thermal.ambient, values)
+        films = dict(zip(PATHS, map(float, np.mean(g.full(), axis=1)), strict=True))
+        films[Path.CONTACT] *= conductance_at_preload(1.0, preload, self.thermal.preload)
+        return films, dict(zip(INPUTS, map(float, np.mean(u.full(), axis=1)), strict=True))
 
     def _errors(self, run: ControlledRun, growth: FloatArray, slope: float) -> FloatArray:
         """Table position less target at the stops; an encoder at the motor does not see where the screw has grown to.
@@ -179,11 +205,8 @@ def _refuse_open(scenario: Scenario, position: FloatArray, velocity: FloatArray)
         raise InputError("an excitation is no part of a repeated cycle", where, "leave [excitation] out")
 
 
-def _refuse_what_is_not_followed(coupling: Coupling, thermal: ThermalPlant) -> None:
-    """Refuse thermal effects, and a body for the guide's heat that is not there."""
-    if thermal.effects:
-        what = f"{thermal.effects[0].label} is not followed in a run of drive and heat"
-        raise InputError(what, thermal.name, "leave thermal effects out, or use feeddrive thermal")
+def _refuse_unknown_body(coupling: Coupling, thermal: ThermalPlant) -> None:
+    """Refuse a body for the guide's heat that is not there."""
     bodies = [body.name for body in thermal.bodies]
     if coupling.guide_heat_to and coupling.guide_heat_to not in bodies:
         known = f"known are {', '.join(bodies)}" if bodies else "declare it as [[thermal.body]]"

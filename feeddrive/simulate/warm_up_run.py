@@ -118,7 +118,7 @@ class _Marching:
                     f"{_MOST_STEPS} macro steps reach {time / 3600:.3g} h", "tolerance", "write a larger one"
                 )
             length = min(max(length, self.cycle.duration), self.duration - time)
-            after, corrected, error = self._attempt(state, now, length)
+            after, corrected, error = self._attempt(state, now, length, time)
             if self._too_far(error, length):
                 self.refused += 1
                 length *= max(0.3, 0.9 * math.sqrt(self.steps.tolerance / error))
@@ -134,10 +134,10 @@ class _Marching:
             self.cycle.stops, self.cycle.thermal, self.cycle.scenario.name,
         )  # fmt: skip
 
-    def _attempt(self, state: FloatArray, now: Cycle, length: float) -> tuple[Cycle, FloatArray, float]:
+    def _attempt(self, state: FloatArray, now: Cycle, length: float, time: float) -> tuple[Cycle, FloatArray, float]:
         """Cycle at the predicted end, the corrected state there, and the largest difference of the two [K]."""
         predicted = self._heated(state, now, now, length)
-        after = self.cycle.at(self.model, predicted)
+        after = self.cycle.at(self.model, predicted, time + length)
         corrected = self._heated(state, now, after, length)
         return after, corrected, float(np.max(np.abs(self.observed @ (corrected - predicted))))
 

@@ -23,7 +23,8 @@
     nut_free = "4.857 W/(m^2 K)"
     nut_forced = "5.024 W/(m^2 K)"             # at 250 rev/min
     [thermal.nut]                              # also [thermal.front_bearing], [thermal.rear_bearing], with seat_length,
-    load_torque = "96.2 mN m"                  # film W/(m^2 K) and end_share
+    load_torque = "96.2 mN m"                  # film W/(m^2 K) and end_share. Friction may be left out where the file
+                                               # declares it as effects of its motion, and [thermal.coupling]
     viscous_factor = "10"                      # f0, of a nut times number of nuts and turns
     viscosity = "170 mm^2/s"
     mean_diameter = "16.75 mm"
@@ -53,13 +54,15 @@ import math
 from dataclasses import fields
 from pathlib import Path
 
-from feeddrive.effects.catalogue import THERMAL_EFFECTS
+from feeddrive.effects.catalogue import EFFECTS, THERMAL_EFFECTS
 from feeddrive.effects.thermal.base import ThermalEffect
 from feeddrive.errors import InputError
 from feeddrive.plant.effect_sections import read_effects
 from feeddrive.plant.entries import Table, read_toml
 from feeddrive.plant.files import FORMAT, declares_heat_alone
 from feeddrive.plant.plant_schema import plant_table
+from feeddrive.thermal.coupling_section import coupling
+from feeddrive.thermal.declared_friction import bearings_of, nut_of
 from feeddrive.thermal.films import Films
 from feeddrive.thermal.friction import Friction
 from feeddrive.thermal.plant import ThermalPlant
@@ -111,6 +114,7 @@ def thermal_plant(top: Table, name: str) -> ThermalPlant:
     table = top.table(SECTION)
     table.refuse_unknown((*_LENGTHS, *_STEEL, *_OTHER))
     sensors = read_heat_sensors(top)
+    declared = _declared(top, table)
     try:
         plant = ThermalPlant(
             name=top.text("name", name),
@@ -119,9 +123,9 @@ def thermal_plant(top: Table, name: str) -> ThermalPlant:
             contact=_value(table, "contact_conductance", "W/(m^2 K)"),
             preload=_value(table, "preload", "N"),
             lead=_lead(top, table),
-            nut=_friction(table, "nut", ()),
-            front=_bearing(table, "front_bearing"),
-            rear=_bearing(table, "rear_bearing"),
+            nut=_friction(table, "nut", ()) if "nut" in table.entries else declared[0] or _friction(table, "nut", ()),
+            front=_bearing(table, "front_bearing") or declared[1],
+            rear=_bearing(table, "rear_bearing") or declared[2],
             ambient=_value(table, "ambient", "degC"),
             highest_speed=_optional(table, "highest_speed", "rad/s", 1500 * math.pi / 30),
             bodies=tuple(_body(inner) for inner in table.tables("body")),
@@ -134,6 +138,17 @@ def thermal_plant(top: Table, name: str) -> ThermalPlant:
         # What the rig refuses is told with the file and the section in front.
         inside = error.where.startswith(table.where)
         raise error if inside else InputError(error.what, f"{table.where}, {error.where}", error.mend) from None
+
+
+def _declared(top: Table, table: Table) -> tuple[Friction | None, Friction | None, Friction | None]:
+    """Friction of nut, front and rear bearing that the file's own motion declares, where the two are coupled."""
+    if "coupling" not in table.entries or declares_heat_alone(top.entries):
+        return None, None, None
+    effects = read_effects(Table(top.entries, top.where, Origins()), EFFECTS)
+    joined, ambient = coupling(top), _value(table, "ambient", "degC")
+    diameter = 2 * _value(table, "shaft_radius", "m")
+    nut = nut_of(effects, joined, ambient, diameter, _lead(top, table))
+    return nut, *bearings_of(effects, joined, ambient, diameter)
 
 
 def _rig(table: Table, scales: tuple[float, ...]) -> Rig:

@@ -27,6 +27,7 @@ from feeddrive.thermal.model import HeatModel, Path
 from feeddrive.thermal.plant import ThermalPlant
 from feeddrive.thermal.propagators import propagator
 from feeddrive.thermal.sensors import CHANNELS
+from feeddrive.thermal.stepping import Stepper
 from feeddrive.thermal.system import HeatSystem
 from feeddrive.typing import FloatArray, IntegerArray
 
@@ -82,7 +83,7 @@ def run(model: HeatModel, rows: Rows, start: FloatArray | None = None, substeps:
     state = np.zeros(model.order) if start is None else start
     if rows.following is None and not systems[0].is_sparse:
         return _stretches(systems, which, inputs, rows.step, state)
-    steppers = [system.stepper(rows.step, substeps) for system in systems]
+    steppers = [_stepper(system, rows.step, substeps) for system in systems]
     states = np.empty((len(rows), model.order))
     read = np.vstack([model.readings[name] for name in FOLLOWED])
     columns = [model.input_names.index(name) for name in HEATED]
@@ -93,6 +94,16 @@ def run(model: HeatModel, rows: Rows, start: FloatArray | None = None, substeps:
         state = states[i] = steppers[kind](state, inputs[i])
         before, rises = rises, read @ state if rows.following is not None else rises
     return states
+
+
+def _stepper(system: HeatSystem, step: float, substeps: int) -> Stepper:
+    """What advances a system by a row; a reduced one by its modes."""
+    if system.is_sparse:
+        return system.stepper(step, substeps)
+    root = np.sqrt(system.capacity)
+    exact = propagator(system.conductance / np.outer(root, root), system.gains / root[:, None], step)
+    kept, fed = exact.propagator * root / root[:, None], exact.input_map / root[:, None]
+    return lambda state, given: kept @ state + fed @ given
 
 
 def _stretches(

@@ -20,7 +20,7 @@ RADIUS, LENGTH, NUT_RADIUS, NUT_LENGTH = 0.01675, 0.900, 0.032, 0.130
 LOW, HIGH, AT_ZERO = 0.250, 0.650, 0.250
 CONDUCTIVITY, CAPACITY, EXPANSION, CONTACT, AMBIENT = 45.0, 3.7e6, 11.7e-6, 1200.0, 20.0
 SEATS = (0.040, 0.020)
-SHAFT_CELLS, SHAFT_RINGS, NUT_CELLS, NUT_RINGS = 225, 4, 13, 4
+SHAFT_CELLS, SHAFT_RINGS, NUT_CELLS, NUT_RINGS = 225, 6, 13, 8
 R = 0.010 / (2 * math.pi)
 PRELOAD, PITCH = 2200.0, 0.0335
 BODIES = {"table": ("nut", 115e3, 2.5, 8.0), "motor": ("front", 4.2e3, 0.25, 3.5),
@@ -36,8 +36,8 @@ PROGRAMME = ((9.0, 2700), (0.0, 900), (4.0, 1800), (9.0, 2700), (4.0, 1500), (9.
 
 DWELL = 1.31
 NOISE = {"motor_torque": 0.01, "table_position": 0.1e-6, "temperature": 0.03}
-INNER = 12
-"""Explicit steps of the volumes in a second: the stiffest cell allows 0.1 s."""
+INNER = 20
+"""Explicit steps of the volumes in a second: the stiffest cell allows 0.07 s."""
 
 
 @dataclass(frozen=True)
@@ -258,7 +258,9 @@ class _World:
             self.bodies[name] += (flow - to_air * self.bodies[name] + heat.get(name, 0.0)) / capacity
         drift = self.truth.planted.get("ambient_drift")
         air = float(drift["amplitude"]) * CURVES[drift["curve"]](time, float(drift["period"])) if drift else 0.0
-        link = 2 * math.pi * RADIUS * self.overlap / (1 / CONTACT + mesh.half / CONDUCTIVITY)
+        # below its skin the shaft conducts the mean of what the passing nut gives
+        share = self.overlap.sum(axis=0) / mesh.spacing
+        link = 2 * math.pi * RADIUS * self.overlap * CONTACT / (1 + CONTACT * share * mesh.half / CONDUCTIVITY)
         to_bore = 2 * math.pi * RADIUS * nut.spacing * CONDUCTIVITY / nut.half
         faced = self.overlap > 0
         first, last = faced.argmax(axis=1), SHAFT_CELLS - faced[:, ::-1].argmax(axis=1)

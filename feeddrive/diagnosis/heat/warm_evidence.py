@@ -1,7 +1,8 @@
 """A log of hours made ready for comparison: torque and table position where the motor turned uniformly, temperatures.
 
-Rows are compared as they are, at their instants, without a filter. All channels count at the same rows, those of uniform
-motion: thousands in an hour, so that temperatures lose nothing.
+Motion is compared as it is, at its instants; temperatures as means over a step of the heat network, since a skin warms
+with each stroke. All channels count at the same rows, those of uniform motion: they are many, so that temperatures lose
+nothing.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ import numpy as np
 from feeddrive.diagnosis.heat.evidence import HEAT_BLOCK, MODEL_ERROR, HeatEvidence, model_error_of, smooth_noise
 from feeddrive.errors import InputError
 from feeddrive.recording import Recording
-from feeddrive.simulate.warm_log import WarmLog, thermometers, warm_log
+from feeddrive.simulate.warm_log import HEAT_STEP, WarmLog, steady_mean, thermometers, warm_log
 from feeddrive.thermal.plant import ThermalPlant
 from feeddrive.thermal.warm_plant import WarmPlant
 from feeddrive.typing import BoolArray, FloatArray
@@ -82,6 +83,7 @@ def prepare_warm(recording: Recording, plant: WarmPlant, share: float) -> WarmEv
         mend = "record the motor angle, its torque or the table position, and a temperature that the plant has"
         raise InputError("no log of motion and temperatures", recording.name, mend)
     log = warm_log(recording, plant.heat.ambient)
+    kept = replace(log, uniform=_some(log.uniform))
     with_air = recording if "ambient_temperature" in recording else _with_air(recording, log)
     noise, missed = {}, {}
     for name in names:
@@ -92,13 +94,17 @@ def prepare_warm(recording: Recording, plant: WarmPlant, share: float) -> WarmEv
             scale = float(np.sqrt(np.mean(series[log.uniform] ** 2)))
             missed[name] = MODEL_ERROR["m"] if name == "table_position" else TORQUE_ERROR * scale
         else:
-            noise[name] = known[name][1] or smooth_noise(series)
+            # means of rows that overlap: as many independent values as means fit into the log
+            inside = HEAT_STEP * kept.uniform.sum() / log.time[-1]
+            noise[name] = (known[name][1] or smooth_noise(series)) * np.sqrt(max(inside, 1.0) * log.step / HEAT_STEP)
             missed[name] = model_error_of(name, with_air)
     time = log.time + log.step
-    kept = replace(log, uniform=_some(log.uniform))
     return WarmEvidence(
         recording=with_air,
-        measured={name: np.asarray(recording[name]) for name in names},
+        measured={
+            name: np.asarray(recording[name] if name in MOTION else steady_mean(recording[name], log.step))
+            for name in names
+        },
         noise={name: float(np.hypot(noise[name], missed[name])) for name in names},
         counted=kept.uniform,
         fitted=time < share * time[-1] if share < 1 else np.ones(len(time), dtype=bool),

@@ -22,7 +22,7 @@ from feeddrive.effects.base import Effect, Kind
 from feeddrive.plant.plant import Plant
 from feeddrive.simulate.driven import LoadMotion
 from feeddrive.simulate.program import StepReport
-from feeddrive.simulate.warm_log import WarmRun, simulate_log
+from feeddrive.simulate.warm_log import WarmRun, friction_powers, simulate_log
 from feeddrive.thermal.model import HeatModel
 from feeddrive.thermal.plant import ThermalPlant
 from feeddrive.thermal.warm_plant import WarmPlant
@@ -67,6 +67,7 @@ class WarmPredictor(Predictor[WarmPlant, WarmEvidence]):
     declared: ThermalPlant
     model: HeatModel
     _known: Remembered[WarmRun] = field(default_factory=lambda: Remembered(lambda run: run.size))
+    _powers: Remembered[dict[str, FloatArray]] = field(default_factory=lambda: Remembered(_size_of_powers))
 
     @property
     def candidates(self) -> tuple[Candidate, ...]:
@@ -75,8 +76,11 @@ class WarmPredictor(Predictor[WarmPlant, WarmEvidence]):
 
     def run(self, plant: WarmPlant, evidence: WarmEvidence) -> WarmRun:
         """What the plant does in the log."""
-        values = tuple((e.name, str(e.port), e.place, tuple(e.values.items())) for e in plant.effects)
-        return self._known.found(evidence.log, values, lambda: simulate_log(plant, self._model(plant), evidence.log))
+        log = evidence.log
+        powers = self._powers.found(log, _values(plant.motion.effects), lambda: friction_powers(plant, log))
+        return self._known.found(
+            log, _values(plant.effects), lambda: simulate_log(plant, self._model(plant), log, powers)
+        )
 
     def predict(self, plant: WarmPlant, evidence: WarmEvidence) -> dict[str, FloatArray]:
         """Channel to its prediction, (n,) [N m, m, degC]."""
@@ -97,8 +101,8 @@ class WarmPredictor(Predictor[WarmPlant, WarmEvidence]):
         """Speed, position, time, and the predicted rise of the nut."""
         radius = plant.motion.chain.motor_radius
         return {
-            "table_velocity": radius * evidence.log.speed,
-            "table_position": radius * evidence.log.angle,
+            "motor_speed": evidence.log.speed,
+            "nut_position": plant.coupling.nut_at_zero + radius * evidence.log.angle,
             "time": evidence.log.time,
             "nut_rise": self.run(plant, evidence).rises[:, 0],
         }
@@ -136,6 +140,14 @@ class WarmPredictor(Predictor[WarmPlant, WarmEvidence]):
             table_position=radius * log.angle, table_velocity=radius * log.speed, torque=torque,
             force=np.zeros(len(log.time)), report=StepReport(0, 0, 0, 0, 0, 0.0, 0, 0.0, 0.0),
         )  # fmt: skip
+
+
+def _values(effects: Sequence[Effect]) -> tuple[object, ...]:
+    return tuple((e.name, str(e.port), e.place, tuple(e.values.items())) for e in effects)
+
+
+def _size_of_powers(powers: dict[str, FloatArray]) -> int:
+    return sum(table.nbytes for table in powers.values())
 
 
 def warm_predictor(plant: WarmPlant) -> WarmPredictor:
