@@ -77,7 +77,7 @@ def cogging_map(plant: Plant, cascade: Cascade) -> CoggingMap | None:
     found = [one for one in plant.effects if _is_cogging(one)]
     if not found:
         return None
-    angle: FloatArray = np.arange(POINTS) * (2 * math.pi / POINTS)
+    angle: FloatArray = np.arange(POINTS, dtype=np.float64) * (2 * math.pi / POINTS)
     torque: FloatArray = np.zeros(POINTS)
     for one in found:
         motion = PortMotion(ca.DM(angle), ca.DM.zeros(POINTS))
