@@ -77,11 +77,12 @@ def cogging_map(plant: Plant, cascade: Cascade) -> CoggingMap | None:
     found = [one for one in plant.effects if _is_cogging(one)]
     if not found:
         return None
-    angle: FloatArray = np.arange(POINTS) * (2 * math.pi / POINTS)
+    angle: FloatArray = np.arange(POINTS, dtype=np.float64) * (2 * math.pi / POINTS)
     torque: FloatArray = np.zeros(POINTS)
     for one in found:
         motion = PortMotion(ca.DM(angle), ca.DM.zeros(POINTS))
-        torque += np.asarray(ca.DM(_source(one).force(motion, one.values)).full(), dtype=np.float64).ravel()
+        part: FloatArray = np.array(ca.DM(_source(one).force(motion, one.values)).full(), dtype=np.float64).ravel()
+        torque = torque + part
     table = _Map(angle, torque, cascade.radius)
     velocity = 2 * math.pi * cascade.radius
     steady = Pieces((Piece(float(_TURNS), plant.middle, velocity, 0.0, 0.0),))

@@ -13,7 +13,7 @@ from feeddrive.compensation.cogging import CoggingMap, cogging_map
 from feeddrive.compensation.forms.catalogue import as_held, control
 from feeddrive.compensation.forms.control import Control
 from feeddrive.compensation.friction_values import FrictionValues, friction_values
-from feeddrive.compensation.lost_motion import LostMotion, lost_motion, refuse_wind_up, without_play
+from feeddrive.compensation.lost_motion import LostMotion, lost_motion, refuse_wind_up, resting_words, without_play
 from feeddrive.compensation.plant_deviations import PlantDeviations, plant_deviations
 from feeddrive.compensation.prediction import Applied, Figures, figures, motions, sticking
 from feeddrive.compensation.recorded_deviations import RecordedDeviations
@@ -137,8 +137,11 @@ def plant_table(
     if unsure_of_play and lost.play > 0:
         refused.append(unsure_of_play)
         known = Deviations(known.positions, known.mean, known.mean)
+    if lost.width > 0 and lost.rests:
+        refused.append(resting_words(lost))
+        known = Deviations(known.positions, known.mean, known.mean)
     has_lead = float(np.ptp(known.mean)) >= wanted.resolution
-    if not has_lead and refused:
+    if not has_lead and unsure_of_play and refused:
         raise InputError(f"no table is written: {unsure_of_play}", place, "record the experiment that tells them apart")
     if not has_lead:
         refuse_wind_up(lost, place, wanted.resolution)

@@ -12,7 +12,8 @@
 Play is there whatever the load. Wind-up is proportional to friction: it changes with lubrication, load and wear, builds
 up over the presliding of the guides and not at once, and a value that fits today bites into the contour tomorrow. So a
 backlash value is written for w alone. Where the table is not held on its flank by friction, it crosses the play by its
-own inertia while it brakes; no table can know on which side it comes to rest:
+own inertia while it brakes; no table can know on which side it comes to rest. And where a steady force, such as weight,
+is larger than friction, the table never leaves one flank and the play does not show at all:
 
     a_max = F / m
 
@@ -28,7 +29,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from feeddrive.effects.base import TransmissionEffect, TravelEffect
+from feeddrive.effects.base import Effect, FrictionEffect, Port, SourceEffect, TransmissionEffect, TravelEffect
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.steady import steady_motions
@@ -52,23 +53,30 @@ class LostMotion:
     """Lost motion of a plant in slow motion.
 
     Attributes:
-        play: w [m].
+        width: of the free play [m].
         wind_up: u [m].
-        force: of friction between nut and table, mean of both directions [N]; 0 in a rigid structure.
+        force: of friction at the table, mean of both directions [N].
+        weight: force on the table that does not turn with the direction, such as gravity [N]; positive to -.
         torque: of friction that the motor feels, mean of both directions [N m].
         holding: acceleration up to which friction keeps the table on its flank [m/s^2].
     """
 
-    play: float
+    width: float
     wind_up: float
     force: float
+    weight: float
     torque: float
     holding: float
 
     @property
-    def total(self) -> float:
-        """b [m]."""
-        return self.play + self.wind_up
+    def rests(self) -> bool:
+        """Whether a steady force holds the table on one flank in both directions, so that its play does not show."""
+        return abs(self.weight) > self.force
+
+    @property
+    def play(self) -> float:
+        """w [m], as far as it shows in slow motion."""
+        return 0.0 if self.rests else self.width
 
 
 def without_play(plant: Plant) -> Plant:
@@ -93,33 +101,23 @@ def lost_motion(plant: Plant, position: float | None = None) -> LostMotion:
         InputError: no steady motion is found there.
     """
     at = plant.middle if position is None else position
-    radius = plant.chain.motor_radius
-    forward, reverse = steady_motions(without_play(plant), (SLOW, -SLOW), at)
+    radius, bare = plant.chain.motor_radius, without_play(plant)
+    forward, reverse = steady_motions(bare, (SLOW, -SLOW), at)
     lags = [radius * float(one.state[0]) - at for one in (forward, reverse)]
     torque = 0.5 * (forward.torque - reverse.torque)
-    force = _table_friction(plant, at)
+    # by virtual work: what the motor need not give where nothing acts on the table
+    free = replace(bare, effects=tuple(one for one in bare.effects if not _acts_on_table(one)))
+    unloaded = steady_motions(free, (SLOW, -SLOW), at)
+    ahead, back = ((one.torque - two.torque) / radius
+                   for one, two in zip((forward, reverse), unloaded, strict=True))  # fmt: skip
+    force, weight = max(0.5 * (ahead - back), 0.0), 0.5 * (ahead + back)
     mass = float(plant.chain_values()["table_mass"])
-    return LostMotion(declared_play(plant), lags[0] - lags[1], force, torque, force / mass if mass > 0 else math.inf)
+    holding = force / mass if mass > 0 else math.inf
+    return LostMotion(declared_play(plant), lags[0] - lags[1], force, weight, torque, holding)
 
 
-def _table_friction(plant: Plant, position: float) -> float:
-    """Friction of the table in slow motion, mean of both directions [N]: what holds it on a flank.
-
-    By virtual work: the torque that the plant asks for, less what it asks for without any friction at the table.
-    """
-    bare = without_play(plant)
-    kept = tuple(one for one in bare.effects if str(one.port) != "table" or not _is_friction(one))
-    with_it, without = (
-        steady_motions(one, (SLOW, -SLOW), position) for one in (bare, replace(bare, effects=kept))
-    )  # fmt: skip
-    torques = [0.5 * (pair[0].torque - pair[1].torque) for pair in (with_it, without)]
-    return float(max(torques[0] - torques[1], 0.0) / plant.chain.motor_radius)
-
-
-def _is_friction(effect: object) -> bool:
-    from feeddrive.effects.base import FrictionEffect
-
-    return isinstance(effect, FrictionEffect)
+def _acts_on_table(effect: Effect) -> bool:
+    return effect.port is Port.TABLE and isinstance(effect, FrictionEffect | SourceEffect)
 
 
 def wind_up_words(lost: LostMotion) -> str:
@@ -143,10 +141,20 @@ def refuse_wind_up(lost: LostMotion, where: str, least: float) -> None:
     """
     if lost.play >= least:
         return
+    if lost.width >= least:
+        raise InputError(f"no table is written: {resting_words(lost)}", where, "renew the preload, or leave it")
     if abs(lost.wind_up) < NOTICED:
         what = f"no lead error and no play of {format_quantity(least, 'm')} or more is known of this axis"
         raise InputError(what, where, "diagnose a recording over the whole stroke, and give its folder")
     raise InputError(f"no table is written: {wind_up_words(lost)}", where, CURE)
+
+
+def resting_words(lost: LostMotion) -> str:
+    """Why a play does not show, as a sentence without its full stop."""
+    return (
+        f"the play of {format_quantity(lost.width, 'm')} does not show in slow motion, as {abs(lost.weight):.3g} N "
+        "hold the table on one flank against its friction; a backlash value would put it in"
+    )
 
 
 def flank_words(lost: LostMotion) -> str:

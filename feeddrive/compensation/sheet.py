@@ -270,7 +270,7 @@ def record(done: Compensated) -> dict[str, Any]:
     }  # fmt: skip
     if lost is not None:
         content["lost_motion"] = {"play": lost.play, "wind_up": lost.wind_up, "friction_force": lost.force,
-                                  "friction_torque": lost.torque,
+                                  "weight": lost.weight, "friction_torque": lost.torque,
                                   "holding": lost.holding if math.isfinite(lost.holding) else None}  # fmt: skip
     if friction is not None:
         content["friction"] = {"torque": friction.torque, "turning_speed": friction.turning, "pulse": friction.pulse,

@@ -180,6 +180,20 @@ def test_backlash_that_is_not_sure_is_in_no_table(tmp_path: Path, entry: dict[st
         fd.compensate(tmp_path, "linuxcnc", stroke=("0 mm", "400 mm"))
 
 
+def test_play_that_weight_holds_closed_is_in_no_table() -> None:
+    """A vertical axis hangs on one flank: +-w/2 would put the play in."""
+    hung = fd.load("vertical_axis").with_effects(fd.effect("backlash", width="6 um"))
+    with pytest.raises(fd.InputError, match=r"6 µm does not show.*one flank"):
+        fd.compensate(hung, "sinumerik-cec")
+    leads = hung.with_effects(fd.effect("lead_error_cumulative", slope="20 um/m"))
+    made = plant_table(leads.plant, Wishes("isg"))
+    assert not made.table.directions_differ
+    assert any("one flank" in line for line in left(made))
+    assert made.lost is not None
+    # what the file declares, by hand: weight of the table less counterbalance, over friction
+    assert abs(made.lost.weight) > made.lost.force > 0
+
+
 def test_loop_that_reads_the_scale_needs_no_table() -> None:
     with pytest.raises(fd.InputError, match=r"reads the scale.*motor"):
         fd.compensate(planted(), "isg", stroke=("0 mm", "400 mm"), controller="scenarios/controllers/bench_axis.toml")
