@@ -76,9 +76,11 @@ def _from_content(head: str) -> datetime | None:
 
 def _moment(match: re.Match[str]) -> datetime | None:
     parts = match.groupdict()
+    year, month, day, hour, minute, second = (
+        int(parts[key] or 0) for key in ("year", "month", "day", "hour", "minute", "second")
+    )
     try:
-        return datetime(*(int(parts[key]) for key in ("year", "month", "day")), int(parts["hour"] or 0),
-                        int(parts["minute"] or 0), int(parts["second"] or 0))  # fmt: skip
+        return datetime(year, month, day, hour, minute, second)
     except ValueError:  # the 31st of a shorter month
         return None
 
