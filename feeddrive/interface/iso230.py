@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -129,7 +129,8 @@ def iso230(
     Raises:
         InputError: what is given makes no such test; one line with the remedy.
     """
-    given = list(measured) if isinstance(measured, list | tuple) else [measured]
+    several = isinstance(measured, Sequence) and not isinstance(measured, str)
+    given = cast(list[Given], list(measured) if several else [measured])  # type: ignore[arg-type]
     if not given or len(given) > 2:
         raise InputError(f"{len(given)} measurements", "iso230", "give one, or the two axes of a circle")
     if part not in (None, 2, 3, 4):
@@ -199,7 +200,7 @@ def _of_recordings(recordings: Sequence[Recording], wishes: _Wishes, plant: Axis
     if len(recordings) == 2:
         if part != 4:
             raise InputError(f"two recordings for part {part}", "iso230", "give one; two are the axes of a circle")
-        circle = circle_test_from(*recordings, wishes.radius)
+        circle = circle_test_from(first, recordings[1], wishes.radius)
         _ = circle.circles
         return Iso230(f"{first.name}, {recordings[1].name}", 4, circle)
     if part == 2:

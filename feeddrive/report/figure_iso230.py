@@ -60,6 +60,7 @@ def _linear(test: LinearTest) -> ReportFigure:
     _span(axes, low, high, "A")
     dress(axes, "target [mm]", "deviation, actual minus target [µm]")
     legend_above(axes, 5)
+    found: tuple[tuple[str, float], ...]
     if both is not None:
         found = (("A", both.accuracy), ("E", both.systematic), ("M", both.mean_range), ("B", both.reversal_value),
                  ("R", both.repeatability))  # fmt: skip

@@ -44,9 +44,9 @@ class Atom:
         """Its values, (n,)."""
         since = time - self.date
         if self.kind == JUMP:
-            return (since >= 0).astype(float)
+            return np.where(since >= 0, 1.0, 0.0)
         if self.kind == ODD:
-            return (since == 0).astype(float)
+            return np.where(since == 0, 1.0, 0.0)
         after = np.clip(since, 0.0, None)
         found: FloatArray = after if self.kind == SLOPE else -np.expm1(-after / self.time_constant)
         return found

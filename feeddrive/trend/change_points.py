@@ -51,6 +51,7 @@ class Found:
         atom: kind, date, time constant.
         odds: of some such course against none, the others as they are.
         dates: interval that holds the date with 95 %.
+        posterior: dates that are possible, and log of the probability of each, (d,) each.
         size, deviation: of the course and its standard deviation: the height of a jump, the rate of a slope.
         time_constants: interval with 95 %, of a course that settles.
     """
@@ -58,6 +59,7 @@ class Found:
     atom: Atom
     odds: float
     dates: tuple[float, float]
+    posterior: tuple[FloatArray, FloatArray]
     size: float
     deviation: float
     time_constants: tuple[float, float] = (0.0, 0.0)
@@ -99,14 +101,13 @@ def course_of(series: Series, quantities: int) -> Course:
     mean, spread, scatter = series.estimate(atoms)
     columns = np.column_stack([np.ones(len(series.values)), *(atom.course(series.line.time) for atom in atoms)])
     band = np.sqrt(np.clip(np.einsum("ij,jk,ik->i", columns, spread, columns), 0, None))
-    found = tuple(
-        Found(
-            atom, search.odds_of(atoms, i), search.dates(atoms, i), float(mean[1 + i]), float(np.sqrt(spread[1 + i, 1
-            + i])), search.time_constants(atoms, i),
-        )
-        for i, atom in enumerate(atoms)
-    )  # fmt: skip
-    return Course((float(mean[0]), float(np.sqrt(spread[0, 0]))), scatter, found, columns @ mean, band)
+    found = []
+    for i, atom in enumerate(atoms):
+        posterior = search.dates(atoms, i)
+        size, deviation = float(mean[1 + i]), float(np.sqrt(spread[1 + i, 1 + i]))
+        found.append(Found(atom, search.odds_of(atoms, i), most_likely(*posterior), posterior, size, deviation,
+                           search.time_constants(atoms, i)))  # fmt: skip
+    return Course((float(mean[0]), float(np.sqrt(spread[0, 0]))), scatter, tuple(found), columns @ mean, band)
 
 
 @dataclass(frozen=True, eq=False)
@@ -209,8 +210,8 @@ class _Search:
         refined = self.series.summed(atoms) + self._prior_of(atoms[place])
         return float(np.exp(min(float(logsumexp([*more, refined])) - alone, 690.0)))
 
-    def dates(self, atoms: Sequence[Atom], place: int) -> tuple[float, float]:
-        """Interval that holds the date of a course with 95 %, among those of its kind."""
+    def dates(self, atoms: Sequence[Atom], place: int) -> tuple[FloatArray, FloatArray]:
+        """Possible dates of a course among those of its kind, and the log of the probability of each, (d,) each."""
         atom, time = atoms[place], self.series.line.time
         others = [one for i, one in enumerate(atoms) if i != place]
         if atom.kind == SETTLING:
@@ -221,10 +222,8 @@ class _Search:
             chosen = [i for i, one in enumerate(self.series.line.tried) if one.kind == atom.kind]
             logs = self.series.with_one_more(others)[chosen]
             dates = np.array([self.series.line.tried[i].date for i in chosen])
-        weights = np.exp(logs - logsumexp(logs))
-        order = np.argsort(-weights)
-        held = order[: int(np.searchsorted(np.cumsum(weights[order]), 0.95)) + 1]
-        return float(dates[held].min()), float(dates[held].max())
+        order = np.argsort(dates)
+        return dates[order], (logs - logsumexp(logs))[order]
 
     def time_constants(self, atoms: Sequence[Atom], place: int) -> tuple[float, float]:
         """Interval with 95 % of a time constant."""
@@ -246,6 +245,14 @@ class _Search:
         mean = float(weights @ spread)
         deviation = float(np.sqrt(weights @ (spread - mean) ** 2))
         return tuple(float(atom.time_constant * np.exp(mean + s * 1.96 * deviation)) for s in (-1, 1))  # type: ignore[return-value]
+
+
+def most_likely(dates: FloatArray, logs: FloatArray) -> tuple[float, float]:
+    """The interval that holds a date with 95 %, from log probabilities, (d,) each; the likeliest dates first."""
+    weights = np.exp(logs - logsumexp(logs))
+    order = np.argsort(-weights)
+    held = order[: int(np.searchsorted(np.cumsum(weights[order]), 0.95)) + 1]
+    return float(dates[held].min()), float(dates[held].max())
 
 
 def _around(near: list[Atom], atom: Atom) -> list[Atom]:

@@ -5,9 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+from scipy.special import logsumexp
+
 from feeddrive.trend.atoms import JUMP, ODD, SETTLING, SLOPE
-from feeddrive.trend.change_points import Found
+from feeddrive.trend.change_points import ASSERTED, Found, most_likely
 from feeddrive.trend.quantities import Quantity
+from feeddrive.typing import FloatArray
 
 
 @dataclass(frozen=True)
@@ -25,7 +29,7 @@ class Event:
     Attributes:
         kind: "jump", "slope" or "settling".
         changes: the surest first.
-        dates: interval of days that holds the date with 95 %, of the quantity that tells it most closely.
+        dates: interval of days that holds the date with 95 %, by all of these quantities together.
         day: most likely one.
         causes: effects that move all of these quantities, or what most of them share, the likeliest first.
     """
@@ -51,17 +55,36 @@ def events_of(changes: Sequence[Change]) -> tuple[Event, ...]:
 
 
 def _together(one: Found, other: Found) -> bool:
-    """Whether two changes are of one kind (slow or sudden) and their dates overlap."""
+    """Whether two changes of a kind (slow or sudden) may have begun together: two are told at odds of 100 as well.
+
+    Odds of one date against two: sum over d of p(d) q(d), times the dates that a second event could have.
+    """
     if (one.atom.kind == JUMP) != (other.atom.kind == JUMP):
         return False
-    return one.dates[0] <= other.dates[1] and other.dates[0] <= one.dates[1]
+    dates = other.posterior[0]
+    both = np.maximum(np.interp(dates, *one.posterior, left=LEAST, right=LEAST), LEAST) + other.posterior[1]
+    return float(logsumexp(both)) + float(np.log(len(dates))) > -float(np.log(ASSERTED))
 
 
 def _event(group: list[Change]) -> Event:
-    closest = group[0]
     ordered = tuple(sorted(group, key=lambda change: -change.found.odds))
-    kind = closest.found.atom.kind
-    return Event(kind, ordered, closest.found.dates, closest.found.atom.date, _causes(ordered, kind))
+    kind = group[0].found.atom.kind
+    dates, logs = _together_dated([change.found for change in group if change.found.atom.kind == kind])
+    return Event(kind, ordered, most_likely(dates, logs), float(dates[int(np.argmax(logs))]), _causes(ordered, kind))
+
+
+LEAST = -20.0
+"""Log probability of a date that a quantity leaves to others: its own law of change is never exactly the machine's."""
+
+
+def _together_dated(found: Sequence[Found]) -> tuple[FloatArray, FloatArray]:
+    """Possible dates of one beginning, and the log of their probability by all quantities that it shows in."""
+    dates = np.unique(np.concatenate([one.posterior[0] for one in found]))
+    logs = np.zeros(len(dates))
+    for one in found:
+        own = np.interp(dates, *one.posterior, left=LEAST, right=LEAST)
+        logs += np.maximum(own, LEAST)
+    return dates, logs - float(logsumexp(logs))
 
 
 def _causes(changes: Sequence[Change], kind: str) -> tuple[str, ...]:

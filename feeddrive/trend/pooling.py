@@ -67,7 +67,7 @@ def pool(passes: Sequence[Pass], grid: Grid, widths: Mapping[str, float]) -> Poo
     count = len(names)
     low = min(one.first for one in passes)
     hats = max(one.first + one.hats for one in passes) - low
-    places = grid.cell * (low + np.arange(hats))
+    places: FloatArray = grid.cell * np.arange(low, low + hats, dtype=np.float64)
     beta = _maps(passes, count, low, hats, places, grid.middle)
     noise = [_rest(one, beta, count, low, hats) for one in passes]
     usual = float(np.sqrt(INFLATION) * np.median(noise)) if noise else 0.0
@@ -108,7 +108,7 @@ def _maps(passes: Sequence[Pass], count: int, low: int, hats: int, places: Float
         right.append(one.triangle[count:, -1])
     stacked, seen = np.vstack(rows), np.concatenate(right)
     if len(seen) > 40 * hats:  # as many rows as recordings times hats: the triangle says the same
-        triangle = np.linalg.qr(np.column_stack([stacked, seen]), mode="r")
+        triangle = np.asarray(np.linalg.qr(np.column_stack([stacked, seen]), mode="r"))
         stacked, seen = triangle[:, :-1], triangle[:, -1]
     size = max(float(np.linalg.norm(stacked)), 1e-300) / np.sqrt(stacked.size)
     level, slope = np.ones(hats), (places - middle) / max(float(np.ptp(places)), 1e-12)

@@ -157,7 +157,7 @@ class _Columns:
             )
         declared = _regularised(terms, explained)
         first, hats, maps = _hats(position, self.grid, np.sign(speed[used]))
-        triangle = np.linalg.qr(np.column_stack([terms, maps, rest]), mode="r")
+        triangle = np.asarray(np.linalg.qr(np.column_stack([terms, maps, rest]), mode="r"))
         return Pass(channel, triangle, first, hats, int(used.sum()), declared, self._slow_force(used, speed, force))
 
     def _force(self, radius: float) -> FloatArray:

@@ -10,14 +10,15 @@ from datetime import datetime, timedelta
 
 from feeddrive.errors import InputError
 
+_CLOCK = r"(?:[T ,;\t]+(?P<hour>[01]?\d|2[0-3]):(?P<minute>[0-5]\d)(?::(?P<second>[0-5]\d))?)?"
 _TIME = r"(?:[T _-]{1,2}(?P<hour>[01]\d|2[0-3])[:.h-]?(?P<minute>[0-5]\d)(?:[:.m-]?(?P<second>[0-5]\d))?)?"
 _NAME = re.compile(r"(?<!\d)(?P<year>(?:19|20)\d\d)[-_.]?(?P<month>0[1-9]|1[0-2])[-_.]?(?P<day>0[1-9]|[12]\d|3[01])"
                    + _TIME + r"(?!\d)")  # fmt: skip
 _ISO = re.compile(r"(?<!\d)(?P<year>(?:19|20)\d\d)-(?P<month>0[1-9]|1[0-2])-(?P<day>0[1-9]|[12]\d|3[01])"
                   r"(?:[T ](?P<hour>[01]\d|2[0-3]):(?P<minute>[0-5]\d)(?::(?P<second>[0-5]\d))?)?")  # fmt: skip
-_DOTTED = re.compile(r"(?<!\d)(?P<day>0?[1-9]|[12]\d|3[01])\.(?P<month>0?[1-9]|1[0-2])\."
-                     r"(?P<year>(?:19|20)\d\d)"
-                     r"(?:[T ,;\t]+(?P<hour>[01]?\d|2[0-3]):(?P<minute>[0-5]\d)(?::(?P<second>[0-5]\d))?)?")  # fmt: skip
+_DOTTED = re.compile(
+    r"(?<!\d)(?P<day>0?[1-9]|[12]\d|3[01])\.(?P<month>0?[1-9]|1[0-2])\.(?P<year>(?:19|20)\d\d)" + _CLOCK
+)
 _TOLD = re.compile(r"start|date|datum|time|zeit|record|created|stamp", re.IGNORECASE)
 _FILETIME = re.compile(r"Starttime of export\"?[\t;, ]+\"?(\d{17,19})(?!\d)")
 _LINES = 60
@@ -75,9 +76,11 @@ def _from_content(head: str) -> datetime | None:
 
 def _moment(match: re.Match[str]) -> datetime | None:
     parts = match.groupdict()
+    year, month, day, hour, minute, second = (
+        int(parts[key] or 0) for key in ("year", "month", "day", "hour", "minute", "second")
+    )
     try:
-        return datetime(*(int(parts[key]) for key in ("year", "month", "day")), int(parts["hour"] or 0),
-                        int(parts["minute"] or 0), int(parts["second"] or 0))  # fmt: skip
+        return datetime(year, month, day, hour, minute, second)
     except ValueError:  # the 31st of a shorter month
         return None
 

@@ -192,7 +192,7 @@ def test_options_that_are_none(tmp_path: Path, axis: fd.Axis, options: dict[str,
     for number in range(4):
         write_recording(folder / f"x_2026-01-0{number + 1}.csv", day(number))
     with pytest.raises(fd.InputError, match=said):
-        fd.watch(folder, axis, **options)  # type: ignore[arg-type]
+        fd.watch(folder, axis, **options)
 
 
 def test_nothing_to_follow(tmp_path: Path, axis: fd.Axis) -> None:

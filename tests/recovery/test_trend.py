@@ -128,7 +128,7 @@ def test_loss_of_preload_and_a_jump_of_backlash(
 @pytest.mark.slow
 def test_no_false_change_in_twenty_steady_years(axis: fd.Axis) -> None:
     """Twenty times 250 recordings; in half of them the drag wanders over weeks, in half its scatter has heavy tails."""
-    false = []
+    false: list[tuple[int, object]] = []
     for year in range(20):
         random, wander, states = np.random.default_rng(50_000 + year), 0.0, []
         for day in range(250):

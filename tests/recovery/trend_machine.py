@@ -89,7 +89,7 @@ def recording(state: State, name: str = "day", seconds: float = 8.0, channels: t
     """A recording of long strokes with shorter, faster ones on top; torque noise 0.02 N m, scale noise 20 nm."""
     r = LEAD / (2 * math.pi)
     random = np.random.default_rng(state.seed)
-    time = np.arange(round(seconds / STEP)) * STEP
+    time: Array = np.arange(round(seconds / STEP), dtype=np.float64) * STEP
     moved, _, _ = _motion(time + state.start)
     _, v, a = _motion(time + state.start)
     middle, v_mid, a_mid = _motion(time + state.start + 0.5 * STEP)

@@ -153,7 +153,7 @@ def predicted_deviations(plant: Plant, target: FloatArray) -> tuple[FloatArray, 
     rising = [*target, target[-1] + OVERRUN]
     places = [target[0] - OVERRUN, *rising, *reversed(target), target[0] - OVERRUN]
     angle, read = _staircase(np.array(places) / plant.chain.motor_radius, plant.chain.motor_radius)
-    time = SAMPLE * np.arange(len(angle))
+    time: FloatArray = SAMPLE * np.arange(len(angle), dtype=np.float64)
     try:
         run = simulate_driven(plant, motor_motion(time, angle))
     except SimulationError as error:
