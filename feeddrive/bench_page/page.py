@@ -186,7 +186,9 @@ def _effects(plant: Plant, names: Sequence[str], found: Sequence[str]) -> list[d
         ]  # fmt: skip
         sliders = [one for one in sliders if one["value"]]
         if sliders:
-            made.append({"name": effect.name, "label": _label(effect), "found": effect.name in found, "sliders": sliders})
+            made.append(
+                {"name": effect.name, "label": _label(effect), "found": effect.name in found, "sliders": sliders}
+            )
     return sorted(made, key=lambda one: not one["found"])
 
 

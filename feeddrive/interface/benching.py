@@ -94,7 +94,9 @@ def _diagnosed(axis: Axis, diagnosis: Diagnosed | str | Path | None) -> tuple[Ax
 def _content(path: Path) -> dict[str, Any]:
     try:
         if path.stat().st_size > _MOST_BYTES:
-            raise InputError("is too large for a diagnosis", str(path), "give the folder that `feeddrive diagnose` wrote")
+            raise InputError(
+                "is too large for a diagnosis", str(path), "give the folder that `feeddrive diagnose` wrote"
+            )
         content = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError, RecursionError):
         content = None

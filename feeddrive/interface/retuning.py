@@ -122,7 +122,8 @@ def compare(plant: Plant, present: Cascade, recommended: Cascade, trials: Sequen
     before, after = (tuple(try_loop(plant, one, case) for case in trials) for one in (present, recommended))
     wide = [one for one in present.torque_filters if one.kind == "notch" and is_low_pass(*_notch(one))]
     remarks = [
-        f"present: a notch at {_notch(one)[0]:.4g} Hz that is {_notch(one)[1]:.4g} Hz wide is a low-pass" for one in wide
+        f"present: a notch at {_notch(one)[0]:.4g} Hz that is {_notch(one)[1]:.4g} Hz wide is a low-pass"
+        for one in wide
     ]
     remarks += [f"present: unstable with the {describe(one.reached.case)}" for one in before if not one.stable]
     return Retuned(plant, present, recommended, before, after, tuple(remarks))
@@ -183,4 +184,6 @@ def _shown(value: float | None, unit: str) -> str:
         return "-"
     if unit == "1":
         return f"{100 * value:.1f} %"
-    return f"{value:.1f} {'°' if unit == 'deg' else unit}" if unit in ("deg", "dB", "Hz") else format_quantity(value, unit)
+    return (
+        f"{value:.1f} {'°' if unit == 'deg' else unit}" if unit in ("deg", "dB", "Hz") else format_quantity(value, unit)
+    )

@@ -134,7 +134,7 @@ def test_numbers_at_twenty_settings(name: str, tmp_path: Path, generator: np.ran
 def test_page_is_one_file_and_asks_for_nothing(page: Bench) -> None:
     text = page.text
     assert "default-src 'none'" in text
-    assert not re.search(r'(?:src|href)\s*=\s*["\']', text.replace('href = URL', ""))
+    assert not re.search(r'(?:src|href)\s*=\s*["\']', text.replace("href = URL", ""))
     assert not re.search(r"https?:|//[a-z]|@import|url\(|fetch\(|XMLHttpRequest|WebSocket|import\(", text)
 
 

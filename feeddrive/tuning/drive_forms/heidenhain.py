@@ -41,7 +41,9 @@ def _speed_parameters(facts: Facts) -> tuple[Parameter, Parameter]:
     """
     if facts.torque_constant is None:
         mend = 'declare torque_constant = "... N m/A" in [motor]'
-        raise InputError("HEIDENHAIN counts the gain in amperes, and the torque constant is not declared", FORM.name, mend)
+        raise InputError(
+            "HEIDENHAIN counts the gain in amperes, and the torque constant is not declared", FORM.name, mend
+        )
     per_si = 2 * math.pi / facts.torque_constant
     return (
         Parameter("MP2500.0", "A s", "proportional factor of the speed controller", per_si, 3, 0.0, 1e6, _SPEED),
