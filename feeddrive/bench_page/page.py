@@ -25,7 +25,7 @@ from feeddrive.servo.cascade import Cascade
 from feeddrive.servo.filters import Filter, notch
 from feeddrive.servo.frequency_response import grid
 from feeddrive.servo.margins import GROWTH
-from feeddrive.simulate.trial_motions import RADIUS, HEIGHT, STEP_AT, Trial, circle_about, step_at
+from feeddrive.simulate.trial_motions import HEIGHT, RADIUS, STEP_AT, Trial, circle_about, step_at
 
 _SCRIPTS = ("linear.js", "loop.js", "engine.js", "bench.js", "drawing.js", "page.js")
 _LOWEST, _HIGHEST = 1.0, 4000.0
@@ -153,7 +153,7 @@ def _with_slots(cascade: Cascade) -> Cascade:
 def _motion(trial: Trial, cascade: Cascade, origin: float) -> dict[str, Any]:
     """Set-point at the position ticks, the position from an origin [m], and the ticks of the run."""
     ticks = math.ceil(trial.trajectory.duration / cascade.sample_time - 1e-6)
-    time = np.arange(0, ticks, cascade.position_divider) * cascade.sample_time
+    time = np.arange(0, ticks, cascade.position_divider, dtype=np.float64) * cascade.sample_time
     motion = trial.trajectory.at(time)
     ref = {"position": (motion.position - origin).tolist(), "velocity": motion.velocity.tolist(),
            "acceleration": motion.acceleration.tolist()}  # fmt: skip

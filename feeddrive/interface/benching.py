@@ -1,4 +1,4 @@
-"""The bench page of an axis: sliders for gains, filters, position, payload and effects; loops, step and circle at once."""
+"""The bench page of an axis: sliders for gains, filters, position, payload, effects; loops and motions follow."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from feeddrive.interface.axis import Axis, load
 from feeddrive.interface.diagnosed import Diagnosed
 from feeddrive.interface.quantities import Quantity, si
 from feeddrive.interface.servo import Servo, cascade_for, tune
-from feeddrive.servo.loop_response import refuse_unstable_case
 from feeddrive.servo.frequency_response import Case
+from feeddrive.servo.loop_response import refuse_unstable_case
 
 _MOST_BYTES = 200_000_000
 
@@ -65,7 +65,7 @@ def bench(
         InputError: a rigid axis, a controller that is unstable or cannot be read, a folder without diagnosis.
 
     >>> import feeddrive as fd
-    >>> page = fd.bench(fd.load("bench_axis"), controller="scenarios/controllers/bench_axis.toml")
+    >>> page = fd.bench(fd.load("bench_axis"), controller="step_position")
     >>> page.text.startswith("<!DOCTYPE html>")
     True
     """

@@ -59,9 +59,11 @@ class Retuned(Shown):
         ]
         count = max(len(old.torque_filters), len(new.torque_filters))
         for place in range(count):
-            shown = [_filter(some[place]) if place < len(some) else "none"
-                     for some in (old.torque_filters, new.torque_filters)]  # fmt: skip
-            rows.append((f"filter {place + 1}", *shown))
+            before, after = (
+                _filter(some[place]) if place < len(some) else "none"
+                for some in (old.torque_filters, new.torque_filters)
+            )
+            rows.append((f"filter {place + 1}", before, after))
         return [row for row in rows if row[1] != row[2]]
 
     @property

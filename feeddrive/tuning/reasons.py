@@ -13,10 +13,9 @@ from feeddrive.plant.plant import Plant
 from feeddrive.quantity import format_quantity
 from feeddrive.servo.cascade import KV_UNIT, Cascade
 from feeddrive.servo.frequency_response import Case
+from feeddrive.tuning.filter_choice import FilterChoice
 from feeddrive.tuning.largest_gain import GainLimit, Limit
 from feeddrive.tuning.recommendation import Recommendation
-from feeddrive.tuning.filter_choice import FilterChoice
-
 
 _COMPLETE = 200.0
 """Depth of a complete notch in a file [dB]: 1e-10, beyond every digit of a drive."""

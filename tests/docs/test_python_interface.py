@@ -55,7 +55,7 @@ def test_import_loads_nothing_heavy() -> None:
     assert found.stdout.strip() == "[]"
 
 
-_WITH_EXAMPLES = ["axis", "experiments", "shipped", "explaining", "quantities", "sweeping", "warm_up"]
+_WITH_EXAMPLES = ["axis", "benching", "experiments", "shipped", "explaining", "quantities", "sweeping", "warm_up"]
 
 
 @pytest.mark.parametrize(
