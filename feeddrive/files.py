@@ -57,8 +57,8 @@ def find_plant(name_or_path: str) -> Path:
     """Find a plant file.
 
     Args:
-        name_or_path: path of a file, or of the folder of a diagnosis, whose `plant_after.toml` is meant, or the name of a
-            shipped plant with or without `.toml`. A file wins over a name.
+        name_or_path: path of a file, or of the folder of a diagnosis, whose `plant_after.toml` is meant, or the name
+            of a shipped plant with or without `.toml`. A file wins over a name.
 
     Raises:
         InputError: neither a file nor a shipped plant; names the nearest shipped plants.

@@ -54,7 +54,9 @@ def javascript(function: ca.Function, name: str) -> str:
         names = ",".join(f"w{i}" for i in range(max(1, dense.sz_w())))
         return f"function {name}({head}){{let {names};{body};}}"
     pieces = [lines[i : i + _PIECE] for i in range(0, len(lines), _PIECE)]
-    parts = [f"function {name}_{i}({head},w){{{';'.join(piece).replace(']W', ']')};}}" for i, piece in enumerate(pieces)]
+    parts = [
+        f"function {name}_{i}({head},w){{{';'.join(piece).replace(']W', ']')};}}" for i, piece in enumerate(pieces)
+    ]
     calls = ";".join(f"{name}_{i}({head},{name}_w)" for i in range(len(pieces)))
     room = f"const {name}_w=new Float64Array({dense.sz_w()});"
     return "\n".join([*parts, room, f"function {name}({head}){{{calls};}}"])

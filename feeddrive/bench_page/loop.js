@@ -150,9 +150,13 @@ function marginsOf(E, loop, position, sharp) {
   const more = [];
   for (let k = 1; k < rows.length; k++) if (rows[k].i - rows[k - 1].i > 1 && crosses(rows[k - 1], rows[k])) for (let i = rows[k - 1].i + 1; i < rows[k].i; i++) more.push(i);
   if (more.length) rows = rows.concat(at(more)).sort((p, q) => p.i - q.i);
-  const worst = rows.reduce((p, q) => (q.peak > p.peak ? q : p)).i, near = [];
-  for (let i = Math.max(0, worst - 14); i <= Math.min(points - 1, worst + 14); i++) if (!rows.some((r) => r.i === i)) near.push(i);
-  rows = rows.concat(at(near)).sort((p, q) => p.i - q.i);
+  // the largest |1 / (1 + L)| may lie between two that were looked at, at any of its peaks that come near the largest
+  const worst = 0.8 * rows.reduce((p, q) => Math.max(p, q.peak), 0), seen = new Set(rows.map((r) => r.i)), near = new Set();
+  rows.forEach((r, k) => {
+    if (r.peak < worst || (rows[k - 1] || r).peak > r.peak || (rows[k + 1] || r).peak > r.peak) return;
+    for (let i = Math.max(0, r.i - 14); i <= Math.min(points - 1, r.i + 14); i++) if (!seen.has(i)) near.add(i);
+  });
+  rows = rows.concat(at(Array.from(near))).sort((p, q) => p.i - q.i);
   let gain = [Infinity, NaN], phase = [Infinity, NaN], peak = 0;
   for (let k = 0; k < rows.length; k++) {
     peak = Math.max(peak, rows[k].peak);

@@ -153,7 +153,7 @@ def _with_slots(cascade: Cascade) -> Cascade:
 def _motion(trial: Trial, cascade: Cascade, origin: float) -> dict[str, Any]:
     """Set-point at the position ticks, the position from an origin [m], and the ticks of the run."""
     ticks = math.ceil(trial.trajectory.duration / cascade.sample_time - 1e-6)
-    time = np.arange(0, ticks, cascade.position_divider) * cascade.sample_time
+    time = np.arange(0, ticks, cascade.position_divider, dtype=np.float64) * cascade.sample_time
     motion = trial.trajectory.at(time)
     ref = {"position": (motion.position - origin).tolist(), "velocity": motion.velocity.tolist(),
            "acceleration": motion.acceleration.tolist()}  # fmt: skip
@@ -186,7 +186,9 @@ def _effects(plant: Plant, names: Sequence[str], found: Sequence[str]) -> list[d
         ]  # fmt: skip
         sliders = [one for one in sliders if one["value"]]
         if sliders:
-            made.append({"name": effect.name, "label": _label(effect), "found": effect.name in found, "sliders": sliders})
+            made.append(
+                {"name": effect.name, "label": _label(effect), "found": effect.name in found, "sliders": sliders}
+            )
     return sorted(made, key=lambda one: not one["found"])
 
 

@@ -1,4 +1,4 @@
-"""The bench page of an axis: sliders for gains, filters, position, payload and effects; loops, step and circle at once."""
+"""The bench page of an axis: sliders for gains, filters, position, payload, effects; loops and motions follow."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def bench(
         InputError: a rigid axis, a controller that is unstable or cannot be read, a folder without diagnosis.
 
     >>> import feeddrive as fd
-    >>> page = fd.bench(fd.load("bench_axis"), controller="scenarios/controllers/bench_axis.toml")
+    >>> page = fd.bench(fd.load("bench_axis"), controller="step_position")
     >>> page.text.startswith("<!DOCTYPE html>")
     True
     """
@@ -94,7 +94,9 @@ def _diagnosed(axis: Axis, diagnosis: Diagnosed | str | Path | None) -> tuple[Ax
 def _content(path: Path) -> dict[str, Any]:
     try:
         if path.stat().st_size > _MOST_BYTES:
-            raise InputError("is too large for a diagnosis", str(path), "give the folder that `feeddrive diagnose` wrote")
+            raise InputError(
+                "is too large for a diagnosis", str(path), "give the folder that `feeddrive diagnose` wrote"
+            )
         content = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError, RecursionError):
         content = None

@@ -59,9 +59,11 @@ class Retuned(Shown):
         ]
         count = max(len(old.torque_filters), len(new.torque_filters))
         for place in range(count):
-            shown = [_filter(some[place]) if place < len(some) else "none"
-                     for some in (old.torque_filters, new.torque_filters)]  # fmt: skip
-            rows.append((f"filter {place + 1}", *shown))
+            before, after = (
+                _filter(some[place]) if place < len(some) else "none"
+                for some in (old.torque_filters, new.torque_filters)
+            )
+            rows.append((f"filter {place + 1}", before, after))
         return [row for row in rows if row[1] != row[2]]
 
     @property
@@ -122,7 +124,8 @@ def compare(plant: Plant, present: Cascade, recommended: Cascade, trials: Sequen
     before, after = (tuple(try_loop(plant, one, case) for case in trials) for one in (present, recommended))
     wide = [one for one in present.torque_filters if one.kind == "notch" and is_low_pass(*_notch(one))]
     remarks = [
-        f"present: a notch at {_notch(one)[0]:.4g} Hz that is {_notch(one)[1]:.4g} Hz wide is a low-pass" for one in wide
+        f"present: a notch at {_notch(one)[0]:.4g} Hz that is {_notch(one)[1]:.4g} Hz wide is a low-pass"
+        for one in wide
     ]
     remarks += [f"present: unstable with the {describe(one.reached.case)}" for one in before if not one.stable]
     return Retuned(plant, present, recommended, before, after, tuple(remarks))
@@ -183,4 +186,6 @@ def _shown(value: float | None, unit: str) -> str:
         return "-"
     if unit == "1":
         return f"{100 * value:.1f} %"
-    return f"{value:.1f} {'°' if unit == 'deg' else unit}" if unit in ("deg", "dB", "Hz") else format_quantity(value, unit)
+    return (
+        f"{value:.1f} {'°' if unit == 'deg' else unit}" if unit in ("deg", "dB", "Hz") else format_quantity(value, unit)
+    )

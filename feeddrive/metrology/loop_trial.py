@@ -1,4 +1,4 @@
-"""What a cascade does on a plant: margins, bandwidths, a step and a small circle, in one case of position and payload."""
+"""What a cascade does on a plant in one case: margins, bandwidths, a step and a small circle."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Two short motions that show what a loop does: a step of the position, and a small circle with its reversals.
 
-A circle of 5 mm at 3 m/min turns in 0.63 s: slow enough for friction to show at the reversals, short enough to be run at
-every place of the stroke. The step is small enough for the limits of the usual drive.
+A circle of 5 mm at 3 m/min turns in 0.63 s: slow enough for friction to show at the reversals, short enough to be run
+at every place of the stroke. The step is small enough for the limits of the usual drive.
 """
 
 from __future__ import annotations
@@ -56,8 +56,10 @@ def step_at(plant: Plant, position: float) -> Trial:
     """A step towards the middle of the stroke from a position [m]."""
     height = -HEIGHT if plant.stroke is not None and position > plant.stroke[1] - HEIGHT else HEIGHT
     tables = (
-        f'[trajectory]\nkind = "position_step"\nstart = "{position!r} m"\nheight = "{height!r} m"\nat = "{STEP_AT!r} s"\n'
-        f'duration = "{STEP_LASTS!r} s"\n\n[[evaluate]]\nkind = "step"\nchannel = "table_position"\nat = "{STEP_AT!r} s"\n'
+        f'[trajectory]\nkind = "position_step"\nstart = "{position!r} m"\nheight = "{height!r} m"\n'
+        f'at = "{STEP_AT!r} s"\n'
+        f'duration = "{STEP_LASTS!r} s"\n\n[[evaluate]]\nkind = "step"\n'
+        f'channel = "table_position"\nat = "{STEP_AT!r} s"\n'
     )
     evaluation = Evaluation("step", {"channel": "table_position", "at": STEP_AT})
     return Trial(position_step(position, height, STEP_AT, STEP_LASTS), tables, evaluation)

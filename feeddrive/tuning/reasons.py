@@ -173,7 +173,13 @@ def _depth(choice: FilterChoice) -> str:
 
 
 def _filter_lines(choice: FilterChoice) -> list[str]:
-    head = ["", "[[filter]]", 'at = "torque"', f'kind = "{choice.kind}"', f'frequency = "{_exact(choice.frequency)} Hz"']
+    head = [
+        "",
+        "[[filter]]",
+        'at = "torque"',
+        f'kind = "{choice.kind}"',
+        f'frequency = "{_exact(choice.frequency)} Hz"',
+    ]
     if choice.kind == "PT2":
         return [*head, f'damping = "{_exact(choice.damping)}"']
     depth = f"{_exact(choice.depth)} dB" if math.isfinite(choice.depth) else f"{_COMPLETE:g} dB"

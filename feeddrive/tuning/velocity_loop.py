@@ -43,8 +43,8 @@ LOWEST = 0.5
 """Of the frequencies looked at [Hz]."""
 
 WORTH = 1.2
-"""Factor of integral gain that a further filter must bring: one that brings less costs K_v by its lag and asks to be kept
-up where the machine differs from the plant file."""
+"""Factor of integral gain that a further filter must bring: one that brings less costs K_v by its lag and asks to be
+kept up where the machine differs from the plant file."""
 
 _RESET_TIMES = np.geomspace(3e-4, 2.0, 40)
 _NEAR = 0.25

@@ -26,10 +26,10 @@ def found_in_page(page: str, script: str, folder: Path, width: int = 1400) -> An
     if browser is None:
         pytest.skip(f"no headless browser: none of {', '.join(_NAMES)} is installed")
     asked = (
-        '<pre id="found"></pre><script>{let r;try{r=(function(){%s})()}catch(e){r={error:String(e.stack||e)}}'
-        'document.getElementById("found").textContent=JSON.stringify(r,(k,v)=>v instanceof Float64Array?Array.from(v):v)}'
-        "</script></body>"
-    ) % script
+        '<pre id="found"></pre><script>{let r;try{r=(function(){SCRIPT})()}catch(e){r={error:String(e.stack||e)}}'
+        'document.getElementById("found").textContent=JSON.stringify(r,(k,v)=>'
+        "v instanceof Float64Array?Array.from(v):v)}</script></body>"
+    ).replace("SCRIPT", script)
     path = folder / "page.html"
     path.write_text(page.replace("</body>", asked), encoding="utf-8")
     flags = ["--headless=new", "--no-sandbox", "--disable-gpu", f"--window-size={width},1200", "--no-first-run",

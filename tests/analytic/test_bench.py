@@ -29,12 +29,14 @@ CONTROLLER = "scenarios/controllers/bench_axis.toml"
 _COMPUTE = """const E = bench.E; return SETTINGS.map((s) => {
   const loops = computeLoops(E, s), step = computeStep(E, s), circle = computeCircle(E, s);
   return { loops, step: step.table, circle: circle.table, deviation: circle.deviation, glitch: circle.glitch,
-           settling: step.figures.settling, overshoot: step.figures.overshoot, controller: controllerText(E, s) }; });"""
+           settling: step.figures.settling, overshoot: step.figures.overshoot,
+           controller: controllerText(E, s) }; });"""
 
 
 @pytest.fixture(scope="module")
 def page() -> Bench:
-    return fd.bench(fd.load("bench_axis"), controller=CONTROLLER)
+    made: Bench = fd.bench(fd.load("bench_axis"), controller=CONTROLLER)
+    return made
 
 
 def _settings(bench: Bench, count: int, generator: np.random.Generator) -> list[dict[str, Any]]:
@@ -96,8 +98,8 @@ def _same_runs(bench: Bench, one: dict[str, Any], told: dict[str, Any], controll
         # 1e-6 of the motion's range
         np.testing.assert_allclose(told[name], there, rtol=0, atol=1e-6 * float(np.ptp(there)))
         (figure,) = run.figures
-        # Where the last digit of a reading decides into which step of an encoder it falls, the loop goes on from another
-        # step, and the table with it; 1e-6 of what is run is less than that in the circle, and more in the step.
+        # Where the last digit of a reading decides into which step of an encoder it falls, the loop goes on from
+        # another step, and the table with it.
         finest = max(1e-6 * float(np.ptp(there)), _encoder_step(plant))
         assert finest < 2e-8
         if name == "step":
@@ -134,7 +136,7 @@ def test_numbers_at_twenty_settings(name: str, tmp_path: Path, generator: np.ran
 def test_page_is_one_file_and_asks_for_nothing(page: Bench) -> None:
     text = page.text
     assert "default-src 'none'" in text
-    assert not re.search(r'(?:src|href)\s*=\s*["\']', text.replace('href = URL', ""))
+    assert not re.search(r'(?:src|href)\s*=\s*["\']', text.replace("href = URL", ""))
     assert not re.search(r"https?:|//[a-z]|@import|url\(|fetch\(|XMLHttpRequest|WebSocket|import\(", text)
 
 
@@ -155,13 +157,14 @@ def test_hostile_name_stays_a_name(tmp_path: Path) -> None:
 
 def test_sliders_move_the_picture(page: Bench, tmp_path: Path) -> None:
     found = found_in_page(page.text, """
-      const shot = () => document.getElementById("bode").toDataURL(), before = shot(), first = document.getElementById("numbers").textContent;
+      const shot = () => document.getElementById("bode").toDataURL(), before = shot();
+      const told = () => document.getElementById("numbers").textContent, first = told();
       const slider = document.querySelector('input[type=range]'), times = [];
       slider.value = 300; slider.dispatchEvent(new Event("input")); bench.draw(true);
       const after = shot();
       for (let i = 0; i < 30; i++) { bench.S.velocity_gain *= 0.999; bench.draw(true); times.push(bench.took); }
-      return { changed: before !== after, told: first !== document.getElementById("numbers").textContent,
-               gain: bench.S.velocity_gain, took: Math.min(...times), labels: document.querySelectorAll("input[type=range]").length };
+      return { changed: before !== after, told: first !== told(), gain: bench.S.velocity_gain,
+               took: Math.min(...times), labels: document.querySelectorAll("input[type=range]").length };
     """, tmp_path)  # fmt: skip
     assert found["changed"] and found["told"] and found["labels"] > 10
     assert found["gain"] < page.page.cascade.velocity_gain

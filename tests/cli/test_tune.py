@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from feeddrive.cli.main import main
+from feeddrive.files import find_plant, find_scenario_file
 
 
 def test_recommendation_is_written_and_runs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -69,3 +70,65 @@ def test_what_is_wrong_is_told_in_one_line(
     assert shown.out == "" and shown.err.startswith("error: ") and shown.err.count("\n") == 1
     assert message in shown.err
     assert not out.exists()
+
+
+def test_parameters_of_a_drive_and_what_they_change(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    now, out = tmp_path / "now.txt", tmp_path / "out"
+    now.write_text("p1460[0] = 2\np1462[0] = 10\nMD32200 = 3\n", encoding="utf-8")
+    assert main(["tune", "bench_axis", "--form", "sinamics", "--present", str(now), "--out", str(out)]) == 0
+    shown = capsys.readouterr()
+    assert shown.err == ""
+    for text in (
+        "What would change",
+        "circle, deviation",
+        "p1460[0] = ",
+        "N m s/rad, speed controller P gain",
+        "source:",
+    ):
+        assert text in shown.out
+    assert (out / "sinamics.txt").read_text(encoding="utf-8") in shown.out
+    assert {"retuned_step.png", "retuned_circle.png"} <= {path.name for path in out.iterdir()}
+    content = json.loads((out / "tune.json").read_text(encoding="utf-8"))
+    assert content["drive"]["parameters"][0] | {"value": 0} == {
+        "name": "p1460[0]", "value": 0, "unit": "N m s/rad", "resolution": 1e-4,
+        "meaning": "speed controller P gain", "source": content["drive"]["parameters"][0]["source"],
+    }  # fmt: skip
+    assert content["present"]["changes"][0]["setting"] == "K_p" and len(content["present"]["brings"]) == 2
+
+
+@pytest.mark.parametrize(
+    ("flags", "message"),
+    [
+        (["--form", "fanuc"], "not published; take K_v, K_p, T_n and the filters from controller.toml"),
+        (["--form", "sinumeric"], '"sinumeric" is not possible'),
+        (["--form", "heidenhain"], "the torque constant is not declared"),
+        (["--present", "nothing.txt"], "nothing.txt: cannot be read"),
+    ],
+)
+def test_what_is_wrong_with_a_form_is_told_in_one_line(
+    flags: list[str], message: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["tune", "bench_axis", *flags, "--out", str(tmp_path / "out")]) == 2
+    shown = capsys.readouterr()
+    assert shown.out == "" and shown.err.count("\n") == 1 and message in shown.err
+    assert not (tmp_path / "out").exists()
+
+
+def test_bench_page_of_a_diagnosed_axis(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = tmp_path / "found"
+    folder.mkdir()
+    plant = find_plant("bench_axis").read_text(encoding="utf-8")
+    effect = '\n[[effect]]\nname = "torque_ripple"\namplitude = "0.1 N m"\norder = 3.0\nphase = "0 rad"\n'
+    (folder / "plant_after.toml").write_text(plant + effect, encoding="utf-8")
+    found = {"format": "feeddrive-diagnosis/1", "effects": [{"name": "torque_ripple"}]}
+    (folder / "diagnosis.json").write_text(json.dumps(found), encoding="utf-8")
+    page = tmp_path / "bench.html"
+    controller = str(find_scenario_file("controllers/bench_axis.toml"))
+    asked = ["bench", "bench_axis", "--diagnosis", str(folder), "--scenario", controller]
+    assert main([*asked, "--out", str(page)]) == 0
+    assert "written: " in capsys.readouterr().out
+    data = json.loads(page.read_text(encoding="utf-8").split('id="data">')[1].split("</script>")[0])
+    assert data["effects"][0]["name"] == "torque_ripple" and data["effects"][0]["found"]
+    assert [one["key"] for one in data["effects"][0]["sliders"]] == ["amplitude"]
+    assert main(asked) == 2
+    assert "--out is missing" in capsys.readouterr().err

@@ -56,8 +56,8 @@ def test_import_loads_nothing_heavy() -> None:
 
 
 _WITH_EXAMPLES = (
-    "axis", "compensating", "design", "drafts", "experiments", "explaining", "keys", "motion", "quantities", "shipped",
-    "sweeping", "warm_up",
+    "axis", "benching", "compensating", "design", "drafts", "experiments", "explaining", "keys", "motion", "quantities",
+    "shipped", "sweeping", "warm_up",
 )  # fmt: skip
 
 

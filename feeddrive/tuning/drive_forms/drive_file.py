@@ -1,7 +1,7 @@
 """Files of drive parameters: one line for each, what it is behind it; written, and read back by the same definitions.
 
-    p1460[0] = 3.9800      # N m s/rad, speed controller P gain
-    setp pid.position.Pgain 160.000      # 1/s, K_v            (LinuxCNC)
+p1460[0] = 3.9800      # N m s/rad, speed controller P gain
+setp pid.position.Pgain 160.000      # 1/s, K_v            (LinuxCNC)
 """
 
 from __future__ import annotations

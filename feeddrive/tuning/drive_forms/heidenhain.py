@@ -24,7 +24,7 @@ from feeddrive.tuning.filter_choice import FilterLimits
 _SPEED = "Technical Manual TNC 426, TNC 430, December 2001, p. 6-135"
 _POSITION = "Technical Manual iTNC 530 HSCI p. 834"
 FORM = DriveForm(
-    "heidenhain", "HEIDENHAIN TNC 426, TNC 430, iTNC 530", "machine parameters; index .0 is axis 1, write that of the axis",
+    "heidenhain", "HEIDENHAIN TNC 426, TNC 430, iTNC 530", "machine parameters; .0 is axis 1, write that of the axis",
     (_SPEED, _POSITION, "per revolution: Technical Manual MANUALplus 620 p. 856"),
 )  # fmt: skip
 LIMITS = FilterLimits(most=0, notch=False, low_pass=False)
@@ -41,7 +41,9 @@ def _speed_parameters(facts: Facts) -> tuple[Parameter, Parameter]:
     """
     if facts.torque_constant is None:
         mend = 'declare torque_constant = "... N m/A" in [motor]'
-        raise InputError("HEIDENHAIN counts the gain in amperes, and the torque constant is not declared", FORM.name, mend)
+        raise InputError(
+            "HEIDENHAIN counts the gain in amperes, and the torque constant is not declared", FORM.name, mend
+        )
     per_si = 2 * math.pi / facts.torque_constant
     return (
         Parameter("MP2500.0", "A s", "proportional factor of the speed controller", per_si, 3, 0.0, 1e6, _SPEED),

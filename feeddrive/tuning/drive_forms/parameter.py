@@ -94,7 +94,9 @@ class Parameter:
         whole = {-1: math.floor(number + 1e-6), 0: round(number), 1: math.ceil(number - 1e-6)}[away]
         typed = round(whole * self.resolution, self.decimals)
         if not self.lowest <= typed <= self.highest:
-            what = f"{self.name} would be {typed:g} {self.unit}, and the drive takes {self.lowest:g} to {self.highest:g}"
+            what = (
+                f"{self.name} would be {typed:g} {self.unit}, and the drive takes {self.lowest:g} to {self.highest:g}"
+            )
             raise InputError(what, self.name, "ask for other margins or another form")
         return Line(self, typed)
 

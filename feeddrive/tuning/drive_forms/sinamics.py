@@ -22,7 +22,7 @@ _FUNCTIONS = "SINAMICS S120 Function Manual FH1 07/2007 p. 81, 06/2012 p. 137"
 _SERVO_GAIN = "SINUMERIK 808D Parameter Manual 08/2015 p. 234, 6FC5397-8EP40-0BA1"
 
 FORM = DriveForm(
-    "sinamics", "SINAMICS S120 with SINUMERIK", "drive parameters p..., in the data set that is active; machine data MD...",
+    "sinamics", "SINAMICS S120 with SINUMERIK", "drive parameters p... of the active data set; machine data MD...",
     (_LIST, _NUMBERS, _FUNCTIONS, _SERVO_GAIN),
 )  # fmt: skip
 LIMITS = FilterLimits(most=4, frequency=(0.5, 16000.0), damping=(0.001, 10.0), depth=(1.0, 60.0))
@@ -39,7 +39,8 @@ def _filter_parameters(number: int) -> tuple[Parameter, ...]:
     what = f"current set-point filter {number}"
     rows = (("", "type: 1 low-pass PT2, 2 general second order", 0, 1.0, 2.0),
             ("Hz", "denominator natural frequency", 1, 0.5, 16000.0), ("", "denominator damping", 3, 0.001, 10.0),
-            ("Hz", "numerator natural frequency", 1, 0.5, 16000.0), ("", "numerator damping", 3, 0.0, 10.0))  # fmt: skip
+            ("Hz", "numerator natural frequency", 1, 0.5, 16000.0),
+            ("", "numerator damping", 3, 0.0, 10.0))  # fmt: skip
     return tuple(
         Parameter(f"p{first + i}[0]", unit, f"{what}, {text}", 1.0, digits, low, high, _NUMBERS)
         for i, (unit, text, digits, low, high) in enumerate(rows)

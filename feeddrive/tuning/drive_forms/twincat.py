@@ -78,6 +78,7 @@ def settings(values: dict[str, float], facts: Facts) -> LoopSettings:
             continue
         if written != _LOW_PASS:
             raise InputError(f"filter type {written:g} is not known", kind.name, "0 and 3 are read")
-        filters.append(FilterChoice("PT2", *(wanted(values, one.name, FORM.name) for one in (frequency, damping))))
+        low, damped = (wanted(values, one.name, FORM.name) for one in (frequency, damping))
+        filters.append(FilterChoice("PT2", low, damped))
     gain, reset, kv = (wanted(values, one.name, FORM.name) / one.per_si for one in (_GAIN, _RESET, _KV))
     return LoopSettings(gain, reset or math.inf, kv, tuple(filters))
