@@ -6,6 +6,7 @@ import inspect
 import math
 import re
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import planted
@@ -126,13 +127,15 @@ def parameter_table(effect: type[Effect]) -> str:
             if one.default is None
             else ("none" if one.table else format_quantity(one.default, one.unit))
         )
-        listed = "list, each " if one.table else ""
-        rows.append(f"| `{one.key}` | {one.unit} | {listed}{_range(one)} | {default} |")
+        rows.append(f"| `{one.key}` | {one.unit} | {_range(one)} | {default} |")
     return "\n".join(rows) + "\n"
 
 
 def _range(parameter: Parameter) -> str:
     low, high = parameter.minimum, parameter.maximum
+    if parameter.table:
+        inside = _range(replace(parameter, table=False))
+        return "a list" if inside == "any" else f"a list, each {inside}"
     if math.isinf(low) and math.isinf(high):
         return "any"
     if math.isinf(high):

@@ -58,7 +58,7 @@ SIZES: dict[str, dict[str, str]] = {
     "structural_mode": {"mass": "15 kg", "frequency": "60 Hz", "damping": "0.03"},
     "drive_delay": {"delay": "0.3 ms"},
     "channel_delay": {"channel": "table_position", "delay": "0.3 ms"},
-    "motor_heat": {"power": "8 W", "at_speed": "750 rev/min"},
+    "motor_heat": {"power": "1 W", "at_speed": "750 rev/min"},
     "bearing_heat": {"factor": "2", "rear_share": "0.5"},
     "ambient_drift": {"amplitude": "2 K", "period": "3600 s"},
     "preload_growth": {"coefficient": "0.02 1/K"},
@@ -208,8 +208,8 @@ def heat_figure(effect: Effect) -> Any:
     figure = Figure(figsize=(7.2, 2.5), layout="constrained")
     panels = figure.subplots(1, 2)
     for panel, ending, factor, label in (
-        (panels[0], "_temperature", 1.0, "temperature, with − without [K]"),
-        (panels[1], "growth", 1e6, "growth, with − without [µm]"),
+        (panels[0], "_temperature", 1.0, "change of temperature [K]"),
+        (panels[1], "growth", 1e6, "change of growth [µm]"),
     ):
         names = [
             name

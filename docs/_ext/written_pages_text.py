@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 import os
 import re
+from collections.abc import Sequence
 from pathlib import Path
 
 import feeddrive as fd
@@ -12,6 +13,9 @@ from feeddrive.cli.main import COMMANDS, load
 
 ROOT = Path(__file__).resolve().parents[2]
 HELP_WIDTH = 80
+
+EFFECTS = "plant.effect."
+"""Beginning of the sections of effects."""
 
 GROUPS = {
     "An axis": ("load", "Axis", "effect", "Effect", "list_plants", "list_effects", "list_scenarios"),
@@ -30,8 +34,8 @@ def commands_page() -> str:
     os.environ["COLUMNS"] = str(HELP_WIDTH)
     parts = [
         "# Commands\n",
-        "Every command takes `--json` (what it found, for programs) and `--out` (a folder for files and figures). "
-        "It ends with status 0, or with 2 and one line: what is wrong, where, and the remedy.\n",
+        "A command ends with status 0, or with 2 and one line: what is wrong, where, and the remedy. `--json` prints "
+        "what was found for programs, in SI units; `--out` says where files and figures go.\n",
     ]
     for name, entry in COMMANDS.items():
         command = load(name)
@@ -75,7 +79,7 @@ def files_page() -> str:
         "is refused with the unit that it needs, an unknown key with the nearest known one.\n",
     ]
     if hasattr(fd, "keys"):
-        parts.append(f"## Keys\n\n```text\n{fd.keys()!r}\n```\n")
+        parts += ["## Keys\n", "`feeddrive keys plant.ball_screw` prints the same.\n", *keys_of("")]
     parts.append(
         "## Shipped files, whole\n\nThe comments say what each key is. Take the nearest and change the numbers.\n"
     )
@@ -94,6 +98,24 @@ def files_page() -> str:
         text = (ROOT / path).read_text(encoding="utf-8")
         parts.append(f"### {words}\n\n`{path}`\n\n```toml\n{text.strip()}\n```\n")
     return "\n".join(parts)
+
+
+def keys_of(path: str) -> list[str]:
+    """Tables of the keys of a section and of the sections inside it; effects have pages of their own."""
+    found = fd.keys(path)
+    listing = found.listing()
+    rows = [row for row, record in zip(listing.rows, listing.records, strict=True) if "key" in record]
+    parts = [f"### `{path}`\n", f"{found.meaning}\n"] if path else []
+    if rows:
+        parts += [_row(listing.headings), _row(["---"] * len(listing.headings))]
+        parts += [_row([f"`{row[0]}`", *row[1:]]) for row in rows]
+        parts.append("")
+    inside = [one for one in found.sections if one != path and not one.startswith(EFFECTS)]
+    return [*parts, *(line for one in inside for line in keys_of(one))]
+
+
+def _row(cells: Sequence[str]) -> str:
+    return f"| {' | '.join(str(cell).replace('|', chr(92) + '|') for cell in cells)} |"
 
 
 def scenarios_page() -> str:

@@ -6,6 +6,7 @@ import importlib.util
 import re
 import sys
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
 from xml.etree import ElementTree
@@ -15,6 +16,7 @@ import pytest
 import feeddrive as fd
 from feeddrive.cli.main import COMMANDS, load
 from feeddrive.effects.catalogue import EFFECTS, THERMAL_EFFECTS
+from feeddrive.interface.shown import Listing
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
@@ -128,6 +130,33 @@ def test_commands_are_all_shown_with_their_options() -> None:
         assert f"## `{name}`" in text
         for parameter in load(name).params:
             assert all(option in text for option in parameter.opts if option.startswith("--"))
+
+
+@pytest.mark.usefixtures("extensions")
+def test_keys_are_shown_where_the_package_lists_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    listed = {
+        "": FakeKeys("all files", (), {"plant": "machine"}),
+        "plant": FakeKeys("machine", (), {"plant.table": "what moves", "plant.effect.backlash": "free play"}),
+        "plant.table": FakeKeys("what moves", (("mass", "kg", "a|b"),), {}),
+    }
+    monkeypatch.setattr(fd, "keys", listed.__getitem__, raising=False)
+    text = module("written_pages_text").files_page()
+    assert "### `plant.table`" in text and "| `mass` | kg | a\\|b |" in text
+    assert "backlash" not in text.split("## Shipped")[0]
+
+
+@dataclass(frozen=True)
+class FakeKeys:
+    """What `fd.keys` answers: the keys of a section, and the sections inside it."""
+
+    meaning: str
+    rows: tuple[tuple[str, str, str], ...]
+    sections: dict[str, str]
+
+    def listing(self) -> Listing:
+        records = [{"key": row[0]} for row in self.rows] + [{"section": path} for path in self.sections]
+        rows = [*self.rows, *((path, "section", "") for path in self.sections)]
+        return Listing(self.meaning, ("key", "unit", "meaning"), rows, records)
 
 
 @pytest.mark.usefixtures("extensions")
