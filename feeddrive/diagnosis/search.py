@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from feeddrive.diagnosis.calibration.calibrate import beyond_tolerance, calibrated, recalibrated
 from feeddrive.diagnosis.attempt import JOINT_ITERATIONS, Attempt, together
+from feeddrive.diagnosis.calibration.calibrate import beyond_tolerance, calibrated, recalibrated
 from feeddrive.diagnosis.coordinates import read_coordinates
 from feeddrive.diagnosis.cross_validation import (
     LEAST_GAIN,

@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 
 from feeddrive import __version__
-from feeddrive.diagnosis.tolerances import ASSERTED
 from feeddrive.diagnosis.numbers.plant_text import with_written_values
 from feeddrive.diagnosis.responses.response_problem import (
     DELAY_SIZE,
@@ -23,6 +22,7 @@ from feeddrive.diagnosis.responses.response_problem import (
     response_problem,
 )
 from feeddrive.diagnosis.responses.response_search import ResponseSearch, Step, search_response
+from feeddrive.diagnosis.tolerances import ASSERTED
 from feeddrive.effects.base import Effect
 from feeddrive.plant.effect_text import plant_text_with_effects
 from feeddrive.plant.plant import Plant
