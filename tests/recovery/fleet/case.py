@@ -133,6 +133,10 @@ class Case:
             "bits": sensors.encoder_bits,
             "scale_step": sensors.scale_step if m.scale else None,
             "mass": m.axis.table_mass,
+            "motor_inertia": m.axis.motor_inertia,
+            "screw_inertia": m.axis.screw_inertia,
+            "guide_coulomb": m.axis.guide_coulomb,
+            "torque_limit": m.axis.controller.torque_limit,
             "lead": m.axis.lead,
             "stroke": m.axis.travel[1] - m.axis.travel[0],
             "ratio": m.axis.ratio,
@@ -188,8 +192,21 @@ def csv_text(channels: Channels) -> str:
     return text.getvalue()
 
 
+ENCODER_NULLS = 10_000_000
+"""Seeds from here are machines as declared with nothing planted: + 1000 * bits of the encoder + number."""
+
+NULL_BITS = (12, 14, 16, 17, 18, 20, 24)
+
+
+def encoder_null_seeds(first: int, last: int) -> list[int]:
+    """Return the seeds of the machines number `first` to `last` of every encoder."""
+    return [ENCODER_NULLS + 1000 * bits + number for bits in NULL_BITS for number in range(first, last + 1)]
+
+
 def case(seed: int) -> Case:
     """Return the case of a seed; the same one every time."""
+    if seed >= ENCODER_NULLS:
+        return _encoder_null(seed)
     kind = kind_of(seed)
     names = _names(kind, seed)
     for attempt in range(200):
@@ -198,10 +215,20 @@ def case(seed: int) -> Case:
             # No machine shows it: another effect.
             every = list(MAKERS)
             names = tuple(every[(every.index(name) + 1) % len(every)] for name in names)
-        made = _attempt(seed, kind, names, random)
+        made = _attempt(seed, kind, names, random, drawn_machine(random))
         if made is not None:
             return made
     raise RuntimeError(f"seed {seed}: no machine shows {names}")
+
+
+def _encoder_null(seed: int) -> Case:
+    bits = (seed - ENCODER_NULLS) // 1000
+    for attempt in range(50):
+        random = np.random.default_rng([seed, 14, attempt])
+        made = _attempt(seed, "encoder null", (), random, drawn_machine(random, bits=bits))
+        if made is not None:
+            return made
+    raise RuntimeError(f"seed {seed}: no steady machine")
 
 
 def kind_of(seed: int) -> str:
@@ -223,8 +250,7 @@ def _names(kind: str, seed: int) -> tuple[str, ...]:
     return first, str(random.choice(others))
 
 
-def _attempt(seed: int, kind: str, names: tuple[str, ...], random: Random) -> Case | None:
-    declared = drawn_machine(random)
+def _attempt(seed: int, kind: str, names: tuple[str, ...], random: Random, declared: Machine) -> Case | None:
     if not declared.scale and set(names) & set(NEEDS_SCALE):
         return None
     if set(names) & set(TIMING):
@@ -232,7 +258,7 @@ def _attempt(seed: int, kind: str, names: tuple[str, ...], random: Random) -> Ca
     which, excited = drawn_programme(random)
     length = seconds_of(declared, random, names)
     touched = frozenset(key for name in names for key in TOUCHED.get(name, ()))
-    off = off_factors(random, touched) if random.random() < OFF else {}
+    off = off_factors(random, touched) if random.random() < OFF and kind != "encoder null" else {}
     seeds = [int(one) for one in random.integers(0, 2**31, 4)]
     drawn: list[Drawn] = []
     for name in names:
