@@ -30,7 +30,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if not options.resume and cases_done(options.out):
         print(f"error: {options.out} holds results; say --resume to go on, or name another folder", file=sys.stderr)
         return 2
-    run_missing(options.seeds, options.out, options.workers, options.limit, options.minutes, print_line)
+    run_missing(
+        options.seeds, options.out, options.workers, options.limit, options.minutes, print_line, options.most_rows
+    )
     return write_table(options.out, options.page) if options.page else 0
 
 
@@ -82,6 +84,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--page", type=Path, help="page that holds the table, such as docs/recovery.md")
     parser.add_argument("--workers", type=int, default=1)
     parser.add_argument("--limit", type=float, default=300.0, help="processor seconds of one diagnosis")
+    parser.add_argument("--most-rows", type=int, default=0, help="leave out cases with longer recordings")
     parser.add_argument("--minutes", type=float, default=0.0, help="begin no case later than this")
     return parser
 

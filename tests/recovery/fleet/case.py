@@ -3,8 +3,8 @@
     20 % nothing planted, 15 % a spoilt recording, 15 % two effects, the rest one; half of the laws are relatives where
     the law has one; in half of all cases declared values are off, each within its tolerance, two of them up to twice.
 
-Sizes are from 1.1 to 8 times the floor (`tests.generator.runs.visible`): the error of the true plant without the effect,
-over that of the true plant. An effect that a machine and a programme cannot show at its size is drawn again on another
+Sizes are from 1.1 to 8 times the floor (`tests.generator.runs.visible`): the error of the true plant without the
+effect, over that of the true plant. An effect that a machine and a programme cannot show at its size is drawn again on another
 machine. Nothing of the package takes part.
 """
 
@@ -89,8 +89,8 @@ class Planted:
 class Case:
     """A pair of recordings, the declared plant and the truth.
 
-    seed: of everything. kind: of SHARES. declared, true: the machine as it is declared and as it is. programme: of KINDS.
-    excited: whether torque is injected. off: number -> true over declared. spoiling: how both recordings are spoilt.
+    seed: of everything. kind: of SHARES. declared, true: the machine as it is declared and as it is.
+    programme: of KINDS. excited: whether torque is injected. off: number -> true over declared. spoiling: how both recordings are spoilt.
     plant: text of the plant file. fit, judge: channels as recorded (SI). exact: torque, motor angle and table position
     of the judged rows without sensor errors. runs: what made them.
     """
@@ -313,7 +313,7 @@ def plant_text_of(machine: Machine, seed: int) -> str:
 
 
 def drawn_programme(random: Random) -> tuple[str, bool]:
-    """Return a kind of programme, and whether torque is injected: in half of the reversals, a quarter of the strokes."""
+    """Return a kind of programme, and whether torque is injected."""
     which = str(random.choice(KINDS))
     return which, bool(random.random() < {"strokes": 0.25, "milling": 0.0, "reversals": 0.5}[which])
 
@@ -335,9 +335,7 @@ NEAR = 0.12
 """By how much of its logarithm a size may miss the drawn one."""
 
 
-def _sized(
-    true: Machine, drawn: list[Drawn], targets: list[float], asked: tuple[Array, Array]
-) -> list[Planted] | None:
+def _sized(true: Machine, drawn: list[Drawn], targets: list[float], asked: tuple[Array, Array]) -> list[Planted] | None:
     """Return the effects at sizes near the targets; None where one cannot be."""
     found: list[Planted] = []
     for one, target in zip(drawn, targets, strict=True):

@@ -1,7 +1,7 @@
 """The floor of a judged recording: the error that the true plant has on the very samples that are judged.
 
-The generator's own plant, with all that was planted, is led by the recorded motor angle (`tests.generator.driven`); what
-it leaves of the recorded torque and position is filtered as the contract says (4th-order Butterworth, forward and
+The generator's own plant, with all that was planted, is led by the recorded motor angle (`tests.generator.driven`);
+what it leaves of the recorded torque and position is filtered as the contract says (4th-order Butterworth, forward and
 backward, the edge that the diagnosis states), at the samples that it states. The zero of the scale is free.
 """
 

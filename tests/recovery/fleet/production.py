@@ -184,7 +184,7 @@ def _true_machine(random: Random) -> Machine:
 
 
 def cyclic(machine: Machine, speed: float, random: Random) -> tuple[Array, Array]:
-    """Return set-point [m] and injected torque of BLOCKS equal strokes there and back; the start differs by a little."""
+    """Return set-point [m] and injected torque of BLOCKS equal strokes there and back."""
     path = Path(machine, 0.35 + float(random.uniform(-1e-3, 1e-3)), [])
     for _ in range(BLOCKS):
         path.move(path.position + STROKE, speed)
@@ -197,4 +197,3 @@ def cyclic(machine: Machine, speed: float, random: Random) -> tuple[Array, Array
         setpoint = np.convolve(np.concatenate([np.full(19, setpoint[0]), setpoint]), window, mode="valid")
     rows = len(setpoint) // machine.every * machine.every
     return setpoint[:rows], np.zeros(rows)
-

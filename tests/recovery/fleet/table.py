@@ -44,8 +44,8 @@ def section(verdicts: Sequence[Verdict], state: str) -> str:
 
 INTRODUCTION = (
     "Machines drawn at random (`tests/generator/machines.py`), programmes of three kinds (`programmes.py`), the",
-    "catalogue's laws and relatives of them (`drawn_effects.py`), sizes from 1.1 to 8 times the floor, where the floor is",
-    "computed by the generator: error without the effect over that with it, in the band where it shows most. A fifth has",
+    "catalogue's laws and relatives of them (`drawn_effects.py`), sizes from 1.1 to 8 times the floor: error without the",
+    "effect over that with it, computed by the generator, in the band where it shows most. A fifth has",
     "nothing planted, 15 % are spoilt recordings, 15 % hold two effects; in half of all, declared values are off, each",
     "within its tolerance and two of them up to twice. Names of values beyond their tolerance count neither way.",
     "Intervals of shares are Wilson's.",
@@ -66,14 +66,14 @@ def rows(verdicts: Sequence[Verdict]) -> list[str]:
     return [
         _share("one effect, the catalogue's law: asserted exactly right", ">= 95 %", [v.right for v in laws]),
         _share("one effect, a relative: asserted exactly right", ">= 90 %", [v.right for v in relatives]),
-        _share(f"one effect, possible names counted (mean names {size:.2f})", ">= 99 %", [v.right_in_sets for v in singles]),
+        _share(f"one effect, possible names counted (mean {size:.2f})", ">= 99 %", [v.right_in_sets for v in singles]),
         _share("two effects: asserted exactly right", ">= 90 %", [v.right for v in pairs]),
         _count("nothing planted: cases with a false name", "0 of 120", [bool(v.extra) for v in nulls]),
-        *[_count(f"as declared, encoder of {bits} bits: names", "1 in all", hits) for bits, hits in _encoders(verdicts)],
+        *[_count(f"as declared, encoder of {bits} bits", "1 in all", hits) for bits, hits in _encoders(verdicts)],
         _count("spoilt recordings: cases with a false name", "1 of 90", [bool(v.extra) for v in spoilt]),
         _share("spoilt recordings: refused or reported", "-", [v.record["outcome"] == "refused" for v in spoilt]),
         _count("planted: cases with a name too many", "<= 3 %", [bool(v.extra) for v in planted]),
-        _count("declared values off: cases with a false name", "-", [bool(v.extra) for v in verdicts if v.truth["off"]]),
+        _count("declared values off: false names", "-", [bool(v.extra) for v in verdicts if v.truth["off"]]),
         _count("a channel worse than declared", "0", [bool(v.worse_channels) for v in done]),
         _count("values out of physical range", "0", [bool(v.out_of_range) for v in done]),
         _count("plant_after unreadable", "0", [v.record["plant_after"] != "readable" for v in done]),

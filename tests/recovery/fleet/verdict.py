@@ -74,7 +74,7 @@ class Verdict:
 
     @property
     def right_in_sets(self) -> bool:
-        """Whether all that was planted is asserted or stands in a set with a name that is, and nothing else is asserted."""
+        """Whether all that was planted is asserted or in a set with a name that is, and nothing else is asserted."""
         if not self.done:
             return False
         names = {name for name, _ in self.named}
@@ -129,7 +129,9 @@ class Verdict:
             if one["relative"]:
                 continue
             match = [
-                f for f in self.asserted if f["name"] == one["name"] and (not one["place"] or f["place"] == one["place"])
+                f
+                for f in self.asserted
+                if f["name"] == one["name"] and (not one["place"] or f["place"] == one["place"])
             ]
             for found in match[:1]:
                 result += list(_inside(one, found))
@@ -143,13 +145,13 @@ def _numbers(found: dict[str, Any]) -> Iterator[tuple[str, float]]:
 
 
 NOT_NEGATIVE = (
-    "delay", "width", "coulomb_factor", "viscous_factor", "factor", "stiffness", "damping", "time_constant", "frequency",
-    "velocity", "half_width", "coefficient",
+    "delay", "width", "coulomb_factor", "viscous_factor", "factor", "stiffness", "damping", "time_constant",
+    "frequency", "velocity", "half_width", "coefficient",
 )  # fmt: skip
 
 
 def possible(name: str, place: str, key: str, value: float, truth: dict[str, Any]) -> bool:
-    """Whether a machine can have this value: positive masses and inertias, no delay into the future, no share above 1."""
+    """Whether a machine can have this value: positive masses, no delay into the future, no share above 1."""
     if name == "payload":
         return value > -float(truth["mass"])
     if name == "inertia_deviation":
