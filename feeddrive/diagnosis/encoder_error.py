@@ -16,8 +16,8 @@ Interpolation, and Smoothing (1949)):
 | w, h | window, sample time |
 
 The error that is left is independent of the motion that is simulated, so that it draws no value towards none (Carroll
-et al., Measurement Error in Nonlinear Models (2006), chapter 4). It adds to the residual what the declared plant makes of
-it: an error that the same encoder would make is drawn and simulated, and each channel is weighed, frequency by
+et al., Measurement Error in Nonlinear Models (2006), chapter 4). It adds to the residual what the declared plant makes
+of it: an error that the same encoder would make is drawn and simulated, and each channel is weighed, frequency by
 frequency, by the sensor's noise over both,
 
     gain(f) = 1 / √(1 + S_encoder(f) / S_sensor(f))
@@ -137,7 +137,6 @@ def expected_motion(angle: FloatArray, step: float, sample_time: float) -> Float
     """
     length = 2 * round(0.5 * WINDOW / sample_time)
     window = np.sqrt(hann(length, sym=False))
-    half = length // 2
     spectra = np.fft.rfft(_frames(np.concatenate([[0.0], np.diff(angle, 2), [0.0]]), length) * window, axis=1)
     omega = 2 * np.pi * np.arange(spectra.shape[1]) / length
     difference = (2 * np.sin(0.5 * omega)) ** 2

@@ -96,7 +96,11 @@ def _calibrated(problem: Problem, name: str) -> str:
     """Why an effect is not tried that only says that declared values are other: they are fitted in every set."""
     known = problem.calibration
     words = [one.words for one in known.values if one.name == name] if known is not None else []
-    return f"{' and '.join(words)}: fitted within the tolerance of the declared value, and named beyond it" if words else ""
+    return (
+        f"{' and '.join(words)}: fitted within the tolerance of the declared value, and named beyond it"
+        if words
+        else ""
+    )
 
 
 def _promising_refined(scene: Scene, attempts: list[Attempt], pool: ThreadPoolExecutor) -> list[Attempt]:

@@ -1,4 +1,4 @@
-"""How well a declared value is known: by the tolerance that the file writes, else by what it is and what its source says.
+"""How well a declared value is known: by the tolerance that the file writes, else by its kind and its source.
 
 A tolerance is two standard deviations of the logarithm of value over declared. Where a file writes none
 (`tolerance = "5 %"`), it follows from the kind of value and from the words of its source:

@@ -1,16 +1,13 @@
-"""Declared values as nuisance coordinates: the marginal likelihood, the odds of a value beyond its tolerance, the plant."""
+"""Declared values as nuisance coordinates: the marginal likelihood, tolerances, and the plant with other values."""
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.integrate import quad
-from scipy.stats import norm
 
-from feeddrive.diagnosis.calibration.calibration import log_odds_beyond, log_prior_odds, whitener
+from feeddrive.diagnosis.calibration.calibration import whitener
 from feeddrive.diagnosis.calibration.declared import CalibratedValue, as_effect, calibrated_values, with_values
 from feeddrive.diagnosis.tolerances import MASS, deviation_of
 from feeddrive.files import plants_folder
@@ -37,28 +34,6 @@ def test_most_likely_values_do_not_depend_on_where_the_slopes_were_taken() -> No
         known = whitener(columns, start, 1e-6)
         found = known.most_likely(measured - columns @ start)
         assert found == pytest.approx(truth, abs=1e-6)  # a prior of 1e-6 of the information of 200 rows moves no more
-
-
-@pytest.mark.parametrize(("mean", "variance", "width"), [(0.1, 0.5, 5.0), (4.0, 0.01, 28.0), (2.5, 0.2, 5.0)])
-def test_odds_beyond_tolerance_are_those_of_the_integrals(mean: float, variance: float, width: float) -> None:
-    """p(c|y) ~ N(c; 0, 1) N(c; x, s²): what it is under the other prior is an integral."""
-
-    def ratio(c: float) -> float:
-        logs = norm.logpdf(c, 0, width) - norm.logpdf(c) + norm.logpdf(c, mean, math.sqrt(variance))
-        return math.exp(logs)
-
-    # the posterior of mean and variance lies far inside these ends, also where the other prior draws it outwards
-    direct = quad(ratio, -60, 60, points=[0.0, mean], limit=400)[0]
-    assert log_odds_beyond(mean, variance, width) == pytest.approx(math.log(direct), abs=1e-6)
-
-
-def test_what_is_not_seen_has_even_odds() -> None:
-    assert log_odds_beyond(0.0, 1.0, 20.0) == pytest.approx(0.0, abs=1e-9)
-
-
-def test_prior_odds_fall_with_the_candidates() -> None:
-    assert log_prior_odds(0, 1) == 0.0  # one candidate, even odds
-    assert log_prior_odds(0, 30) == pytest.approx(-math.log(59))
 
 
 @pytest.mark.parametrize(

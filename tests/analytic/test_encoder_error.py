@@ -28,7 +28,7 @@ def acceleration(angle: FloatArray) -> FloatArray:
 
 
 def vibration_slope(given: FloatArray) -> float:
-    """Slope of the true acceleration with the given one beyond the strokes: one where the rest draws nothing to none."""
+    """Slope of the true acceleration with the given one beyond the strokes: one where nothing is drawn to none."""
     high = [a - Band(3.0, RATE).filter(a) for a in (acceleration(motion()), acceleration(given))]
     return float(high[0] @ high[1] / (high[1] @ high[1]))
 

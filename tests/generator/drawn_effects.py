@@ -106,9 +106,7 @@ def _friction_vs_position(m: Machine, random: Random, seconds: float) -> Drawn:
     width = (high - low) * _log(random, 0.03, 0.15)
     sign = _sign(random, 0.8)
     where = low + (high - low) * float(random.uniform(0.1, 0.7))
-    return _upto(
-        planted.FrictionVsPosition(sign * 0.5 * m.axis.guide_coulomb, where, width), 10.0 if sign > 0 else 1.4
-    )
+    return _upto(planted.FrictionVsPosition(sign * 0.5 * m.axis.guide_coulomb, where, width), 10.0 if sign > 0 else 1.4)
 
 
 def _viscous_warmup(m: Machine, random: Random, seconds: float) -> Drawn:

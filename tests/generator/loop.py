@@ -18,7 +18,8 @@ Array = npt.NDArray[np.float64]
 class Sampling(NamedTuple):
     """What the loop needs beside the plant: sample_time, longest_step [s], encoder_step [rad], gains and limit.
 
-    speed_share: of a new difference quotient in the measured speed. reading: how long after the controller's instant the recorder reads [s], from 0 to below sample_time.
+    speed_share: of a new difference quotient in the measured speed.
+    reading: how long after the controller's instant the recorder reads [s], from 0 to below sample_time.
     """
 
     sample_time: float

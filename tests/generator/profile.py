@@ -125,9 +125,9 @@ def setpoint_and_chirp(profile: Profile, sample_time: float) -> tuple[Array, Arr
     blend = smooth_step(time / BLEND_SECONDS)
     parts.append(middle + blend * profile.swing * np.sin(2.0 * math.pi * time / profile.swing_period))
     setpoint = np.concatenate(parts)
-    chirp = np.zeros_like(setpoint)
-    chirp[-time.size :] = profile.chirp_amplitude * chirp(time - BLEND_SECONDS, CHIRP_HZ)
-    return setpoint, chirp
+    injected = np.zeros_like(setpoint)
+    injected[-time.size :] = profile.chirp_amplitude * chirp(time - BLEND_SECONDS, CHIRP_HZ)
+    return setpoint, injected
 
 
 def _sample_times(seconds: float, sample_time: float) -> Array:

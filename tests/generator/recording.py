@@ -100,7 +100,9 @@ def measured(torque: Array, angle: Array, position: Array, sensors: Sensors, see
     noisy = position + sensors.scale_noise * random.standard_normal(torque.size)
     increment = encoder_step(sensors)
     return {
-        "motor_torque": stepped(torque + sensors.torque_noise * random.standard_normal(torque.size), sensors.torque_step),
+        "motor_torque": stepped(
+            torque + sensors.torque_noise * random.standard_normal(torque.size), sensors.torque_step
+        ),
         "motor_angle": np.round(angle / increment) * increment,
         "table_position": np.round(noisy / sensors.scale_step) * sensors.scale_step,
     }

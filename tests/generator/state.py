@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable
+from pathlib import Path
 from typing import NamedTuple, TypeVar, cast
 
 import numba
@@ -33,6 +35,20 @@ class State(NamedTuple):
 WIDTH = len(State._fields)
 
 
+def _cache() -> Path:
+    """Return the folder of compiled code: one for each state of the generator's sources.
+
+    Numba looks for changes in the file of a function alone, not in those of the functions that it calls.
+    """
+    digest = hashlib.sha256()
+    for path in sorted(Path(__file__).parent.rglob("*.py")):
+        digest.update(path.read_bytes())
+    return Path(__file__).parents[2] / "build" / "generator" / digest.hexdigest()[:16]
+
+
+numba.config.CACHE_DIR = str(_cache())
+
+
 def compiled(function: Function) -> Function:
-    """Return `function` compiled by numba, keeping its type."""
-    return cast(Function, numba.njit(function))
+    """Return `function` compiled by numba and kept on disk, with its own type."""
+    return cast(Function, numba.njit(cache=True)(function))

@@ -1,4 +1,4 @@
-"""Declared values within their tolerances are calibrated, and not named; beyond them they are; encoders are no machine."""
+"""Declared values within their tolerances are calibrated and not named; beyond them they are; steps are no machine."""
 
 from __future__ import annotations
 

@@ -8,12 +8,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from feeddrive.diagnosis.calibration.calibration import Calibration, log_odds_beyond, log_prior_odds
+from feeddrive.diagnosis.calibration.calibration import Calibration
 from feeddrive.diagnosis.calibration.declared import CalibratedValue, as_effect, calibrated_values
 from feeddrive.diagnosis.certainty.noise_colour import score_covariance
 from feeddrive.diagnosis.evidence import Evidence
 from feeddrive.diagnosis.fit import Fit, Problem, linear_step
-from feeddrive.diagnosis.tolerances import ASSERTED, BEYOND
 from feeddrive.effects.base import Effect
 from feeddrive.effects.friction_deviation import FrictionDeviation
 from feeddrive.plant.plant import Plant
@@ -28,6 +27,13 @@ ENOUGH = 0.1
 
 PASSES = 4
 """New slopes at most, before anything is found."""
+
+TOLERANCE = 2.0
+"""Deviations of a coordinate that a tolerance is, by definition (`tolerances`)."""
+
+SURE = 3.0
+"""Deviations of what the recordings alone say by which a value must lie beyond its tolerance: one of 700 by chance, as
+a dozen values are asked, once or twice a search."""
 
 UNSEEN = 0.1
 """Deviations by which a value within its tolerance moves all rows together, below which they do not see it: its
@@ -156,13 +162,13 @@ class Calibrated:
         value: which.
         coordinate: most likely, as the plant has it.
         deviation: of the coordinate, given the recordings.
-        log_odds: of being beyond its tolerance.
+        beyond: by how many of its own deviations the recordings alone put the coordinate beyond its tolerance.
     """
 
     value: CalibratedValue
     coordinate: float
     deviation: float
-    log_odds: float
+    beyond: float
 
     @property
     def number(self) -> float:
@@ -189,7 +195,9 @@ def calibrated_list(problem: Problem, found: Fit) -> tuple[Calibrated, ...]:
     columns, rows = whitened.columns, [e.fit_rows for e in problem.evidence]
     residual = problem.unwhitened(found.effects)
     own = _own_slopes(problem, found)
-    columns = columns - own @ np.column_stack([linear_step(own, column) for column in columns.T]) if own.size else columns
+    columns = (
+        columns - own @ np.column_stack([linear_step(own, column) for column in columns.T]) if own.size else columns
+    )
     left = residual - whitened.columns @ (whitened.most_likely(residual) - known.coordinates)
     score = score_covariance(problem.evidence, rows, left, columns)
     normal = columns.T @ columns
@@ -197,13 +205,12 @@ def calibrated_list(problem: Problem, found: Fit) -> tuple[Calibrated, ...]:
     precision = weight @ normal + np.eye(len(normal))
     covariance = np.linalg.inv(0.5 * (precision + precision.T))
     mean = covariance @ (weight @ (columns.T @ (residual + whitened.offset)))
-    named, count = len(found.effects), len(problem.predictor.candidates) + len(known.values)
-    prior = log_prior_odds(named, count)
     settled = whitened.most_likely(residual)
     result = []
     for i, value in enumerate(known.values):
-        odds = prior + log_odds_beyond(float(mean[i]), float(covariance[i, i]), max(BEYOND / value.deviation, 1.0))
-        result.append(Calibrated(value, float(settled[i]), math.sqrt(float(covariance[i, i])), odds))
+        known_to, left = float(covariance[i, i]), max(1 - float(covariance[i, i]), 1e-9)
+        alone, spread = abs(float(mean[i])) / left, math.sqrt(known_to / left)  # without the prior of this value
+        result.append(Calibrated(value, float(settled[i]), math.sqrt(known_to), (alone - TOLERANCE) / spread))
     return tuple(result)
 
 
@@ -221,11 +228,10 @@ def beyond_tolerance(problem: Problem, found: Fit) -> tuple[Problem, Effect] | N
     Returns:
         The problem without it among the values that are fitted, and the effect.
     """
-    sure = math.log(ASSERTED / (1 - ASSERTED))
-    able = [one for one in calibrated_list(problem, found) if one.value.name and one.log_odds > sure]
+    able = [one for one in calibrated_list(problem, found) if one.value.name and one.beyond > SURE]
     if not able or problem.calibration is None or not isinstance(problem.plant, Plant):
         return None
-    best = max(able, key=lambda one: one.log_odds).value
+    best = max(able, key=lambda one: one.beyond).value
     known = problem.calibration
     alike = [(one.name, one.place) == (best.name, best.place) for one in known.values]
     effects = [
@@ -236,7 +242,8 @@ def beyond_tolerance(problem: Problem, found: Fit) -> tuple[Problem, Effect] | N
     effect = effects[0]
     if isinstance(effect, FrictionDeviation):  # Coulomb and viscous friction of a port are one effect
         factors = {
-            key: math.prod(float(e.values[key]) for e in effects) for key in ("coulomb_factor", "viscous_factor")  # type: ignore[arg-type]
+            key: math.prod(float(e.values[key]) for e in effects)
+            for key in ("coulomb_factor", "viscous_factor")  # type: ignore[arg-type]
         }
         effect = effect.with_values(**factors)
     return _with(problem, [not same for same in alike]), effect

@@ -23,7 +23,6 @@ class CalibratedResult:
         declared, value: [unit].
         ci95: 95 % interval [unit].
         tolerance: share of the declared value.
-        log_odds: of being beyond the tolerance.
         written: where it stands in a plant file: dotted key, unit and declared value [SI] of each.
     """
 
@@ -34,7 +33,6 @@ class CalibratedResult:
     value: float
     ci95: tuple[float, float]
     tolerance: float
-    log_odds: float
     written: tuple[tuple[str, str, float], ...] = ()
 
 
@@ -43,7 +41,7 @@ def calibrated_results(problem: Problem, found: Fit) -> tuple[CalibratedResult, 
     return tuple(
         CalibratedResult(
             one.value.key, one.value.words, one.value.unit, one.value.declared, one.number, one.ci95,
-            one.value.tolerance, one.log_odds, one.value.written,
+            one.value.tolerance, one.value.written,
         )
         for one in calibrated_list(problem, found)
         if one.deviation < TOLD

@@ -19,7 +19,7 @@ tolerance does as well, in every set, at no simulation more. Source: Lindley and
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -81,33 +81,3 @@ def whitener(columns: FloatArray, coordinates: FloatArray, variance: float) -> W
     basis, sizes, _ = np.linalg.svd(columns, full_matrices=False)
     kept = np.sqrt(variance / (sizes**2 + variance))
     return Whitener(columns, basis, kept, columns @ coordinates, variance)
-
-
-def log_odds_beyond(mean: float, variance: float, width: float) -> float:
-    """Log of p(y | beyond) / p(y | within) of one coordinate.
-
-    With p(c|y) = N(m, V) under N(0, 1) within tolerance, and N(0, w²) beyond it,
-
-        p(y|beyond) / p(y|within) = 1/w E[exp(a c²/2)] = exp(a m² / 2 (1 - a V)) / (w √(1 - a V)),   a = 1 - 1/w²
-
-    Args:
-        mean, variance: of the coordinate, declared values within tolerance.
-        width: w, of a value beyond its tolerance, in deviations.
-    """
-    a = 1 - 1 / width**2
-    left = max(1 - a * variance, 1 / width**2)
-    return float(0.5 * a * mean**2 / left - 0.5 * np.log(left) - np.log(width))
-
-
-def log_prior_odds(named: int, count: int) -> float:
-    """Log prior odds that one more of `count` candidates is there, `named` being named: one is expected at even odds.
-
-    p(S) = B(1 + |S|, 2K - |S|) / B(1, K) gives p(S + 1) / p(S) = (1 + |S|) / (2K - |S| - 1). Source: Scott and Berger,
-    Ann. Statist. 38 (2010) 2587.
-    """
-    return float(np.log((1 + named) / max(2 * count - named - 1, 1)))
-
-
-def joined(parts: Sequence[FloatArray]) -> FloatArray:
-    """Rows of all recordings one after the other."""
-    return np.concatenate(parts) if len(parts) > 1 else parts[0]

@@ -40,7 +40,7 @@ from feeddrive.plant.plant import Plant
 from feeddrive.typing import Expression, FloatArray
 
 FARTHEST = 3.0
-"""Logarithm of a value over the declared one at most, a factor of twenty, so that every plant on the way is a machine."""
+"""Logarithm of a value over the declared one at most: a factor of twenty, so that every plant tried is a machine."""
 
 _WRITTEN = re.compile(r"± ([^,(]+)")
 _COULOMB, _VISCOUS, _WIDTH = ("coulomb",), ("viscous",), ("smoothing_velocity", "smoothing_speed")
@@ -221,5 +221,7 @@ def as_effect(plant: Plant, value: CalibratedValue, coordinate: float) -> Effect
         case "friction_deviation":
             port = Port(value.place)
             coulomb = value.key.endswith(_COULOMB[0])
-            return FrictionDeviation.of(port, coulomb_factor=factor if coulomb else 1.0, viscous_factor=1.0 if coulomb else factor)
+            return FrictionDeviation.of(
+                port, coulomb_factor=factor if coulomb else 1.0, viscous_factor=1.0 if coulomb else factor
+            )
     raise ValueError(f"no effect says that {value.words} is other than declared")

@@ -105,7 +105,7 @@ def hardly_known(effects: Sequence[Effect], spans: Sequence[dict[str, list[Inter
 
 def distance(problem: Problem, found: Sequence[Effect], rival: Fit, experiment: Rehearsal) -> float:
     """d of the module's docstring: how far apart the experiment brings what was found and a rival."""
-    ready = Problem(problem.plant, (experiment.evidence,), AxisPredictor())
+    ready = Problem(problem.machine(), (experiment.evidence,), AxisPredictor())
     base = ready.predicted(rival.effects)
     apart = ready.predicted(found) - base
     slopes = ready.jacobian(rival.effects, [True] * len(rival.effects), base)
@@ -150,7 +150,7 @@ def _better_known(found: Search, doubt: Doubt, ready: Sequence[Rehearsal]) -> Ne
 def _narrowing(found: Search, doubt: Doubt, before: FloatArray, experiment: Rehearsal) -> float:
     """Width of the parameter's interval after the experiment over that before."""
     effects = found.fit.effects
-    ready = Problem(found.problem.plant, (experiment.evidence,), AxisPredictor())
+    ready = Problem(found.problem.machine(), (experiment.evidence,), AxisPredictor())
     slopes = ready.jacobian(effects, [True] * len(effects), ready.predicted(effects))
     if not np.all(np.isfinite(slopes)):
         return 1.0

@@ -133,7 +133,7 @@ def _errors(found: Search, loops: Sequence[LoopEvidence], judged: Sequence[Judge
 
 
 def _problem(found: Search) -> LoopProblem:
-    plant = found.problem.plant
+    plant = found.problem.settled(found.fit.effects).machine()
     assert isinstance(plant, Plant)
     loops = [loop_evidence(plant, evidence) for evidence in found.problem.evidence]
     fitted = [loop for loop in loops if loop.fit_rows.any()]

@@ -3,8 +3,8 @@
     20 % nothing planted, 15 % a spoilt recording, 15 % two effects, the rest one; half of the laws are relatives where
     the law has one; in half of all cases declared values are off, each within its tolerance, two of them up to twice.
 
-Sizes are from 1.1 to 8 times the floor (`tests.generator.runs.visible`): the error of the true plant without the effect,
-over that of the true plant. An effect that a machine and a programme cannot show at its size is drawn again on another
+Sizes are from 1.1 to 8 times the floor (`tests.generator.runs.visible`): the error of the true plant without the
+effect, over that of the true plant. An effect that a machine and a programme cannot show at its size is drawn again on another
 machine. Nothing of the package takes part.
 """
 
@@ -89,8 +89,8 @@ class Planted:
 class Case:
     """A pair of recordings, the declared plant and the truth.
 
-    seed: of everything. kind: of SHARES. declared, true: the machine as it is declared and as it is. programme: of KINDS.
-    excited: whether torque is injected. off: number -> true over declared. spoiling: how both recordings are spoilt.
+    seed: of everything. kind: of SHARES. declared, true: the machine as it is declared and as it is.
+    programme: of KINDS. excited: whether torque is injected. off: number -> true over declared. spoiling: how both recordings are spoilt.
     plant: text of the plant file. fit, judge: channels as recorded (SI). exact: torque, motor angle and table position
     of the judged rows without sensor errors. runs: what made them.
     """
@@ -133,6 +133,10 @@ class Case:
             "bits": sensors.encoder_bits,
             "scale_step": sensors.scale_step if m.scale else None,
             "mass": m.axis.table_mass,
+            "motor_inertia": m.axis.motor_inertia,
+            "screw_inertia": m.axis.screw_inertia,
+            "guide_coulomb": m.axis.guide_coulomb,
+            "torque_limit": m.axis.controller.torque_limit,
             "lead": m.axis.lead,
             "stroke": m.axis.travel[1] - m.axis.travel[0],
             "ratio": m.axis.ratio,
@@ -188,8 +192,21 @@ def csv_text(channels: Channels) -> str:
     return text.getvalue()
 
 
+ENCODER_NULLS = 10_000_000
+"""Seeds from here are machines as declared with nothing planted: + 1000 * bits of the encoder + number."""
+
+NULL_BITS = (12, 14, 16, 17, 18, 20, 24)
+
+
+def encoder_null_seeds(first: int, last: int) -> list[int]:
+    """Return the seeds of the machines number `first` to `last` of every encoder."""
+    return [ENCODER_NULLS + 1000 * bits + number for bits in NULL_BITS for number in range(first, last + 1)]
+
+
 def case(seed: int) -> Case:
     """Return the case of a seed; the same one every time."""
+    if seed >= ENCODER_NULLS:
+        return _encoder_null(seed)
     kind = kind_of(seed)
     names = _names(kind, seed)
     for attempt in range(200):
@@ -198,10 +215,20 @@ def case(seed: int) -> Case:
             # No machine shows it: another effect.
             every = list(MAKERS)
             names = tuple(every[(every.index(name) + 1) % len(every)] for name in names)
-        made = _attempt(seed, kind, names, random)
+        made = _attempt(seed, kind, names, random, drawn_machine(random))
         if made is not None:
             return made
     raise RuntimeError(f"seed {seed}: no machine shows {names}")
+
+
+def _encoder_null(seed: int) -> Case:
+    bits = (seed - ENCODER_NULLS) // 1000
+    for attempt in range(50):
+        random = np.random.default_rng([seed, 14, attempt])
+        made = _attempt(seed, "encoder null", (), random, drawn_machine(random, bits=bits))
+        if made is not None:
+            return made
+    raise RuntimeError(f"seed {seed}: no steady machine")
 
 
 def kind_of(seed: int) -> str:
@@ -223,8 +250,7 @@ def _names(kind: str, seed: int) -> tuple[str, ...]:
     return first, str(random.choice(others))
 
 
-def _attempt(seed: int, kind: str, names: tuple[str, ...], random: Random) -> Case | None:
-    declared = drawn_machine(random)
+def _attempt(seed: int, kind: str, names: tuple[str, ...], random: Random, declared: Machine) -> Case | None:
     if not declared.scale and set(names) & set(NEEDS_SCALE):
         return None
     if set(names) & set(TIMING):
@@ -232,7 +258,7 @@ def _attempt(seed: int, kind: str, names: tuple[str, ...], random: Random) -> Ca
     which, excited = drawn_programme(random)
     length = seconds_of(declared, random, names)
     touched = frozenset(key for name in names for key in TOUCHED.get(name, ()))
-    off = off_factors(random, touched) if random.random() < OFF else {}
+    off = off_factors(random, touched) if random.random() < OFF and kind != "encoder null" else {}
     seeds = [int(one) for one in random.integers(0, 2**31, 4)]
     drawn: list[Drawn] = []
     for name in names:
@@ -287,7 +313,7 @@ def plant_text_of(machine: Machine, seed: int) -> str:
 
 
 def drawn_programme(random: Random) -> tuple[str, bool]:
-    """Return a kind of programme, and whether torque is injected: in half of the reversals, a quarter of the strokes."""
+    """Return a kind of programme, and whether torque is injected."""
     which = str(random.choice(KINDS))
     return which, bool(random.random() < {"strokes": 0.25, "milling": 0.0, "reversals": 0.5}[which])
 
@@ -309,9 +335,7 @@ NEAR = 0.12
 """By how much of its logarithm a size may miss the drawn one."""
 
 
-def _sized(
-    true: Machine, drawn: list[Drawn], targets: list[float], asked: tuple[Array, Array]
-) -> list[Planted] | None:
+def _sized(true: Machine, drawn: list[Drawn], targets: list[float], asked: tuple[Array, Array]) -> list[Planted] | None:
     """Return the effects at sizes near the targets; None where one cannot be."""
     found: list[Planted] = []
     for one, target in zip(drawn, targets, strict=True):

@@ -1,14 +1,8 @@
-"""The floor of a judged recording: the error that the true plant would have on the very samples that were judged.
+"""The floor of a judged recording: the error that the true plant has on the very samples that are judged.
 
-    e_T = n_T - Z n_angle,    e_x = n_x - H n_angle
-
-| symbol | meaning |
-|---|---|
-| n | what the sensor added to torque, motor angle and table position: recorded less exact, known here alone |
-| Z, H | torque and table position per motor angle of the true machine's linear chain |
-
-Filtered as the contract says (4th-order Butterworth, forward and backward, the edge that the diagnosis states), at the
-samples that it states; the zero of the scale is free.
+The generator's own plant, with all that was planted, is led by the recorded motor angle (`tests.generator.driven`);
+what it leaves of the recorded torque and position is filtered as the contract says (4th-order Butterworth, forward and
+backward, the edge that the diagnosis states), at the samples that it states. The zero of the scale is free.
 """
 
 from __future__ import annotations
@@ -17,7 +11,8 @@ import numpy as np
 from scipy import signal
 
 from feeddrive.diagnosis.result import Diagnosis
-from tests.generator.runs import transmitted
+from tests.generator.driven import driven
+from tests.generator.runs import Array, at_rest, longest_step
 from tests.recovery.fleet.case import Case
 
 
@@ -25,13 +20,8 @@ def floors(drawn: Case, result: Diagnosis) -> dict[str, float]:
     """Return the floor of each judged channel (SI rms); none for a recording that was spoilt."""
     if drawn.spoiling or not result.recordings:
         return {}
-    torque, angle, position = drawn.exact
+    errors = true_errors(drawn)
     row_time = drawn.true.row_time
-    to_torque, to_position = transmitted(drawn.true, drawn.judge["motor_angle"] - angle, row_time)
-    factor = drawn.off.get("torque_constant", 1.0)
-    errors = {"motor_torque": drawn.judge["motor_torque"] - torque - to_torque / factor}
-    if "table_position" in drawn.judge:
-        errors["table_position"] = drawn.judge["table_position"] - position - to_position
     edges = {channel.name: channel.band_hz[1] for channel in result.channels}
     found = {}
     for channel in result.recordings[0].channels:
@@ -45,3 +35,16 @@ def floors(drawn: Case, result: Diagnosis) -> dict[str, float]:
             error = error - np.mean(error)
         found[channel.name] = float(np.sqrt(np.mean(error**2)))
     return found
+
+
+def true_errors(drawn: Case) -> dict[str, Array]:
+    """Return recorded less predicted by the true plant, of the recording that is judged, (rows,) each."""
+    run = drawn.runs[1]
+    c = run.constants
+    step = longest_step(c, drawn.true.axis.top_speed)
+    torque, position = driven(drawn.true, c, drawn.judge["motor_angle"], at_rest(run.setpoint[0], c), step)
+    factor = drawn.off.get("torque_constant", 1.0)
+    errors = {"motor_torque": drawn.judge["motor_torque"] - torque / factor}
+    if "table_position" in drawn.judge:
+        errors["table_position"] = drawn.judge["table_position"] - position
+    return errors

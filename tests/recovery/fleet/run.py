@@ -50,7 +50,7 @@ def cases_done(folder: Path, state: str | None = None) -> dict[int, Record]:
 
 
 def run_missing(
-    seeds: Sequence[int], folder: Path, workers: int, limit: float, minutes: float, said: Said
+    seeds: Sequence[int], folder: Path, workers: int, limit: float, minutes: float, said: Said, most_rows: int = 0
 ) -> None:  # fmt: skip
     """Run the seeds without a record of this state.
 
@@ -61,6 +61,7 @@ def run_missing(
         limit: processor seconds of one diagnosis.
         minutes: no case begins later; 0 for no end.
         said: told a line a case.
+        most_rows: cases with longer recordings are left out; 0 for none. For a quick look.
     """
     folder.mkdir(parents=True, exist_ok=True)
     state, begun = fleet_state(), time.monotonic()
@@ -80,22 +81,25 @@ def run_missing(
         for seed in missing:
             if late():
                 break
-            keep(one(seed, limit))
+            if (record := one(seed, limit, most_rows)) is not None:
+                keep(record)
         return
     with ProcessPoolExecutor(workers, multiprocessing.get_context("spawn")) as pool:
-        futures = [pool.submit(one, seed, limit) for seed in missing]
+        futures = [pool.submit(one, seed, limit, most_rows) for seed in missing]
         for future in as_completed(futures):
-            if not future.cancelled():
-                keep(future.result())
+            if not future.cancelled() and (record := future.result()) is not None:
+                keep(record)
             if late():
                 pool.shutdown(wait=False, cancel_futures=True)
                 break
 
 
-def one(seed: int, limit: float) -> Record:
-    """Draw, diagnose and compare one case."""
+def one(seed: int, limit: float, most_rows: int = 0) -> Record | None:
+    """Draw, diagnose and compare one case; None where it is longer than wanted."""
     begun = time.process_time()
     drawn = case(seed)
+    if 0 < most_rows < len(drawn.fit["time"]):
+        return None
     record: Record = {"seed": seed, "truth": drawn.truth, "drawing_s": round(time.process_time() - begun, 2)}
     with tempfile.TemporaryDirectory(prefix="fleet-") as name:
         return record | diagnosed(drawn, Path(name), limit)

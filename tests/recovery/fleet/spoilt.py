@@ -37,5 +37,3 @@ def spoilt(machine: Machine, name: str, channels: Channels) -> Channels:
     result = change(given)
     result = {**result, "motor_torque": result["motor_torque"] * size}
     return {key: values for key, values in result.items() if key in channels}
-
-

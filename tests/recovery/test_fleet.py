@@ -1,0 +1,190 @@
+"""The fleet of drawn machines: the same case every time, sizes that hold, verdicts that say what they should."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from feeddrive.plant.files import read_plant
+from tests.generator.drawn_effects import MAKERS, OFF_GROUPS, TOLERANCES
+from tests.generator.machines import drawn_machine
+from tests.generator.runs import impedance, visible
+from tests.recovery.fleet.case import SHARES, Case, case, encoder_null_seeds, kind_of
+from tests.recovery.fleet.floor import true_errors
+from tests.recovery.fleet.run import cases_done
+from tests.recovery.fleet.state import state_files
+from tests.recovery.fleet.table import put_into, section, wilson
+from tests.recovery.fleet.verdict import Verdict, possible
+
+NULL, PAIR, SPOILT = 10, 3, 20
+"""Seeds of quick cases: nothing planted, two relatives at 250 Hz, a torque from an rms current."""
+
+
+@pytest.fixture(scope="module")
+def pair() -> Case:
+    """Two effects with declared values off."""
+    return case(PAIR)
+
+
+def test_case_is_the_same_every_time(pair: Case) -> None:
+    """A seed gives the same plant, truth and samples."""
+    again = case(PAIR)
+    assert again.plant == pair.plant and again.truth == pair.truth
+    assert all(np.array_equal(again.judge[name], samples) for name, samples in pair.judge.items())
+
+
+def test_kinds_come_as_often_as_asked() -> None:
+    """Shares of 4000 seeds are those asked for, within four standard deviations of a binomial."""
+    counts = Counter(kind_of(seed) for seed in range(4000))
+    for kind, share in SHARES.items():
+        assert abs(counts[kind] - 4000 * share) < 4 * math.sqrt(4000 * share * (1 - share))
+
+
+def test_plant_file_is_read_with_the_declared_values(pair: Case, tmp_path: Path) -> None:
+    """The file holds the declared machine, not the true one."""
+    path, _, _ = pair.write(tmp_path)
+    plant = read_plant(path)
+    assert plant.chain.values["table_mass"] == pytest.approx(pair.declared.axis.table_mass)
+    assert pair.true.axis.table_mass == pytest.approx(pair.declared.axis.table_mass * pair.off["table_mass"])
+    assert tomllib.loads(path.read_text())["table"]["mass"]["tolerance"] == "5 %"
+
+
+def test_declared_values_are_off_by_twice_their_tolerance_at_most(pair: Case) -> None:
+    """Two of the groups beyond their tolerance at most."""
+    beyond = 0
+    for names, kind in OFF_GROUPS:
+        off = abs(math.log(pair.off[names[0]]))
+        assert off <= math.log1p(2 * TOLERANCES[kind]) + 1e-3
+        beyond += off > math.log1p(TOLERANCES[kind]) + 1e-3
+    assert beyond <= 2
+
+
+def test_what_is_recorded_is_the_true_machine_and_its_sensors() -> None:
+    """The true plant, led by the recorded angle, leaves the sensors' noise: a null recorded by 24 bits."""
+    drawn = case(encoder_null_seeds(1, 1)[-1])
+    sensors, error = drawn.true.axis.sensors, true_errors(drawn)["motor_torque"]
+    noise = math.hypot(sensors.torque_noise, sensors.torque_step / math.sqrt(12))
+    inner = error[2000:-2000]
+    # The carried encoder error adds above the band; a running mean of 20 rows takes most of it away.
+    smooth = np.convolve(inner, np.ones(20) / 20, mode="valid")
+    assert np.std(smooth) == pytest.approx(noise / math.sqrt(20), rel=0.15)
+
+
+def test_spoilt_recordings_keep_their_channels() -> None:
+    """An rms current is the torque over the root of two, everything else as it was."""
+    drawn = case(SPOILT)
+    assert drawn.spoiling == "torque from an rms current"
+    assert set(drawn.runs[1].recorded(0)) == set(drawn.judge)
+    torque, angle, _ = drawn.exact
+    assert np.std(drawn.judge["motor_torque"]) == pytest.approx(np.std(torque) / math.sqrt(2), rel=0.01)
+    assert np.max(np.abs(drawn.judge["motor_angle"] - angle)) <= math.pi / 2 ** drawn.truth["bits"] * 1.001
+
+
+def test_size_is_the_error_over_the_floor() -> None:
+    """A change as large as the noise makes the error the root of two times as large."""
+    machine = drawn_machine(np.random.default_rng(5), bits=24, rate=1000.0)
+    random = np.random.default_rng(1)
+    sensors = machine.axis.sensors
+    noise = math.hypot(sensors.torque_noise, sensors.torque_step / math.sqrt(12))
+    shown = visible(machine, noise * random.standard_normal(20000), np.zeros(20000))
+    assert shown.size == pytest.approx(math.sqrt(2), rel=0.05)
+
+
+def test_impedance_at_low_frequency_is_the_inertia() -> None:
+    """Far below the first resonance the motor moves all masses, and the table goes with it."""
+    machine = drawn_machine(np.random.default_rng(6))
+    rigid = machine.with_axis(guide_viscous=0.0)
+    torque, position = impedance(rigid, np.array([0.05]))
+    assert float(-torque[0].real / (2 * math.pi * 0.05) ** 2) == pytest.approx(machine.inertia, rel=1e-3)
+    assert float(position[0].real) == pytest.approx(machine.radius, rel=1e-3)
+
+
+def test_state_covers_the_package_and_its_c() -> None:
+    """Everything that can change a result: the whole package with its C, plants, generator and fleet."""
+    names = {path.as_posix().split("/feeddrive/")[-1] for path in state_files()}
+    assert any(name.endswith(".c") or name.endswith(".h") for name in names) or not list(Path("feeddrive").rglob("*.c"))
+    text = "\n".join(path.as_posix() for path in state_files())
+    for part in ("feeddrive/cli/", "feeddrive/report/", "plants/", "tests/generator/", "tests/recovery/fleet/"):
+        assert part in text
+
+
+def test_broken_last_line_is_run_again(tmp_path: Path) -> None:
+    """What was being written when it was killed counts as not there."""
+    (tmp_path / "results.jsonl").write_text('{"seed": 1, "state": "a"}\n{"seed": 2, "sta', encoding="utf-8")
+    assert set(cases_done(tmp_path)) == {1}
+    assert cases_done(tmp_path, "b") == {}
+
+
+def verdict(planted: list[dict[str, Any]], found: list[str], **more: Any) -> Verdict:
+    """A record by hand: names found at the table."""
+    truth = {
+        "seed": 1, "kind": "single" if planted else "null", "planted": planted, "may": [], "off": {}, "spoiling": "",
+        "rows": [10000, 10000], "rate_hz": 1000.0, "mass": 50.0, "motor_inertia": 1e-3, "screw_inertia": 1e-3,
+    }  # fmt: skip
+    truth |= {key: more.pop(key) for key in list(more) if key in truth}
+    one = {"asserted": True, "odds": None, "explains": {}, "parameters": {}}
+    record = {
+        "seed": 1, "truth": truth, "outcome": "done", "cpu": 1.0, "ambiguous": [], "plant_after": "readable",
+        "found": [one | {"name": name, "place": "table"} for name in found],
+        "before": {"motor_torque": 2.0}, "after": {"motor_torque": 1.0}, "floor": {"motor_torque": 1.0},
+        "band": {"motor_torque": 100.0},
+    }  # fmt: skip
+    return Verdict(record | more)
+
+
+def planted(name: str, place: str = "", relative: bool = False) -> dict[str, Any]:
+    """One planted effect of a truth."""
+    return {"name": name, "place": place, "relative": relative, "values": {}, "size": 2.0}
+
+
+def test_verdicts() -> None:
+    """Right, with a name too many, with a set, at another place, a value that may be named."""
+    backlash = [planted("backlash")]
+    assert verdict(backlash, ["backlash"]).right
+    assert not verdict(backlash, ["backlash", "stribeck"]).right
+    assert verdict(backlash, ["backlash", "payload"], may=["payload"]).right
+    assert verdict(backlash, ["presliding"], ambiguous=[["presliding", "backlash"]]).right_in_sets
+    assert not verdict(backlash, ["presliding"], ambiguous=[["presliding", "backlash"]]).right
+    assert not verdict([planted("friction_deviation", "screw")], ["friction_deviation"]).right
+    assert verdict([], ["stribeck"]).extra == ["stribeck"]
+    assert verdict([], ["channel_delay"], spoiling="position recorded 3 ms late").extra == []
+
+
+def test_worse_channels_and_values_out_of_range() -> None:
+    """Beyond three deviations of an rms; no negative mass."""
+    # 2 * 100 Hz * 9 s: 1800 independent samples, of which an rms scatters by 1.7 %, three times 5 %.
+    assert verdict([], [], before={"motor_torque": 1.0}, after={"motor_torque": 1.04}).worse_channels == []
+    assert verdict([], [], before={"motor_torque": 1.0}, after={"motor_torque": 1.06}).worse_channels
+    truth = verdict([], []).truth
+    assert not possible("payload", "table", "mass", -51.0, truth) and possible("payload", "table", "mass", -49.0, truth)
+    assert not possible("drive_delay", "motor", "delay", -1e-6, truth)
+
+
+def test_share_intervals() -> None:
+    """Wilson's interval of 0 of 120 ends at 3.1 %, of 95 of 100 lies from 88.8 to 97.8 %."""
+    assert wilson(0, 120) == pytest.approx((0.0, 0.0310), abs=1e-3)
+    assert wilson(95, 100) == pytest.approx((0.888, 0.978), abs=1e-3)
+
+
+def test_table_goes_into_its_page() -> None:
+    """In place of the section that is there, the rest untouched."""
+    verdicts = [verdict([planted("backlash")], ["backlash"]), verdict([], ["stribeck"])]
+    page = put_into("# Recovery\n\nbefore\n", section(verdicts, "abc"))
+    again = put_into(page + "\nafter\n", section(verdicts[:1], "def"))
+    assert "before" in again and "after" in again and again.count("## Fleet") == 1
+    assert "abc" not in again and "nothing planted: cases with a false name | 0 of 120 | 1 |" in page
+
+
+def test_every_effect_is_drawn() -> None:
+    """All effects of motion in the table can be planted."""
+    from feeddrive.effects.catalogue import EFFECTS
+
+    declared = {"guide_friction", "nut_drag", "bearing_drag", "nut_friction"}
+    tables = {name for name in EFFECTS if name.startswith("tabulated")}
+    assert set(MAKERS) == set(EFFECTS) - declared - tables
