@@ -144,7 +144,7 @@ def _declared(top: Table, table: Table) -> tuple[Friction | None, Friction | Non
     """Friction of nut, front and rear bearing that the file's own motion declares, where the two are coupled."""
     if "coupling" not in table.entries or declares_heat_alone(top.entries):
         return None, None, None
-    effects = read_effects(Table(top.entries, top.where, Origins()), EFFECTS)
+    effects = read_effects(plant_table(top.entries, top.where), EFFECTS)
     joined, ambient = coupling(top), _value(table, "ambient", "degC")
     diameter = 2 * _value(table, "shaft_radius", "m")
     nut = nut_of(effects, joined, ambient, diameter, _lead(top, table))
