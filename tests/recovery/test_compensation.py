@@ -336,7 +336,7 @@ def test_recorded_heat(tmp_path: Path) -> None:
         fd.compensate(fd.Recording.from_arrays(time=t, nut_temperature=20 + rise), HEAT)
 
 
-def test_sheet_says_what_the_issue_asks() -> None:
+def test_sheet_has_all_its_parts() -> None:
     made = plant_table(planted().plant, Wishes("linuxcnc", stroke=STROKE, axis="X1"))
     told = sheet_text(sections(made))
     for words in ("Sign", "Source", "Check of one point", "COMP_FILE_TYPE = 0", "What is left", "wind-up", "flank"):
