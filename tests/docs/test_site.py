@@ -183,9 +183,9 @@ def test_house_has_every_folder_and_nothing_hangs_from_above() -> None:
 
 def test_start_prints_what_the_readme_prints() -> None:
     """The values of the demo, which the list of claims holds to what is measured."""
-    shown = re.findall(r"[\d.]+ (?:µm|N) \[[\d., ]+\]", (DOCS / "start.md").read_text(encoding="utf-8"))
+    shown = re.findall(r"[\d.]+ (?:µm|mm|N) \[[\d., ]+\]", (DOCS / "start.md").read_text(encoding="utf-8"))
     readme = " ".join((ROOT / "README.md").read_text(encoding="utf-8").split())
-    assert len(shown) == 2 and all(value in readme for value in shown)
+    assert len(shown) == 3 and all(value in readme for value in shown)
 
 
 def test_gallery_holds_figures_of_every_kind() -> None:
