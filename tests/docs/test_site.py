@@ -181,6 +181,13 @@ def test_house_has_every_folder_and_nothing_hangs_from_above() -> None:
     assert set(order) <= texts
 
 
+def test_start_prints_what_the_readme_prints() -> None:
+    """The values of the demo, which the list of claims holds to what is measured."""
+    shown = re.findall(r"[\d.]+ (?:µm|mm|N) \[[\d., ]+\]", (DOCS / "start.md").read_text(encoding="utf-8"))
+    readme = " ".join((ROOT / "README.md").read_text(encoding="utf-8").split())
+    assert len(shown) == 3 and all(value in readme for value in shown)
+
+
 def test_gallery_holds_figures_of_every_kind() -> None:
     text = (DOCS / "gallery.md").read_text(encoding="utf-8")
     assert len(re.findall(r"^:caption:", text, re.MULTILINE)) >= 16
