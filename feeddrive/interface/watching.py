@@ -216,6 +216,7 @@ def _record(trend: Trend, name: str) -> dict[str, Any]:
             {"kind": one.atom.kind, "date": trend.when(one.atom.date).isoformat(),
              "dates95": [trend.when(day).isoformat() for day in one.dates], "odds": one.odds, "size": one.size,
              "size_sd": one.deviation, "size_per": "day" if one.atom.kind == "slope" else "",
+             "power": one.atom.power,
              "time_constant_s": 86400 * one.atom.time_constant or None,
              "time_constant95_s": [86400 * edge for edge in one.time_constants] if one.atom.time_constant else None}
             for one in course.found

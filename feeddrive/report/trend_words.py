@@ -63,7 +63,7 @@ def course_words(quantity: Quantity, found: Found) -> str:
     if found.atom.kind == JUMP:
         return f"jumps by {size}"
     if found.atom.kind == SLOPE:
-        return f"changes by {signed(30 * found.size, quantity.unit)} in 30 days more than before"
+        return f"changes by {signed(30 * found.size, quantity.unit)} in 30 days on average"
     if found.atom.kind == ODD:
         return f"is {size} off in one recording"
     return f"settles by {size} with a time constant of {span_words(found.atom.time_constant)}"

@@ -3,7 +3,7 @@
 | kind | course, 0 before its date | |
 |---|---|---|
 | jump | 1 from its date on | a part gave way, was exchanged, was adjusted |
-| slope | t - date | wear, loss of preload |
+| slope | (t - date) ((t - date) / (end - date))^(power - 1): its size is the mean rate | wear, loss of preload |
 | settling | 1 - exp(-(t - date) / time constant) | warming, running in |
 | odd | 1 in one recording | it stands alone: another load, another programme |
 """
@@ -21,6 +21,10 @@ JUMP, SLOPE, SETTLING, ODD = "jump", "slope", "settling", "odd"
 FEWEST_AFTER = 2
 """Recordings that a jump or a slope needs on either side: one alone cannot be told from an odd recording."""
 
+POWERS = (1.0, 1.5, 2.0)
+"""Of slopes: even wear; what it moves is seldom linear in it (compliance goes with 1 / stiffness), and a line through a
+curve that steepens begins too late."""
+
 SETTLING_DATES = 24
 TIME_CONSTANTS = 10
 """Dates and time constants that are tried for a course that settles; it is refined from the best."""
@@ -34,11 +38,13 @@ class Atom:
         kind: see above.
         date: where it begins, in the time of the series.
         time_constant: of a course that settles; 0 else.
+        power: of a slope: 1 for an even one, above for one that gets steeper.
     """
 
     kind: str
     date: float
     time_constant: float = 0.0
+    power: float = 1.0
 
     def course(self, time: FloatArray) -> FloatArray:
         """Its values, (n,)."""
@@ -48,8 +54,11 @@ class Atom:
         if self.kind == ODD:
             return np.where(since == 0, 1.0, 0.0)
         after = np.clip(since, 0.0, None)
-        found: FloatArray = after if self.kind == SLOPE else -np.expm1(-after / self.time_constant)
-        return found
+        if self.kind == SETTLING:
+            settled: FloatArray = -np.expm1(-after / self.time_constant)
+            return settled
+        steeper: FloatArray = after * (after / max(float(after[-1]), 1e-300)) ** (self.power - 1)
+        return steeper
 
 
 def candidates(time: FloatArray) -> tuple[Atom, ...]:
@@ -57,7 +66,7 @@ def candidates(time: FloatArray) -> tuple[Atom, ...]:
     count = len(time)
     inner = time[FEWEST_AFTER : count - FEWEST_AFTER + 1]
     found = [Atom(JUMP, float(date)) for date in inner]
-    found += [Atom(SLOPE, float(date)) for date in time[: count - FEWEST_AFTER]]
+    found += [Atom(SLOPE, float(date), 0.0, power) for date in time[: count - FEWEST_AFTER] for power in POWERS]
     found += [Atom(ODD, float(date)) for date in time]
     usual, span = float(np.median(np.diff(time))), float(time[-1] - time[0])
     dates = time[np.unique(np.linspace(0, count - 1 - FEWEST_AFTER, SETTLING_DATES).astype(int))]

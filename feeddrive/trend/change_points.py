@@ -52,7 +52,7 @@ class Found:
         odds: of some such course against none, the others as they are.
         dates: interval that holds the date with 95 %.
         posterior: dates that are possible, and log of the probability of each, (d,) each.
-        size, deviation: of the course and its standard deviation: the height of a jump, the rate of a slope.
+        size, deviation: of the course and its standard deviation: the height of a jump, the mean rate of a slope.
         time_constants: interval with 95 %, of a course that settles.
     """
 
@@ -222,8 +222,9 @@ class _Search:
             chosen = [i for i, one in enumerate(self.series.line.tried) if one.kind == atom.kind]
             logs = self.series.with_one_more(others)[chosen]
             dates = np.array([self.series.line.tried[i].date for i in chosen])
-        order = np.argsort(dates)
-        return dates[order], (logs - logsumexp(logs))[order]
+        possible = np.unique(dates)
+        together = np.array([float(logsumexp(logs[dates == date])) for date in possible])
+        return possible, together - logsumexp(together)
 
     def time_constants(self, atoms: Sequence[Atom], place: int) -> tuple[float, float]:
         """Interval with 95 % of a time constant."""

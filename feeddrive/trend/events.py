@@ -30,7 +30,7 @@ class Event:
         kind: "jump", "slope" or "settling".
         changes: the surest first.
         dates: interval of days that holds the date with 95 %, by all of these quantities together.
-        day: most likely one.
+        day: in the middle of its probability: as likely earlier as later.
         causes: effects that move all of these quantities, or what most of them share, the likeliest first.
     """
 
@@ -70,7 +70,13 @@ def _event(group: list[Change]) -> Event:
     ordered = tuple(sorted(group, key=lambda change: -change.found.odds))
     kind = group[0].found.atom.kind
     dates, logs = _together_dated([change.found for change in group if change.found.atom.kind == kind])
-    return Event(kind, ordered, most_likely(dates, logs), float(dates[int(np.argmax(logs))]), _causes(ordered, kind))
+    return Event(
+        kind,
+        ordered,
+        most_likely(dates, logs),
+        float(dates[int(np.searchsorted(np.cumsum(np.exp(logs)), 0.5))]),
+        _causes(ordered, kind),
+    )
 
 
 LEAST = -20.0
