@@ -84,7 +84,7 @@ const parametersOf = (E, cascade) => { // of the page's settings, in the order o
   const p = Float64Array.from(E.parameters), at = (name) => E.parameter_names.indexOf(name), first = E.parameter_names.length;
   p[at("position_gain")] = cascade.position_gain; p[at("velocity_gain")] = cascade.velocity_gain;
   p[at("integral_gain")] = isFinite(cascade.reset_time) ? cascade.velocity_gain / cascade.reset_time : 0;
-  p[at("tracking_rate")] = isFinite(cascade.reset_time) ? 1 / cascade.reset_time : 0;
+  p[at("tracking_rate")] = isFinite(cascade.reset_time) ? 1 / (E.tracking || cascade.reset_time) : 0;
   p[at("speed_share")] = cascade.speed_share;
   p[at("torque_per_acceleration")] = cascade.torque_share * E.inertia / E.radius;
   cascade.filters.forEach((f, i) => discrete(f, E.tick).forEach((c, k) => { p[first + 5 * i + k] = c; }));

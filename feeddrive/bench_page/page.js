@@ -122,7 +122,7 @@ function controllerText(E, S) {
   const lines = [
     'format = "feeddrive-controller/1"', "name = " + JSON.stringify("from the bench of " + E.name).replace(/[\u007f-\uffff]/g, (c) => "\\u" + c.charCodeAt(0).toString(16).padStart(4, "0")),
     ...E.controller, `position_gain = "${number(S.position_gain)} 1/s"`, `velocity_gain = "${number(S.velocity_gain)} N m s/rad"`,
-    `reset_time = "${number(1e3 * S.reset_time)} ms"`, "", "[feed_forward]", `speed = ${S.speed_share.toFixed(6)}`, `torque = ${S.torque_share.toFixed(6)}`, `inertia = "${number(E.inertia)} kg m^2"`,
+    `reset_time = "${number(1e3 * S.reset_time)} ms"`, "", "[feed_forward]", `speed = ${S.speed_share.toFixed(6)}`, `torque = ${S.torque_share.toFixed(6)}`, `inertia = "${number(E.inertia)} kg m^2"`, ...E.feed_forward,
   ];
   for (const f of S.filters) {
     if (f.kind === "none") continue;

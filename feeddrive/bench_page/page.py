@@ -15,7 +15,7 @@ import numpy as np
 from feeddrive.bench_page.equations import bench_equations
 from feeddrive.effects.base import Effect
 from feeddrive.effects.payload import Payload
-from feeddrive.errors import printable
+from feeddrive.errors import InputError, printable
 from feeddrive.metrology.circular import GLITCH_SPAN
 from feeddrive.plant.equations import parameter_names, parameter_values
 from feeddrive.plant.moving_inertia import inertia_at_motor
@@ -94,6 +94,7 @@ def _finite(value: Any) -> Any:
 
 def bench_data(bench: BenchPage) -> dict[str, Any]:
     """Numbers of the page, SI, and under `functions` the equations as JavaScript."""
+    _refuse_unmovable(bench.cascade, bench.plant.name)
     plant = bench.plant.with_effects(Payload.of(mass=0.0))
     cascade = _with_slots(bench.cascade)
     functions, numbers = bench_equations(plant, cascade)
@@ -119,8 +120,22 @@ def bench_data(bench: BenchPage) -> dict[str, Any]:
         "step": _motion(step_at(plant, plant.middle), cascade, plant.middle) | {"height": HEIGHT, "at": STEP_AT},
         "start": settings_of(start, plant.middle),
         "effects": _effects(plant, names, bench.found),
+        "tracking": 0.0 if cascade.tracking_time == cascade.reset_time else cascade.tracking_time,
         "controller": _controller_head(bench.cascade),
+        "feed_forward": _feed_forward(bench.cascade),
     }
+
+
+def _refuse_unmovable(cascade: Cascade, name: str) -> None:
+    """Refuse a controller that the page would not carry as it is.
+
+    Raises:
+        InputError: more filters than the page has, or other ones.
+    """
+    kinds = [one.kind for one in cascade.torque_filters]
+    if cascade.speed_filters or len(kinds) > FILTERS or not set(kinds) <= {"notch", "PT2"}:
+        what = f"the page has {FILTERS} filters of the torque, notch or PT2, and the controller has others"
+        raise InputError(what, name, "leave them out of the controller file, or let `feeddrive tune` choose")
 
 
 def settings_of(cascade: Cascade, position: float, payload: float = 0.0) -> dict[str, Any]:
@@ -211,4 +226,22 @@ def _controller_head(cascade: Cascade) -> list[str]:
         lines.append(f'torque_limit = "{cascade.torque_limit!r} N m"')
     if math.isfinite(cascade.speed_limit):
         lines.append(f'speed_limit = "{cascade.speed_limit!r} rad/s"')
+    if cascade.balancing_time:
+        lines.append(f'balancing_time = "{cascade.balancing_time!r} s"')
+    if cascade.torque_offset:
+        lines.append(f'torque_offset = "{cascade.torque_offset!r} N m"')
+    if cascade.tracking_time != cascade.reset_time and math.isfinite(cascade.tracking_time):
+        lines.append(f'tracking_time = "{cascade.tracking_time!r} s"')
     return lines
+
+
+def _feed_forward(cascade: Cascade) -> list[str]:
+    """Friction in the feed-forward, which the page does not move."""
+    forward = cascade.feed_forward
+    if not (forward.coulomb or forward.viscous):
+        return []
+    return [
+        f'coulomb = "{forward.coulomb!r} N m"',
+        f'smoothing_speed = "{forward.smoothing_speed!r} rad/s"',
+        f'viscous = "{forward.viscous!r} N m s/rad"',
+    ]
