@@ -97,7 +97,7 @@ def warm_log(recording: Recording, ambient: float) -> WarmLog:
         mend = f"log faster than once in {step:.3g} s, or longer strokes at constant speed"
         raise InputError("no stroke lasts long enough to tell its speed", recording.name, mend)
     air = recording["ambient_temperature"] if "ambient_temperature" in recording else np.full(len(angle), ambient)
-    torque = recording["motor_torque"] if "motor_torque" in recording else None
+    torque = recording.channels.get("motor_torque")
     time = step * np.arange(len(angle), dtype=np.float64)
     return WarmLog(time, step, angle, speed, np.minimum(share, 1.0), uniform, torque, air)
 
@@ -259,7 +259,10 @@ def _heat_rows(
         conductances, inputs = conductances + mean_of_alike * g.full(), inputs + own * u.full()
     found = dict(zip(INPUTS, inputs, strict=True))
     own = {name: shares @ table for name, table in powers.items()}
-    bodies = {"motor": own["motor"][:, 0] + mean(_winding(plant, log)), plant.coupling.guide_heat_to: own["guide"][:, 0]}
+    bodies = {
+        "motor": own["motor"][:, 0] + mean(_winding(plant, log)),
+        plant.coupling.guide_heat_to: own["guide"][:, 0],
+    }
     for name, heat in bodies.items():
         if name in model.input_names:
             found[name] = heat
@@ -334,9 +337,9 @@ def friction_powers(plant: WarmPlant, log: WarmLog) -> dict[str, FloatArray]:
 
 def _distinct(speed: FloatArray) -> tuple[FloatArray, IntegerArray]:
     """Speeds of both signs, those within a thousandth as one, and which each row has; rest has any."""
-    keys = np.where(speed != 0, np.sign(speed) * (np.round(np.log(np.maximum(np.abs(speed), 1e-300)) / UNIFORM) + 1e6), 0)
+    keys = np.where(
+        speed != 0, np.sign(speed) * (np.round(np.log(np.maximum(np.abs(speed), 1e-300)) / UNIFORM) + 1e6), 0
+    )
     kinds, which = np.unique(keys, return_inverse=True)
     means = np.bincount(which, weights=speed) / np.bincount(which)
     return np.where(kinds == 0, np.max(np.abs(speed)), means), which.astype(np.int64)
-
-
