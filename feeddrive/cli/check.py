@@ -7,13 +7,11 @@ from typing import Annotated, Any
 
 import typer
 
-from feeddrive.cli.machine import read_machine
 from feeddrive.cli.output import JsonOption, OutOption, deliver, table, warnings_as_lines
 from feeddrive.errors import InputError
-from feeddrive.files import find_plant
+from feeddrive.interface.axis import load
 from feeddrive.plant.plausibility import Finding, Verdict, check_plant
 from feeddrive.quantity import format_quantity, parse
-from feeddrive.thermal.plant import ThermalPlant
 from feeddrive.thermal.plausibility import check_thermal_plant
 
 _DN, _DN_SHOWN = "m rad/s", "mm rev/min"
@@ -30,17 +28,17 @@ def command(
 ) -> None:
     """Check a machine against rules of plausibility; warnings do not change the exit status."""
     with warnings_as_lines():
-        machine = read_machine(find_plant(plant))
+        axis = load(plant)
         gain = _gain(position_gain) if position_gain else None
-        findings = check_thermal_plant(machine) if isinstance(machine, ThermalPlant) else check_plant(machine, gain)
+        findings = check_plant(axis.plant, gain) if axis.has_motion else check_thermal_plant(axis.heat)
     broken = sum(finding.verdict is Verdict.BROKEN for finding in findings)
     content = {
         "format": "feeddrive-check/1",
-        "name": machine.name,
+        "name": axis.name,
         "warnings": broken,
         "rules": [_content(finding) for finding in findings],
     }
-    shown = table(f"{machine.name}: {broken or 'no'} warning{'s' * (broken != 1)}",
+    shown = table(f"{axis.name}: {broken or 'no'} warning{'s' * (broken != 1)}",
                   ("rule", "value", "limit", "verdict", "source"), [_row(finding) for finding in findings])  # fmt: skip
     shown.columns[0].min_width = 14  # no word of a rule is longer; more would not leave 80 letters enough for the rest
     deliver(content, [shown], as_json, out)
