@@ -3,22 +3,15 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-from feeddrive.cli.machine import read_machine
 from feeddrive.cli.output import JsonOption, OutOption, deliver, table, warnings_as_lines
 from feeddrive.errors import InputError
-from feeddrive.files import find_plant
-from feeddrive.plant.declared_check import check_declared
-from feeddrive.plant.entries import read_toml
-from feeddrive.plant.plant import Plant
-from feeddrive.plant.plausibility import Finding, Verdict, check_plant
+from feeddrive.interface.axis import load
+from feeddrive.plant.plausibility import Finding, Verdict
 from feeddrive.quantity import format_quantity, parse
-from feeddrive.thermal.plant import ThermalPlant
-from feeddrive.thermal.plausibility import check_thermal_plant
 
 _DN, _DN_SHOWN = "m rad/s", "mm rev/min"
 """Unit of the DN value, inside and as catalogues count it."""
@@ -34,29 +27,19 @@ def command(
 ) -> None:
     """Check a machine against rules of plausibility; warnings do not change the exit status."""
     with warnings_as_lines():
-        path = find_plant(plant)
-        machine = read_machine(path)
-        gain = _gain(position_gain) if position_gain else None
-        findings = _findings(machine, path, gain)
+        axis = load(plant)
+        findings = axis.check(_gain(position_gain) if position_gain else None).findings
     broken = sum(finding.verdict is Verdict.BROKEN for finding in findings)
     content = {
         "format": "feeddrive-check/1",
-        "name": machine.name,
+        "name": axis.name,
         "warnings": broken,
         "rules": [_content(finding) for finding in findings],
     }
-    shown = table(f"{machine.name}: {broken or 'no'} warning{'s' * (broken != 1)}",
+    shown = table(f"{axis.name}: {broken or 'no'} warning{'s' * (broken != 1)}",
                   ("rule", "value", "limit", "verdict", "source"), [_row(finding) for finding in findings])  # fmt: skip
     shown.columns[0].min_width = 14  # no word of a rule is longer; more would not leave 80 letters enough for the rest
     deliver(content, [shown], as_json, out)
-
-
-def _findings(machine: Plant | ThermalPlant, path: Path, gain: float | None) -> tuple[Finding, ...]:
-    """Rules of plausibility, and what the file says of its own values."""
-    if isinstance(machine, ThermalPlant):
-        return tuple(check_thermal_plant(machine))
-    declared = check_declared(read_toml(path, "plant file"), str(path), machine)
-    return (*check_plant(machine, gain), *declared)
 
 
 def _gain(text: str) -> float:

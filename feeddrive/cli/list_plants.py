@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from feeddrive.cli.machine import read_machine
 from feeddrive.cli.output import JsonOption, OutOption, deliver, table
 from feeddrive.effects.catalogue import EFFECTS, THERMAL_EFFECTS
 from feeddrive.files import shipped_plants, shipped_scenarios
+from feeddrive.interface.axis import load
 from feeddrive.plant.entries import parse_toml
-from feeddrive.plant.plant import Plant
 from feeddrive.report.words import effect_words
 
 
@@ -26,14 +25,14 @@ def command(as_json: JsonOption = False, out: OutOption = None) -> None:
 
 
 def _plants() -> list[dict[str, str]]:
-    plants = [(path.stem, read_machine(path)) for path in shipped_plants()]
+    plants = [(path.stem, load(path)) for path in shipped_plants()]
     return [
         {
             "name": name,
-            "machine": plant.name,
-            "structure": plant.chain.structure if isinstance(plant, Plant) else "heat alone",
+            "machine": axis.name,
+            "structure": axis.plant.chain.structure if axis.has_motion else "heat alone",
         }
-        for name, plant in plants
+        for name, axis in plants
     ]
 
 

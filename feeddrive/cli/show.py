@@ -11,19 +11,17 @@ from typing import Annotated, Any
 import typer
 from rich.table import Table
 
-from feeddrive.cli.machine import read_machine
 from feeddrive.cli.output import JsonOption, chain_remark, deliver, finite, table, tell_written, warnings_as_lines
 from feeddrive.cli.show_folder import is_folder, write_folder
 from feeddrive.cli.show_heat import heat_content, heat_tables
 from feeddrive.cli.show_life import life_content, life_table
-from feeddrive.files import find_plant
+from feeddrive.interface.axis import load
 from feeddrive.output_folder import output_folder
 from feeddrive.plant.modes import Modes
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.rated_life import LifeRow, rated_life
 from feeddrive.plant.summary import Summary, summarise
 from feeddrive.quantity import format_quantity, parse
-from feeddrive.thermal.plant import ThermalPlant
 
 _KNOWN = ("motor", "screw", "axial", "table")
 
@@ -38,10 +36,11 @@ def command(
 ) -> None:
     """Show a machine: values with their sources, stiffness budget, inertias, friction, modes, rated life."""
     with warnings_as_lines():
-        machine = read_machine(find_plant(plant))
-        if isinstance(machine, ThermalPlant):
-            deliver(heat_content(machine), heat_tables(machine), as_json, out)
+        axis = load(plant)
+        if not axis.has_motion:
+            deliver(heat_content(axis.heat), heat_tables(axis.heat), as_json, out)
             return
+        machine = axis.plant
         summary = summarise(machine, parse(at, "m", "--at") if at else None)
         life = rated_life(machine)
         content = _content(machine, summary, life)

@@ -149,8 +149,8 @@ class _Begun:
 
 
 def _begun(
-    plant: Plant | ThermalPlant | WarmPlant, recordings: Sequence[Recording], validation: Sequence[Recording], split: float,
-    hold: float | None, sentence: Callable[[float, float], str],
+    plant: Plant | ThermalPlant | WarmPlant, recordings: Sequence[Recording], validation: Sequence[Recording],
+    split: float, hold: float | None, sentence: Callable[[float, float], str],
 ) -> _Begun:  # fmt: skip
     problem, judged, told = prepared(plant, recordings, validation, split, hold)
     refuse_faulty(problem, (*problem.evidence, *judged))

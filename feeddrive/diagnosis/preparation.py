@@ -49,9 +49,11 @@ def prepared(
         return _prepared_heat(plant, recordings, validation, split)
     if isinstance(plant, WarmPlant):
         warm = tuple(prepare_warm(recording, plant, 1.0 if validation else split) for recording in recordings)
-        return Problem(plant, warm, warm_predictor(plant)), [
-            *(prepare_warm(recording, plant, 0.0) for recording in validation)
-        ] or [*warm], ()
+        return (
+            Problem(plant, warm, warm_predictor(plant)),
+            [*(prepare_warm(recording, plant, 0.0) for recording in validation)] or [*warm],
+            (),
+        )
     lead = 2 * np.pi * plant.chain.motor_radius
     for recording in (*recordings, *validation):
         _refuse_heat(recording)

@@ -191,7 +191,9 @@ def diagnose(
     fitted, judged = _several(recording, "recording"), _several(validate, "validate")
     if not fitted:
         raise InputError("no recording is given", "recording", "give fd.read(...), or the path of a file")
-    result, effects = find_what_lacks(axis.machine(fitted), fitted, judged, split, simulate, progress or (lambda _: None), ())
+    result, effects = find_what_lacks(
+        axis.machine(fitted), fitted, judged, split, simulate, progress or (lambda _: None), ()
+    )
     return Diagnosed(axis, result, tuple(effects))
 
 

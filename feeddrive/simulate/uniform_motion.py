@@ -71,7 +71,7 @@ def uniform_motion(
     rigid = np.array([float(one) for one in plant.chain.rigid_motion(plant.chain_values())])
     given = np.vstack([angle, speed, time])
     unknown = np.vstack([np.outer(rigid, radius * angle), np.zeros((1 + bristle_count(plant), count))])
-    play = float(sum(e.free_play(e.values) for e in plant.effects_of(TransmissionEffect)))
+    play = float(sum(e.free_play(e.values) for e in plant.effects if isinstance(e, TransmissionEffect)))
     unknown[n - 1] -= np.sign(speed) * rigid[-1] * (0.5 * play + _START_STRETCH)
     for i, effect in enumerate(plant.effects_of(BristleEffect)):
         unknown[n + 1 + i] = np.sign(speed) / float(effect.values["stiffness"])  # type: ignore[arg-type]

@@ -18,7 +18,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
+import casadi as ca
 import numpy as np
 from scipy.interpolate import RegularGridInterpolator
 from scipy.ndimage import uniform_filter1d
@@ -97,7 +99,7 @@ def warm_log(recording: Recording, ambient: float) -> WarmLog:
         mend = f"log faster than once in {step:.3g} s, or longer strokes at constant speed"
         raise InputError("no stroke lasts long enough to tell its speed", recording.name, mend)
     air = recording["ambient_temperature"] if "ambient_temperature" in recording else np.full(len(angle), ambient)
-    torque = recording["motor_torque"] if "motor_torque" in recording else None
+    torque = recording.channels.get("motor_torque")
     time = step * np.arange(len(angle), dtype=np.float64)
     return WarmLog(time, step, angle, speed, np.minimum(share, 1.0), uniform, torque, air)
 
@@ -178,14 +180,14 @@ def simulate_log(
     each = max(int(HEAT_STEP / log.step), 1)
     powers = powers or friction_powers(plant, log)
     rows = _heat_rows(plant, model, laws, values, log, each, powers)
-    states = np.vstack([np.zeros(model.order), run(model, rows)])
-    times = rows.step * np.arange(len(states))
+    states: FloatArray = np.vstack([np.zeros((1, model.order)), run(model, rows)])
+    times: FloatArray = rows.step * np.arange(len(states), dtype=np.float64)
 
     def at_rows(series: FloatArray) -> FloatArray:
         return np.asarray(np.interp(log.time, times, series))
 
-    rises = np.column_stack([at_rows(states @ model.readings[name]) for name in FOLLOWED])
-    channels = {}
+    rises: FloatArray = np.column_stack([at_rows(states @ model.readings[name]) for name in FOLLOWED])
+    channels: dict[str, FloatArray] = {}
     _, lags, _ = laws.sensing(0.0, values)
     for channel, (output, _) in thermometers(plant.heat).items():
         read = cold + at_rows(states @ model.readings[output])
@@ -229,8 +231,7 @@ def _grown(
         np.column_stack([log.time, place])
     )
     for effect in plant.heat.effects:
-        frame = effect.growth(place, log.time, effect.values)
-        grown = grown + np.ravel(np.asarray(frame, dtype=float) if np.isscalar(frame) else np.array(frame))
+        grown = grown + np.ravel(np.array(effect.growth(ca.DM(place), ca.DM(log.time), effect.values), dtype=float))
     return np.asarray(grown)
 
 
@@ -248,18 +249,28 @@ def _heat_rows(
 
     groups, whole = len(size), each * log.step
     starts = (whole * np.arange(groups, dtype=np.float64))[None, :]
-    given = [starts, whole, mean(log.ambient - cold)[None, :], np.zeros((len(FOLLOWED), groups)), cold, values]
+    given: tuple[Any, ...] = (
+        starts,
+        whole,
+        mean(log.ambient - cold)[None, :],
+        np.zeros((len(FOLLOWED), groups)),
+        cold,
+        values,
+    )
     signed, which = _distinct(log.speed)
     shares = np.column_stack([mean(log.share * (which == kind) * (log.speed != 0)) for kind in range(len(signed))])
     conductances, inputs = (np.zeros((len(names), groups)) for names in (PATHS, INPUTS))
     alike = _alike(shares)
     for i, speed in enumerate((*signed, 0.0)):
         g, u = laws.acting(np.full((1, groups), speed), *given)
-        own, mean_of_alike = (of[:, i] if i < len(signed) else 1 - of.sum(axis=1) for of in (shares, alike))
-        conductances, inputs = conductances + mean_of_alike * g.full(), inputs + own * u.full()
+        acted, mean_of_alike = (of[:, i] if i < len(signed) else 1 - of.sum(axis=1) for of in (shares, alike))
+        conductances, inputs = conductances + mean_of_alike * g.full(), inputs + acted * u.full()
     found = dict(zip(INPUTS, inputs, strict=True))
     own = {name: shares @ table for name, table in powers.items()}
-    bodies = {"motor": own["motor"][:, 0] + mean(_winding(plant, log)), plant.coupling.guide_heat_to: own["guide"][:, 0]}
+    bodies = {
+        "motor": own["motor"][:, 0] + mean(_winding(plant, log)),
+        plant.coupling.guide_heat_to: own["guide"][:, 0],
+    }
     for name, heat in bodies.items():
         if name in model.input_names:
             found[name] = heat
@@ -298,7 +309,7 @@ class _Following:
         self._rises[:] = rises
         self._call()
         by = np.concatenate([[1.0], self._factors - 1])
-        heats = self._base[row].copy()
+        heats: FloatArray = self._base[row].copy()
         heats[0] += float(self._nut[row] @ by)
         heats[1:] += self._shares * float(self._bearings[row] @ by)
         return heats
@@ -321,9 +332,9 @@ def friction_powers(plant: WarmPlant, log: WarmLog) -> dict[str, FloatArray]:
     tables = []
     for factor in (None, 0, 1, 2):
         p = whole.copy()
-        for name, follows in plant.followed().items():
+        for row, follows in plant.followed().items():
             if follows == factor:
-                p[name] *= 1.1
+                p[row] *= 1.1
         tables.append(uniform_motion(plant.motion, middle, signed, started, p).powers)
     found = {}
     for name in ("nut", "bearings", "guide", "motor"):
@@ -334,9 +345,9 @@ def friction_powers(plant: WarmPlant, log: WarmLog) -> dict[str, FloatArray]:
 
 def _distinct(speed: FloatArray) -> tuple[FloatArray, IntegerArray]:
     """Speeds of both signs, those within a thousandth as one, and which each row has; rest has any."""
-    keys = np.where(speed != 0, np.sign(speed) * (np.round(np.log(np.maximum(np.abs(speed), 1e-300)) / UNIFORM) + 1e6), 0)
+    keys = np.where(
+        speed != 0, np.sign(speed) * (np.round(np.log(np.maximum(np.abs(speed), 1e-300)) / UNIFORM) + 1e6), 0
+    )
     kinds, which = np.unique(keys, return_inverse=True)
     means = np.bincount(which, weights=speed) / np.bincount(which)
     return np.where(kinds == 0, np.max(np.abs(speed)), means), which.astype(np.int64)
-
-

@@ -28,6 +28,9 @@ from feeddrive.thermal.warmed_plant import warmed
 from feeddrive.typing import FloatArray
 
 _MOTOR = "motor"
+_TURNING = 1e-3
+"""Share of the fastest speed below which a screw counts as at rest."""
+
 _CLOSED = 1e-6
 """Distance within which a cycle must come back to where it began [m]."""
 
@@ -164,7 +167,9 @@ class ServoCycle:
         """Mean conductances of a cycle, and what effects add: heats [W] and the rise of the surroundings [K]."""
         laws, values = laws_of(self.silent), values_of(self.silent)
         rest = np.zeros((len(FOLLOWED), len(speeds)))
-        g, u = laws.acting(speeds[None, :], time, self.duration, 0.0, rest, self.thermal.ambient, values)
+        # a held table still trembles by what its loop leaves, and that is no turning
+        turning = np.where(np.abs(speeds) > _TURNING * np.max(np.abs(speeds)), speeds, 0.0)
+        g, u = laws.acting(turning[None, :], time, self.duration, 0.0, rest, self.thermal.ambient, values)
         films = dict(zip(PATHS, map(float, np.mean(g.full(), axis=1)), strict=True))
         films[Path.CONTACT] *= conductance_at_preload(1.0, preload, self.thermal.preload)
         return films, dict(zip(INPUTS, map(float, np.mean(u.full(), axis=1)), strict=True))

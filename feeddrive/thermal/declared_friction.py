@@ -1,14 +1,14 @@
 """Friction of nut and bearings for the heat of a machine, from what the same file declares about its motion.
 
-    T_1 = level without load,    f_0 ν^(2/3) from T_v ω^(2/3) = 1e-7 f_0 (ν N)^(2/3) d_m³       [N mm, mm²/s, rev/min, mm]
+    T_1 = level without load,    f_0 from T_v ω^(2/3) = 1e-7 f_0 (ν N)^(2/3) d_m³       [N mm, mm²/s, rev/min, mm]
 
 | symbol | meaning | unit |
 |---|---|---|
-| T_1, T_v | of `nut_friction`, `nut_drag` and `bearing_drag`; bearings of both ends in one | N m, N m/(rad/s)^(2/3) |
-| f_0, ν, d_m | as in `feeddrive.thermal.friction`; ν of the coupling's oils, d_m the screw's pitch circle | 1, m²/s, m |
+| T_1, T_v | of `nut_friction`, `nut_drag`, `bearing_drag` (both ends in one) | N m, N m/(rad/s)^(2/3) |
+| f_0, ν, d_m | as in `thermal.friction`; ν of the coupling's oils, d_m the screw's pitch circle | 1, m²/s, m |
 
-Only the product of f_0 and d_m³ is known of a drag, and only that acts. Valid above ν N = 2000, where Palmgren's law has
-the power 2/3; below it the lubricant's part is that of a slow bearing, a few per cent of the load's.
+Only the product of f_0 and d_m³ is known of a drag, and only that acts. Valid above ν N = 2000, where Palmgren's law
+has the power 2/3; below it the lubricant's part is that of a slow bearing, a few per cent of the load's.
 """
 
 from __future__ import annotations
@@ -26,7 +26,9 @@ _FAST = 1e3
 """A speed in the range of the power 2/3 for any oil [rad/s]."""
 
 
-def nut_of(effects: Sequence[Effect], coupling: Coupling, ambient: float, diameter: float, lead: float) -> Friction | None:
+def nut_of(
+    effects: Sequence[Effect], coupling: Coupling, ambient: float, diameter: float, lead: float
+) -> Friction | None:
     """Friction of the nut; None where no effect declares it.
 
     Args:
@@ -50,7 +52,9 @@ def bearings_of(
     return front, back
 
 
-def _friction(effects: Sequence[Effect], viscosity: float, diameter: float, lead: float, share: float) -> Friction | None:
+def _friction(
+    effects: Sequence[Effect], viscosity: float, diameter: float, lead: float, share: float
+) -> Friction | None:
     if not effects or share == 0:
         return None
     turning = Motion(0.0, 1.0, 0.0, 0.0, lead)

@@ -19,7 +19,7 @@ from feeddrive.thermal.plant import ThermalPlant
 LOAD, NUT_OIL, BEARING_OIL = 0, 1, 2
 """Rows of `Laws.factors`."""
 
-_FOLLOWING = {
+_FOLLOWING: dict[type[Effect], dict[str, int]] = {
     NutFriction: {"preload": LOAD, "viscous": NUT_OIL},
     NutDrag: {"coulomb": LOAD, "viscous": NUT_OIL},
     BearingDrag: {"viscous": BEARING_OIL},

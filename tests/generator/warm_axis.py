@@ -64,7 +64,10 @@ def _overlap(centres: int = 4000) -> np.ndarray:
     nut = np.linspace(-NUT_LENGTH / 2, NUT_LENGTH / 2, NUT_CELLS + 1)
     found = np.zeros((NUT_CELLS, SHAFT_CELLS))
     for centre in LOW + (HIGH - LOW) * (np.arange(centres) + 0.5) / centres:
-        low, high = np.maximum(shaft[None, :-1], centre + nut[:-1, None]), np.minimum(shaft[None, 1:], centre + nut[1:, None])
+        low, high = (
+            np.maximum(shaft[None, :-1], centre + nut[:-1, None]),
+            np.minimum(shaft[None, 1:], centre + nut[1:, None]),
+        )
         found += np.clip(high - low, 0, None)
     return found / centres
 
@@ -147,7 +150,10 @@ class Cycle:
 def simulate(truth: Truth, seed: int) -> dict[str, np.ndarray]:
     """Channels of the log with noise, SI and degC, once a second."""
     random = np.random.default_rng(seed)
-    shaft_mesh, nut_mesh = _mesh(0, RADIUS, SHAFT_RINGS, LENGTH, SHAFT_CELLS), _mesh(RADIUS, NUT_RADIUS, NUT_RINGS, NUT_LENGTH, NUT_CELLS)
+    shaft_mesh, nut_mesh = (
+        _mesh(0, RADIUS, SHAFT_RINGS, LENGTH, SHAFT_CELLS),
+        _mesh(RADIUS, NUT_RADIUS, NUT_RINGS, NUT_LENGTH, NUT_CELLS),
+    )
     world = _World(truth, shaft_mesh, nut_mesh, _overlap())
     rows: list[list[float]] = []
     begun = 0.0
@@ -185,8 +191,12 @@ class _World:
         mean = (self.shaft_mesh.volume @ self.shaft) / self.shaft_mesh.volume.sum()
         edges = (np.arange(SHAFT_CELLS) + 0.5) * self.shaft_mesh.spacing
         under = float(mean[(edges > LOW) & (edges < HIGH)].mean())
-        front, rear = (float(self.shaft[-1, part].mean()) + flux * self.shaft_mesh.half / CONDUCTIVITY
-                       for part, flux in ((slice(None, self.ends[0]), self.fluxes[0]), (slice(-self.ends[1], None), self.fluxes[1])))  # fmt: skip
+        skin = self.shaft[-1]
+        seats = skin[: self.ends[0]].mean(), skin[-self.ends[1] :].mean()
+        front, rear = (
+            float(seat) + flux * self.shaft_mesh.half / CONDUCTIVITY
+            for seat, flux in zip(seats, self.fluxes, strict=True)
+        )
         return float(self.nut[-1].mean()) + self.out * self.nut_mesh.half / CONDUCTIVITY, under, front, rear
 
     out = 0.0
@@ -197,7 +207,9 @@ class _World:
         nut, shaft, front, rear = self.rises()
         gained = 280e6 * EXPANSION * (nut - shaft) * (0.070 / 2 - PITCH / 2)
         share = (1 + gained / PRELOAD) * (1 + self.truth.of("preload_growth", "coefficient") * nut)
-        oil = oil_share(AMBIENT + nut, 100.0, 11.2) * math.exp(-self.truth.of("viscosity_temperature", "coefficient") * nut)
+        oil = oil_share(AMBIENT + nut, 100.0, 11.2) * math.exp(
+            -self.truth.of("viscosity_temperature", "coefficient") * nut
+        )
         oil *= self.truth.of("friction_deviation", "viscous_factor", 1.0)
         bearings = oil_share(AMBIENT + 0.75 * front + 0.25 * rear, 32.0, 5.3)
         return PRELOAD * share, oil, bearings * self.truth.of("friction_deviation", "viscous_factor", 1.0)
@@ -264,7 +276,9 @@ class _World:
         to_bore = 2 * math.pi * RADIUS * nut.spacing * CONDUCTIVITY / nut.half
         faced = self.overlap > 0
         first, last = faced.argmax(axis=1), SHAFT_CELLS - faced[:, ::-1].argmax(axis=1)
-        bare = 2 * math.pi * RADIUS * (mesh.spacing - self.overlap.sum(axis=0)) / (1 / films[0] + mesh.half / CONDUCTIVITY)
+        bare = (
+            2 * math.pi * RADIUS * (mesh.spacing - self.overlap.sum(axis=0)) / (1 / films[0] + mesh.half / CONDUCTIVITY)
+        )
         on_nut = 2 * math.pi * NUT_RADIUS * nut.spacing / (1 / films[1] + nut.half / CONDUCTIVITY)
         # seats of two lengths: what differs of the rear one is spread by hand
         seats, rear_seats = self.ends
@@ -289,4 +303,6 @@ def write_csv(channels: dict[str, np.ndarray], path: Path) -> None:
     units = {"time": "s", "motor_angle": "rad", "table_position": "m", "motor_torque": "N m"}
     heads = [f"{name} [{units.get(name, 'degC')}]" for name in channels]
     formats = ["%.9f" if name in ("motor_angle", "table_position") else "%.4f" for name in channels]
-    np.savetxt(path, np.column_stack(list(channels.values())), fmt=formats, delimiter=",", header=",".join(heads), comments="")
+    np.savetxt(
+        path, np.column_stack(list(channels.values())), fmt=formats, delimiter=",", header=",".join(heads), comments=""
+    )

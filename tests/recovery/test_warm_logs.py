@@ -1,7 +1,7 @@
 """A log of hours of a cycling axis: what is planted in its motion or its heat is named, and nothing where nothing is.
 
-The logs come from `tests/generator/warm_axis.py`, which shares no code with the package. With `-s` each case prints what
-was found.
+The logs come from `tests/generator/warm_axis.py`, which shares no code with the package. With `-s` each case prints
+what was found.
 """
 
 from __future__ import annotations

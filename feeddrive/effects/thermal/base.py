@@ -82,7 +82,7 @@ class ThermalEffect(Effect):
         """Conductance [W/K] and capacity [J/K] of a body on the nut; None where there is none."""
         return None
 
-    def growth(self, position: float, time: Expression, p: Mapping[str, Expression]) -> Expression:
+    def growth(self, position: Expression, time: Expression, p: Mapping[str, Expression]) -> Expression:
         """Growth of the table position read at `position` [m] beyond the screw's, at a time from the start [m]."""
         return 0.0
 

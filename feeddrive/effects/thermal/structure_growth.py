@@ -34,6 +34,6 @@ class StructureGrowth(ThermalEffect):
     )
     signature = Signature(("table_growth",), "time and position, no temperature", ("ambient_drift",))
 
-    def growth(self, position: float, time: Expression, p: Mapping[str, Expression]) -> Expression:
+    def growth(self, position: Expression, time: Expression, p: Mapping[str, Expression]) -> Expression:
         """Growth at a position [m]."""
         return (p["growth"] + p.get("slope", 0.0) * position) * (1 - ca.exp(-time / p["time_constant"]))
