@@ -72,7 +72,8 @@ class Whitener:
     def most_likely(self, residual: FloatArray) -> FloatArray:
         """ĉ for y - f, (m,)."""
         normal: FloatArray = self.columns.T @ self.columns + self.variance * np.eye(self.columns.shape[1])
-        found: FloatArray = np.linalg.solve(normal, self.columns.T @ (residual + self.offset))
+        solved = np.linalg.solve(normal, self.columns.T @ (residual + self.offset))
+        found: FloatArray = np.asarray(solved, dtype=np.float64)
         return found
 
 
