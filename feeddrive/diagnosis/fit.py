@@ -99,7 +99,7 @@ class Problem:
     predictor: Predictor[Any, Any]
     calibration: Calibration | None = None
 
-    def machine(self, effects: Sequence[Effect] = ()) -> Any:
+    def machine(self, effects: Sequence[Effect] = ()) -> Any:  # a plant of the predictor's kind
         """The plant with its declared values as calibrated, and further effects."""
         return self._calibrated.with_effects(*effects)
 

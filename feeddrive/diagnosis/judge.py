@@ -29,7 +29,8 @@ class Judged:
 
     def with_effects(self, problem: Problem, effects: Sequence[Effect]) -> Machine:
         """The declared plant with other effects than those found, counted from this recording's zero."""
-        return problem.settled(effects).machine(shifted(effects, self.shift))
+        plant: Machine = problem.settled(effects).machine(shifted(effects, self.shift))
+        return plant
 
 
 def shifted(effects: Sequence[Effect], shift: float) -> list[Effect]:

@@ -13,7 +13,7 @@ from feeddrive.diagnosis.calibration.declared import CalibratedValue, as_effect,
 from feeddrive.diagnosis.certainty.noise_colour import score_covariance
 from feeddrive.diagnosis.evidence import Evidence
 from feeddrive.diagnosis.fit import Fit, Problem, linear_step
-from feeddrive.effects.base import Effect
+from feeddrive.effects.base import Effect, Value, number
 from feeddrive.effects.friction_deviation import FrictionDeviation
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
@@ -208,9 +208,12 @@ def calibrated_list(problem: Problem, found: Fit) -> tuple[Calibrated, ...]:
     settled = whitened.most_likely(residual)
     result = []
     for i, value in enumerate(known.values):
-        known_to, left = float(covariance[i, i]), max(1 - float(covariance[i, i]), 1e-9)
-        alone, spread = abs(float(mean[i])) / left, math.sqrt(known_to / left)  # without the prior of this value
-        result.append(Calibrated(value, float(settled[i]), math.sqrt(known_to), (alone - TOLERANCE) / spread))
+        known_to, told = float(covariance[i, i]), max(1 - float(covariance[i, i]), 1e-9)
+        beyond, spread = (
+            abs(float(mean[i])) / told - TOLERANCE,
+            math.sqrt(known_to / told),
+        )  # without the prior of this value
+        result.append(Calibrated(value, float(settled[i]), math.sqrt(known_to), beyond / spread))
     return tuple(result)
 
 
@@ -241,9 +244,7 @@ def beyond_tolerance(problem: Problem, found: Fit) -> tuple[Problem, Effect] | N
     ]
     effect = effects[0]
     if isinstance(effect, FrictionDeviation):  # Coulomb and viscous friction of a port are one effect
-        factors = {
-            key: math.prod(float(e.values[key]) for e in effects)
-            for key in ("coulomb_factor", "viscous_factor")  # type: ignore[arg-type]
-        }
+        keys = ("coulomb_factor", "viscous_factor")
+        factors: dict[str, Value] = {key: float(np.prod([number(e.values[key]) for e in effects])) for key in keys}
         effect = effect.with_values(**factors)
     return _with(problem, [not same for same in alike]), effect

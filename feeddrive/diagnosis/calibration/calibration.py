@@ -71,13 +71,14 @@ class Whitener:
 
     def most_likely(self, residual: FloatArray) -> FloatArray:
         """ĉ for y - f, (m,)."""
-        normal = self.columns.T @ self.columns + self.variance * np.eye(self.columns.shape[1])
-        found: FloatArray = np.linalg.solve(normal, self.columns.T @ (residual + self.offset))
+        normal: FloatArray = self.columns.T @ self.columns + self.variance * np.eye(self.columns.shape[1])
+        solved = np.linalg.solve(normal, self.columns.T @ (residual + self.offset))
+        found: FloatArray = np.asarray(solved, dtype=np.float64)
         return found
 
 
 def whitener(columns: FloatArray, coordinates: FloatArray, variance: float) -> Whitener:
     """W of slopes over the noise, (m, k), with c0, (k,), and λ."""
     basis, sizes, _ = np.linalg.svd(columns, full_matrices=False)
-    kept = np.sqrt(variance / (sizes**2 + variance))
+    kept: FloatArray = np.asarray(np.sqrt(variance / (sizes**2 + variance)), dtype=np.float64)
     return Whitener(columns, basis, kept, columns @ coordinates, variance)

@@ -31,7 +31,7 @@ from feeddrive.diagnosis.tolerances import (
     deviation_of,
     written_share,
 )
-from feeddrive.effects.base import DriveEffect, Effect, FrictionEffect, Parameter, Port, Signature, Value
+from feeddrive.effects.base import DriveEffect, Effect, FrictionEffect, Parameter, Port, Signature, Value, number
 from feeddrive.effects.friction_deviation import FrictionDeviation
 from feeddrive.effects.inertia_deviation import InertiaDeviation, declared_inertia
 from feeddrive.effects.payload import Payload
@@ -61,7 +61,11 @@ class TorqueGain(DriveEffect):
 
 def torque_gain(plant: Plant) -> float:
     """Recorded over acting torque; 1 as declared."""
-    return math.prod(float(e.values["gain"]) for e in plant.effects if isinstance(e, TorqueGain))  # type: ignore[arg-type]
+    gain = 1.0
+    for effect in plant.effects:
+        if isinstance(effect, TorqueGain):
+            gain *= number(effect.values["gain"])
+    return gain
 
 
 @dataclass(frozen=True)
@@ -124,8 +128,8 @@ def calibrated_values(plant: Plant) -> tuple[CalibratedValue, ...]:
     for key, words, unit, kind, name, place in _CHAIN if plant.chain.elastic else _CHAIN[:1]:
         if chain.get(key, 0.0) > 0:
             deviation = _deviation(plant, (key,), kind, chain[key], unit)
-            written = ((sections[key], unit, chain[key]),)
-            found.append(CalibratedValue(key, words, unit, chain[key], deviation, name, place, written))
+            place_in_file = ((sections[key], unit, chain[key]),)
+            found.append(CalibratedValue(key, words, unit, chain[key], deviation, name, place, place_in_file))
     for port, whose in ((Port.TABLE, "guide"), (Port.SCREW, "screw")):
         level = declared_level(plant, port) > 0
         for keys, words, present in (
@@ -148,8 +152,8 @@ def calibrated_values(plant: Plant) -> tuple[CalibratedValue, ...]:
     else:  # a torque that the drive records is its current times a constant of the same data sheet as the masses
         sources = {plant.origins.get(key, "") for key in ("motor_inertia", "table_mass") if key in chain}
         deviation = deviation_of(max(TORQUE_CONSTANT.usual(_WRITTEN.sub("", source)) for source in sources))
-    written = (("motor.torque_constant", unit, constant),) if plant.torque_constant else ()
-    found.append(CalibratedValue("torque_constant", "torque constant", unit, constant, deviation, written=written))
+    in_file = (("motor.torque_constant", unit, constant),) if plant.torque_constant else ()
+    found.append(CalibratedValue("torque_constant", "torque constant", unit, constant, deviation, written=in_file))
     return tuple(one for one in found if one.deviation > 0)
 
 
