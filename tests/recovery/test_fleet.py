@@ -15,7 +15,8 @@ from feeddrive.plant.files import read_plant
 from tests.generator.drawn_effects import MAKERS, OFF_GROUPS, TOLERANCES
 from tests.generator.machines import drawn_machine
 from tests.generator.runs import impedance, visible
-from tests.recovery.fleet.case import SHARES, Case, case, encoder_null_seeds, kind_of
+from tests.generator.telling import calibration, distance, from_declared
+from tests.recovery.fleet.case import LEAST_TOLD, SHARES, Case, case, encoder_null_seeds, kind_of
 from tests.recovery.fleet.floor import true_errors
 from tests.recovery.fleet.run import cases_done
 from tests.recovery.fleet.state import state_files
@@ -94,6 +95,15 @@ def test_size_is_the_error_over_the_floor() -> None:
     noise = math.hypot(sensors.torque_noise, sensors.torque_step / math.sqrt(12))
     shown = visible(machine, noise * random.standard_normal(20000), np.zeros(20000))
     assert shown.size == pytest.approx(math.sqrt(2), rel=0.05)
+
+
+def test_planted_effects_are_told_from_declared_values(pair: Case) -> None:
+    """A mass that is off by half its tolerance is no finding: its change is that of the prior, to half a deviation."""
+    for one in pair.planted:
+        assert from_declared(pair.runs[0], one.effect.name) >= LEAST_TOLD
+    columns = calibration(pair.runs[0])
+    assert distance(0.5 * columns[:, 0], columns, free=0) <= 0.5
+    assert distance(np.ones(len(columns)), columns, free=0) > 0.5 * math.sqrt(len(columns))
 
 
 def test_impedance_at_low_frequency_is_the_inertia() -> None:

@@ -4,8 +4,8 @@
     the law has one; in half of all cases declared values are off, each within its tolerance, two of them up to twice.
 
 Sizes are from 1.1 to 8 times the floor (`tests.generator.runs.visible`): the error of the true plant without the
-effect, over that of the true plant. An effect that a machine and a programme cannot show at its size is drawn again on another
-machine. Nothing of the package takes part.
+effect, over that of the true plant. An effect that a machine and a programme cannot show at its size, or that declared values
+within their tolerance imitate, is drawn again on another machine. Nothing of the package takes part.
 """
 
 from __future__ import annotations
@@ -37,6 +37,7 @@ from tests.generator.effects.relatives import Relative
 from tests.generator.machines import Machine, Random, drawn_machine
 from tests.generator.programmes import KINDS, programme
 from tests.generator.runs import Array, Channels, Run, Visible, changes, run, softened, steady, visible
+from tests.generator.telling import from_declared
 from tests.recovery.fleet.spoilt import spoilings, spoilt
 
 SHARES = {"null": 0.20, "corrupted": 0.15, "pair": 0.15, "single": 0.50}
@@ -44,6 +45,13 @@ SMALLEST, LARGEST = 1.1, 8.0
 OFF = 0.5
 RELATIVE = 0.5
 MOST_ROWS = 60_000
+LEAST_TOLD = 10.0
+"""Standard deviations by which an effect is told from declared values within their tolerance at least: less is no effect
+but a calibration (`tests.generator.telling`)."""
+
+SLOWEST_EXCITED = 1e-3
+"""Time between rows [s] beyond which nobody injects torque: the recording would not show what it does."""
+
 TRIES = 12
 
 ALIKE = (
@@ -256,6 +264,7 @@ def _attempt(seed: int, kind: str, names: tuple[str, ...], random: Random, decla
     if set(names) & set(TIMING):
         declared = softened(declared, 0.4)
     which, excited = drawn_programme(random)
+    excited = excited and declared.row_time <= SLOWEST_EXCITED
     length = seconds_of(declared, random, names)
     touched = frozenset(key for name in names for key in TOUCHED.get(name, ()))
     off = off_factors(random, touched) if random.random() < OFF and kind != "encoder null" else {}
@@ -290,6 +299,8 @@ def _attempt(seed: int, kind: str, names: tuple[str, ...], random: Random, decla
     except FloatingPointError:
         return None
     if not all(steady(one) for one in runs):
+        return None
+    if any(from_declared(runs[0], name) < LEAST_TOLD for name in names):
         return None
     factor = off.get("torque_constant", 1.0)
     fit, judge = (one.recorded(noise, factor) for one, noise in zip(runs, seeds[2:], strict=True))

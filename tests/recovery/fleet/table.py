@@ -72,6 +72,7 @@ def rows(verdicts: Sequence[Verdict]) -> list[str]:
         *[_count(f"as declared, encoder of {bits} bits", "1 in all", hits) for bits, hits in _encoders(verdicts)],
         _count("spoilt recordings: cases with a false name", "1 of 90", [bool(v.extra) for v in spoilt]),
         _share("spoilt recordings: refused or reported", "-", [v.record["outcome"] == "refused" for v in spoilt]),
+        _count("sound recordings refused", "-", [v.record["outcome"] == "refused" for v in verdicts if not v.truth["spoiling"]]),
         _count("planted: cases with a name too many", "<= 3 %", [bool(v.extra) for v in planted]),
         _count("declared values off: false names", "-", [bool(v.extra) for v in verdicts if v.truth["off"]]),
         _count("a channel worse than declared", "0", [bool(v.worse_channels) for v in done]),
