@@ -77,6 +77,15 @@ def test_what_is_recorded_is_the_true_machine_and_its_sensors() -> None:
     assert np.std(smooth) == pytest.approx(noise / math.sqrt(20), rel=0.15)
 
 
+def test_rows_slower_than_a_drive_are_taken_from_the_exact_motion(pair: Case) -> None:
+    """At 250 Hz and 20 bits the sensors' noise is left, not what a spline through the rows makes of the motion."""
+    sensors, left = pair.true.axis.sensors, true_errors(pair)
+    torque = math.hypot(sensors.torque_noise, sensors.torque_step / math.sqrt(12))
+    assert np.std(left["motor_torque"]) == pytest.approx(torque, rel=0.1)
+    position = math.hypot(sensors.scale_noise, sensors.scale_step / math.sqrt(12))
+    assert np.std(left["table_position"]) < 2 * position
+
+
 def test_spoilt_recordings_keep_their_channels() -> None:
     """An rms current is the torque over the root of two, everything else as it was."""
     drawn = case(SPOILT)
@@ -133,12 +142,12 @@ def test_broken_last_line_is_run_again(tmp_path: Path) -> None:
 
 def verdict(planted: list[dict[str, Any]], found: list[str], **more: Any) -> Verdict:
     """A record by hand: names found at the table."""
-    truth = {
+    truth: dict[str, Any] = {
         "seed": 1, "kind": "single" if planted else "null", "planted": planted, "may": [], "off": {}, "spoiling": "",
         "rows": [10000, 10000], "rate_hz": 1000.0, "mass": 50.0, "motor_inertia": 1e-3, "screw_inertia": 1e-3,
     }  # fmt: skip
     truth |= {key: more.pop(key) for key in list(more) if key in truth}
-    one = {"asserted": True, "odds": None, "explains": {}, "parameters": {}}
+    one: dict[str, Any] = {"asserted": True, "odds": None, "explains": {}, "parameters": {}}
     record = {
         "seed": 1, "truth": truth, "outcome": "done", "cpu": 1.0, "ambiguous": [], "plant_after": "readable",
         "found": [one | {"name": name, "place": "table"} for name in found],

@@ -1,4 +1,4 @@
-"""Whether a planted effect can be told at all: from nothing, from declared values within tolerance, from another effect.
+"""Whether a planted effect can be told: from nothing, from declared values within tolerance, from another effect.
 
     python -m tests.recovery.fleet.fair SEED ...
 
@@ -88,8 +88,8 @@ def main() -> int:
     for text in sys.argv[1:]:
         for told in told_apart(case(int(text))):
             print(
-                f"{text}: {told.name} {told.from_nothing:.0f} sigma from nothing, {told.from_declared:.0f} from declared "
-                f"values within tolerance, {told.from_rival:.1f} from {told.rival}",
+                f"{text}: {told.name} {told.from_nothing:.0f} sigma from nothing, {told.from_declared:.0f} from "
+                f"declared values within tolerance, {told.from_rival:.1f} from {told.rival}",
                 flush=True,
             )
     return 0
