@@ -96,7 +96,7 @@ def programme(machine: Machine, kind: str, random: Random, seconds: float, excit
     if excited:
         rows = path_length(path) - count - round(REST / axis.sample_time)
         time = np.arange(rows) * axis.sample_time
-        top = min(450.0, 0.25 / axis.sample_time)
+        top = min(450.0, 0.25 / axis.sample_time, 0.4 / machine.row_time)
         injected[count : count + rows] = axis.chirp_amplitude * chirp(time - 0.5, (5.0, top))
     rows = len(setpoint) // machine.every * machine.every
     return setpoint[:rows], injected[:rows]

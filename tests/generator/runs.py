@@ -69,7 +69,7 @@ def longest_step(c: Constants, axis_speed: float) -> float:
     bristle = 0.0
     if c.bristle_stiffness > 0.0:
         bristle = c.bristle_stiffness * 1.2 * axis_speed / (0.4 * c.guide_coulomb)
-    return min(0.35 / math.hypot(axial, torsional), 0.9 / (guide + drag + damped), 0.25 / max(bristle, 1e-9), 1e-4)
+    return min(0.6 / math.hypot(axial, torsional), 1.2 / (guide + drag + damped), 0.25 / max(bristle, 1e-9), 1e-4)
 
 
 def run(machine: Machine, effects: tuple[Effect, ...], setpoint: Array, injected: Array) -> Run:

@@ -46,7 +46,7 @@ def _cache() -> Path:
     return Path(__file__).parents[2] / "build" / "generator" / digest.hexdigest()[:16]
 
 
-numba.config.CACHE_DIR = str(_cache())
+setattr(numba.config, "CACHE_DIR", str(_cache()))  # noqa: B010  numba declares none of its settings
 
 
 def compiled(function: Function) -> Function:

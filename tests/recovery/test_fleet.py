@@ -15,7 +15,8 @@ from feeddrive.plant.files import read_plant
 from tests.generator.drawn_effects import MAKERS, OFF_GROUPS, TOLERANCES
 from tests.generator.machines import drawn_machine
 from tests.generator.runs import impedance, visible
-from tests.recovery.fleet.case import SHARES, Case, case, encoder_null_seeds, kind_of
+from tests.generator.telling import calibration, distance, from_declared
+from tests.recovery.fleet.case import LEAST_TOLD, SHARES, Case, case, encoder_null_seeds, kind_of
 from tests.recovery.fleet.floor import true_errors
 from tests.recovery.fleet.run import cases_done
 from tests.recovery.fleet.state import state_files
@@ -76,6 +77,15 @@ def test_what_is_recorded_is_the_true_machine_and_its_sensors() -> None:
     assert np.std(smooth) == pytest.approx(noise / math.sqrt(20), rel=0.15)
 
 
+def test_rows_slower_than_a_drive_are_taken_from_the_exact_motion(pair: Case) -> None:
+    """At 250 Hz and 20 bits the sensors' noise is left, not what a spline through the rows makes of the motion."""
+    sensors, left = pair.true.axis.sensors, true_errors(pair)
+    torque = math.hypot(sensors.torque_noise, sensors.torque_step / math.sqrt(12))
+    assert np.std(left["motor_torque"]) == pytest.approx(torque, rel=0.1)
+    position = math.hypot(sensors.scale_noise, sensors.scale_step / math.sqrt(12))
+    assert np.std(left["table_position"]) < 2 * position
+
+
 def test_spoilt_recordings_keep_their_channels() -> None:
     """An rms current is the torque over the root of two, everything else as it was."""
     drawn = case(SPOILT)
@@ -94,6 +104,15 @@ def test_size_is_the_error_over_the_floor() -> None:
     noise = math.hypot(sensors.torque_noise, sensors.torque_step / math.sqrt(12))
     shown = visible(machine, noise * random.standard_normal(20000), np.zeros(20000))
     assert shown.size == pytest.approx(math.sqrt(2), rel=0.05)
+
+
+def test_planted_effects_are_told_from_declared_values(pair: Case) -> None:
+    """A mass that is off by half its tolerance is no finding: its change is that of the prior, to half a deviation."""
+    for one in pair.planted:
+        assert from_declared(pair.runs[0], one.effect.name) >= LEAST_TOLD
+    columns = calibration(pair.runs[0])
+    assert distance(0.5 * columns[:, 0], columns, free=0) <= 0.5
+    assert distance(np.ones(len(columns)), columns, free=0) > 0.5 * math.sqrt(len(columns))
 
 
 def test_impedance_at_low_frequency_is_the_inertia() -> None:
@@ -123,12 +142,12 @@ def test_broken_last_line_is_run_again(tmp_path: Path) -> None:
 
 def verdict(planted: list[dict[str, Any]], found: list[str], **more: Any) -> Verdict:
     """A record by hand: names found at the table."""
-    truth = {
+    truth: dict[str, Any] = {
         "seed": 1, "kind": "single" if planted else "null", "planted": planted, "may": [], "off": {}, "spoiling": "",
         "rows": [10000, 10000], "rate_hz": 1000.0, "mass": 50.0, "motor_inertia": 1e-3, "screw_inertia": 1e-3,
     }  # fmt: skip
     truth |= {key: more.pop(key) for key in list(more) if key in truth}
-    one = {"asserted": True, "odds": None, "explains": {}, "parameters": {}}
+    one: dict[str, Any] = {"asserted": True, "odds": None, "explains": {}, "parameters": {}}
     record = {
         "seed": 1, "truth": truth, "outcome": "done", "cpu": 1.0, "ambiguous": [], "plant_after": "readable",
         "found": [one | {"name": name, "place": "table"} for name in found],

@@ -4,8 +4,8 @@
     the law has one; in half of all cases declared values are off, each within its tolerance, two of them up to twice.
 
 Sizes are from 1.1 to 8 times the floor (`tests.generator.runs.visible`): the error of the true plant without the
-effect, over that of the true plant. An effect that a machine and a programme cannot show at its size is drawn again on another
-machine. Nothing of the package takes part.
+effect, over that of the true plant. An effect that a machine and a programme cannot show at its size, or that
+declared values within their tolerance imitate, is drawn again on another machine. Nothing of the package takes part.
 """
 
 from __future__ import annotations
@@ -22,7 +22,6 @@ from typing import Any
 import numpy as np
 
 from tests.generator.drawn_effects import (
-    BEYOND,
     MAKERS,
     NEEDS_SCALE,
     TOLERANCES,
@@ -37,6 +36,7 @@ from tests.generator.effects.relatives import Relative
 from tests.generator.machines import Machine, Random, drawn_machine
 from tests.generator.programmes import KINDS, programme
 from tests.generator.runs import Array, Channels, Run, Visible, changes, run, softened, steady, visible
+from tests.generator.telling import from_declared
 from tests.recovery.fleet.spoilt import spoilings, spoilt
 
 SHARES = {"null": 0.20, "corrupted": 0.15, "pair": 0.15, "single": 0.50}
@@ -44,6 +44,13 @@ SMALLEST, LARGEST = 1.1, 8.0
 OFF = 0.5
 RELATIVE = 0.5
 MOST_ROWS = 60_000
+LEAST_TOLD = 10.0
+"""Standard deviations by which an effect is told from declared values within their tolerance: less is no effect but
+a calibration (`tests.generator.telling`)."""
+
+SLOWEST_EXCITED = 1e-3
+"""Time between rows [s] beyond which nobody injects torque: the recording would not show what it does."""
+
 TRIES = 12
 
 ALIKE = (
@@ -90,7 +97,8 @@ class Case:
     """A pair of recordings, the declared plant and the truth.
 
     seed: of everything. kind: of SHARES. declared, true: the machine as it is declared and as it is.
-    programme: of KINDS. excited: whether torque is injected. off: number -> true over declared. spoiling: how both recordings are spoilt.
+    programme: of KINDS. excited: whether torque is injected. off: number -> true over declared.
+    spoiling: how both recordings are spoilt.
     plant: text of the plant file. fit, judge: channels as recorded (SI). exact: torque, motor angle and table position
     of the judged rows without sensor errors. runs: what made them.
     """
@@ -256,6 +264,7 @@ def _attempt(seed: int, kind: str, names: tuple[str, ...], random: Random, decla
     if set(names) & set(TIMING):
         declared = softened(declared, 0.4)
     which, excited = drawn_programme(random)
+    excited = excited and declared.row_time <= SLOWEST_EXCITED
     length = seconds_of(declared, random, names)
     touched = frozenset(key for name in names for key in TOUCHED.get(name, ()))
     off = off_factors(random, touched) if random.random() < OFF and kind != "encoder null" else {}
@@ -290,6 +299,8 @@ def _attempt(seed: int, kind: str, names: tuple[str, ...], random: Random, decla
     except FloatingPointError:
         return None
     if not all(steady(one) for one in runs):
+        return None
+    if any(from_declared(runs[0], name) < LEAST_TOLD for name in names):
         return None
     factor = off.get("torque_constant", 1.0)
     fit, judge = (one.recorded(noise, factor) for one, noise in zip(runs, seeds[2:], strict=True))
@@ -349,6 +360,7 @@ def _sized(true: Machine, drawn: list[Drawn], targets: list[float], asked: tuple
 def _grown(true: Machine, drawn: Drawn, target: float, asked: tuple[Array, Array]) -> Planted | None:
     wanted, factor = math.sqrt(target**2 - 1.0), max(1.0, drawn.low)
     tried: list[tuple[float, float]] = []
+    last: Planted | None = None
     for _ in range(5):
         effect = _possible(drawn, factor, true)
         if effect is None:
@@ -361,16 +373,17 @@ def _grown(true: Machine, drawn: Drawn, target: float, asked: tuple[Array, Array
         ratio = max(shown.torque, shown.position)
         if not math.isfinite(ratio) or ratio <= 0.0:
             return None
+        last = Planted(effect, drawn.relative, shown)
         if abs(math.log(ratio / wanted)) < NEAR:
-            return Planted(effect, drawn.relative, shown)
-        if ratio > wanted and factor <= drawn.low * 1.0001 and drawn.low > BEYOND * 0.01:
+            return last
+        if ratio > wanted and factor <= drawn.low * 1.0001:
             # A value that is off is so by more than its tolerance, be it more visible than drawn.
-            return Planted(effect, drawn.relative, shown) if shown.size <= 1.5 * LARGEST else None
+            return last if shown.size <= 1.5 * LARGEST else None
         if ratio < wanted and factor >= drawn.high * 0.9999:
-            return Planted(effect, drawn.relative, shown) if shown.size >= SMALLEST else None
+            return last if shown.size >= SMALLEST else None
         tried.append((math.log(factor), math.log(ratio)))
         factor = min(max(_next(tried, math.log(wanted)), drawn.low), drawn.high)
-    return Planted(effect, drawn.relative, shown) if SMALLEST <= shown.size <= LARGEST else None
+    return last if last is not None and SMALLEST <= last.shown.size <= LARGEST else None
 
 
 def _next(tried: list[tuple[float, float]], wanted: float) -> float:

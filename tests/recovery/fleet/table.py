@@ -44,8 +44,8 @@ def section(verdicts: Sequence[Verdict], state: str) -> str:
 
 INTRODUCTION = (
     "Machines drawn at random (`tests/generator/machines.py`), programmes of three kinds (`programmes.py`), the",
-    "catalogue's laws and relatives of them (`drawn_effects.py`), sizes from 1.1 to 8 times the floor: error without the",
-    "effect over that with it, computed by the generator, in the band where it shows most. A fifth has",
+    "catalogue's laws and relatives of them (`drawn_effects.py`), sizes from 1.1 to 8 times the floor: error without",
+    "the effect over that with it, computed by the generator, in the band where it shows most. A fifth has",
     "nothing planted, 15 % are spoilt recordings, 15 % hold two effects; in half of all, declared values are off, each",
     "within its tolerance and two of them up to twice. Names of values beyond their tolerance count neither way.",
     "Intervals of shares are Wilson's.",
@@ -58,7 +58,7 @@ def rows(verdicts: Sequence[Verdict]) -> list[str]:
     singles = [v for v in verdicts if v.kind == "single"]
     laws, relatives = [v for v in singles if not v.relative], [v for v in singles if v.relative]
     pairs, nulls, spoilt = ([v for v in verdicts if v.kind == kind] for kind in ("pair", "null", "corrupted"))
-    planted = singles + pairs
+    planted, sound = singles + pairs, [v for v in verdicts if not v.truth["spoiling"]]
     with_floor = [v for v in done if v.over_floor is not None]
     size = float(np.mean([v.set_size for v in planted if v.done])) if any(v.done for v in planted) else 1.0
     inside = [hit for v in done for _, hit in v.intervals]
@@ -72,6 +72,7 @@ def rows(verdicts: Sequence[Verdict]) -> list[str]:
         *[_count(f"as declared, encoder of {bits} bits", "1 in all", hits) for bits, hits in _encoders(verdicts)],
         _count("spoilt recordings: cases with a false name", "1 of 90", [bool(v.extra) for v in spoilt]),
         _share("spoilt recordings: refused or reported", "-", [v.record["outcome"] == "refused" for v in spoilt]),
+        _count("sound recordings refused", "-", [v.record["outcome"] == "refused" for v in sound]),
         _count("planted: cases with a name too many", "<= 3 %", [bool(v.extra) for v in planted]),
         _count("declared values off: false names", "-", [bool(v.extra) for v in verdicts if v.truth["off"]]),
         _count("a channel worse than declared", "0", [bool(v.worse_channels) for v in done]),
