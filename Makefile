@@ -7,6 +7,7 @@ BIN := $(VENV)/bin
 WORKERS ?= 2
 TESTS ?= tests
 RECOVERY ?=
+FLEET ?= --seeds 100000:100599 --encoder-nulls 500:509
 FUZZ ?= --cases 2000 --seed 1
 
 # The first interpreter that is new enough; asked only when .venv has to be made.
@@ -20,7 +21,7 @@ PIP_INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help demo test test-slow check recovery recovery-smoke fuzz bench lint types format docs develop clean
+.PHONY: help demo test test-slow check recovery recovery-fleet recovery-smoke fuzz bench lint types format docs develop clean
 
 help: ## show this list
 	@echo "make TARGET, where TARGET is"
@@ -40,6 +41,9 @@ check: $(VENV)/.developing ## every claim beside its bound and what is measured;
 
 recovery: $(VENV)/.recovery ## plant every effect, diagnose it, write docs/recovery.md; goes on where it was stopped
 	$(ONE_THREAD) $(BIN)/python -m tests.recovery.suite --workers $(WORKERS) $(RECOVERY)
+
+recovery-fleet: $(VENV)/.developing ## machines drawn at random, diagnosed; goes on where it was stopped
+	$(ONE_THREAD) $(BIN)/python -m tests.recovery.fleet $(FLEET) --out build/fleet --resume --workers $(WORKERS) --page docs/recovery.md
 
 recovery-smoke: $(VENV)/.developing ## one planted case for every effect
 	$(PYTEST) tests/recovery/test_suite_smoke.py
