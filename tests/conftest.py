@@ -8,6 +8,8 @@ import os
 for _variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ[_variable] = "1"
 os.environ["MPLBACKEND"] = "Agg"
+# What runs tests side by side names the width of its own terminal; tables are looked at as a pipe has them.
+os.environ.pop("COLUMNS", None)
 
 import random
 from collections.abc import Callable, Iterator

@@ -218,6 +218,8 @@ class Problem:
             rows = e.thinned(e.fit_rows)
             parts = [e.weighted({c: s[:, i] for c, s in found.items()}, rows) for i in range(len(names))]
             columns.append(np.column_stack(parts))
+        if not columns:
+            return None
         return np.asarray(np.vstack(columns) @ value_slopes(moved, self.plant, vector))
 
 

@@ -90,7 +90,7 @@ def test_a_number_of_samples_that_is_none_is_refused(samples: object, tmp_path: 
     text = (plants_folder() / "emps.toml").read_text(encoding="utf-8")
     path = tmp_path / "emps.toml"
     path.write_text(text.replace("velocity_samples = 2", f"velocity_samples = {samples}"), encoding="utf-8")
-    with pytest.raises(InputError, match="is not a number of samples"):
+    with pytest.raises(InputError, match="is not a whole number from 0 to 64"):
         read_plant(path)
 
 
