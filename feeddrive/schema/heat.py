@@ -16,7 +16,7 @@ def positive(name: str, unit: str, meaning: str, **further: object) -> Key:
     return Key(name, meaning, unit, minimum=0.0, open_ends=True, required=True, **further)  # type: ignore[arg-type]
 
 
-_ALONE = "where the motion declares no friction of its own; it must stand there then"
+_ALONE = "where the motion declares no friction of its own"
 
 
 def _friction(path: str, meaning: str, *seat: Key) -> Section:
@@ -24,11 +24,14 @@ def _friction(path: str, meaning: str, *seat: Key) -> Section:
         path,
         meaning,
         keyed(
-            Key("load_torque", "friction torque from load and preload", "N m", minimum=0.0, when=_ALONE),
-            Key("viscous_factor", "f0, times number of nuts and turns for a nut", "1", minimum=0.0, when=_ALONE),
-            Key("viscosity", "kinematic viscosity of the lubricant", "m^2/s", minimum=0.0, open_ends=True, when=_ALONE),
-            Key("mean_diameter", "mean diameter of the rolling bodies' path", "m", minimum=0.0, open_ends=True,
+            Key("load_torque", "friction torque from load and preload", "N m", minimum=0.0, required=True,
                 when=_ALONE),
+            Key("viscous_factor", "f0, times number of nuts and turns for a nut", "1", minimum=0.0, required=True,
+                when=_ALONE),
+            Key("viscosity", "kinematic viscosity of the lubricant", "m^2/s", minimum=0.0, open_ends=True,
+                required=True, when=_ALONE),
+            Key("mean_diameter", "mean diameter of the rolling bodies' path", "m", minimum=0.0, open_ends=True,
+                required=True, when=_ALONE),
             Key("heat_share", "share of the friction that becomes heat here", "1", minimum=0.0, maximum=1.0,
                 default="1"),
             *seat,

@@ -12,10 +12,12 @@ from scipy.linalg import expm
 
 import feeddrive as fd
 from feeddrive.diagnosis.responses.response_result import ResponseResult, diagnose_response
+from feeddrive.interface.axis import axis_of_text
 from feeddrive.recording.frequency_response import FrequencyResponse, write_response
 from feeddrive.servo.frequency_response import Case
 from feeddrive.typing import ComplexArray, FloatArray
 
+ROOT = Path(__file__).parents[2]
 FREQUENCY = np.arange(8.0, 700.0, 2.0)
 AVERAGES = 16
 NOISE = 0.02
@@ -109,7 +111,7 @@ def test_speed_loop_is_compared_with_its_controller(loop: str, tmp_path: Path) -
     (tmp_path / "controller.toml").write_text(CONTROLLER, encoding="utf-8")
     for seed, changed in ((21, {}), (22, {"table": 200.0})):
         write_response(bench(seed, loop, **changed), tmp_path / "frf.csv")
-        found = fd.explain(fd.load("bench_axis"), tmp_path / "frf.csv", at="x=0 mm, v=3 m/min",
+        found = fd.explain(catalogued(), tmp_path / "frf.csv", at="x=0 mm, v=3 m/min",
                            controller=tmp_path / "controller.toml").result  # fmt: skip
         assert isinstance(found, ResponseResult)
         assert [one.parameters[0].key for one in found.asserted] == (["table.mass"] if changed else [])
@@ -123,8 +125,16 @@ def test_speed_loop_without_its_controller_is_refused() -> None:
         result_of(bench(0, "command"))
 
 
+def catalogued() -> fd.Axis:
+    """The bench axis as from a catalogue: of itself it declares the numbers that a simulation ran with, exactly."""
+    path = ROOT / "plants" / "bench_axis.toml"
+    text = path.read_text(encoding="utf-8")
+    assert "of the simulated recordings" in text
+    return axis_of_text(text.replace("of the simulated recordings", "of a catalogue"), path)
+
+
 def result_of(response: FrequencyResponse):  # type: ignore[no-untyped-def]
-    axis = fd.load("bench_axis")
+    axis = catalogued()
     case = Case(axis.plant.middle, SLOPE_SPEED)
     return diagnose_response(axis.entries, axis.path, axis.plant, response, case)
 
@@ -135,6 +145,15 @@ def test_nothing_is_found_where_all_is_as_declared(seed: int) -> None:
     assert not result.found
     # the error before is the scatter itself, coherence and all
     assert result.error_after == pytest.approx(result.scatter, rel=0.1)
+
+
+def test_a_file_of_exact_values_is_compared_too() -> None:
+    """Values that are exact have no tolerance to be fitted within; a mass that is other is found all the same."""
+    axis = fd.load("bench_axis")
+    for seed, table in ((0, TABLE), (12, 200.0)):
+        case = Case(axis.plant.middle, SLOPE_SPEED)
+        result = diagnose_response(axis.entries, axis.path, axis.plant, bench(seed, table=table), case)
+        assert [one.parameters[0].key for one in result.asserted] == ["table.mass"] * (table != TABLE)
 
 
 def test_values_within_tolerance_are_calibrated() -> None:
@@ -178,7 +197,7 @@ def test_files_and_command(tmp_path: Path) -> None:
     """The file of a response goes through the command's own road and comes back as a plant that can be read."""
     path = tmp_path / "frf.csv"
     write_response(bench(15, delay=0.4e-3), path)
-    found = fd.explain(fd.load("bench_axis"), path, at="x=0 mm, v=3 m/min")
+    found = fd.explain(catalogued(), path, at="x=0 mm, v=3 m/min")
     out = found.save(tmp_path / "out")
     record = json.loads((out / "diagnosis.json").read_text(encoding="utf-8"))
     assert [one["name"] for one in record["effects"]] == ["drive_delay"]

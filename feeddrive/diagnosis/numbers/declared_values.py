@@ -51,6 +51,11 @@ class DeclaredValue:
     settled_by: str
     missing: bool = False
 
+    @property
+    def exact(self) -> bool:
+        """Whether nothing within its tolerance can be told from it."""
+        return not self.missing and self.deviation <= deviation_of(_LEAST_TOLERANCE)
+
     def at(self, coordinate: float) -> str | None:
         """The value at a coordinate as a file writes it; None where nothing is to be written."""
         number = self.number(coordinate)

@@ -43,6 +43,10 @@ LOW_COHERENCE = 0.05
 SCREENED = 4
 """Candidates of a round that are fitted; the others promise less by one linear step."""
 
+AWAY = (-0.7, -0.35, 0.35, 0.7)
+"""Logarithms of a value over the one so far from which it is looked at: half to twice, where the first resonance moves
+by half of itself."""
+
 
 @dataclass(frozen=True)
 class ResponseFit:
@@ -161,11 +165,12 @@ def member_names(problem: ResponseProblem, fit: ResponseFit) -> list[str]:
 def _of_seen_values(problem: ResponseProblem, declared: FloatArray) -> ResponseProblem:
     """The problem without values that the response does not depend on.
 
-    Kept are those that move it, within tolerance, by a tenth of what all its lines together can tell.
+    Kept are those that move it, within tolerance, by a tenth of what all its lines together can tell; of values that
+    are exact, which can only be beyond it, those that do so there.
     """
     zero = np.zeros(len(problem.values))
     slopes = _slopes(problem, zero, Lines(), declared)
-    deviations = np.array([one.deviation for one in problem.values])
+    deviations = np.array([BEYOND if one.exact else one.deviation for one in problem.values])
     told = np.sqrt(np.sum((slopes * deviations) ** 2 / _variance(problem, declared)[:, None], axis=0))
     kept = tuple(one for one, size in zip(problem.values, told, strict=True) if size > 0.1)
     return replace(problem, values=kept)
@@ -179,6 +184,7 @@ def _candidates(problem: ResponseProblem, found: ResponseFit, seen: Sequence[int
             gain = _linear_promise(found, place)
             promised.append((gain, problem.values[place].key, (*found.beyond, place), found.lines, found.coordinates))
     promised = sorted(promised, key=lambda one: -one[0])[:SCREENED]
+    promised = [(*one[:4], _nearest_start(problem, one[4], one[2][-1], found.lines)) for one in promised]
     own = len(problem.values)
     if not found.lines.delay and problem.response.given != "cutting_force":
         start = np.insert(found.coordinates, own, 0.1)
@@ -194,6 +200,21 @@ def _candidates(problem: ResponseProblem, found: ResponseFit, seen: Sequence[int
         except (InputError, np.linalg.LinAlgError):  # no such machine
             continue
     return fitted
+
+
+def _nearest_start(problem: ResponseProblem, at: FloatArray, place: int, lines: Lines) -> FloatArray:
+    """Coordinates with the likeliest of some values at one place: a resonance far from its lines pulls nowhere."""
+    starts = []
+    for step in (0.0, *AWAY):
+        moved = at.copy()
+        moved[place] += step
+        try:
+            residual = problem.residual(moved, lines)
+        except InputError:  # no such machine
+            continue
+        variance = _variance(problem, residual)
+        starts.append((float(np.sum(residual**2 / variance + np.log(variance))), moved))
+    return min(starts, key=lambda one: one[0])[1]
 
 
 def _linear_promise(found: ResponseFit, place: int) -> float:
