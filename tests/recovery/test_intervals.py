@@ -9,7 +9,7 @@ noise was drawn with, which the package does not know.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pytest
@@ -132,7 +132,7 @@ def test_intervals_follow_the_noise_after_real_fits(bench: Bench) -> None:
     for seed in range(8):
         problem = _Drawn(
             bench.problem.plant, bench.problem.evidence, bench.problem.predictor,
-            measured + noise(bench, white, 1000 + seed),
+            drawn=measured + noise(bench, white, 1000 + seed),
         )  # fmt: skip
         found = fit(problem, effects)
         known = intervals(problem, found, certainty(problem, found))
@@ -149,7 +149,7 @@ def test_intervals_follow_the_noise_after_real_fits(bench: Bench) -> None:
 class _Drawn(Problem):
     """A problem whose measurement was drawn, weighted as the residual is."""
 
-    drawn: FloatArray
+    drawn: FloatArray = field(kw_only=True)
 
     def measured(self) -> FloatArray:
         return self.drawn
