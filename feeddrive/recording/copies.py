@@ -23,6 +23,9 @@ ROUNDED = 0.6
 WIDE = 1000.0
 """Range over resolution from which a copy is told from two sensors that see next to nothing."""
 
+DIGITS = 1e-9
+"""Of the largest value: what ten significant digits in a file leave. No transmission gives so little."""
+
 SIZES = 3
 """Different steps that show a grid: rest and one speed, to and fro, make two at most, whatever resolves them."""
 
@@ -49,7 +52,7 @@ def is_copy(source: FloatArray, other: FloatArray) -> bool:
     steps = _grid(source), _grid(other)
     if np.ptp(source) < WIDE * steps[0] or np.ptp(other) < WIDE * steps[1]:
         return False
-    rounding = 1e-12 * float(np.max(np.abs(other)))
+    rounding = DIGITS * float(np.max(np.abs(other)))
     return bool(np.max(np.abs(y - factor * x)) <= ROUNDED * (abs(factor) * steps[0] + steps[1]) + rounding)
 
 

@@ -224,3 +224,13 @@ def test_gz_and_plain_find_the_same(tmp_path: Path, null: Recording) -> None:
     second = read_recording(tmp_path / "b.csv.gz")
     assert flaws_of(first) == flaws_of(second) == {("motor_torque", BAD): [5000]}
     assert np.array_equal(first["motor_torque"], second["motor_torque"])
+
+
+def test_a_copy_is_told_through_the_digits_of_a_file() -> None:
+    """Positions made from the angle and written with twelve digits; a sensor that sees a nanometre more is none."""
+    random = np.random.default_rng(4)
+    angle = np.cumsum(random.standard_normal(4000)) * 0.05 + 120.0
+    position = angle * 0.020 / (2 * np.pi)
+    digits = [np.array([float(f"{value:.12g}") for value in series]) for series in (angle, position)]
+    assert is_copy(*digits)
+    assert not is_copy(angle, position + 1e-9 * random.standard_normal(4000))

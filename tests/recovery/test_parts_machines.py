@@ -110,6 +110,7 @@ def test_nothing_is_found_where_nothing_is_planted() -> None:
     assert [effect.name for effect in result.effects] == []
 
 
+@pytest.mark.slow
 def test_a_soft_nut_within_the_tolerance_of_a_catalogue_is_calibrated() -> None:
     """A fifth softer is what a catalogue leaves open: nothing is named; nut and bearing together give way as much."""
     result = diagnosed("kimm_testbed", "nut", 0.8)
