@@ -13,11 +13,11 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 
-from feeddrive.effects.friction_vs_position import FrictionVsPosition
-from feeddrive.effects.guide_friction import GuideFriction
-from feeddrive.effects.presliding import Presliding
-from feeddrive.effects.stribeck import Stribeck
-from feeddrive.plant.linear_chain import Chain, ChainValue, Matrix, Row, Spring, Values
+from feeddrive.effects.friction.friction_vs_position import FrictionVsPosition
+from feeddrive.effects.friction.guide_friction import GuideFriction
+from feeddrive.effects.friction.presliding import Presliding
+from feeddrive.effects.friction.stribeck import Stribeck
+from feeddrive.plant.chain.linear_chain import Chain, ChainValue, Matrix, Row, Spring, Values
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.sampled import SampledController
 from feeddrive.typing import Expression, FloatArray

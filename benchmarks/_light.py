@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from feeddrive.effects.guide_friction import GuideFriction
-from feeddrive.effects.shaft_drag import NutDrag
-from feeddrive.plant.chain import ThreeInertias
+from feeddrive.effects.friction.guide_friction import GuideFriction
+from feeddrive.effects.friction.shaft_drag import NutDrag
+from feeddrive.plant.chain.chain import ThreeInertias
 from feeddrive.plant.plant import Plant
 from feeddrive.simulate.held_torque import initial_state, simulate_torque
 from feeddrive.typing import FloatArray

@@ -22,16 +22,16 @@ sys.path.insert(0, str(ROOT))
 
 from feeddrive.files import find_plant  # noqa: E402
 from feeddrive.recording import read_recording  # noqa: E402
-from feeddrive.report.figures import render_figures  # noqa: E402
-from feeddrive.report.html import write_report  # noqa: E402
+from feeddrive.report.figures.figures import render_figures  # noqa: E402
+from feeddrive.report.pages.html import write_report  # noqa: E402
 from feeddrive.reproduce.paper_002 import rows  # noqa: E402
-from feeddrive.thermal.explicit import run_explicitly  # noqa: E402
-from feeddrive.thermal.files import read_thermal_plant  # noqa: E402
-from feeddrive.thermal.full_model import discretise, full_model, model_of  # noqa: E402
-from feeddrive.thermal.grid import Cells  # noqa: E402
-from feeddrive.thermal.moving import moving_system  # noqa: E402
-from feeddrive.thermal.reduction import compressed_basis, reduce_model, reduced_system  # noqa: E402
-from feeddrive.thermal.warm_up import simulate  # noqa: E402
+from feeddrive.thermal.file.files import read_thermal_plant  # noqa: E402
+from feeddrive.thermal.full.explicit import run_explicitly  # noqa: E402
+from feeddrive.thermal.full.full_model import discretise, full_model, model_of  # noqa: E402
+from feeddrive.thermal.full.grid import Cells  # noqa: E402
+from feeddrive.thermal.full.moving import moving_system  # noqa: E402
+from feeddrive.thermal.reduced.reduction import compressed_basis, reduce_model, reduced_system  # noqa: E402
+from feeddrive.thermal.run.warm_up import simulate  # noqa: E402
 from tests.analytic import report_examples  # noqa: E402
 from tests.claims.book import CLAIMS, keep  # noqa: E402
 

@@ -22,8 +22,8 @@ from _timing import interleaved, median, once, ratio
 
 from feeddrive.compiler import find_compiler
 from feeddrive.plant.structure import forget_machines
-from feeddrive.simulate.controlled import ControlledRun, TorqueLoop, simulate_controlled
-from feeddrive.simulate.sensitivity import Sensitivity, simulate_sensitivity
+from feeddrive.simulate.controlled.controlled import ControlledRun, TorqueLoop, simulate_controlled
+from feeddrive.simulate.controlled.sensitivity import Sensitivity, simulate_sensitivity
 from feeddrive.typing import FloatArray
 
 HERE = Path(__file__).resolve().parent

@@ -19,12 +19,12 @@ from pathlib import Path
 
 from feeddrive.files import find_scenario_file
 from feeddrive.metrology.run_metrics import run_metrics
-from feeddrive.simulate.sweep import run_sweep
-from feeddrive.simulate.sweep_dask import on_cluster
-from feeddrive.simulate.sweep_design import Design, make_design
-from feeddrive.simulate.sweep_table import as_csv
-from feeddrive.simulate.sweep_values import read_parameters
-from feeddrive.simulate.sweep_workers import Workers, in_this_process, processes, usable_processors
+from feeddrive.simulate.sweep.sweep import run_sweep
+from feeddrive.simulate.sweep.sweep_dask import on_cluster
+from feeddrive.simulate.sweep.sweep_design import Design, make_design
+from feeddrive.simulate.sweep.sweep_table import as_csv
+from feeddrive.simulate.sweep.sweep_values import read_parameters
+from feeddrive.simulate.sweep.sweep_workers import Workers, in_this_process, processes, usable_processors
 
 VARIED = [
     "plant.table.mass=100~170 kg",

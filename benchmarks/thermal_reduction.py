@@ -13,18 +13,18 @@ from pathlib import Path
 
 import numpy as np
 
-from feeddrive.thermal.explicit import ExplicitRun, run_explicitly
-from feeddrive.thermal.files import read_thermal_plant
-from feeddrive.thermal.full_model import discretise, full_model, model_of
-from feeddrive.thermal.grid import Cells
-from feeddrive.thermal.moving import moving_system, ripple_number
-from feeddrive.thermal.moving_family import moving_family
-from feeddrive.thermal.network import network
-from feeddrive.thermal.reduction import Sizes, compressed_basis, reduce_model, reduced_system
-from feeddrive.thermal.reduction_error import reduction_error
+from feeddrive.thermal.file.files import read_thermal_plant
+from feeddrive.thermal.full.explicit import ExplicitRun, run_explicitly
+from feeddrive.thermal.full.full_model import discretise, full_model, model_of
+from feeddrive.thermal.full.grid import Cells
+from feeddrive.thermal.full.moving import moving_system, ripple_number
+from feeddrive.thermal.full.moving_family import moving_family
+from feeddrive.thermal.reduced.network import network
+from feeddrive.thermal.reduced.reduction import Sizes, compressed_basis, reduce_model, reduced_system
+from feeddrive.thermal.reduced.reduction_error import reduction_error
+from feeddrive.thermal.reduced.system import HeatSystem
 from feeddrive.thermal.rig import Travel
-from feeddrive.thermal.system import HeatSystem
-from feeddrive.thermal.warm_up import simulate
+from feeddrive.thermal.run.warm_up import simulate
 
 ROOT = Path(__file__).resolve().parents[1]
 SHIPPED = ROOT / "plants" / "thermal_bench.toml"

@@ -18,20 +18,20 @@ import numpy as np
 from feeddrive.diagnosis.stiffness.candidates import Candidate, DriveAt
 from feeddrive.diagnosis.stiffness.gap import Explanation, Solved, explain_both, explain_stiffness, frequency_of
 from feeddrive.files import write_bytes_atomically
-from feeddrive.parts.ball_screw import ScrewShaft
-from feeddrive.parts.bearing import SupportBearing
+from feeddrive.parts.bearings.bearing import SupportBearing
+from feeddrive.parts.bearings.supports import ScrewSupports, Support
 from feeddrive.parts.combined_stiffness import combined_stiffness, natural_frequency
 from feeddrive.parts.coupling import Coupling
 from feeddrive.parts.effective_mass import added_mass
 from feeddrive.parts.material import ShaftMaterial
 from feeddrive.parts.motor import Motor
-from feeddrive.parts.nut import Nut
-from feeddrive.parts.screw_drive import BallScrewDrive
-from feeddrive.parts.supports import ScrewSupports, Support
-from feeddrive.plant.held_frequency import held_frequency
-from feeddrive.quantity import format_quantity
-from feeddrive.report.drawing import render
-from feeddrive.report.figure_stiffness_gap import stiffness_gap_figure
+from feeddrive.parts.screw.ball_screw import ScrewShaft
+from feeddrive.parts.screw.nut import Nut
+from feeddrive.parts.screw.screw_drive import BallScrewDrive
+from feeddrive.plant.analysis.held_frequency import held_frequency
+from feeddrive.report.figures.drawing import render
+from feeddrive.report.figures.figure_stiffness_gap import stiffness_gap_figure
+from feeddrive.units.quantity import format_quantity
 
 STIFFNESS, FREQUENCY = 191e6, 185.0  # measured [N/m, Hz]
 NUT = 0.564  # from the fixed bearing [m]

@@ -29,12 +29,12 @@ from feeddrive.compensation.heat.thermal_trial import TriedMachine, tried_machin
 from feeddrive.compensation.heat.thermal_unknowns import Unknowns
 from feeddrive.files import find_plant, write_bytes_atomically, write_text_atomically
 from feeddrive.metrology.axis_heating import AxisHeating, axis_heating
-from feeddrive.report.drawing import render
-from feeddrive.report.figure_thermal_compensation import axis_heating_figure, compensation_figure, stroke_figure
-from feeddrive.thermal.files import read_thermal_plant
-from feeddrive.thermal.grid import Cells
-from feeddrive.thermal.model import HeatModel
+from feeddrive.report.figures.drawing import render
+from feeddrive.report.figures.figure_thermal_compensation import axis_heating_figure, compensation_figure, stroke_figure
+from feeddrive.thermal.file.files import read_thermal_plant
+from feeddrive.thermal.full.grid import Cells
 from feeddrive.thermal.plant import ThermalPlant
+from feeddrive.thermal.reduced.model import HeatModel
 from feeddrive.thermal.rig import Body
 from feeddrive.typing import FloatArray
 

@@ -13,14 +13,14 @@ import sys
 from pathlib import Path
 
 from feeddrive.files import find_plant, find_scenario_file, write_bytes_atomically
-from feeddrive.report.drawing import render
-from feeddrive.report.figure_warm_axis import warm_axis_figure
-from feeddrive.simulate.scenario_file import read_scenario
-from feeddrive.simulate.warm_up_result import WarmUpRun
-from feeddrive.simulate.warm_up_run import MacroSteps, run_warm_up
-from feeddrive.thermal.coupling_section import read_coupling
-from feeddrive.thermal.files import read_thermal_plant
-from feeddrive.thermal.full_model import NUT, SHAFT
+from feeddrive.report.figures.drawing import render
+from feeddrive.report.figures.figure_warm_axis import warm_axis_figure
+from feeddrive.simulate.scenario.scenario_file import read_scenario
+from feeddrive.simulate.warm.warm_up_result import WarmUpRun
+from feeddrive.simulate.warm.warm_up_run import MacroSteps, run_warm_up
+from feeddrive.thermal.file.coupling_section import read_coupling
+from feeddrive.thermal.file.files import read_thermal_plant
+from feeddrive.thermal.full.full_model import NUT, SHAFT
 
 HOURS = 4.0
 SHOWN = 10  # rows of the table

@@ -11,11 +11,11 @@ from pathlib import Path
 
 import planted
 
-from feeddrive.diagnosis.candidates import CANDIDATES
+from feeddrive.diagnosis.finding.candidates import CANDIDATES
 from feeddrive.effects.base import Effect, Kind, Parameter
 from feeddrive.effects.catalogue import EFFECTS, THERMAL_EFFECTS
-from feeddrive.quantity import format_quantity
-from feeddrive.report.words import effect_words
+from feeddrive.report.words.words import effect_words
+from feeddrive.units.quantity import format_quantity
 
 KINDS: dict[Kind, str] = {
     Kind.FRICTION: "Friction",

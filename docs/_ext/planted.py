@@ -19,9 +19,9 @@ from page_runner import digest
 
 import feeddrive as fd
 from feeddrive.diagnosis.certainty.rehearsal import Rehearsal, rehearsals
-from feeddrive.diagnosis.evidence import AxisEvidence, prepare
-from feeddrive.diagnosis.fit import Problem, fit
-from feeddrive.diagnosis.prediction import AxisPredictor
+from feeddrive.diagnosis.likelihood.evidence import AxisEvidence, prepare
+from feeddrive.diagnosis.likelihood.fit import Problem, fit
+from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
 from feeddrive.effects.base import Effect
 
 ROOT = Path(__file__).resolve().parents[2]

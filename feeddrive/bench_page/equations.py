@@ -19,21 +19,21 @@ import numpy as np
 
 from feeddrive.bench_page.javascript import javascript
 from feeddrive.effects.base import TimingEffect, TransmissionEffect
+from feeddrive.engine.program import CELL, DEEPEST, TOLERANCE
+from feeddrive.engine.step.linear_part import FORGETTING
+from feeddrive.engine.step.step_constants import CONVERGED, FULL_SCALE
 from feeddrive.errors import InputError
-from feeddrive.plant.chain import symbolic
+from feeddrive.plant.analysis.linear import OUTPUTS
+from feeddrive.plant.analysis.ode import ode
+from feeddrive.plant.chain.chain import symbolic
 from feeddrive.plant.equations import bristle_count, chain_symbols, parameter_symbols, parameter_values
-from feeddrive.plant.linear import OUTPUTS
-from feeddrive.plant.ode import ode
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.symbolic_turn import SYMBOLS
 from feeddrive.plant.transmission_law import travel_deviation
 from feeddrive.servo.cascade import Cascade
 from feeddrive.servo.cascade_function import PARAMETERS, cascade_controller
 from feeddrive.servo.sampled import MEASUREMENTS, SampledController
-from feeddrive.simulate.controlled_machine import TorqueLoop, machine_for, resolutions_of
-from feeddrive.simulate.linear_part import FORGETTING
-from feeddrive.simulate.program import CELL, DEEPEST, TOLERANCE
-from feeddrive.simulate.step_constants import CONVERGED, FULL_SCALE
+from feeddrive.simulate.controlled.controlled_machine import TorqueLoop, machine_for, resolutions_of
 
 
 def bench_equations(plant: Plant, cascade: Cascade) -> tuple[str, dict[str, Any]]:

@@ -14,18 +14,18 @@ import numpy as np
 
 from feeddrive.bench_page.equations import bench_equations
 from feeddrive.effects.base import Effect
-from feeddrive.effects.payload import Payload
+from feeddrive.effects.chain.payload import Payload
 from feeddrive.errors import InputError, printable
 from feeddrive.metrology.circular import GLITCH_SPAN
+from feeddrive.plant.analysis.steady import MOVING
+from feeddrive.plant.chain.moving_inertia import inertia_at_motor
 from feeddrive.plant.equations import parameter_names, parameter_values
-from feeddrive.plant.moving_inertia import inertia_at_motor
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.steady import MOVING
 from feeddrive.servo.cascade import Cascade
 from feeddrive.servo.filters import Filter, notch
 from feeddrive.servo.frequency_response import grid
 from feeddrive.servo.margins import GROWTH
-from feeddrive.simulate.trial_motions import HEIGHT, RADIUS, STEP_AT, Trial, circle_about, step_at
+from feeddrive.simulate.setpoints.trial_motions import HEIGHT, RADIUS, STEP_AT, Trial, circle_about, step_at
 
 _SCRIPTS = ("linear.js", "loop.js", "engine.js", "bench.js", "drawing.js", "page.js")
 _LOWEST, _HIGHEST = 1.0, 4000.0

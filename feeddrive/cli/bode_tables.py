@@ -8,11 +8,11 @@ import numpy as np
 from rich.table import Table
 
 from feeddrive.cli.output import table
-from feeddrive.quantity import format_quantity
-from feeddrive.report.figure_bode import magnitude_unit
+from feeddrive.report.figures.figure_bode import magnitude_unit
 from feeddrive.servo.frequency_response import Case
 from feeddrive.servo.resonances import Resonance, on_curve
 from feeddrive.servo.response_family import Curve, Family
+from feeddrive.units.quantity import format_quantity
 
 _STEPS = (1, 2, 3, 5, 7)
 _WIDEST = 4

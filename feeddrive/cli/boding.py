@@ -18,22 +18,22 @@ from feeddrive.files import find_plant, find_scenario_or_controller, write_bytes
 from feeddrive.metrology.recorded_response import recorded_response
 from feeddrive.metrology.response import Response as Measured
 from feeddrive.output_folder import output_folder, refuse_unusable
-from feeddrive.plant.entries import nearest
-from feeddrive.plant.linear import INPUTS, OUTPUTS
+from feeddrive.plant.analysis.linear import INPUTS, OUTPUTS
+from feeddrive.plant.chain.resolution import resolved, resolved_modes
+from feeddrive.plant.file.entries import nearest
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.resolution import resolved, resolved_modes
-from feeddrive.quantity import parse, unit_conversion
-from feeddrive.recording.formats.opened import read_frequency_response
+from feeddrive.recording.files.reading import read_recording
 from feeddrive.recording.frequency_response import FrequencyResponse
-from feeddrive.recording.reading import read_recording
+from feeddrive.recording.traces.opened import read_frequency_response
 from feeddrive.servo.cascade import Cascade
 from feeddrive.servo.frequency_response import UNITS, Case, refuse_no_range
 from feeddrive.servo.loop_response import loops_of, refuse_unstable_case
 from feeddrive.servo.response_family import Family, closed_family, controlled_family, mechanics_family, open_family
 from feeddrive.servo.response_json import family_content, measured_content
-from feeddrive.simulate.controller_file import read_controller
-from feeddrive.thermal.whole_file import read_drive_plant
+from feeddrive.simulate.controlled.controller_file import read_controller
+from feeddrive.thermal.file.whole_file import read_drive_plant
 from feeddrive.tuning.demand import cases_of
+from feeddrive.units.quantity import parse, unit_conversion
 
 FORMAT = "feeddrive-bode/1"
 _LOOPS = ("open", "closed")
@@ -199,8 +199,8 @@ def _measured_content(measured: Measured) -> dict[str, Any]:
 
 
 def _write(families: list[Family], measured: Measured | None, content: dict[str, Any], out: Path) -> None:
-    from feeddrive.report.drawing import render
-    from feeddrive.report.figure_bode import bode_figure
+    from feeddrive.report.figures.drawing import render
+    from feeddrive.report.figures.figure_bode import bode_figure
 
     for family in families:
         drawn = render(bode_figure(family, measured))

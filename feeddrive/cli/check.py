@@ -10,8 +10,8 @@ import typer
 from feeddrive.cli.output import JsonOption, OutOption, deliver, table, warnings_as_lines
 from feeddrive.errors import InputError
 from feeddrive.interface.axis import load
-from feeddrive.plant.plausibility import Finding, Verdict
-from feeddrive.quantity import format_quantity, parse
+from feeddrive.plant.analysis.plausibility import Finding, Verdict
+from feeddrive.units.quantity import format_quantity, parse
 
 _DN, _DN_SHOWN = "m rad/s", "mm rev/min"
 """Unit of the DN value, inside and as catalogues count it."""

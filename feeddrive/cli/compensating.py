@@ -74,6 +74,6 @@ def run(request: Request, as_json: bool, out: Path | None) -> None:
 
 def picture(done: Compensation) -> bytes:
     """The telling figure as PNG."""
-    from feeddrive.report.drawing import render
+    from feeddrive.report.figures.drawing import render
 
     return render(done._figures()[0]).png

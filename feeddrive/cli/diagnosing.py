@@ -18,23 +18,23 @@ from feeddrive.cli.machine import read_machine
 from feeddrive.cli.output import escaped, working
 from feeddrive.compensation.actions import actions
 from feeddrive.diagnosis.diagnose import diagnose
+from feeddrive.diagnosis.judging.result import Diagnosis
 from feeddrive.diagnosis.ledger.continued import Earlier, changed_since
 from feeddrive.diagnosis.ledger.ledger import FileUse, RunFiles, runs_of, write_ledger, written_earlier
-from feeddrive.diagnosis.outputs import diagnosis_json, write_outputs
-from feeddrive.diagnosis.result import Diagnosis
+from feeddrive.diagnosis.likelihood.outputs import diagnosis_json, write_outputs
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError, printable
 from feeddrive.files import shipped_plants
 from feeddrive.output_folder import output_folder, refuse_unusable, take_away
 from feeddrive.recording import Recording, read_recording
 from feeddrive.report.certainty import experiment_sentences
-from feeddrive.report.figures import render_figures, save_figures
-from feeddrive.report.html import write_report
-from feeddrive.report.people import error_text, share_text
+from feeddrive.report.figures.figures import render_figures, save_figures
+from feeddrive.report.pages.html import write_report
+from feeddrive.report.pages.section_calibrated import calibrated_lines
 from feeddrive.report.records import Occasion, used_sentence
-from feeddrive.report.section_calibrated import calibrated_lines
 from feeddrive.report.simulated import simulation_lines
-from feeddrive.report.verdict import verdict_sentences
+from feeddrive.report.words.people import error_text, share_text
+from feeddrive.report.words.verdict import verdict_sentences
 
 DECIMAL_SIGNS = (None, ".", ",")
 

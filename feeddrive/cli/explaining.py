@@ -13,7 +13,7 @@ from feeddrive.errors import InputError, printable
 from feeddrive.interface.axis import load
 from feeddrive.interface.explaining import explain, read_response_file
 from feeddrive.output_folder import output_folder, refuse_unusable
-from feeddrive.plant.entries import read_toml
+from feeddrive.plant.file.entries import read_toml
 
 
 def are_no_recordings(names: Sequence[str]) -> bool:

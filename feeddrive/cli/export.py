@@ -17,8 +17,8 @@ from feeddrive.files import find_plant
 from feeddrive.interface.axis import load
 from feeddrive.output_folder import output_folder, refuse_unusable
 from feeddrive.plant.plant import Plant
-from feeddrive.quantity import format_quantity
-from feeddrive.thermal.whole_file import read_drive_plant
+from feeddrive.thermal.file.whole_file import read_drive_plant
+from feeddrive.units.quantity import format_quantity
 
 
 def command(

@@ -12,7 +12,7 @@ from feeddrive.cli.output import escaped, table, warnings_as_lines
 from feeddrive.errors import InputError, printable
 from feeddrive.interface.axis import load
 from feeddrive.interface.watching import watch
-from feeddrive.report.trend_words import shown_quantities
+from feeddrive.report.words.trend_words import shown_quantities
 
 
 @dataclass(frozen=True)

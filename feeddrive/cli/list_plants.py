@@ -8,8 +8,8 @@ from feeddrive.cli.output import JsonOption, OutOption, deliver, table
 from feeddrive.effects.catalogue import EFFECTS, THERMAL_EFFECTS
 from feeddrive.files import shipped_plants, shipped_scenarios
 from feeddrive.interface.axis import load
-from feeddrive.plant.entries import parse_toml
-from feeddrive.report.words import effect_words
+from feeddrive.plant.file.entries import parse_toml
+from feeddrive.report.words.words import effect_words
 
 
 def command(as_json: JsonOption = False, out: OutOption = None) -> None:

@@ -12,11 +12,11 @@ from rich.table import Table
 from feeddrive.cli.output import JsonOption, deliver, table, warnings_as_lines
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant, write_text_atomically
-from feeddrive.plant.entries import read_toml
-from feeddrive.plant.files import read_plant
-from feeddrive.plant.lumping import Lumped, lump
+from feeddrive.plant.analysis.lumping import Lumped, lump
+from feeddrive.plant.file.entries import read_toml
+from feeddrive.plant.file.files import read_plant
 from feeddrive.plant.plant import Plant
-from feeddrive.quantity import format_quantity, parse
+from feeddrive.units.quantity import format_quantity, parse
 
 _HEAT = "the [thermal] sections; temperatures are predicted with the file of the parts"
 

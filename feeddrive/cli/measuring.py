@@ -13,7 +13,7 @@ from feeddrive.interface.axis import load
 from feeddrive.interface.iso230 import Iso230, iso230
 from feeddrive.metrology.measured.plant_share import PlantShare, Share
 from feeddrive.output_folder import output_folder, refuse_unusable
-from feeddrive.quantity import format_quantity
+from feeddrive.units.quantity import format_quantity
 
 
 @dataclass(frozen=True)

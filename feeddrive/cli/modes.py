@@ -14,11 +14,11 @@ from rich.table import Table
 from feeddrive.cli.output import JsonOption, chain_remark, deliver, finite, table, tell_written, warnings_as_lines
 from feeddrive.files import find_plant, write_bytes_atomically, write_text_atomically
 from feeddrive.output_folder import output_folder, refuse_unusable
-from feeddrive.plant.mode_map import ModeMap, mode_map
+from feeddrive.plant.analysis.mode_map import ModeMap, mode_map
 from feeddrive.plant.plant import Plant
-from feeddrive.quantity import parse
-from feeddrive.thermal.whole_file import read_drive_plant
+from feeddrive.thermal.file.whole_file import read_drive_plant
 from feeddrive.typing import FloatArray
+from feeddrive.units.quantity import parse
 
 SHOWN = 3
 """Frequencies in the table; JSON has all."""
@@ -50,8 +50,8 @@ def _write(plant: Plant, found: ModeMap, folder: Path) -> None:
         folder / "modes.json", json.dumps(_content(plant, found), indent=2, ensure_ascii=False) + "\n"
     )
     if plant.chain.varies and plant.stroke is not None:
-        from feeddrive.report.drawing import render  # matplotlib takes time to import
-        from feeddrive.report.figure_modes import modes_figure
+        from feeddrive.report.figures.drawing import render  # matplotlib takes time to import
+        from feeddrive.report.figures.figure_modes import modes_figure
 
         write_bytes_atomically(folder / "modes.png", render(modes_figure(plant)).png)
 

@@ -15,19 +15,19 @@ from feeddrive import __version__
 from feeddrive.cli.output import deliver, table
 from feeddrive.errors import InputError
 from feeddrive.files import write_bytes_atomically, write_text_atomically
-from feeddrive.quantity import format_quantity, parse
 from feeddrive.recording.channels import channel_unit
-from feeddrive.recording.formats.choosing import Wishes
-from feeddrive.recording.formats.mapping_text import mapping_text
-from feeddrive.recording.formats.opened import Understood, mapped, read_trace, understand
-from feeddrive.recording.formats.resampling import gaps
-from feeddrive.recording.formats.trace import Signal, Trace, clean
+from feeddrive.recording.files.mapping import read_mapping
+from feeddrive.recording.files.opening import FileContent, open_file
+from feeddrive.recording.files.reading import checked_trace, read_recording
+from feeddrive.recording.files.writing import write_recording
 from feeddrive.recording.frequency_response import FrequencyResponse, write_response
-from feeddrive.recording.mapping import read_mapping
-from feeddrive.recording.opening import FileContent, open_file
-from feeddrive.recording.reading import checked_trace, read_recording
 from feeddrive.recording.recording import Recording
-from feeddrive.recording.writing import write_recording
+from feeddrive.recording.traces.choosing import Wishes
+from feeddrive.recording.traces.mapping_text import mapping_text
+from feeddrive.recording.traces.opened import Understood, mapped, read_trace, understand
+from feeddrive.recording.traces.resampling import gaps
+from feeddrive.recording.traces.trace import Signal, Trace, clean
+from feeddrive.units.quantity import format_quantity, parse
 
 FORMAT = "feeddrive-read/1"
 
@@ -142,8 +142,8 @@ def _response(found: FrequencyResponse, request: Request, as_json: bool) -> None
         write_response(found, request.out)
         written.append(request.out)
     if request.figure is not None:
-        from feeddrive.report.drawing import render
-        from feeddrive.report.figure_response import response_figure
+        from feeddrive.report.figures.drawing import render
+        from feeddrive.report.figures.figure_response import response_figure
 
         if request.figure.suffix != ".png":
             raise InputError("pictures are written as .png", str(request.figure), "correct the ending of --figure")

@@ -20,15 +20,15 @@ from feeddrive.files import find_scenario, write_bytes_atomically, write_text_at
 from feeddrive.metrology.evaluate import Evaluated, as_json, evaluate
 from feeddrive.metrology.following import following
 from feeddrive.output_folder import output_folder, refuse_unusable
-from feeddrive.quantity import format_quantity
-from feeddrive.recording.writing import write_recording
+from feeddrive.recording.files.writing import write_recording
 from feeddrive.servo.cascade import KV_UNIT
 from feeddrive.servo.linear_loop import worst_eigenvalue
-from feeddrive.simulate.scenario_file import read_scenario
-from feeddrive.simulate.scenario_overrides import parse_overrides
-from feeddrive.simulate.scenario_result import SERIES, ScenarioResult
-from feeddrive.simulate.scenario_run import Progress as Told
-from feeddrive.simulate.scenario_run import run_scenario
+from feeddrive.simulate.scenario.scenario_file import read_scenario
+from feeddrive.simulate.scenario.scenario_overrides import parse_overrides
+from feeddrive.simulate.scenario.scenario_result import SERIES, ScenarioResult
+from feeddrive.simulate.scenario.scenario_run import Progress as Told
+from feeddrive.simulate.scenario.scenario_run import run_scenario
+from feeddrive.units.quantity import format_quantity
 
 FORMAT = "feeddrive-run/1"
 CHECKPOINT = "checkpoint.npz"
@@ -97,8 +97,8 @@ def _rms(result: ScenarioResult) -> float:
 
 
 def _write(result: ScenarioResult, evaluated: tuple[Evaluated, ...], content: dict[str, Any], out: Path) -> None:
-    from feeddrive.report.drawing import render
-    from feeddrive.report.figure_scenario import scenario_figures
+    from feeddrive.report.figures.drawing import render
+    from feeddrive.report.figures.figure_scenario import scenario_figures
 
     write_recording(result.recording, out / "recording.csv")
     for figure in scenario_figures(result, evaluated):

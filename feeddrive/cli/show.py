@@ -17,11 +17,11 @@ from feeddrive.cli.show_heat import heat_content, heat_tables
 from feeddrive.cli.show_life import life_content, life_table
 from feeddrive.interface.axis import load
 from feeddrive.output_folder import output_folder
-from feeddrive.plant.modes import Modes
+from feeddrive.plant.analysis.modes import Modes
+from feeddrive.plant.analysis.rated_life import LifeRow, rated_life
+from feeddrive.plant.analysis.summary import Summary, summarise
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.rated_life import LifeRow, rated_life
-from feeddrive.plant.summary import Summary, summarise
-from feeddrive.quantity import format_quantity, parse
+from feeddrive.units.quantity import format_quantity, parse
 
 _KNOWN = ("motor", "screw", "axial", "table")
 

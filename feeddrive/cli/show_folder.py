@@ -31,8 +31,8 @@ def write_folder(plant: Plant, position: float, content: dict[str, Any], folder:
     if plant.drive is None or not plant.chain.varies:
         return
     # Matplotlib takes time to import.
-    from feeddrive.report.drawing import render
-    from feeddrive.report.figure_stiffness import stiffness_figures
+    from feeddrive.report.figures.drawing import render
+    from feeddrive.report.figures.figure_stiffness import stiffness_figures
 
     for figure in stiffness_figures(plant, position):
         write_bytes_atomically(folder / f"{figure.stem}.png", render(figure).png)

@@ -9,10 +9,10 @@ from typing import Any
 from rich.table import Table
 
 from feeddrive.cli.output import table
-from feeddrive.quantity import format_quantity
 from feeddrive.thermal.plant import ThermalPlant
+from feeddrive.thermal.run.summary import HeatRow, heat_rows
 from feeddrive.thermal.sensors import HeatSensor
-from feeddrive.thermal.summary import HeatRow, heat_rows
+from feeddrive.units.quantity import format_quantity
 
 
 def heat_content(plant: ThermalPlant) -> dict[str, Any]:

@@ -9,9 +9,9 @@ from typing import Any
 from rich.table import Table
 
 from feeddrive.cli.output import table
-from feeddrive.parts.life import MILLION
-from feeddrive.plant.rated_life import LifeRow
-from feeddrive.quantity import format_quantity
+from feeddrive.parts.life.life import MILLION
+from feeddrive.plant.analysis.rated_life import LifeRow
+from feeddrive.units.quantity import format_quantity
 
 _HOUR = 3600.0
 _KILOMETRE = 1e3

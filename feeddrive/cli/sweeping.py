@@ -19,15 +19,15 @@ from feeddrive.errors import InputError
 from feeddrive.files import find_scenario, write_bytes_atomically, write_text_atomically
 from feeddrive.metrology.run_metrics import run_metrics
 from feeddrive.output_folder import output_folder, refuse_unusable
-from feeddrive.plant.entries import nearest
-from feeddrive.quantity import format_quantity
-from feeddrive.simulate.scenario_overrides import parse_overrides
-from feeddrive.simulate.sweep import Sweep, Told, run_sweep
-from feeddrive.simulate.sweep_dask import on_cluster
-from feeddrive.simulate.sweep_design import Design, make_design
-from feeddrive.simulate.sweep_table import SweepRow, SweepTable, as_csv, as_json, as_text, main_metrics
-from feeddrive.simulate.sweep_values import Parameter, Value, read_parameters
-from feeddrive.simulate.sweep_workers import Workers, in_this_process, processes, usable_processors
+from feeddrive.plant.file.entries import nearest
+from feeddrive.simulate.scenario.scenario_overrides import parse_overrides
+from feeddrive.simulate.sweep.sweep import Sweep, Told, run_sweep
+from feeddrive.simulate.sweep.sweep_dask import on_cluster
+from feeddrive.simulate.sweep.sweep_design import Design, make_design
+from feeddrive.simulate.sweep.sweep_table import SweepRow, SweepTable, as_csv, as_json, as_text, main_metrics
+from feeddrive.simulate.sweep.sweep_values import Parameter, Value, read_parameters
+from feeddrive.simulate.sweep.sweep_workers import Workers, in_this_process, processes, usable_processors
+from feeddrive.units.quantity import format_quantity
 
 MOST_METRICS = 4
 """In the figure."""
@@ -129,8 +129,8 @@ def _metrics(found: SweepTable, names: list[str]) -> list[str]:
 
 
 def _draw(sweep: Sweep, shown: list[str], out: Path) -> None:
-    from feeddrive.report.drawing import render
-    from feeddrive.report.figure_sweep import sweep_figure
+    from feeddrive.report.figures.drawing import render
+    from feeddrive.report.figures.figure_sweep import sweep_figure
 
     write_bytes_atomically(out / "sweep.png", render(sweep_figure(sweep.design.path.stem, sweep.table, shown)).png)
 

@@ -18,21 +18,21 @@ from feeddrive.errors import InputError
 from feeddrive.files import find_plant, find_scenario_or_controller, write_bytes_atomically, write_text_atomically
 from feeddrive.interface.servo import Servo
 from feeddrive.output_folder import output_folder, refuse_unusable
-from feeddrive.plant.entries import nearest
+from feeddrive.plant.file.entries import nearest
 from feeddrive.plant.plant import Plant
-from feeddrive.quantity import format_quantity, parse
 from feeddrive.servo.cascade import KV_UNIT, Cascade, Feedback
 from feeddrive.servo.loop_response import loops_of
 from feeddrive.servo.response_family import open_family
 from feeddrive.servo.response_json import margins_content
-from feeddrive.simulate.controller_file import read_controller
-from feeddrive.thermal.whole_file import read_drive_plant
+from feeddrive.simulate.controlled.controller_file import read_controller
+from feeddrive.thermal.file.whole_file import read_drive_plant
 from feeddrive.tuning.bare_drive import bare_drive
 from feeddrive.tuning.demand import Demand, operating_points
 from feeddrive.tuning.drive_forms.drive_file import writer_of
 from feeddrive.tuning.reasons import controller_text, describe, rules, settings
 from feeddrive.tuning.reasons import operating_points as points_in_words
 from feeddrive.tuning.recommendation import Recommendation, recommend
+from feeddrive.units.quantity import format_quantity, parse
 
 FORMAT = "feeddrive-tune/1"
 
@@ -167,8 +167,8 @@ def _name(plant: Plant) -> str:
 
 
 def _write(plant: Plant, found: Recommendation, content: dict[str, Any], out: Path) -> None:
-    from feeddrive.report.drawing import render
-    from feeddrive.report.figure_bode import bode_figure
+    from feeddrive.report.figures.drawing import render
+    from feeddrive.report.figures.figure_bode import bode_figure
 
     cases = [one.case for one in found.reached]
     for loop in loops_of(found.cascade):

@@ -40,7 +40,7 @@ def write_drive(typed: DriveSettings | None, retuned: Retuned | None, out: Path)
         ending = "hal" if typed.form == "linuxcnc" else "txt"
         write_text_atomically(out / f"{typed.form}.{ending}", typed.text)
     if retuned is not None:
-        from feeddrive.report.drawing import render
+        from feeddrive.report.figures.drawing import render
 
         for one in retuned.figures():
             drawn = render(one)

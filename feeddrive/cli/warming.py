@@ -17,15 +17,15 @@ from feeddrive.cli.warming_tables import thermal_tables
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant, write_bytes_atomically, write_text_atomically
 from feeddrive.output_folder import output_folder, refuse_unusable
-from feeddrive.quantity import parse
+from feeddrive.recording.files.writing import write_recording
 from feeddrive.recording.recording import Recording
-from feeddrive.recording.writing import write_recording
-from feeddrive.thermal.duty import AMBIENT_CHANNEL, SPEED, Duty, constant_duty, read_duty
-from feeddrive.thermal.network import Network, network
+from feeddrive.thermal.file.whole_file import read_heat_plant
 from feeddrive.thermal.plant import ThermalPlant
+from feeddrive.thermal.reduced.network import Network, network
 from feeddrive.thermal.rig import Travel
-from feeddrive.thermal.study import ThermalStudy, study
-from feeddrive.thermal.whole_file import read_heat_plant
+from feeddrive.thermal.run.duty import AMBIENT_CHANNEL, SPEED, Duty, constant_duty, read_duty
+from feeddrive.thermal.run.study import ThermalStudy, study
+from feeddrive.units.quantity import parse
 
 FORMAT = "feeddrive-thermal/1"
 _USUAL_DURATION = "180 min"
@@ -142,8 +142,8 @@ def _finite(value: float) -> float | None:
 
 
 def _write(found: ThermalStudy, content: dict[str, Any], out: Path) -> None:
-    from feeddrive.report.drawing import render  # matplotlib takes time to import
-    from feeddrive.report.figure_thermal import thermal_figures
+    from feeddrive.report.figures.drawing import render  # matplotlib takes time to import
+    from feeddrive.report.figures.figure_thermal import thermal_figures
 
     duty = found.duty
     series = {re.sub(r"[^a-z0-9_]+", "_", name.lower()): values for name, values in found.series.items()}

@@ -11,10 +11,10 @@ from rich.table import Table
 from rich.text import Text
 
 from feeddrive.cli.output import table
-from feeddrive.quantity import format_quantity
-from feeddrive.thermal.full_model import NUT
-from feeddrive.thermal.network import Network
-from feeddrive.thermal.study import ThermalStudy, WarmUp
+from feeddrive.thermal.full.full_model import NUT
+from feeddrive.thermal.reduced.network import Network
+from feeddrive.thermal.run.study import ThermalStudy, WarmUp
+from feeddrive.units.quantity import format_quantity
 
 _ROWS = 10
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from feeddrive.compensation.compensate import Compensated, Wishes, compensate_plant
 from feeddrive.compensation.cures import cure, in_order
-from feeddrive.diagnosis.result import Diagnosis
+from feeddrive.diagnosis.judging.result import Diagnosis
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 

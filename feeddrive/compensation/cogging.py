@@ -19,11 +19,11 @@ from feeddrive.compensation.lost_motion import without_play
 from feeddrive.compensation.prediction import run
 from feeddrive.effects.base import Effect, Port, SourceEffect, number
 from feeddrive.effects.base import Motion as PortMotion
+from feeddrive.effects.source.torque_ripple import TorqueRipple
 from feeddrive.effects.tabulated import PERIODIC
-from feeddrive.effects.torque_ripple import TorqueRipple
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade
-from feeddrive.simulate.motion import Motion, Piece, Pieces
+from feeddrive.simulate.setpoints.motion import Motion, Piece, Pieces
 from feeddrive.typing import FloatArray
 
 POINTS = 360

@@ -20,14 +20,14 @@ from feeddrive.compensation.recorded_deviations import RecordedDeviations
 from feeddrive.compensation.repair import repaired
 from feeddrive.compensation.table import CompensationTable, Deviations, fitted, grid
 from feeddrive.errors import InputError
-from feeddrive.plant.entries import Origins, Table
+from feeddrive.plant.file.entries import Origins, Table
 from feeddrive.plant.plant import DeclaredCascade, Plant
-from feeddrive.quantity import format_quantity
 from feeddrive.servo.cascade import Cascade, Feedback
-from feeddrive.simulate.scenario_controller import read_cascade
+from feeddrive.simulate.scenario.scenario_controller import read_cascade
 from feeddrive.tuning.bare_drive import bare_drive
 from feeddrive.tuning.demand import Demand, cases_of
 from feeddrive.tuning.recommendation import recommend
+from feeddrive.units.quantity import format_quantity
 
 POINTS_PER_PERIOD = 16
 """Wished for per period of a lead error: straight pieces of least squares then leave 0.8 % of a sine, 8 leave 3 %."""

@@ -27,8 +27,8 @@ from feeddrive.compensation.prediction import Applied, circle_figures
 from feeddrive.metrology.circular import Circular
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade
-from feeddrive.simulate.motion import Motion
-from feeddrive.simulate.trajectories import Circle
+from feeddrive.simulate.setpoints.motion import Motion
+from feeddrive.simulate.setpoints.trajectories import Circle
 from feeddrive.typing import FloatArray
 
 SHARES = (0.25, 0.5, 0.75, 1.0)

@@ -31,9 +31,9 @@ import numpy as np
 
 from feeddrive.effects.base import Effect, FrictionEffect, Port, SourceEffect, TransmissionEffect, TravelEffect
 from feeddrive.errors import InputError
+from feeddrive.plant.analysis.steady import steady_motions
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.steady import steady_motions
-from feeddrive.quantity import format_quantity
+from feeddrive.units.quantity import format_quantity
 
 SLOW = 5e-3
 """Velocity at which lost motion is told [m/s]: 0.3 m/min, at which positioning tests approach their targets."""

@@ -20,17 +20,17 @@ from feeddrive.compensation.forms.control import Control
 from feeddrive.compensation.lost_motion import LostMotion
 from feeddrive.compensation.table import CompensationTable
 from feeddrive.effects.base import BristleEffect, Port
-from feeddrive.effects.presliding import Presliding
+from feeddrive.effects.friction.presliding import Presliding
 from feeddrive.errors import InputError
 from feeddrive.metrology.circular import Circular, circular
 from feeddrive.metrology.positioning import Positioning, positioning
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade
 from feeddrive.servo.cascade_function import REFERENCES, cascade_controller
-from feeddrive.simulate.controlled import TorqueLoop, resting_state, simulate_controlled
-from feeddrive.simulate.jerk_limited import Limits
-from feeddrive.simulate.motion import Motion, Pieces, Trajectory
-from feeddrive.simulate.trajectories import Circle, staircase
+from feeddrive.simulate.controlled.controlled import TorqueLoop, resting_state, simulate_controlled
+from feeddrive.simulate.setpoints.jerk_limited import Limits
+from feeddrive.simulate.setpoints.motion import Motion, Pieces, Trajectory
+from feeddrive.simulate.setpoints.trajectories import Circle, staircase
 from feeddrive.typing import FloatArray
 
 TARGETS = 11

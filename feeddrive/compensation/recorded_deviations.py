@@ -21,9 +21,9 @@ import numpy as np
 
 from feeddrive.compensation.table import Deviations, straight_pieces
 from feeddrive.errors import InputError
-from feeddrive.quantity import format_quantity
 from feeddrive.recording.recording import Recording
 from feeddrive.typing import BoolArray, FloatArray
+from feeddrive.units.quantity import format_quantity
 
 _QUIET = 0.05
 """s: over which a velocity is told, and at the end of a stand-still."""

@@ -17,7 +17,7 @@ from feeddrive.compensation.prediction import Figures
 from feeddrive.compensation.recorded_deviations import difference_words
 from feeddrive.compensation.temperature import HeatTable
 from feeddrive.metrology.circular import Circular
-from feeddrive.quantity import format_quantity
+from feeddrive.units.quantity import format_quantity
 
 Section = tuple[str, Sequence[str]]
 

@@ -22,8 +22,8 @@ from itertools import pairwise
 import numpy as np
 
 from feeddrive.errors import InputError
-from feeddrive.quantity import format_quantity
 from feeddrive.typing import FloatArray
+from feeddrive.units.quantity import format_quantity
 
 PER_INTERVAL = 16
 """Places per interval of a table at which the deviation is looked at; a sine of that many has 0.6 % of error."""

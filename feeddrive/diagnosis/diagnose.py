@@ -14,31 +14,31 @@ from feeddrive.diagnosis.certainty.correlation import correlation
 from feeddrive.diagnosis.certainty.next_experiment import next_experiments
 from feeddrive.diagnosis.certainty.preferred import with_the_preferred
 from feeddrive.diagnosis.certainty.uncertainty import certainty, intervals
-from feeddrive.diagnosis.effect_results import effect_results, refused_effects
-from feeddrive.diagnosis.evidence import Evidence
-from feeddrive.diagnosis.fit import Problem
-from feeddrive.diagnosis.judge import Judged, channel_results, judged_recordings, prepared_for_judging, share_of
+from feeddrive.diagnosis.finding.search import Search
+from feeddrive.diagnosis.judging.effect_results import effect_results, refused_effects
+from feeddrive.diagnosis.judging.judge import Judged, channel_results, judged_recordings, prepared_for_judging, share_of
+from feeddrive.diagnosis.judging.result import (
+    Diagnosis,
+    FileStamp,
+)
+from feeddrive.diagnosis.judging.veto import without_denied
 from feeddrive.diagnosis.ledger.entry import kept_of
-from feeddrive.diagnosis.logged import declared_hold, declared_sentence, hold_of, may_be_logged, open_lag
-from feeddrive.diagnosis.logged import sentence as held_for
+from feeddrive.diagnosis.likelihood.evidence import Evidence
+from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.diagnosis.preparation import prepared
-from feeddrive.diagnosis.recording_faults import refuse_faulty
 from feeddrive.diagnosis.recordings.compared import compared_recordings, last_state, machine_as_last, with_carrying
 from feeddrive.diagnosis.recordings.recordings import without_shifts
 from feeddrive.diagnosis.recordings.rehoming import rehomed_plant
 from feeddrive.diagnosis.recordings.search import Searched, search_recordings
-from feeddrive.diagnosis.result import (
-    Diagnosis,
-    FileStamp,
-)
-from feeddrive.diagnosis.search import Search
 from feeddrive.diagnosis.simulated.loop_evidence import refuse_unfit_loop
 from feeddrive.diagnosis.simulated.refinement import Refinement, refined
 from feeddrive.diagnosis.starts.needs import WITHOUT_TORQUE
-from feeddrive.diagnosis.torque_channel import without_torque_sentence
+from feeddrive.diagnosis.suspicion.logged import declared_hold, declared_sentence, hold_of, may_be_logged, open_lag
+from feeddrive.diagnosis.suspicion.logged import sentence as held_for
+from feeddrive.diagnosis.suspicion.recording_faults import refuse_faulty
+from feeddrive.diagnosis.suspicion.torque_channel import without_torque_sentence
 from feeddrive.diagnosis.unexplained.instead import without_stand_ins
 from feeddrive.diagnosis.unexplained.unexplained import explain_rest
-from feeddrive.diagnosis.veto import without_denied
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant

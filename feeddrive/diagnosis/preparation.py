@@ -7,18 +7,18 @@ from dataclasses import replace
 
 import numpy as np
 
-from feeddrive.diagnosis.evidence import AxisEvidence, Evidence, prepare
-from feeddrive.diagnosis.fit import Problem
 from feeddrive.diagnosis.heat.evidence import left_out_channels, prepare_heat, within_range
 from feeddrive.diagnosis.heat.prediction import heat_predictor
 from feeddrive.diagnosis.heat.warm_evidence import prepare_warm
 from feeddrive.diagnosis.heat.warm_prediction import warm_predictor
-from feeddrive.diagnosis.prediction import AxisPredictor
-from feeddrive.diagnosis.torque_channel import refuse_what_is_no_torque
+from feeddrive.diagnosis.likelihood.evidence import AxisEvidence, Evidence, prepare
+from feeddrive.diagnosis.likelihood.fit import Problem
+from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
+from feeddrive.diagnosis.suspicion.torque_channel import refuse_what_is_no_torque
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording, check_against_lead, without_unfollowed_setpoint
-from feeddrive.recording.copies import refuse_copied_setpoint
+from feeddrive.recording.checks.copies import refuse_copied_setpoint
 from feeddrive.thermal.plant import ThermalPlant
 from feeddrive.thermal.warm_plant import WarmPlant
 

@@ -13,8 +13,8 @@ from enum import StrEnum
 from typing import ClassVar, Self
 
 from feeddrive.errors import InputError
-from feeddrive.quantity import format_quantity
 from feeddrive.typing import Expression
+from feeddrive.units.quantity import format_quantity
 
 
 class Kind(StrEnum):
@@ -213,7 +213,7 @@ class ChainEffect(Effect):
 
     Attributes:
         adds_coordinate: whether the chain takes a further mass on the table from its values (see
-            `feeddrive.plant.table_mode`).
+            `feeddrive.plant.chain.table_mode`).
     """
 
     kind = Kind.CHAIN

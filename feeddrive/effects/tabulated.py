@@ -22,7 +22,7 @@ import casadi as ca
 import numpy as np
 
 from feeddrive.effects.base import Effect, Port, Value, listed
-from feeddrive.effects.friction_vs_position import interpolate
+from feeddrive.effects.friction.friction_vs_position import interpolate
 from feeddrive.errors import InputError
 from feeddrive.typing import Expression
 

@@ -13,9 +13,9 @@ from feeddrive import __version__
 from feeddrive.export.model import Model, identifier_of
 from feeddrive.export.point import Point
 from feeddrive.export.quantities import Quantity
-from feeddrive.quantity import format_quantity
 from feeddrive.thermal.equations import HEAT_INPUT_UNITS, HEAT_INPUTS, heat_equations, linear_heat
 from feeddrive.thermal.plant import ThermalPlant
+from feeddrive.units.quantity import format_quantity
 
 _COMMENTS = ("of the screw, either sign", "of the air around screw and nut")
 

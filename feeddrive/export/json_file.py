@@ -17,7 +17,7 @@ from feeddrive import __version__
 from feeddrive.export.linear_model import LinearModel
 from feeddrive.export.notes import included, left_out, linear_notes
 from feeddrive.export.quantities import Quantity, parameters
-from feeddrive.plant.modes import Modes, braked_modes, free_modes
+from feeddrive.plant.analysis.modes import Modes, braked_modes, free_modes
 from feeddrive.plant.plant import Plant
 
 FORMAT = "feeddrive-export/1"

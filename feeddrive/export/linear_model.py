@@ -15,7 +15,7 @@ import numpy as np
 from feeddrive.export.model import identifier_of
 from feeddrive.export.point import Point, refuse_outside
 from feeddrive.export.quantities import Quantity, inputs, outputs, states
-from feeddrive.plant.linear import state_space, steady_motion
+from feeddrive.plant.analysis.linear import state_space, steady_motion
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray
 
@@ -52,7 +52,7 @@ def linear_model_of(plant: Plant, point: Point) -> LinearModel:
 
     Args:
         plant: the machine.
-        point: without a velocity the table moves at `feeddrive.plant.linear.MOVING`.
+        point: without a velocity the table moves at `feeddrive.plant.analysis.linear.MOVING`.
 
     Raises:
         InputError: a point outside the stroke, or where no steady motion is found.

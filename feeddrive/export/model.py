@@ -2,7 +2,7 @@
 
     x' = f(t, x, u, p),   y = g(t, x, p)
 
-f and g are those that the plant itself is linearised from (`feeddrive.plant.ode.timed_ode`).
+f and g are those that the plant itself is linearised from (`feeddrive.plant.analysis.ode.timed_ode`).
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from feeddrive import __version__
 from feeddrive.export.notes import included, left_out
 from feeddrive.export.point import Point, refuse_outside
 from feeddrive.export.quantities import Quantity, inputs, outputs, parameters, states
-from feeddrive.plant.linear import steady_motion, timed_ode
+from feeddrive.plant.analysis.linear import steady_motion, timed_ode
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.symbolic_turn import SYMBOLS
 

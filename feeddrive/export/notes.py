@@ -7,11 +7,11 @@ import math
 import casadi as ca
 
 from feeddrive.effects.base import BristleEffect, Kind, TimingEffect, TransmissionEffect
-from feeddrive.effects.channel_delay import ChannelDelay
-from feeddrive.plant.linear import timed_ode
+from feeddrive.effects.timing.channel_delay import ChannelDelay
+from feeddrive.plant.analysis.linear import timed_ode
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.symbolic_turn import SYMBOLS
-from feeddrive.quantity import format_quantity
+from feeddrive.units.quantity import format_quantity
 
 
 def included(plant: Plant) -> tuple[str, ...]:

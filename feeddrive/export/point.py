@@ -6,9 +6,9 @@ import re
 from dataclasses import dataclass
 
 from feeddrive.errors import InputError
-from feeddrive.plant.linear import MOVING
+from feeddrive.plant.analysis.linear import MOVING
 from feeddrive.plant.plant import Plant
-from feeddrive.quantity import format_quantity, parse
+from feeddrive.units.quantity import format_quantity, parse
 
 _UNITS = {"x": "m", "v": "m/s"}
 _SEPARATOR = re.compile(r",(?!\d)")  # a comma before a digit is a decimal one, which is refused by its name

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from feeddrive.plant.linear import INPUTS, OUTPUTS, ode_parameters, state_names
+from feeddrive.plant.analysis.linear import INPUTS, OUTPUTS, ode_parameters, state_names
 from feeddrive.plant.plant import Plant
 
 INPUT_UNITS = ("N m", "N")

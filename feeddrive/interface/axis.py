@@ -12,31 +12,31 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from feeddrive.diagnosis.heat.warm_evidence import is_warm_log
-from feeddrive.diagnosis.slow_rows import is_slow
+from feeddrive.diagnosis.likelihood.slow_rows import is_slow
 from feeddrive.effects.base import Effect
 from feeddrive.effects.catalogue import THERMAL_EFFECTS
-from feeddrive.effects.thermal.base import ThermalEffect
+from feeddrive.effects.heat.base import ThermalEffect
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant, write_text_atomically
 from feeddrive.interface.machine_tables import Check, Life, Modes, Stiffness
 from feeddrive.interface.quantities import Quantity, quantities, si, span
-from feeddrive.plant.declared_check import check_declared
-from feeddrive.plant.effect_text import plant_text_with_effects
-from feeddrive.plant.entries import parse_toml
-from feeddrive.plant.files import declares_heat_alone, plant_from_entries
-from feeddrive.plant.mode_map import mode_map
-from feeddrive.plant.moving_inertia import inertia_at_motor
+from feeddrive.plant.analysis.mode_map import mode_map
+from feeddrive.plant.analysis.plausibility import check_plant
+from feeddrive.plant.analysis.rated_life import rated_life
+from feeddrive.plant.analysis.stiffness_budget import stiffness_budget
+from feeddrive.plant.chain.moving_inertia import inertia_at_motor
+from feeddrive.plant.file.declared_check import check_declared
+from feeddrive.plant.file.effect_text import plant_text_with_effects
+from feeddrive.plant.file.entries import parse_toml
+from feeddrive.plant.file.files import declares_heat_alone, plant_from_entries
+from feeddrive.plant.file.plant_schema import plant_table
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.plant_schema import plant_table
-from feeddrive.plant.plausibility import check_plant
-from feeddrive.plant.rated_life import rated_life
-from feeddrive.plant.stiffness_budget import stiffness_budget
 from feeddrive.recording import Recording
-from feeddrive.simulate.scenario_overrides import with_overrides
-from feeddrive.thermal.coupling_section import coupling
-from feeddrive.thermal.files import SECTION, thermal_plant
+from feeddrive.simulate.scenario.scenario_overrides import with_overrides
+from feeddrive.thermal.file.coupling_section import coupling
+from feeddrive.thermal.file.files import SECTION, thermal_plant
 from feeddrive.thermal.plant import ThermalPlant
-from feeddrive.thermal.plausibility import check_thermal_plant
+from feeddrive.thermal.run.plausibility import check_thermal_plant
 from feeddrive.thermal.warm_plant import WarmPlant, warm_plant
 
 if TYPE_CHECKING:
@@ -318,14 +318,14 @@ class Axis:
         ['motor_torque', 'cutting_force']
         """
         from feeddrive.export.point import export_point
-        from feeddrive.plant.linear import state_space
+        from feeddrive.plant.analysis.linear import state_space
 
         point = export_point(self.plant, at, "at")
         return state_space(self.plant, point.linearised_at, point.position)
 
     def ode(self) -> casadi.Function:
         """The equations of motion as a CasADi function (x, u, p) -> (dx/dt, y), SI, with all effects."""
-        from feeddrive.plant.ode import ode
+        from feeddrive.plant.analysis.ode import ode
 
         return ode(self.plant)
 
@@ -364,7 +364,7 @@ class Axis:
         from feeddrive.export.point import export_point
         from feeddrive.interface.bode import Bode
         from feeddrive.interface.servo import cascade_for
-        from feeddrive.plant.entries import nearest
+        from feeddrive.plant.file.entries import nearest
         from feeddrive.servo.loop_response import loops_of
         from feeddrive.servo.response_family import mechanics_family, open_family
         from feeddrive.tuning.demand import cases_of
@@ -400,7 +400,7 @@ class Axis:
         """
         from feeddrive.export.point import export_point
         from feeddrive.export.writing import Form, write_export, write_heat_export
-        from feeddrive.plant.entries import nearest
+        from feeddrive.plant.file.entries import nearest
 
         forms = {str(one): one for one in Form}
         if form not in forms:
@@ -417,14 +417,14 @@ def heat_velocity(axis: Axis, at: str) -> float:
         InputError: a point that cannot be read, or that says where the table is to a machine without one.
     """
     from feeddrive.export.point import Point, export_point, written_point
-    from feeddrive.plant.linear import MOVING
+    from feeddrive.plant.analysis.linear import MOVING
 
     point = export_point(axis.plant, at, "at") if axis.has_motion else Point(0.0, written_point(at, "at").get("v"))
     return MOVING if point.velocity is None else point.velocity
 
 
 def _short(length: float) -> str:
-    from feeddrive.quantity import format_quantity
+    from feeddrive.units.quantity import format_quantity
 
     return format_quantity(length, "m")
 

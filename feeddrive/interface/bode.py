@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from feeddrive.interface.shown import Listing, Shown
-from feeddrive.quantity import format_quantity
 from feeddrive.servo.frequency_response import Case
 from feeddrive.servo.response_family import Curve, Family
+from feeddrive.units.quantity import format_quantity
 
 if TYPE_CHECKING:
-    from feeddrive.report.drawing import ReportFigure
+    from feeddrive.report.figures.drawing import ReportFigure
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -67,7 +67,7 @@ class Bode(Shown):
         return ("table at", "kind", "at", "magnitude [dB, SI]"), rows
 
     def _figures(self) -> Sequence[ReportFigure]:
-        from feeddrive.report.figure_bode import bode_figure
+        from feeddrive.report.figures.figure_bode import bode_figure
 
         return (bode_figure(self.family),)
 

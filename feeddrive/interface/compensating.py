@@ -24,13 +24,13 @@ from feeddrive.interface.quantities import Quantity, quantities, si
 from feeddrive.interface.reading import as_recording
 from feeddrive.interface.servo import Servo, cascade_for
 from feeddrive.interface.shown import Listing, Shown
-from feeddrive.plant.entries import nearest
-from feeddrive.quantity import format_quantity
+from feeddrive.plant.file.entries import nearest
 from feeddrive.recording.recording import Recording
 from feeddrive.servo.cascade import Cascade
+from feeddrive.units.quantity import format_quantity
 
 if TYPE_CHECKING:
-    from feeddrive.report.drawing import ReportFigure
+    from feeddrive.report.figures.drawing import ReportFigure
 
 Source = Axis | Diagnosed | Recording | str | Path
 
@@ -119,7 +119,7 @@ class Compensation(Shown):
         return sheet.sections(self.done)
 
     def _figures(self) -> Sequence[ReportFigure]:
-        from feeddrive.report.figure_compensation import compensation_figures, heat_figure
+        from feeddrive.report.figures.figure_compensation import compensation_figures, heat_figure
 
         return [heat_figure(self.done)] if isinstance(self.done, HeatTable) else list(compensation_figures(self.done))
 

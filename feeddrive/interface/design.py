@@ -13,7 +13,7 @@ from feeddrive.errors import InputError
 from feeddrive.export.point import export_point
 from feeddrive.interface.quantities import Quantity, quantities, si
 from feeddrive.interface.servo import Servo, cascade_for
-from feeddrive.plant.linear import INPUTS, OUTPUTS
+from feeddrive.plant.analysis.linear import INPUTS, OUTPUTS
 from feeddrive.plant.plant import Plant
 from feeddrive.servo import state_feedback as observed
 from feeddrive.servo.cascade import Cascade, Feedback, FeedForward
@@ -24,7 +24,7 @@ from feeddrive.servo.margins import Margins, margins
 from feeddrive.servo.sampled import SampledController
 from feeddrive.servo.sampled_plant import Matrices, sampled_plant
 from feeddrive.servo.scheduled import scheduled
-from feeddrive.simulate.controlled_machine import TorqueLoop
+from feeddrive.simulate.controlled.controlled_machine import TorqueLoop
 from feeddrive.tuning.bare_drive import bare_drive
 from feeddrive.tuning.position_loop import position_gain
 

@@ -10,21 +10,21 @@ from typing import TYPE_CHECKING, Any, cast
 from feeddrive.compensation.actions import Actions, actions
 from feeddrive.diagnosis.calibration.plant_text import with_calibrated_values
 from feeddrive.diagnosis.diagnose import diagnose as find_what_lacks
-from feeddrive.diagnosis.outputs import diagnosis_record, write_outputs
-from feeddrive.diagnosis.result import Diagnosis
+from feeddrive.diagnosis.judging.result import Diagnosis
+from feeddrive.diagnosis.likelihood.outputs import diagnosis_record, write_outputs
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 from feeddrive.interface.axis import Axis, axis_of_text
 from feeddrive.interface.reading import as_recording
 from feeddrive.interface.shown import Listing, Shown
-from feeddrive.plant.effect_text import plant_text_with_effects
+from feeddrive.plant.file.effect_text import plant_text_with_effects
 from feeddrive.recording.recording import Recording
 from feeddrive.report.parameters import parameter_text
-from feeddrive.report.people import error_text, share_text
-from feeddrive.report.verdict import verdict_sentences
+from feeddrive.report.words.people import error_text, share_text
+from feeddrive.report.words.verdict import verdict_sentences
 
 if TYPE_CHECKING:
-    from feeddrive.report.drawing import ReportFigure
+    from feeddrive.report.figures.drawing import ReportFigure
 
 Given = Recording | str | Path
 
@@ -130,7 +130,7 @@ class Diagnosed(Shown):
         Raises:
             InputError: the file cannot be written.
         """
-        from feeddrive.report.html import write_report
+        from feeddrive.report.pages.html import write_report
 
         write_report(self.diagnosis, Path(path), todo=self._actions())
         return Path(path)
@@ -141,8 +141,8 @@ class Diagnosed(Shown):
         Raises:
             InputError: the folder cannot be written.
         """
-        from feeddrive.report.figures import render_figures, save_figures
-        from feeddrive.report.html import write_report
+        from feeddrive.report.figures.figures import render_figures, save_figures
+        from feeddrive.report.pages.html import write_report
 
         place = Path(folder)
         pictures = render_figures(self.diagnosis)
@@ -161,7 +161,7 @@ class Diagnosed(Shown):
         return self.effects.listing() if len(self.effects) else self.errors.listing()
 
     def _figures(self) -> Sequence[ReportFigure]:
-        from feeddrive.report.figures import report_figures
+        from feeddrive.report.figures.figures import report_figures
 
         return list(report_figures(self.diagnosis))
 

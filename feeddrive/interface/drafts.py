@@ -14,10 +14,10 @@ from feeddrive.interface.machine_tables import Check
 from feeddrive.interface.quantities import Quantity, si
 from feeddrive.interface.shown import Listing, Shown
 from feeddrive.parts.catalogue.reading import KINDS, CataloguePart, catalogue
-from feeddrive.plant.draft_text import draft_text
-from feeddrive.plant.drafting import Wishes, drafted
-from feeddrive.plant.entries import nearest_choice
-from feeddrive.quantity import parse
+from feeddrive.plant.file.draft_text import draft_text
+from feeddrive.plant.file.drafting import Wishes, drafted
+from feeddrive.plant.file.entries import nearest_choice
+from feeddrive.units.quantity import parse
 
 _WANTED: dict[str, dict[str, tuple[str, str]]] = {
     "screw": {"diameter": ("nominal_diameter", "m"), "lead": ("ball_screw.lead", "m")},

@@ -17,17 +17,17 @@ from feeddrive.interface.servo import Servo, controller_entries
 from feeddrive.interface.shown import Listing, Shown, needed_pandas
 from feeddrive.metrology.evaluate import Evaluated, as_json, evaluate
 from feeddrive.metrology.run_metrics import run_metrics
-from feeddrive.quantity import format_quantity
+from feeddrive.recording.files.writing import write_recording
 from feeddrive.recording.recording import Recording
-from feeddrive.recording.writing import write_recording
-from feeddrive.simulate.scenario_file import GivenPlant, read_scenario
-from feeddrive.simulate.scenario_result import SERIES, ScenarioResult
-from feeddrive.simulate.scenario_run import run_scenario
+from feeddrive.simulate.scenario.scenario_file import GivenPlant, read_scenario
+from feeddrive.simulate.scenario.scenario_result import SERIES, ScenarioResult
+from feeddrive.simulate.scenario.scenario_run import run_scenario
+from feeddrive.units.quantity import format_quantity
 
 if TYPE_CHECKING:
     import pandas
 
-    from feeddrive.report.drawing import ReportFigure
+    from feeddrive.report.figures.drawing import ReportFigure
 
 _PLANT = "plant."
 
@@ -104,7 +104,7 @@ class Run(Shown):
         return Path(path)
 
     def _figures(self) -> Sequence[ReportFigure]:
-        from feeddrive.report.figure_scenario import scenario_figures
+        from feeddrive.report.figures.figure_scenario import scenario_figures
 
         return list(scenario_figures(self.result, self.evaluated))
 

@@ -14,11 +14,11 @@ from feeddrive.interface.axis import Axis
 from feeddrive.interface.numbers import Explained
 from feeddrive.interface.responses import ExplainedResponse
 from feeddrive.interface.servo import Servo, cascade_for
-from feeddrive.plant.named_parts import with_named_parts
-from feeddrive.recording.formats.choosing import Wishes
-from feeddrive.recording.formats.opened import read_trace
+from feeddrive.plant.file.named_parts import with_named_parts
+from feeddrive.recording.files.opening import open_file
 from feeddrive.recording.frequency_response import FrequencyResponse
-from feeddrive.recording.opening import open_file
+from feeddrive.recording.traces.choosing import Wishes
+from feeddrive.recording.traces.opened import read_trace
 from feeddrive.servo.frequency_response import Case
 
 

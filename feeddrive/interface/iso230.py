@@ -29,12 +29,12 @@ from feeddrive.metrology.measured.standing import (
     part_of_recording,
 )
 from feeddrive.metrology.positioning import EDITION
-from feeddrive.quantity import format_quantity
 from feeddrive.recording import Recording
 from feeddrive.recording.channels import CHANNEL_UNITS
+from feeddrive.units.quantity import format_quantity
 
 if TYPE_CHECKING:
-    from feeddrive.report.drawing import ReportFigure
+    from feeddrive.report.figures.drawing import ReportFigure
 
 Test = LinearTest | DriftTest | CircleTest | Circular
 Given = Recording | str | Path
@@ -93,14 +93,14 @@ class Iso230(Shown):
         Raises:
             InputError: the folder cannot be written.
         """
-        from feeddrive.report.iso230_page import Evaluated230, write_iso230
+        from feeddrive.report.pages.iso230_page import Evaluated230, write_iso230
 
         shown = self.listing()
         found = Evaluated230(self.name, self.part, shown.title, shown.rows, self.test, self.share, self.record())
         return write_iso230(found, Path(folder))
 
     def _figures(self) -> Sequence[ReportFigure]:
-        from feeddrive.report.figure_iso230 import iso230_figures
+        from feeddrive.report.figures.figure_iso230 import iso230_figures
 
         return iso230_figures(self.test, self.share)
 
@@ -171,7 +171,7 @@ def _table(path: Path, decimal: str | None) -> Readings | None:
 
 def _looks_like_table(path: Path) -> bool:
     """Whether the first line that is no remark names columns of a table of readings."""
-    from feeddrive.recording.opening import first_bytes, head_of
+    from feeddrive.recording.files.opening import first_bytes, head_of
 
     lines = (line for line in head_of(first_bytes(path)).split("\n") if line.strip() and not line.startswith("#"))
     head = next(lines, "").lower()

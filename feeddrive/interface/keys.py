@@ -7,14 +7,14 @@ from dataclasses import dataclass
 
 from feeddrive.errors import InputError
 from feeddrive.interface.shown import Listing, Shown
-from feeddrive.plant.entries import nearest_choice
-from feeddrive.plant.plant_schema import PLANT
+from feeddrive.plant.file.entries import nearest_choice
+from feeddrive.plant.file.plant_schema import PLANT
 from feeddrive.schema.controller import CONTROLLER
 from feeddrive.schema.key import Key
 from feeddrive.schema.mapping import MAPPING
 from feeddrive.schema.measured import MEASURED
 from feeddrive.schema.section import Section
-from feeddrive.simulate.scenario_file import SCENARIO
+from feeddrive.simulate.scenario.scenario_file import SCENARIO
 
 ROOTS = {one.path: one for one in (PLANT, CONTROLLER, SCENARIO, MAPPING, MEASURED)}
 """The kinds of files by their name."""

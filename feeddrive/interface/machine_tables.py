@@ -10,16 +10,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from feeddrive.interface.shown import Listing, Shown
-from feeddrive.plant.mode_map import ModeMap
+from feeddrive.plant.analysis.mode_map import ModeMap
+from feeddrive.plant.analysis.plausibility import Finding, Verdict
+from feeddrive.plant.analysis.rated_life import LifeRow
+from feeddrive.plant.analysis.stiffness_budget import StiffnessBudget
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.plausibility import Finding, Verdict
-from feeddrive.plant.rated_life import LifeRow
-from feeddrive.plant.stiffness_budget import StiffnessBudget
-from feeddrive.quantity import format_quantity
 from feeddrive.typing import FloatArray
+from feeddrive.units.quantity import format_quantity
 
 if TYPE_CHECKING:
-    from feeddrive.report.drawing import ReportFigure
+    from feeddrive.report.figures.drawing import ReportFigure
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -70,7 +70,7 @@ class Modes(Shown):
         return Listing(f"{self.axis_name}: natural frequencies, motor held and free", headings, rows, records)
 
     def _figures(self) -> Sequence[ReportFigure]:
-        from feeddrive.report.figure_modes import modes_figure
+        from feeddrive.report.figures.figure_modes import modes_figure
 
         drawn = self.plant.chain.varies and self.plant.stroke is not None
         return (modes_figure(self.plant),) if drawn else ()
@@ -132,7 +132,7 @@ class Stiffness(Shown):
         return Listing(title, ("part", "deformation", "felt at the table", "share of compliance"), rows, records)
 
     def _figures(self) -> Sequence[ReportFigure]:
-        from feeddrive.report.figure_stiffness import stiffness_figures
+        from feeddrive.report.figures.figure_stiffness import stiffness_figures
 
         return stiffness_figures(self.plant, self.position)
 

@@ -14,18 +14,18 @@ from feeddrive.interface.quantities import Quantity, si
 from feeddrive.interface.shown import Listing, Shown, needed_pandas
 from feeddrive.metrology.recorded_response import recorded_response
 from feeddrive.metrology.response import Response, StepResponse, step_response
-from feeddrive.plant.steady import steady_motion
-from feeddrive.quantity import format_quantity
+from feeddrive.plant.analysis.steady import steady_motion
 from feeddrive.recording.recording import Recording
-from feeddrive.simulate.controlled import resting_state, simulate_controlled
+from feeddrive.simulate.controlled.controlled import resting_state, simulate_controlled
 from feeddrive.simulate.held_torque import simulate_torque
 from feeddrive.typing import FloatArray
+from feeddrive.units.quantity import format_quantity
 
 if TYPE_CHECKING:
     import pandas
 
     from feeddrive.interface.axis import Axis
-    from feeddrive.report.drawing import ReportFigure
+    from feeddrive.report.figures.drawing import ReportFigure
 
 Course = Quantity | Callable[[FloatArray], FloatArray] | FloatArray
 """A value over time: a quantity that stays, samples in SI, or what gives them from the times [s]."""
@@ -110,7 +110,7 @@ class Motion(Shown):
         return pandas.DataFrame(dict(self.series), index=pandas.Index(self.time, name="time [s]"))
 
     def _figures(self) -> list[ReportFigure]:
-        from feeddrive.report.figure_run import run_figure
+        from feeddrive.report.figures.figure_run import run_figure
 
         return [run_figure(self.axis_name, self.time, self.series)]
 

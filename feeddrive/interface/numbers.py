@@ -16,11 +16,11 @@ from feeddrive.diagnosis.numbers.numbers_result import (
 from feeddrive.files import write_bytes_atomically, write_text_atomically
 from feeddrive.interface.axis import Axis, axis_of_text
 from feeddrive.interface.shown import Listing, Shown
-from feeddrive.quantity import format_quantity
-from feeddrive.report.numbers_words import numbers_verdict, value_text
+from feeddrive.report.words.numbers_words import numbers_verdict, value_text
+from feeddrive.units.quantity import format_quantity
 
 if TYPE_CHECKING:
-    from feeddrive.report.drawing import ReportFigure
+    from feeddrive.report.figures.drawing import ReportFigure
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -79,8 +79,8 @@ class Explained(Shown):
         Raises:
             InputError: the folder cannot be written.
         """
-        from feeddrive.report.drawing import render
-        from feeddrive.report.numbers_page import write_numbers_page
+        from feeddrive.report.figures.drawing import render
+        from feeddrive.report.pages.numbers_page import write_numbers_page
 
         place = Path(folder)
         picture = render(self._figures()[0])
@@ -91,6 +91,6 @@ class Explained(Shown):
         return place
 
     def _figures(self) -> Sequence[ReportFigure]:
-        from feeddrive.report.figure_numbers import numbers_figure
+        from feeddrive.report.figures.figure_numbers import numbers_figure
 
         return (numbers_figure(self.result),)

@@ -9,7 +9,7 @@ from numbers import Real
 import numpy as np
 
 from feeddrive.errors import InputError
-from feeddrive.quantity import parse
+from feeddrive.units.quantity import parse
 
 Quantity = str | float
 """A string with its unit, such as "20 mm", or a number in SI."""

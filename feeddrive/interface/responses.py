@@ -16,11 +16,11 @@ from feeddrive.diagnosis.responses.response_result import (
 from feeddrive.files import write_bytes_atomically, write_text_atomically
 from feeddrive.interface.axis import Axis, axis_of_text
 from feeddrive.interface.shown import Listing, Shown
-from feeddrive.quantity import format_quantity
-from feeddrive.report.response_words import response_verdict
+from feeddrive.report.words.response_words import response_verdict
+from feeddrive.units.quantity import format_quantity
 
 if TYPE_CHECKING:
-    from feeddrive.report.drawing import ReportFigure
+    from feeddrive.report.figures.drawing import ReportFigure
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -71,8 +71,8 @@ class ExplainedResponse(Shown):
         Raises:
             InputError: the folder cannot be written.
         """
-        from feeddrive.report.drawing import render
-        from feeddrive.report.response_page import write_response_page
+        from feeddrive.report.figures.drawing import render
+        from feeddrive.report.pages.response_page import write_response_page
 
         place = Path(folder)
         picture = render(self._figures()[0])
@@ -83,6 +83,6 @@ class ExplainedResponse(Shown):
         return place
 
     def _figures(self) -> Sequence[ReportFigure]:
-        from feeddrive.report.figure_response_fit import response_fit_figure
+        from feeddrive.report.figures.figure_response_fit import response_fit_figure
 
         return (response_fit_figure(self.result),)

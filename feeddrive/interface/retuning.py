@@ -11,19 +11,19 @@ from typing import TYPE_CHECKING, Any
 from feeddrive.interface.shown import Listing, Shown
 from feeddrive.metrology.loop_trial import LoopTrial, deviation, glitch, overshoot, settling, try_loop
 from feeddrive.plant.plant import Plant
-from feeddrive.quantity import format_quantity
 from feeddrive.servo.cascade import KV_UNIT, Cascade
 from feeddrive.servo.filters import Filter
 from feeddrive.servo.loop_response import loops_of
 from feeddrive.servo.response_family import open_family
-from feeddrive.simulate.controller_file import read_controller
+from feeddrive.simulate.controlled.controller_file import read_controller
 from feeddrive.tuning.drive_forms.drive_file import read_drive_file
 from feeddrive.tuning.drive_settings import facts_of
 from feeddrive.tuning.filter_choice import is_low_pass
 from feeddrive.tuning.reasons import describe
+from feeddrive.units.quantity import format_quantity
 
 if TYPE_CHECKING:
-    from feeddrive.report.drawing import ReportFigure
+    from feeddrive.report.figures.drawing import ReportFigure
 
 LOWEST, HIGHEST = 1.0, 4000.0
 """Frequencies of the figures [Hz]."""
@@ -92,8 +92,8 @@ class Retuned(Shown):
         return self._figures()
 
     def _figures(self) -> Sequence[ReportFigure]:
-        from feeddrive.report.figure_bode import bode_figure
-        from feeddrive.report.figure_retuned import circle_figure, step_figure
+        from feeddrive.report.figures.figure_bode import bode_figure
+        from feeddrive.report.figures.figure_retuned import circle_figure, step_figure
 
         cases = [one.reached.case for one in self.before]
         drawn = [step_figure(self.before, self.after), circle_figure(self.before, self.after)]

@@ -14,12 +14,12 @@ from feeddrive.files import find_scenario_or_controller, write_text_atomically
 from feeddrive.interface.quantities import Quantity, quantities, si
 from feeddrive.interface.retuning import Retuned, compare, read_present
 from feeddrive.interface.shown import Listing, Shown
-from feeddrive.plant.entries import nearest
+from feeddrive.plant.file.entries import nearest
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import KV_UNIT, Cascade, Feedback
 from feeddrive.servo.loop_response import loops_of
 from feeddrive.servo.response_family import open_family
-from feeddrive.simulate.controller_file import read_controller
+from feeddrive.simulate.controlled.controller_file import read_controller
 from feeddrive.tuning.bare_drive import bare_drive
 from feeddrive.tuning.demand import Demand, operating_points
 from feeddrive.tuning.drive_settings import DriveSettings, drive_settings
@@ -28,7 +28,7 @@ from feeddrive.tuning.recommendation import Recommendation, recommend
 
 if TYPE_CHECKING:
     from feeddrive.interface.axis import Axis
-    from feeddrive.report.drawing import ReportFigure
+    from feeddrive.report.figures.drawing import ReportFigure
 
 LOWEST, HIGHEST = 1.0, 4000.0
 """Frequencies of the figure of the open loops [Hz]."""
@@ -134,7 +134,7 @@ class Servo(Shown):
         return Listing(f"{self.plant.name}: recommended cascade", ("setting", "value", "why"), rows, records)
 
     def _figures(self) -> Sequence[ReportFigure]:
-        from feeddrive.report.figure_bode import bode_figure
+        from feeddrive.report.figures.figure_bode import bode_figure
 
         cases = [one.case for one in self.recommendation.reached]
         loops = loops_of(self.cascade)

@@ -9,9 +9,9 @@ from feeddrive.effects.catalogue import EFFECTS, THERMAL_EFFECTS
 from feeddrive.errors import InputError
 from feeddrive.files import shipped_plants, shipped_scenarios
 from feeddrive.interface.shown import Listing, Shown
-from feeddrive.plant.effect_sections import read_effects
-from feeddrive.plant.entries import nearest
-from feeddrive.plant.plant_schema import plant_table
+from feeddrive.plant.file.effect_sections import read_effects
+from feeddrive.plant.file.entries import nearest
+from feeddrive.plant.file.plant_schema import plant_table
 
 
 def list_plants() -> tuple[str, ...]:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import pandas
     from matplotlib.figure import Figure
 
-    from feeddrive.report.drawing import ReportFigure
+    from feeddrive.report.figures.drawing import ReportFigure
 
 MOST_ROWS = 30
 """Rows that are shown as text or HTML; `to_pandas` has all."""
@@ -110,7 +110,7 @@ def needed_pandas() -> Any:
 
 
 def _picture(drawn: ReportFigure) -> str:
-    from feeddrive.report.drawing import render
+    from feeddrive.report.figures.drawing import render
 
     made = render(drawn)
     data = base64.b64encode(made.png).decode()

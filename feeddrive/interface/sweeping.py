@@ -13,16 +13,16 @@ from feeddrive.files import find_scenario
 from feeddrive.interface.axis import Axis
 from feeddrive.interface.shown import Listing, Shown
 from feeddrive.metrology.run_metrics import run_metrics
-from feeddrive.quantity import format_quantity
-from feeddrive.simulate.sweep import Sweep as FinishedSweep
-from feeddrive.simulate.sweep import run_sweep
-from feeddrive.simulate.sweep_design import make_design
-from feeddrive.simulate.sweep_table import main_metrics
-from feeddrive.simulate.sweep_values import read_parameters
-from feeddrive.simulate.sweep_workers import in_this_process, processes
+from feeddrive.simulate.sweep.sweep import Sweep as FinishedSweep
+from feeddrive.simulate.sweep.sweep import run_sweep
+from feeddrive.simulate.sweep.sweep_design import make_design
+from feeddrive.simulate.sweep.sweep_table import main_metrics
+from feeddrive.simulate.sweep.sweep_values import read_parameters
+from feeddrive.simulate.sweep.sweep_workers import in_this_process, processes
+from feeddrive.units.quantity import format_quantity
 
 if TYPE_CHECKING:
-    from feeddrive.report.drawing import ReportFigure
+    from feeddrive.report.figures.drawing import ReportFigure
 
 MOST_METRICS = 4
 """In the table and the figure; `to_pandas` has all."""
@@ -62,7 +62,7 @@ class Sweep(Shown):
         return Listing(f"sweep of {self.sweep.design.path.stem}, {len(found.rows)} runs", headings, rows, records)
 
     def _figures(self) -> Sequence[ReportFigure]:
-        from feeddrive.report.figure_sweep import sweep_figure
+        from feeddrive.report.figures.figure_sweep import sweep_figure
 
         found = self.sweep.table
         return (sweep_figure(self.sweep.design.path.stem, found, main_metrics(found, MOST_METRICS)),)

@@ -11,14 +11,14 @@ from feeddrive.errors import InputError
 from feeddrive.interface.axis import Axis
 from feeddrive.interface.quantities import Quantity, si
 from feeddrive.interface.shown import Listing, Shown
-from feeddrive.quantity import format_quantity
-from feeddrive.thermal.duty import constant_duty, read_duty
-from feeddrive.thermal.reduction import DEFAULT_ORDER
-from feeddrive.thermal.study import ThermalStudy, study
+from feeddrive.thermal.reduced.reduction import DEFAULT_ORDER
+from feeddrive.thermal.run.duty import constant_duty, read_duty
+from feeddrive.thermal.run.study import ThermalStudy, study
 from feeddrive.typing import FloatArray
+from feeddrive.units.quantity import format_quantity
 
 if TYPE_CHECKING:
-    from feeddrive.report.drawing import ReportFigure
+    from feeddrive.report.figures.drawing import ReportFigure
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -63,7 +63,7 @@ class WarmUp(Shown):
         return Listing(f"{self.study.plant.name}: warm-up", headings, rows, records)
 
     def _figures(self) -> Sequence[ReportFigure]:
-        from feeddrive.report.figure_thermal import thermal_figures
+        from feeddrive.report.figures.figure_thermal import thermal_figures
 
         return thermal_figures(self.study)
 

@@ -24,7 +24,7 @@ from feeddrive.trend.stamps import read_moment
 from feeddrive.trend.watch import Options, Trend, follow
 
 if TYPE_CHECKING:
-    from feeddrive.report.drawing import ReportFigure
+    from feeddrive.report.figures.drawing import ReportFigure
 
 PLACE = "_watch"
 """Results are kept beside the folder, under its name and this."""
@@ -51,7 +51,7 @@ class Watched(Shown):
     @property
     def verdict(self) -> str:
         """What changed, when, at what odds; or that nothing did."""
-        from feeddrive.report.trend_words import verdict_lines
+        from feeddrive.report.words.trend_words import verdict_lines
 
         return " ".join(verdict_lines(self.trend, self.searched))
 
@@ -73,7 +73,7 @@ class Watched(Shown):
 
     def listing(self) -> Listing:
         """One row per quantity: value at the end with its band, what it did, its limits."""
-        from feeddrive.report.trend_words import quantity_rows, shown_quantities
+        from feeddrive.report.words.trend_words import quantity_rows, shown_quantities
 
         headings = ("quantity", "at first", "at last", "± one file", "what it did", "limits")
         records = [_record(self.trend, one.name) for one in shown_quantities(self.trend)]
@@ -115,14 +115,14 @@ class Watched(Shown):
         Raises:
             InputError: the folder cannot be written.
         """
-        from feeddrive.report.trend_page import write_trend
+        from feeddrive.report.pages.trend_page import write_trend
 
         with output_folder(self.out) as folder:
             write_trend(self.trend, self.searched, self._title, self.record(), folder)
         return self.out
 
     def _figures(self) -> list[ReportFigure]:
-        from feeddrive.report.figure_trend import trend_figures
+        from feeddrive.report.figures.figure_trend import trend_figures
 
         return trend_figures(self.trend)
 

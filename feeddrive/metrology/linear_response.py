@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from feeddrive.plant.linear import MOVING, OUTPUTS
+from feeddrive.plant.analysis.linear import MOVING, OUTPUTS
 from feeddrive.servo.cascade_function import velocity_loop_of
 from feeddrive.servo.linear_loop import closed_loop
 from feeddrive.servo.margins import frequency_response
 from feeddrive.servo.sampled_plant import sampled_plant
-from feeddrive.simulate.scenario_result import ScenarioResult
+from feeddrive.simulate.scenario.scenario_result import ScenarioResult
 from feeddrive.typing import ComplexArray, FloatArray
 
 

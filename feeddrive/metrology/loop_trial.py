@@ -16,8 +16,8 @@ from feeddrive.servo.cascade import Cascade
 from feeddrive.servo.frequency_response import Case
 from feeddrive.servo.loop_response import Loop, closed_figures, closed_response
 from feeddrive.servo.margins import GROWTH
-from feeddrive.simulate.scenario_result import ScenarioResult
-from feeddrive.simulate.trial_motions import Trial, circle_about, run_trial, step_at
+from feeddrive.simulate.scenario.scenario_result import ScenarioResult
+from feeddrive.simulate.setpoints.trial_motions import Trial, circle_about, run_trial, step_at
 from feeddrive.tuning.recommendation import Reached, reached_in
 
 _LOWEST, _HIGHEST = 1.0, 4000.0

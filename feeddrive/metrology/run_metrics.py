@@ -18,8 +18,8 @@ from feeddrive.metrology.following import Following, Settling, following
 from feeddrive.metrology.loops import ForceLoop, FrictionPoint, TorqueLoop
 from feeddrive.metrology.positioning import Positioning
 from feeddrive.metrology.response import StepResponse
-from feeddrive.simulate.scenario_result import SERIES, ScenarioResult
-from feeddrive.simulate.sweep_unit import Metric
+from feeddrive.simulate.scenario.scenario_result import SERIES, ScenarioResult
+from feeddrive.simulate.sweep.sweep_unit import Metric
 
 _UNITS: dict[type, dict[str, str]] = {
     Following: {"maximum": "m", "rms": "m", "mean": "m"},

@@ -31,7 +31,7 @@ from enum import Enum
 import numpy as np
 
 from feeddrive.errors import InputError
-from feeddrive.parts.screw_drive import BallScrewDrive
+from feeddrive.parts.screw.screw_drive import BallScrewDrive
 from feeddrive.typing import FloatArray
 
 

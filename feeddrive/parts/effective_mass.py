@@ -12,8 +12,8 @@
 The static shape is a guess of the mode's shape, so the frequency is a bound from above. Against finite elements it is
 0.5 to 1 % too high for the drive of paper 004, up to 3.5 % with its nut near the motor and 5 % with both ends fixed:
 the more the screw turns beside the table, the more. With heavy wheels on a soft belt it can be above 10 %; a warning
-says where the added mass exceeds a quarter of the table's. `feeddrive.plant.held_frequency` has no such limit. Valid
-for the first mode, motor held. Source: Rayleigh's quotient.
+says where the added mass exceeds a quarter of the table's. `feeddrive.plant.analysis.held_frequency` has no
+such limit. Valid for the first mode, motor held. Source: Rayleigh's quotient.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from dataclasses import astuple, dataclass
 
 from feeddrive.errors import ValidityWarning
 from feeddrive.parts.combined_stiffness import combined_stiffness, natural_frequency
-from feeddrive.parts.screw_drive import BallScrewDrive
+from feeddrive.parts.screw.screw_drive import BallScrewDrive
 
 _LARGEST_SHARE = 0.25
 """Added mass over the table's, up to which the error was below 5.2 % in all cases tried."""

@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from feeddrive.errors import InputError, ValidityWarning
-from feeddrive.quantity import format_quantity
+from feeddrive.units.quantity import format_quantity
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from feeddrive.effects.base import BristleEffect, ChainEffect, Effect, FrictionEffect, Port, TransmissionEffect
-from feeddrive.effects.viscous_asymmetry import ViscousAsymmetry
+from feeddrive.effects.friction.viscous_asymmetry import ViscousAsymmetry
 from feeddrive.errors import InputError
 
 

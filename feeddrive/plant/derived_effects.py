@@ -1,7 +1,7 @@
 """Effects that follow from what a plant file says of table and guide: weight, counterbalance, friction of carriages.
 
 F = m g sin(inclination) - counterbalance                 constant_force, positive resists + motion
-guide_friction of `carriages` ball carriages              see `feeddrive.plant.guide_section`
+guide_friction of `carriages` ball carriages              see `feeddrive.plant.file.guide_section`
 """
 
 from __future__ import annotations
@@ -10,11 +10,11 @@ import math
 from collections.abc import Sequence
 
 from feeddrive.effects.base import Effect
-from feeddrive.effects.constant_force import ConstantForce
+from feeddrive.effects.source.constant_force import ConstantForce
 from feeddrive.errors import InputError
-from feeddrive.plant.effect_sections import next_label
-from feeddrive.plant.entries import Table
-from feeddrive.quantity import format_quantity
+from feeddrive.plant.file.effect_sections import next_label
+from feeddrive.plant.file.entries import Table
+from feeddrive.units.quantity import format_quantity
 
 GRAVITY = 9.80665
 """Standard acceleration of fall [m/s^2]."""
@@ -65,6 +65,6 @@ def _weight(top: Table) -> list[tuple[Effect, str]]:
 def _guide(top: Table, before: Sequence[Effect]) -> list[tuple[Effect, str]]:
     if "guide" not in top.entries:
         return []
-    from feeddrive.plant.guide_section import guide_friction_of  # Hertz's contacts take time to import
+    from feeddrive.plant.file.guide_section import guide_friction_of  # Hertz's contacts take time to import
 
     return guide_friction_of(top, GRAVITY, before)

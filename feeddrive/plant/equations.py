@@ -5,7 +5,7 @@
 f collects what is not linear elasticity or inertia: friction at table and screw, sources, and what the transmission
 with its travel errors and free play does beyond the linear spring. Simulation, linearisation, fitting and export all
 evaluate these expressions. Where the chain depends on the table position, M, C and K are those of a reference position,
-and f holds what the springs do beyond it (see `feeddrive.plant.varying_chain`).
+and f holds what the springs do beyond it (see `feeddrive.plant.chain.varying_chain`).
 
 | symbol | meaning | unit |
 |---|---|---|
@@ -24,11 +24,11 @@ from dataclasses import dataclass
 import casadi as ca
 
 from feeddrive.effects.base import BristleEffect, Motion, Port
+from feeddrive.plant.chain.varying_chain import force_beyond_reference
 from feeddrive.plant.friction_law import friction_force, friction_level, resisting_force
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.symbols import Symbols, chain_symbols, parameter_names, parameter_symbols, parameter_values
 from feeddrive.plant.transmission_law import nut_force, travel_deviation
-from feeddrive.plant.varying_chain import force_beyond_reference
 from feeddrive.typing import Expression
 
 __all__ = [

@@ -25,8 +25,8 @@ from feeddrive.effects.base import DriveEffect
 from feeddrive.errors import ValidityWarning
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.symbols import Symbols
-from feeddrive.quantity import format_quantity
 from feeddrive.typing import Expression, FloatArray
+from feeddrive.units.quantity import format_quantity
 
 _NONE = 1e-30
 """A droop [1/(N m)^2] that no torque shows; keeps T_top finite."""

@@ -30,8 +30,8 @@ from feeddrive.plant.least_sum import least_sum
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.structure import per_structure
 from feeddrive.plant.symbols import parameter_symbols, parameter_values
-from feeddrive.quantity import format_quantity
 from feeddrive.typing import Expression, FloatArray, IntegerArray
+from feeddrive.units.quantity import format_quantity
 
 USUAL_SPEED = 4.0
 """Speed of a table up to which its friction is judged where none is declared [m/s]; ball screws end below."""

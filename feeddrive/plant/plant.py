@@ -8,13 +8,13 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from feeddrive.effects.base import ChainEffect, Effect, TravelEffect, Value
-from feeddrive.parts.screw_drive import BallScrewDrive
-from feeddrive.plant.chain import Chain
+from feeddrive.parts.screw.screw_drive import BallScrewDrive
+from feeddrive.plant.chain.chain import Chain
+from feeddrive.plant.chain.table_mode import with_modes
 from feeddrive.plant.composition import refuse_what_cannot_compose, refuse_what_misses_values
-from feeddrive.plant.table_mode import with_modes
 
 if TYPE_CHECKING:
-    from feeddrive.plant.lumping import Lumped
+    from feeddrive.plant.analysis.lumping import Lumped
 
 
 @dataclass(frozen=True)
@@ -145,7 +145,7 @@ class Plant:
         Raises:
             InputError: a rigid machine, or the nut would not be on the screw.
         """
-        from feeddrive.plant.lumping import lump  # which makes a plant
+        from feeddrive.plant.analysis.lumping import lump  # which makes a plant
 
         return lump(self, self.middle if at is None else at)
 

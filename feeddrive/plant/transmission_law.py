@@ -26,7 +26,7 @@ from dataclasses import dataclass
 import casadi as ca
 
 from feeddrive.effects.base import TransmissionEffect, TravelEffect
-from feeddrive.plant.linear_chain import Spring
+from feeddrive.plant.chain.linear_chain import Spring
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.symbols import Symbols
 from feeddrive.typing import Expression

@@ -1,10 +1,10 @@
 """Recordings: one time-series type for measured and simulated runs, its files, and what is wrong with them."""
 
 from feeddrive.recording.channels import CHANNEL_UNITS, channel_unit
-from feeddrive.recording.lead_check import check_against_lead, without_unfollowed_setpoint
-from feeddrive.recording.reading import read_recording
+from feeddrive.recording.checks.lead_check import check_against_lead, without_unfollowed_setpoint
+from feeddrive.recording.files.reading import read_recording
+from feeddrive.recording.files.writing import write_recording
 from feeddrive.recording.recording import Recording
-from feeddrive.recording.writing import write_recording
 
 __all__ = [
     "CHANNEL_UNITS",

@@ -7,7 +7,7 @@ import re
 from dataclasses import dataclass
 
 from feeddrive.errors import InputError
-from feeddrive.quantity import Conversion, unit_conversion
+from feeddrive.units.quantity import Conversion, unit_conversion
 
 CHANNEL_UNITS: dict[str, str] = {
     "time": "s",

@@ -17,8 +17,8 @@ import numpy as np
 
 from feeddrive.errors import InputError
 from feeddrive.files import write_bytes_atomically
-from feeddrive.recording.csv_file import Layout, find_table
-from feeddrive.recording.opening import FileContent, decode
+from feeddrive.recording.files.csv_file import Layout, find_table
+from feeddrive.recording.files.opening import FileContent, decode
 from feeddrive.typing import ComplexArray, FloatArray
 
 _FIRST_COLUMN = re.compile(r'\s*"?frequency\s*\[', re.IGNORECASE)

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from feeddrive.errors import InputError
 from feeddrive.recording.channels import channel_unit
-from feeddrive.recording.flaws import Flaw
+from feeddrive.recording.checks.flaws import Flaw
 from feeddrive.typing import FloatArray
 
 

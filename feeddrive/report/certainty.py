@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from feeddrive.diagnosis.certainty.certainty_result import Ambiguity, Correlation, NextExperiment
-from feeddrive.diagnosis.result import Diagnosis
-from feeddrive.report.markup import Cell, bullets, number, paragraph, section, table, text, words
-from feeddrive.report.people import DASH, significant
-from feeddrive.report.words import effect_words, joined, plain
+from feeddrive.diagnosis.judging.result import Diagnosis
+from feeddrive.report.pages.markup import Cell, bullets, number, paragraph, section, table, text, words
+from feeddrive.report.words.people import DASH, significant
+from feeddrive.report.words.words import effect_words, joined, plain
 
 _LARGEST_MATRIX = 10
 _SCENARIOS_SHOWN = 4

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from feeddrive.diagnosis.result import EffectResult, ParameterResult
-from feeddrive.report.people import Scale, decimals_for, fixed, scale_for_value, significant, unit_name, with_unit
-from feeddrive.report.words import effect_words, headline_parameters, plain
+from feeddrive.diagnosis.judging.result import EffectResult, ParameterResult
+from feeddrive.report.words.people import Scale, decimals_for, fixed, scale_for_value, significant, unit_name, with_unit
+from feeddrive.report.words.words import effect_words, headline_parameters, plain
 
 _LONGEST_LIST = 9
 _SPEAKING = frozenset({"width", "amplitude", "mass", "force", "delay", "delta_force", "delta_viscous", "slope",

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from feeddrive import __version__
-from feeddrive.diagnosis.result import ChannelSeries, Diagnosis, FileStamp, JudgedRecording, Trial
-from feeddrive.report.markup import Cell, bullets, catalogue_name, number, paragraph, section, table, text, words
-from feeddrive.report.people import fixed, share_text, significant, with_unit
-from feeddrive.report.words import effect_words, plain
+from feeddrive.diagnosis.judging.result import ChannelSeries, Diagnosis, FileStamp, JudgedRecording, Trial
+from feeddrive.report.pages.markup import Cell, bullets, catalogue_name, number, paragraph, section, table, text, words
+from feeddrive.report.words.people import fixed, share_text, significant, with_unit
+from feeddrive.report.words.words import effect_words, plain
 from feeddrive.typing import BoolArray
 
 _MOST_TRIALS = 8

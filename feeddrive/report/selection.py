@@ -6,8 +6,8 @@ import re
 
 import numpy as np
 
-from feeddrive.diagnosis.result import ChannelResult, ChannelSeries, Diagnosis, JudgedRecording
-from feeddrive.report.drawing import AFTER, BEFORE
+from feeddrive.diagnosis.judging.result import ChannelResult, ChannelSeries, Diagnosis, JudgedRecording
+from feeddrive.report.figures.drawing import AFTER, BEFORE
 from feeddrive.typing import FloatArray
 
 MOST_SERIES_FIGURES = 6

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from feeddrive.diagnosis.result import Diagnosis, ParameterResult
+from feeddrive.diagnosis.judging.result import Diagnosis, ParameterResult
 from feeddrive.diagnosis.simulated.simulation_result import ErrorFigure, RefinedValue, SimulationResult
 from feeddrive.effects.base import Value
-from feeddrive.report.markup import Cell, bullets, number, paragraph, section, table, words
+from feeddrive.report.pages.markup import Cell, bullets, number, paragraph, section, table, words
 from feeddrive.report.parameters import parameter_text
-from feeddrive.report.people import DASH, error_text, fixed, with_unit
-from feeddrive.report.words import effect_words, plain
+from feeddrive.report.words.people import DASH, error_text, fixed, with_unit
+from feeddrive.report.words.words import effect_words, plain
 
 NOTE = (
     "The closed loop simulated from the set-point alone with the declared controller, over the judged samples in which "

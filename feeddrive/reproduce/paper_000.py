@@ -11,18 +11,18 @@ import math
 import numpy as np
 from scipy.optimize import brentq
 
-from feeddrive.parts.contact_angle_optimum import (
+from feeddrive.parts.lubricant import ISO_GRADES
+from feeddrive.parts.screw.contact_angle_optimum import (
     best_contact_angle,
     friction_of_highest_efficiency,
     highest_efficiency,
     largest_lead_angle,
 )
-from feeddrive.parts.lubricant import ISO_GRADES
-from feeddrive.parts.preload_torque import ideal_torque, preload_torque, relative_preload_torque
-from feeddrive.parts.screw_efficiency import driving_efficiency
-from feeddrive.parts.screw_friction import ScrewFriction, ScrewGeometry
-from feeddrive.parts.slip_angle import Groove, groove_at, slip_angle
-from feeddrive.parts.torque_regression import split_torque
+from feeddrive.parts.screw.preload_torque import ideal_torque, preload_torque, relative_preload_torque
+from feeddrive.parts.screw.screw_efficiency import driving_efficiency
+from feeddrive.parts.screw.screw_friction import ScrewFriction, ScrewGeometry
+from feeddrive.parts.screw.slip_angle import Groove, groove_at, slip_angle
+from feeddrive.parts.screw.torque_regression import split_torque
 from feeddrive.reproduce.paper_000_equations import equation_rows
 from feeddrive.reproduce.row import Paper, Row, claim, not_possible, number, span
 

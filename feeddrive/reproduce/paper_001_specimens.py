@@ -8,9 +8,9 @@ import numpy as np
 from scipy.special import gamma
 from scipy.stats import beta
 
-from feeddrive.parts.life_exponents import BALL_BEARING, BALL_SCREW
-from feeddrive.parts.weibull import WeibullLaw, line_fit
-from feeddrive.parts.weibull_interval import complete_slope_interval
+from feeddrive.parts.life.life_exponents import BALL_BEARING, BALL_SCREW
+from feeddrive.parts.life.weibull import WeibullLaw, line_fit
+from feeddrive.parts.life.weibull_interval import complete_slope_interval
 from feeddrive.reproduce.row import Paper, Row, claim, not_possible, number
 from feeddrive.reproduce.specimen_001 import (
     FIRST_FAILURE,

@@ -6,8 +6,8 @@ from itertools import pairwise
 
 from feeddrive.reproduce.paper_002_sets import PRELOADS, SPEEDS, Assumptions, WarmUp, nut_friction, torque, warm_up
 from feeddrive.reproduce.row import Paper, Row, claim, number
-from feeddrive.thermal.friction import nut_load_torque
-from feeddrive.thermal.moving import moving_system
+from feeddrive.thermal.full.moving import moving_system
+from feeddrive.thermal.laws.friction import nut_load_torque
 
 _HEAT = Paper.HEAT
 _RISES = {670: ("3.14", "5.18", "6.93"), 1300: ("6.97", "11.03", "14.32")}

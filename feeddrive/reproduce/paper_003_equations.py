@@ -12,10 +12,10 @@ from scipy.integrate import dblquad
 from scipy.optimize import fsolve
 
 from feeddrive.parts.contact import PointContact
-from feeddrive.parts.guide_carriage import carriage_friction, mean_slip_radius
-from feeddrive.parts.guide_coefficients import SET_A
-from feeddrive.parts.guide_equilibrium import guide_equilibrium
-from feeddrive.parts.guide_geometry import HSR_20R
+from feeddrive.parts.guide.guide_carriage import carriage_friction, mean_slip_radius
+from feeddrive.parts.guide.guide_coefficients import SET_A
+from feeddrive.parts.guide.guide_equilibrium import guide_equilibrium
+from feeddrive.parts.guide.guide_geometry import HSR_20R
 from feeddrive.reproduce.row import Paper, Row, claim
 from feeddrive.typing import FloatArray
 

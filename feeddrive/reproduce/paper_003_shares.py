@@ -13,10 +13,10 @@ import numpy as np
 from scipy.optimize import brentq
 
 from feeddrive.parts.contact import ball_in_groove
-from feeddrive.parts.guide_carriage import carriage_friction
-from feeddrive.parts.guide_coefficients import SET_A, SET_B, GuideCoefficients
-from feeddrive.parts.guide_film import Oil
-from feeddrive.parts.guide_geometry import BallGuide
+from feeddrive.parts.guide.guide_carriage import carriage_friction
+from feeddrive.parts.guide.guide_coefficients import SET_A, SET_B, GuideCoefficients
+from feeddrive.parts.guide.guide_film import Oil
+from feeddrive.parts.guide.guide_geometry import BallGuide
 from feeddrive.reproduce.paper_003_loads import FOUR_ROWS, SIZES
 from feeddrive.reproduce.row import Paper, Row, claim, span
 from feeddrive.typing import FloatArray

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from feeddrive.parts.ball_screw import ScrewShaft
 from feeddrive.parts.combined_stiffness import (
     CombinedStiffness,
     Deformation,
@@ -10,7 +9,8 @@ from feeddrive.parts.combined_stiffness import (
     combined_stiffness,
     natural_frequency,
 )
-from feeddrive.parts.screw_drive import BallScrewDrive
+from feeddrive.parts.screw.ball_screw import ScrewShaft
+from feeddrive.parts.screw.screw_drive import BallScrewDrive
 from feeddrive.reproduce.paper_004_claims import efficiency_rows, part_rows
 from feeddrive.reproduce.paper_004_drive import (
     AXIAL_CHAIN,

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from feeddrive.parts.ball_screw import ScrewShaft
-from feeddrive.parts.bearing import SupportBearing
+from feeddrive.parts.bearings.bearing import SupportBearing
+from feeddrive.parts.bearings.supports import ScrewSupports, Support
 from feeddrive.parts.combined_stiffness import (
     CombinedStiffness,
     Contribution,
@@ -13,9 +13,9 @@ from feeddrive.parts.combined_stiffness import (
 from feeddrive.parts.coupling import Coupling
 from feeddrive.parts.material import STEEL, ShaftMaterial
 from feeddrive.parts.motor import Motor
-from feeddrive.parts.nut import Nut
-from feeddrive.parts.screw_drive import BallScrewDrive
-from feeddrive.parts.supports import ScrewSupports, Support
+from feeddrive.parts.screw.ball_screw import ScrewShaft
+from feeddrive.parts.screw.nut import Nut
+from feeddrive.parts.screw.screw_drive import BallScrewDrive
 
 FORCE_LENGTH = 0.564
 """Effective length for force: nut from the fixed bearing [m] (Table 1)."""

@@ -11,10 +11,10 @@ from __future__ import annotations
 import math
 from functools import cache
 
-from feeddrive.parts.life import rating_of_test
-from feeddrive.parts.load_distribution import LoadDistribution, NutBody, load_distribution, nut_body
-from feeddrive.parts.rating import double_nut_share, material_constant_of_test
-from feeddrive.parts.screw_contact import BallTrack
+from feeddrive.parts.life.life import rating_of_test
+from feeddrive.parts.life.rating import double_nut_share, material_constant_of_test
+from feeddrive.parts.screw.load_distribution import LoadDistribution, NutBody, load_distribution, nut_body
+from feeddrive.parts.screw.screw_contact import BallTrack
 
 PRELOAD = 13.5e3
 """Of the test [N]."""

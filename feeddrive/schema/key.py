@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from enum import StrEnum
 
-from feeddrive.quantity import format_quantity
+from feeddrive.units.quantity import format_quantity
 
 
 class Kind(StrEnum):

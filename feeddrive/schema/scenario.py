@@ -1,4 +1,4 @@
-"""Keys of a scenario file; `feeddrive.simulate.scenario_file` and its neighbours read them."""
+"""Keys of a scenario file; `feeddrive.simulate.scenario.scenario_file` and its neighbours read them."""
 
 from __future__ import annotations
 

@@ -20,10 +20,10 @@ import control
 import numpy as np
 
 from feeddrive.effects.base import TimingEffect
-from feeddrive.effects.payload import Payload
+from feeddrive.effects.chain.payload import Payload
 from feeddrive.errors import InputError
-from feeddrive.plant.entries import nearest
-from feeddrive.plant.linear import INPUTS, MOVING, OUTPUTS, state_space
+from feeddrive.plant.analysis.linear import INPUTS, MOVING, OUTPUTS, state_space
+from feeddrive.plant.file.entries import nearest
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.margins import frequency_response
 from feeddrive.servo.resonances import Resonance, resonances

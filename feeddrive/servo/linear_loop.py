@@ -23,7 +23,7 @@ import casadi as ca
 import numpy as np
 
 from feeddrive.errors import InputError
-from feeddrive.plant.linear import INPUTS, MOVING, OUTPUTS
+from feeddrive.plant.analysis.linear import INPUTS, MOVING, OUTPUTS
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.symbolic_turn import SYMBOLS
 from feeddrive.servo.cascade import Cascade, FeedForward

@@ -18,7 +18,7 @@ import numpy as np
 from scipy.linalg import expm
 
 from feeddrive.effects.base import TimingEffect
-from feeddrive.plant.linear import MOVING, linear_matrices
+from feeddrive.plant.analysis.linear import MOVING, linear_matrices
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade
 from feeddrive.typing import FloatArray

@@ -28,7 +28,7 @@ import control
 import numpy as np
 
 from feeddrive.errors import InputError
-from feeddrive.plant.linear import OUTPUTS
+from feeddrive.plant.analysis.linear import OUTPUTS
 from feeddrive.plant.symbolic_turn import SYMBOLS
 from feeddrive.servo.sampled import SampledController
 from feeddrive.servo.sampled_plant import Matrices

@@ -9,7 +9,11 @@ import casadi as ca
 import numpy as np
 from scipy.interpolate import make_interp_spline
 
-from feeddrive.plant.chain import symbolic
+from feeddrive.engine.engine import Feed, Machine, machine_of, rested, run_machine
+from feeddrive.engine.program import Program, StepReport, joined
+from feeddrive.engine.step.step import driven_step
+from feeddrive.engine.step.step_constants import Layout
+from feeddrive.plant.chain.chain import symbolic
 from feeddrive.plant.equations import (
     chain_symbols,
     effect_forces,
@@ -19,10 +23,6 @@ from feeddrive.plant.equations import (
 )
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.structure import per_structure
-from feeddrive.simulate.engine import Feed, Machine, machine_of, rested, run_machine
-from feeddrive.simulate.program import Program, StepReport, joined
-from feeddrive.simulate.step import driven_step
-from feeddrive.simulate.step_constants import Layout
 from feeddrive.typing import FloatArray
 
 TOLERANCE = 1e-10

@@ -9,9 +9,9 @@ import numpy as np
 
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
-from feeddrive.simulate.controlled import simulate_controlled
+from feeddrive.simulate.controlled.controlled import simulate_controlled
+from feeddrive.simulate.controlled.sensitivity import simulate_sensitivity
 from feeddrive.simulate.recorded_run import RecordedRun, with_values
-from feeddrive.simulate.sensitivity import simulate_sensitivity
 from feeddrive.typing import FloatArray
 
 ITERATIONS = 40

@@ -10,8 +10,8 @@ import numpy as np
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.sampled import SampledController
-from feeddrive.simulate.controlled import TorqueLoop
-from feeddrive.simulate.sensitivity import SERIES
+from feeddrive.simulate.controlled.controlled import TorqueLoop
+from feeddrive.simulate.controlled.sensitivity import SERIES
 from feeddrive.typing import FloatArray
 
 

@@ -20,11 +20,11 @@ from dataclasses import dataclass
 
 from feeddrive.errors import InputError
 from feeddrive.parts.lubricant import Lubricant
-from feeddrive.parts.preload_loss import stiffness_share, torque_share
-from feeddrive.quantity import format_quantity
-from feeddrive.thermal.nut_preload import Spacer, preload_change
+from feeddrive.parts.screw.preload_loss import stiffness_share, torque_share
+from feeddrive.thermal.laws.nut_preload import Spacer, preload_change
 from feeddrive.thermal.rig import refuse_negative, refuse_unless, refuse_unless_positive
 from feeddrive.typing import Expression
+from feeddrive.units.quantity import format_quantity
 
 _PALMGREN = 2 / 3
 LEAST_PRELOAD = 0.05

@@ -5,7 +5,7 @@
 | symbol | meaning | unit |
 |---|---|---|
 | x | states of the reduced network, bodies that effects attach, lagging sensors | K (J/K)^½, K |
-| g, Q | conductances and heats of `feeddrive.thermal.laws` | |
+| g, Q | conductances and heats of `feeddrive.thermal.laws.laws` | |
 | y | what the sensors read | degC, m |
 | θ₀ | temperature at the start, a parameter like the others | degC |
 
@@ -21,13 +21,13 @@ import control
 import numpy as np
 
 from feeddrive.plant.symbolic_turn import SYMBOLS
-from feeddrive.thermal.full_model import NUT
-from feeddrive.thermal.laws import FOLLOWED, INPUTS, PATHS, growth_places, laws_of, values_of
-from feeddrive.thermal.model import AMBIENT, HeatModel
+from feeddrive.thermal.full.full_model import NUT
+from feeddrive.thermal.laws.laws import FOLLOWED, INPUTS, PATHS, growth_places, laws_of, values_of
 from feeddrive.thermal.plant import ThermalPlant
-from feeddrive.thermal.reduction import reduce_model
+from feeddrive.thermal.reduced.model import AMBIENT, HeatModel
+from feeddrive.thermal.reduced.reduction import reduce_model
 from feeddrive.thermal.rig import refuse_unless
-from feeddrive.thermal.warm_up import channel_of
+from feeddrive.thermal.run.warm_up import channel_of
 from feeddrive.typing import Expression, FloatArray
 
 HEAT_INPUTS = ("screw_speed", "ambient_temperature")

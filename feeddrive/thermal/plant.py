@@ -9,15 +9,15 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from feeddrive.effects.base import Effect
-from feeddrive.effects.thermal.base import ThermalEffect
+from feeddrive.effects.heat.base import ThermalEffect
 from feeddrive.errors import InputError
-from feeddrive.thermal.contact_conductance import conductance_at_preload
 from feeddrive.thermal.coupling import Coupling
-from feeddrive.thermal.films import Films
-from feeddrive.thermal.friction import LOAD_EXPONENT, Friction
-from feeddrive.thermal.full_model import FRONT, NUT, REAR, full_model
-from feeddrive.thermal.grid import Cells
-from feeddrive.thermal.model import HeatModel, Path
+from feeddrive.thermal.full.full_model import FRONT, NUT, REAR, full_model
+from feeddrive.thermal.full.grid import Cells
+from feeddrive.thermal.laws.contact_conductance import conductance_at_preload
+from feeddrive.thermal.laws.films import Films
+from feeddrive.thermal.laws.friction import LOAD_EXPONENT, Friction
+from feeddrive.thermal.reduced.model import HeatModel, Path
 from feeddrive.thermal.rig import Body, Rig, Travel, refuse_negative, refuse_unless_positive
 from feeddrive.thermal.sensors import HeatSensor
 from feeddrive.typing import FloatArray

@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass, field
 
 from feeddrive.errors import InputError
-from feeddrive.quantity import format_quantity
+from feeddrive.units.quantity import format_quantity
 
 
 def refuse_unless(holds: bool, what: str, where: str, mend: str) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from feeddrive.thermal.full_model import FRONT, NUT, REAR, SHAFT, growth_name
+from feeddrive.thermal.full.full_model import FRONT, NUT, REAR, SHAFT, growth_name
 
 CHANNELS = {
     NUT: "nut_temperature", FRONT: "front_bearing_temperature", REAR: "rear_bearing_temperature",

@@ -9,8 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from feeddrive.effects.base import Effect, Kind
-from feeddrive.effects.nut_friction import NutFriction
-from feeddrive.effects.shaft_drag import BearingDrag, NutDrag
+from feeddrive.effects.friction.nut_friction import NutFriction
+from feeddrive.effects.friction.shaft_drag import BearingDrag, NutDrag
 from feeddrive.plant.equations import parameter_names
 from feeddrive.plant.plant import Plant
 from feeddrive.thermal.coupling import Coupling

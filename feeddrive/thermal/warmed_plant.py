@@ -6,10 +6,10 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from feeddrive.effects.base import Effect
-from feeddrive.effects.lead_error_cumulative import LeadErrorCumulative
-from feeddrive.effects.nut_friction import NutFriction
-from feeddrive.effects.shaft_drag import BearingDrag, NutDrag
-from feeddrive.plant.linear_chain import Chain
+from feeddrive.effects.friction.nut_friction import NutFriction
+from feeddrive.effects.friction.shaft_drag import BearingDrag, NutDrag
+from feeddrive.effects.travel.lead_error_cumulative import LeadErrorCumulative
+from feeddrive.plant.chain.linear_chain import Chain
 from feeddrive.plant.plant import Plant
 from feeddrive.thermal.coupling import Changes
 

@@ -19,7 +19,7 @@ import numpy as np
 
 from feeddrive.errors import InputError, printable
 from feeddrive.recording import Recording, read_recording
-from feeddrive.recording.opening import first_bytes, head_of
+from feeddrive.recording.files.opening import first_bytes, head_of
 
 PASSED_OVER = (".toml", ".html", ".htm", ".png", ".jpg", ".jpeg", ".pdf", ".svg", ".md", ".py", ".npz", ".ini", ".bak")
 """Endings of what lies beside recordings."""

@@ -11,11 +11,11 @@ import numpy as np
 from scipy.stats import t as student
 
 from feeddrive.errors import InputError
-from feeddrive.quantity import parse
 from feeddrive.trend.atoms import ODD
 from feeddrive.trend.change_points import Course
 from feeddrive.trend.quantities import Quantity
 from feeddrive.typing import FloatArray
+from feeddrive.units.quantity import parse
 
 FIRST = 20
 """Recordings at the beginning that a limit is taken from at most: the first weeks of daily ones."""

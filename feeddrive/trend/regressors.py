@@ -26,8 +26,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feeddrive.diagnosis.evidence import AxisEvidence, prepare
-from feeddrive.diagnosis.prediction import AxisPredictor
+from feeddrive.diagnosis.likelihood.evidence import AxisEvidence, prepare
+from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feeddrive.errors import InputError
-from feeddrive.plant.linear import MOVING
+from feeddrive.plant.analysis.linear import MOVING
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.frequency_response import Case
 

@@ -7,15 +7,15 @@ import math
 from dataclasses import dataclass
 
 from feeddrive.errors import printable
-from feeddrive.plant.modes import braked_modes
-from feeddrive.plant.moving_inertia import inertia_at_motor
+from feeddrive.plant.analysis.modes import braked_modes
+from feeddrive.plant.chain.moving_inertia import inertia_at_motor
 from feeddrive.plant.plant import Plant
-from feeddrive.quantity import format_quantity
 from feeddrive.servo.cascade import KV_UNIT, Cascade
 from feeddrive.servo.frequency_response import Case
 from feeddrive.tuning.filter_choice import FilterChoice
 from feeddrive.tuning.largest_gain import GainLimit, Limit
 from feeddrive.tuning.recommendation import Recommendation
+from feeddrive.units.quantity import format_quantity
 
 _COMPLETE = 200.0
 """Depth of a complete notch in a file [dB]: 1e-10, beyond every digit of a drive."""

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import control
 
 from feeddrive.errors import InputError
-from feeddrive.plant.moving_inertia import inertia_at_motor
+from feeddrive.plant.chain.moving_inertia import inertia_at_motor
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade, FeedForward
 from feeddrive.servo.frequency_response import Case

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.signal import butter, sosfiltfilt
 
-from feeddrive.diagnosis.result import (
+from feeddrive.diagnosis.judging.result import (
     ChannelResult,
     ChannelSeries,
     Dependence,

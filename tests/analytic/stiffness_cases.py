@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from hypothesis import strategies as st
 
-from feeddrive.parts.ball_screw import ScrewShaft
-from feeddrive.parts.bearing import SupportBearing
+from feeddrive.parts.bearings.bearing import SupportBearing
+from feeddrive.parts.bearings.supports import ScrewSupports, Support
 from feeddrive.parts.coupling import Coupling
 from feeddrive.parts.material import ShaftMaterial
 from feeddrive.parts.motor import Motor
-from feeddrive.parts.nut import Nut
-from feeddrive.parts.screw_drive import BallScrewDrive
-from feeddrive.parts.supports import ScrewSupports, Support
+from feeddrive.parts.screw.ball_screw import ScrewShaft
+from feeddrive.parts.screw.nut import Nut
+from feeddrive.parts.screw.screw_drive import BallScrewDrive
 
 PAPER_STEEL = ShaftMaterial(young=210e9, shear=83.0e9, density=7850.0, expansion=11.7e-6)
 """The moduli that its printed stiffnesses mean; density of steel."""

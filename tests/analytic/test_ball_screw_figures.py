@@ -7,9 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from feeddrive.parts.screw_friction import ScrewFriction, ScrewGeometry
-from feeddrive.report.drawing import render
-from feeddrive.report.figure_ball_screw import contact_angle_figure, double_nut_figure, efficiency_figure
+from feeddrive.parts.screw.screw_friction import ScrewFriction, ScrewGeometry
+from feeddrive.report.figures.drawing import render
+from feeddrive.report.figures.figure_ball_screw import contact_angle_figure, double_nut_figure, efficiency_figure
 
 SCREW = ScrewFriction(ScrewGeometry(0.01, 0.041, math.pi / 4), 0.034)
 

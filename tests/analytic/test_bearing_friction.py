@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from feeddrive.errors import InputError, ValidityWarning
-from feeddrive.parts.bearing_friction import (
+from feeddrive.parts.bearings.bearing_friction import (
     ANGULAR_CONTACT,
     BALL_BEARING_TYPES,
     DEEP_GROOVE,

@@ -20,8 +20,8 @@ from feeddrive.interface.benching import Bench
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.frequency_response import Case
 from feeddrive.servo.loop_response import Loop, open_response
-from feeddrive.simulate.controller_file import read_controller
-from feeddrive.simulate.trial_motions import HEIGHT, circle_about, step_at
+from feeddrive.simulate.controlled.controller_file import read_controller
+from feeddrive.simulate.setpoints.trial_motions import HEIGHT, circle_about, step_at
 from tests.analytic.browser import found_in_page
 
 CONTROLLER = "scenarios/controllers/bench_axis.toml"

@@ -10,13 +10,13 @@ import control
 import numpy as np
 import pytest
 
-from feeddrive.effects.drive_delay import DriveDelay
-from feeddrive.effects.guide_friction import GuideFriction
+from feeddrive.effects.friction.guide_friction import GuideFriction
+from feeddrive.effects.timing.drive_delay import DriveDelay
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant
 from feeddrive.metrology.recorded_response import recorded_response
-from feeddrive.plant.chain import Rigid, ThreeInertias
-from feeddrive.plant.files import read_plant
+from feeddrive.plant.chain.chain import Rigid, ThreeInertias
+from feeddrive.plant.file.files import read_plant
 from feeddrive.plant.plant import Plant
 from feeddrive.recording.recording import Recording
 from feeddrive.servo.cascade import Cascade, Feedback
@@ -26,7 +26,7 @@ from feeddrive.servo.loop_response import Loop, closed_figures, closed_response,
 from feeddrive.servo.margins import margins
 from feeddrive.servo.resonances import Kind, extrema, on_curve
 from feeddrive.servo.response_family import mechanics_family
-from feeddrive.simulate.controller_file import read_controller
+from feeddrive.simulate.controlled.controller_file import read_controller
 from feeddrive.simulate.held_torque import simulate_torque
 from feeddrive.typing import FloatArray
 

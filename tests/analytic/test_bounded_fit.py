@@ -6,21 +6,21 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 
-from feeddrive.diagnosis.coordinates import (
+from feeddrive.diagnosis.likelihood.coordinates import (
     absent_coordinates,
     coordinate_ends,
     coordinates_of,
     read_coordinates,
     write_coordinates,
 )
-from feeddrive.diagnosis.fit import inside_step, linear_step
+from feeddrive.diagnosis.likelihood.fit import inside_step, linear_step
 from feeddrive.effects.base import Effect
 from feeddrive.effects.catalogue import EFFECTS, THERMAL_EFFECTS
-from feeddrive.effects.drive_delay import DriveDelay
-from feeddrive.effects.inertia_deviation import InertiaDeviation
-from feeddrive.effects.payload import Payload
+from feeddrive.effects.chain.inertia_deviation import InertiaDeviation
+from feeddrive.effects.chain.payload import Payload
+from feeddrive.effects.timing.drive_delay import DriveDelay
 from feeddrive.files import plants_folder
-from feeddrive.plant.files import read_plant
+from feeddrive.plant.file.files import read_plant
 from tests.analytic.test_effects import NEUTRAL, PLACES
 from tests.analytic.test_thermal_effects import NEUTRAL as THERMAL_NEUTRAL
 

@@ -9,9 +9,9 @@ import pytest
 
 from feeddrive.diagnosis.calibration.calibration import whitener
 from feeddrive.diagnosis.calibration.declared import CalibratedValue, as_effect, calibrated_values, with_values
-from feeddrive.diagnosis.tolerances import MASS, deviation_of
+from feeddrive.diagnosis.likelihood.tolerances import MASS, deviation_of
 from feeddrive.files import plants_folder
-from feeddrive.plant.files import read_plant
+from feeddrive.plant.file.files import read_plant
 from tests.generator.drawn_drives import drawn_drive
 from tests.recovery.rigid_runs import MASS as RIGID_MASS
 from tests.recovery.rigid_runs import PLANT

@@ -14,13 +14,13 @@ import feeddrive as fd
 from feeddrive.errors import InputError
 from feeddrive.files import plants_folder
 from feeddrive.parts.catalogue.reading import CataloguePart, catalogue
-from feeddrive.parts.guide_rating import rated_friction
+from feeddrive.parts.guide.guide_rating import rated_friction
 from feeddrive.parts.values import check_values
-from feeddrive.plant.drive_sections import BEARING_VALUES, PART_VALUES
-from feeddrive.plant.entries import read_toml
-from feeddrive.plant.files import plant_from_entries
-from feeddrive.plant.ratings import RATINGS
-from feeddrive.quantity import parse
+from feeddrive.plant.file.drive_sections import BEARING_VALUES, PART_VALUES
+from feeddrive.plant.file.entries import read_toml
+from feeddrive.plant.file.files import plant_from_entries
+from feeddrive.plant.file.ratings import RATINGS
+from feeddrive.units.quantity import parse
 
 PARTS = list(catalogue().values())
 
@@ -177,7 +177,7 @@ def test_check_tells_what_differs_from_its_part(tmp_path: Path) -> None:
 def test_what_is_the_parts_own_value_is_no_departure() -> None:
     entries = axis()
     entries["ball_screw"]["lead"] = "1 cm"
-    from feeddrive.plant.named_parts import departures
+    from feeddrive.plant.file.named_parts import departures
 
     entries["guide"] = {"carriage": "HGH25HA", "carriages": 4, "seal_drag": "3.92 N", "friction_coefficient": 0.006}
     found = {one.key: (one.written, one.catalogue) for one in departures(entries, "axis.toml")}
@@ -235,7 +235,7 @@ def test_guide_refusals_carry_their_remedy(guide: dict[str, Any], words: str) ->
 def test_measured_numbers_see_the_values_of_parts(tmp_path: Path) -> None:
     """Values that a part gives may be other than declared like any other."""
     from feeddrive.diagnosis.numbers.declared_values import declared_values
-    from feeddrive.plant.named_parts import with_named_parts
+    from feeddrive.plant.file.named_parts import with_named_parts
 
     filled = with_named_parts(axis(), "axis.toml")
     keys = {one.key for one in declared_values(filled, 1e8)}

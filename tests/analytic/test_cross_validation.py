@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from feeddrive.diagnosis.cross_validation import Prior, compare_left_out, left_out
-from feeddrive.diagnosis.folds import FOLDS, kinds_of_motion
+from feeddrive.diagnosis.likelihood.cross_validation import Prior, compare_left_out, left_out
+from feeddrive.diagnosis.likelihood.folds import FOLDS, kinds_of_motion
 from feeddrive.diagnosis.unexplained.functional_sums import Sample, Sums
 from feeddrive.diagnosis.unexplained.term import Form, Term
 from feeddrive.typing import FloatArray

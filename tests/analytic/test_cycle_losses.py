@@ -9,11 +9,11 @@ import pytest
 
 from feeddrive.effects.base import Effect
 from feeddrive.effects.catalogue import EFFECTS
-from feeddrive.plant.files import read_plant
+from feeddrive.plant.file.files import read_plant
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade_function import cascade_controller
-from feeddrive.simulate.controlled import ControlledRun, TorqueLoop, resting_state, simulate_controlled
-from feeddrive.simulate.cycle_losses import CycleLosses, cycle_losses
+from feeddrive.simulate.controlled.controlled import ControlledRun, TorqueLoop, resting_state, simulate_controlled
+from feeddrive.simulate.scenario.cycle_losses import CycleLosses, cycle_losses
 from tests.analytic.warm_cases import PLANT_FILE, short_cycle
 
 PLANT = read_plant(PLANT_FILE)

@@ -11,17 +11,17 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from feeddrive.errors import InputError
-from feeddrive.parts.double_nut import (
+from feeddrive.parts.screw.double_nut import (
     OPENING,
     friction_torque_backward,
     friction_torque_forward,
     rigid_sharing,
     spring_sharing,
 )
-from feeddrive.parts.preload_torque import preload_torque
-from feeddrive.parts.screw_efficiency import back_driving_loss, driving_loss, jamming_friction
-from feeddrive.parts.screw_friction import ScrewFriction, ScrewGeometry
-from feeddrive.parts.slip_angle import groove_at
+from feeddrive.parts.screw.preload_torque import preload_torque
+from feeddrive.parts.screw.screw_efficiency import back_driving_loss, driving_loss, jamming_friction
+from feeddrive.parts.screw.screw_friction import ScrewFriction, ScrewGeometry
+from feeddrive.parts.screw.slip_angle import groove_at
 
 FORCES = st.floats(-5e4, 5e4)
 PRELOADS = st.floats(0.0, 2e4)

@@ -13,33 +13,33 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from feeddrive.diagnosis.evidence import AxisEvidence, prepare
-from feeddrive.diagnosis.prediction import AxisPredictor
+from feeddrive.diagnosis.likelihood.evidence import AxisEvidence, prepare
+from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
 from feeddrive.effects.base import Effect, Port
-from feeddrive.effects.channel_delay import ChannelDelay
-from feeddrive.effects.drive_delay import DriveDelay
-from feeddrive.effects.inertia_deviation import InertiaDeviation, declared_inertia
-from feeddrive.effects.payload import Payload
-from feeddrive.effects.torque_constant_droop import TorqueConstantDroop
+from feeddrive.effects.chain.inertia_deviation import InertiaDeviation, declared_inertia
+from feeddrive.effects.chain.payload import Payload
+from feeddrive.effects.source.torque_constant_droop import TorqueConstantDroop
+from feeddrive.effects.timing.channel_delay import ChannelDelay
+from feeddrive.effects.timing.drive_delay import DriveDelay
+from feeddrive.engine.lateness import LateChannels, late_mean
 from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.export.notes import included, left_out
 from feeddrive.files import find_scenario_file, plants_folder
-from feeddrive.plant.chain import CHAINS
-from feeddrive.plant.effect_text import plant_text_with_effects
-from feeddrive.plant.files import read_plant
-from feeddrive.plant.linear import linear_matrices, steady_motion
+from feeddrive.plant.analysis.linear import linear_matrices, steady_motion
+from feeddrive.plant.chain.chain import CHAINS
+from feeddrive.plant.file.effect_text import plant_text_with_effects
+from feeddrive.plant.file.files import read_plant
 from feeddrive.plant.motor_torque import acting_torques, asked_torques
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 from feeddrive.servo.sampled import SampledController
 from feeddrive.simulate import scenario_run
-from feeddrive.simulate.controlled import TorqueLoop, simulate_controlled
+from feeddrive.simulate.controlled.controlled import TorqueLoop, simulate_controlled
+from feeddrive.simulate.controlled.sensitivity import simulate_sensitivity
 from feeddrive.simulate.held_torque import simulate_torque
-from feeddrive.simulate.lateness import LateChannels, late_mean
-from feeddrive.simulate.scenario import Scenario
-from feeddrive.simulate.scenario_file import read_scenario
-from feeddrive.simulate.scenario_run import run_scenario
-from feeddrive.simulate.sensitivity import simulate_sensitivity
+from feeddrive.simulate.scenario.scenario import Scenario
+from feeddrive.simulate.scenario.scenario_file import read_scenario
+from feeddrive.simulate.scenario.scenario_run import run_scenario
 
 BENCH = read_plant(plants_folder() / "bench_axis.toml")
 TESTBED = read_plant(plants_folder() / "kimm_testbed.toml")

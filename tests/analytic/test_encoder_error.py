@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from feeddrive.diagnosis.band import Band
-from feeddrive.diagnosis.encoder_error import drawn_error, expected_motion
+from feeddrive.diagnosis.likelihood.band import Band
+from feeddrive.diagnosis.likelihood.encoder_error import drawn_error, expected_motion
 from feeddrive.typing import FloatArray
 
 RATE, SECONDS, EDGE = 2000.0, 12.0, 150.0

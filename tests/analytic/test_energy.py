@@ -10,19 +10,19 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from feeddrive.effects.backlash import Backlash
 from feeddrive.effects.base import Effect
-from feeddrive.effects.friction_vs_position import FrictionVsPosition
-from feeddrive.effects.guide_friction import GuideFriction
-from feeddrive.effects.presliding import Presliding
-from feeddrive.effects.shaft_drag import NutDrag
-from feeddrive.effects.stribeck import Stribeck
-from feeddrive.plant.chain import ThreeInertias
+from feeddrive.effects.friction.friction_vs_position import FrictionVsPosition
+from feeddrive.effects.friction.guide_friction import GuideFriction
+from feeddrive.effects.friction.presliding import Presliding
+from feeddrive.effects.friction.shaft_drag import NutDrag
+from feeddrive.effects.friction.stribeck import Stribeck
+from feeddrive.effects.transmission.backlash import Backlash
+from feeddrive.engine.program import Position
+from feeddrive.plant.chain.chain import ThreeInertias
 from feeddrive.plant.equations import bristle_count
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.sampled import SampledController
-from feeddrive.simulate.controlled import ControlledRun, ControlledState, resting_state, simulate_controlled
-from feeddrive.simulate.program import Position
+from feeddrive.simulate.controlled.controlled import ControlledRun, ControlledState, resting_state, simulate_controlled
 from tests.convergence.test_controlled import cascade
 from tests.convergence.test_simulate import BENCH
 

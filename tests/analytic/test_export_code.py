@@ -22,7 +22,7 @@ from feeddrive.export.model import Model, model_of
 from feeddrive.export.notes import changes_with_time, left_out
 from feeddrive.export.point import Point
 from feeddrive.export.writing import Form, write_export
-from feeddrive.plant.linear import ode_parameters, state_space, timed_ode
+from feeddrive.plant.analysis.linear import ode_parameters, state_space, timed_ode
 from feeddrive.plant.plant import Plant
 from tests.analytic.export_cases import BENCH, EMPS, LEAD_ERROR, MANY, PLANTS, TESTBED
 from tests.analytic.test_effects import NEUTRAL, PLACES

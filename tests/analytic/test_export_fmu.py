@@ -21,7 +21,7 @@ from feeddrive.export.fmu_units import exponents
 from feeddrive.export.model import model_of
 from feeddrive.export.nominals import nominals
 from feeddrive.export.point import Point
-from feeddrive.plant.linear import ode_parameters, state_names, state_space
+from feeddrive.plant.analysis.linear import ode_parameters, state_names, state_space
 from feeddrive.plant.plant import Plant
 from feeddrive.simulate.held_torque import initial_state, simulate_torque
 from tests.analytic.export_cases import BENCH, PLANTS, TESTBED

@@ -18,9 +18,9 @@ from feeddrive.export.model import identifier_of
 from feeddrive.export.point import Point, export_point
 from feeddrive.export.quantities import parameters
 from feeddrive.export.writing import Form, write_export
-from feeddrive.plant.chain import CHAINS
-from feeddrive.plant.linear import INPUTS, OUTPUTS, ode_parameters, state_names, state_space
-from feeddrive.plant.modes import free_modes
+from feeddrive.plant.analysis.linear import INPUTS, OUTPUTS, ode_parameters, state_names, state_space
+from feeddrive.plant.analysis.modes import free_modes
+from feeddrive.plant.chain.chain import CHAINS
 from feeddrive.plant.plant import Plant
 from tests.analytic.export_cases import BENCH, PLANTS, TESTBED
 from tests.claims.book import CLAIMS

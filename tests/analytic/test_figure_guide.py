@@ -7,13 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from feeddrive.parts.guide_carriage import carriage_friction
-from feeddrive.parts.guide_coefficients import SET_A
-from feeddrive.parts.guide_equilibrium import guide_equilibrium
-from feeddrive.parts.guide_geometry import HSR_20R, HSR_30R
-from feeddrive.parts.guide_stiffness import unloading_force
-from feeddrive.report.drawing import render
-from feeddrive.report.figure_guide import guide_ball_load_figure, guide_friction_figure, guide_shares_figure
+from feeddrive.parts.guide.guide_carriage import carriage_friction
+from feeddrive.parts.guide.guide_coefficients import SET_A
+from feeddrive.parts.guide.guide_equilibrium import guide_equilibrium
+from feeddrive.parts.guide.guide_geometry import HSR_20R, HSR_30R
+from feeddrive.parts.guide.guide_stiffness import unloading_force
+from feeddrive.report.figures.drawing import render
+from feeddrive.report.figures.figure_guide import guide_ball_load_figure, guide_friction_figure, guide_shares_figure
 
 
 def test_shares_fill_each_panel() -> None:

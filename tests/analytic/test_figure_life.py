@@ -7,13 +7,13 @@ import math
 import numpy as np
 import pytest
 
-from feeddrive.parts.consumed_life import consumed_life, rigid_nut_forces
-from feeddrive.parts.load_distribution import load_distribution, nut_body
-from feeddrive.parts.screw_contact import BallTrack
-from feeddrive.parts.weibull import life_sample, likelihood_fit
-from feeddrive.report.drawing import render
-from feeddrive.report.figure_life import consumed_life_figure, load_distribution_figure, weibull_figure
-from feeddrive.report.people import significant
+from feeddrive.parts.life.consumed_life import consumed_life, rigid_nut_forces
+from feeddrive.parts.life.weibull import life_sample, likelihood_fit
+from feeddrive.parts.screw.load_distribution import load_distribution, nut_body
+from feeddrive.parts.screw.screw_contact import BallTrack
+from feeddrive.report.figures.drawing import render
+from feeddrive.report.figures.figure_life import consumed_life_figure, load_distribution_figure, weibull_figure
+from feeddrive.report.words.people import significant
 
 LIVES = [250e3, 300e3, 310e3, 380e3, 420e3, 440e3]
 

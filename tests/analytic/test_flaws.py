@@ -9,16 +9,16 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from feeddrive.diagnosis.band import Band
-from feeddrive.diagnosis.flawed_rows import refuse_little_left, sound_rows, without_copied_position
+from feeddrive.diagnosis.likelihood.band import Band
 from feeddrive.diagnosis.preparation import prepared
+from feeddrive.diagnosis.suspicion.flawed_rows import refuse_little_left, sound_rows, without_copied_position
 from feeddrive.errors import InputError
 from feeddrive.files import plants_folder
-from feeddrive.plant.files import read_plant
+from feeddrive.plant.file.files import read_plant
 from feeddrive.recording import Recording, read_recording, write_recording
-from feeddrive.recording.copies import is_copy
-from feeddrive.recording.find_flaws import find_flaws
-from feeddrive.recording.flaws import BAD, CLIPPED, HELD, Flaw
+from feeddrive.recording.checks.copies import is_copy
+from feeddrive.recording.checks.find_flaws import find_flaws
+from feeddrive.recording.checks.flaws import BAD, CLIPPED, HELD, Flaw
 from tests.analytic.sound_recordings import sound_recording
 
 Array = npt.NDArray[np.float64]

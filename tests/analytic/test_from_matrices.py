@@ -8,18 +8,18 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from feeddrive.diagnosis.band import SHARE_OF_ANTIRESONANCE, WIDEST_BAND, comparison_band
+from feeddrive.diagnosis.likelihood.band import SHARE_OF_ANTIRESONANCE, WIDEST_BAND, comparison_band
 from feeddrive.effects.catalogue import EFFECTS
-from feeddrive.effects.stiffness_deviation import PARTS, parts_of
+from feeddrive.effects.chain.stiffness_deviation import PARTS, parts_of
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant
-from feeddrive.plant.effect_text import plant_text_with_effects
-from feeddrive.plant.files import read_plant
-from feeddrive.plant.modes import screw_frequency
-from feeddrive.plant.moving_inertia import inertia_at_motor, lag_per_acceleration
+from feeddrive.plant.analysis.modes import screw_frequency
+from feeddrive.plant.analysis.steady import steady_motion
+from feeddrive.plant.analysis.stiffness_budget import participation, static_stiffness
+from feeddrive.plant.chain.moving_inertia import inertia_at_motor, lag_per_acceleration
+from feeddrive.plant.file.effect_text import plant_text_with_effects
+from feeddrive.plant.file.files import read_plant
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.steady import steady_motion
-from feeddrive.plant.stiffness_budget import participation, static_stiffness
 from tests.generator.screw_elements import at_nut, chains, drive_of, matrices
 
 BENCH = read_plant(find_plant("bench_axis"))

@@ -11,12 +11,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from feeddrive.errors import InputError, ValidityWarning
-from feeddrive.parts.guide_carriage import carriage_friction, friction_map, mean_slip_radius, table_friction
-from feeddrive.parts.guide_coefficients import SET_A, GuideCoefficients
-from feeddrive.parts.guide_equilibrium import forces, guide_equilibrium
-from feeddrive.parts.guide_film import Oil, film_thickness
-from feeddrive.parts.guide_geometry import HSR_20R, HSR_30R, BallGuide
-from feeddrive.parts.guide_stiffness import lateral_stiffness, preload_force, unloading_force, vertical_stiffness
+from feeddrive.parts.guide.guide_carriage import carriage_friction, friction_map, mean_slip_radius, table_friction
+from feeddrive.parts.guide.guide_coefficients import SET_A, GuideCoefficients
+from feeddrive.parts.guide.guide_equilibrium import forces, guide_equilibrium
+from feeddrive.parts.guide.guide_film import Oil, film_thickness
+from feeddrive.parts.guide.guide_geometry import HSR_20R, HSR_30R, BallGuide
+from feeddrive.parts.guide.guide_stiffness import lateral_stiffness, preload_force, unloading_force, vertical_stiffness
 
 GUIDES = st.builds(
     BallGuide,

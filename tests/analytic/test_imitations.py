@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from feeddrive.diagnosis.certainty.imitations import imitations_of
-from feeddrive.effects.backlash import Backlash
-from feeddrive.effects.constant_force import ConstantForce
+from feeddrive.effects.source.constant_force import ConstantForce
+from feeddrive.effects.transmission.backlash import Backlash
 from feeddrive.plant.plant import Plant
 from tests.analytic.test_transmission_spring import law
 from tests.convergence.test_simulate import BENCH

@@ -14,12 +14,20 @@ from feeddrive.effects.base import Effect
 from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.errors import InputError
 from feeddrive.files import plants_folder
-from feeddrive.plant.chain import Rigid, ThreeInertias
-from feeddrive.plant.files import read_plant
-from feeddrive.plant.linear import INPUTS, OUTPUTS, ode, ode_parameters, state_names, state_space, steady_motion
-from feeddrive.plant.modes import braked_modes, free_modes
+from feeddrive.plant.analysis.linear import (
+    INPUTS,
+    OUTPUTS,
+    ode,
+    ode_parameters,
+    state_names,
+    state_space,
+    steady_motion,
+)
+from feeddrive.plant.analysis.modes import braked_modes, free_modes
+from feeddrive.plant.analysis.summary import summarise
+from feeddrive.plant.chain.chain import Rigid, ThreeInertias
+from feeddrive.plant.file.files import read_plant
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.summary import summarise
 
 BENCH = read_plant(plants_folder() / "bench_axis.toml")
 EMPS = read_plant(plants_folder() / "emps.toml")

@@ -13,13 +13,13 @@ from feeddrive.cli.main import main
 from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant
-from feeddrive.plant.chain import ThreeInertias
-from feeddrive.plant.files import read_plant
-from feeddrive.plant.lumping import Lumped
-from feeddrive.plant.modes import braked_modes, free_modes
-from feeddrive.plant.moving_inertia import inertia_at_motor
+from feeddrive.plant.analysis.lumping import Lumped
+from feeddrive.plant.analysis.modes import braked_modes, free_modes
+from feeddrive.plant.analysis.steady import steady_motion
+from feeddrive.plant.chain.chain import ThreeInertias
+from feeddrive.plant.chain.moving_inertia import inertia_at_motor
+from feeddrive.plant.file.files import read_plant
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.steady import steady_motion
 from tests.generator.drawn_drives import drawn_drive
 from tests.generator.screw_elements import Drive, at_nut, chains, drive_of, frequencies, matrices
 

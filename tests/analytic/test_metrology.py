@@ -14,7 +14,7 @@ from feeddrive.metrology.following import following, settling
 from feeddrive.metrology.loops import force_loop, friction_map, torque_loop
 from feeddrive.metrology.positioning import positioning
 from feeddrive.metrology.response import measured_response, periodic_response, step_response
-from feeddrive.simulate.waveforms import Multisine
+from feeddrive.simulate.setpoints.waveforms import Multisine
 
 MICRO = 1e-6
 

@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from feeddrive.diagnosis.cross_validation import gain_of_model_error, model_error_rows
 from feeddrive.diagnosis.heat.evidence import GAIN_ERROR, MODEL_ERROR, HeatEvidence, prepare_heat
+from feeddrive.diagnosis.likelihood.cross_validation import gain_of_model_error, model_error_rows
 from feeddrive.files import plants_folder
 from feeddrive.recording import Recording
-from feeddrive.thermal.files import read_thermal_plant
+from feeddrive.thermal.file.files import read_thermal_plant
 
 PLANT = read_thermal_plant(plants_folder() / "thermal_bench.toml")
 ROWS, STEP = 240, 30.0

@@ -11,15 +11,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from feeddrive.effects.base import Motion
-from feeddrive.effects.constant_force import ConstantForce
-from feeddrive.effects.guide_friction import GuideFriction
-from feeddrive.effects.load_dependent_friction import LoadDependentFriction
-from feeddrive.effects.nut_friction import NutFriction
+from feeddrive.effects.friction.guide_friction import GuideFriction
+from feeddrive.effects.friction.load_dependent_friction import LoadDependentFriction
+from feeddrive.effects.friction.nut_friction import NutFriction
+from feeddrive.effects.source.constant_force import ConstantForce
 from feeddrive.errors import InputError
 from feeddrive.files import plants_folder
-from feeddrive.parts.screw_friction import ScrewFriction, ScrewGeometry
+from feeddrive.parts.screw.screw_friction import ScrewFriction, ScrewGeometry
 from feeddrive.plant.equations import effect_forces, parameter_symbols, parameter_values
-from feeddrive.plant.files import read_plant
+from feeddrive.plant.file.files import read_plant
 from feeddrive.plant.plant import Plant
 from feeddrive.simulate.held_torque import simulate_torque
 

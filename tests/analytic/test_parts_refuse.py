@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 
 from feeddrive.errors import InputError, ValidityWarning
-from feeddrive.parts.bearing_friction import ANGULAR_CONTACT, BallBearing, load_torque, viscous_torque
+from feeddrive.parts.bearings.bearing_friction import ANGULAR_CONTACT, BallBearing, load_torque, viscous_torque
 from feeddrive.parts.combined_stiffness import natural_frequency
 from feeddrive.parts.contact import ball_in_groove
-from feeddrive.parts.guide_carriage import carriage_friction, table_friction
-from feeddrive.parts.guide_coefficients import SET_A
-from feeddrive.parts.guide_equilibrium import guide_equilibrium
-from feeddrive.parts.guide_geometry import HSR_20R
-from feeddrive.parts.life import (
+from feeddrive.parts.guide.guide_carriage import carriage_friction, table_friction
+from feeddrive.parts.guide.guide_coefficients import SET_A
+from feeddrive.parts.guide.guide_equilibrium import guide_equilibrium
+from feeddrive.parts.guide.guide_geometry import HSR_20R
+from feeddrive.parts.life.life import (
     DutyPhase,
     distance,
     equivalent_load,
@@ -26,18 +26,18 @@ from feeddrive.parts.life import (
     running_time,
     survival,
 )
-from feeddrive.parts.life_exponents import diameter_exponent, load_exponent
-from feeddrive.parts.load_distribution import continuum_extremes, load_distribution, nut_body
+from feeddrive.parts.life.life_exponents import diameter_exponent, load_exponent
+from feeddrive.parts.life.rating import combined_rating, material_constant_of_test, rating
+from feeddrive.parts.life.stress_cycles import effective_screw_groove
+from feeddrive.parts.life.subsurface_shear import axis_stresses, greatest_shear_on_axis
+from feeddrive.parts.life.weibull import WeibullLaw
+from feeddrive.parts.life.weibull_interval import complete_slope_interval
 from feeddrive.parts.lubricant import mineral_oil
-from feeddrive.parts.preload_loss import opening_force, preload_share_from_stiffness, preload_share_from_torque
-from feeddrive.parts.rating import combined_rating, material_constant_of_test, rating
-from feeddrive.parts.screw_contact import BallTrack
-from feeddrive.parts.screw_friction import ScrewFriction, ScrewGeometry
-from feeddrive.parts.stress_cycles import effective_screw_groove
-from feeddrive.parts.subsurface_shear import axis_stresses, greatest_shear_on_axis
-from feeddrive.parts.wedge import self_locking_lead
-from feeddrive.parts.weibull import WeibullLaw
-from feeddrive.parts.weibull_interval import complete_slope_interval
+from feeddrive.parts.screw.load_distribution import continuum_extremes, load_distribution, nut_body
+from feeddrive.parts.screw.preload_loss import opening_force, preload_share_from_stiffness, preload_share_from_torque
+from feeddrive.parts.screw.screw_contact import BallTrack
+from feeddrive.parts.screw.screw_friction import ScrewFriction, ScrewGeometry
+from feeddrive.parts.screw.wedge import self_locking_lead
 
 TRACK = BallTrack(3.175e-3, 25.5e-3, 0.55, math.pi / 4, 6e-3, 2.5)
 BODY = nut_body(TRACK, 0.04)

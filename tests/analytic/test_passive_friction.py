@@ -11,19 +11,19 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from feeddrive.diagnosis.fit import Problem, fit
-from feeddrive.diagnosis.prediction import AxisPredictor
+from feeddrive.diagnosis.likelihood.fit import Problem, fit
+from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
 from feeddrive.effects.base import Effect, FrictionEffect, Motion, Port, Value, listed
 from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.errors import InputError
 from feeddrive.files import plants_folder, shipped_plants
-from feeddrive.plant.entries import read_toml
-from feeddrive.plant.files import declares_heat_alone, read_plant
+from feeddrive.plant.file.entries import read_toml
+from feeddrive.plant.file.files import declares_heat_alone, read_plant
 from feeddrive.plant.friction_law import friction_force, friction_level
 from feeddrive.plant.passive_friction import is_passive, least_friction, refuse_active_friction
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.symbols import parameter_symbols, parameter_values
-from feeddrive.simulate.scenario_file import read_scenario
+from feeddrive.simulate.scenario.scenario_file import read_scenario
 from feeddrive.typing import FloatArray
 from tests.analytic.test_energy import free_run, stored
 

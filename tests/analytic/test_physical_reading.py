@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from feeddrive.diagnosis.physical_reading import physical_reading
+from feeddrive.diagnosis.judging.physical_reading import physical_reading
 from feeddrive.effects.catalogue import EFFECTS, THERMAL_EFFECTS
 
 ALL = {**EFFECTS, **THERMAL_EFFECTS}

@@ -11,20 +11,20 @@ import pytest
 
 from feeddrive.effects.base import FrictionEffect, Motion, Port
 from feeddrive.effects.catalogue import EFFECTS
-from feeddrive.effects.guide_friction import guide_effect
+from feeddrive.effects.friction.guide_friction import guide_effect
 from feeddrive.errors import InputError
 from feeddrive.files import plants_folder
 from feeddrive.parts.combined_stiffness import combined_stiffness
-from feeddrive.parts.guide_coefficients import SET_A
-from feeddrive.parts.guide_geometry import HSR_30R
+from feeddrive.parts.guide.guide_coefficients import SET_A
+from feeddrive.parts.guide.guide_geometry import HSR_30R
+from feeddrive.plant.analysis.linear import steady_motion
+from feeddrive.plant.analysis.modes import braked_modes, free_modes
+from feeddrive.plant.analysis.screw_limits import buckling_force, critical_speed
+from feeddrive.plant.analysis.stiffness_budget import stiffness_budget
+from feeddrive.plant.analysis.summary import summarise
 from feeddrive.plant.composition import refuse_what_cannot_compose
-from feeddrive.plant.files import read_plant
-from feeddrive.plant.linear import steady_motion
-from feeddrive.plant.modes import braked_modes, free_modes
+from feeddrive.plant.file.files import read_plant
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.screw_limits import buckling_force, critical_speed
-from feeddrive.plant.stiffness_budget import stiffness_budget
-from feeddrive.plant.summary import summarise
 from tests.analytic.screw_fem import ScrewDrive, frequencies
 
 KIMM = read_plant(plants_folder() / "kimm_testbed.toml")

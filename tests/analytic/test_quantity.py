@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 
 from feeddrive.effects.catalogue import EFFECTS, THERMAL_EFFECTS
 from feeddrive.errors import InputError
-from feeddrive.plant.chain import CHAINS
-from feeddrive.plant.drive_sections import BEARING_VALUES, PART_VALUES
-from feeddrive.plant.ratings import RATINGS
-from feeddrive.quantity import format_quantity, parse, split_quantity, unit_conversion, unit_factor
-from feeddrive.usual_ranges import USUAL
+from feeddrive.plant.chain.chain import CHAINS
+from feeddrive.plant.file.drive_sections import BEARING_VALUES, PART_VALUES
+from feeddrive.plant.file.ratings import RATINGS
+from feeddrive.units.quantity import format_quantity, parse, split_quantity, unit_conversion, unit_factor
+from feeddrive.units.usual_ranges import USUAL
 
 WRITTEN = [
     ("20 mm", "m", 0.020),

@@ -15,12 +15,12 @@ from feeddrive.diagnosis.recordings.recordings import (
     target_of,
     without_shifts,
 )
-from feeddrive.effects.backlash import Backlash
 from feeddrive.effects.base import Effect, Port
-from feeddrive.effects.friction_deviation import FrictionDeviation
-from feeddrive.effects.torque_ripple import TorqueRipple
+from feeddrive.effects.friction.friction_deviation import FrictionDeviation
+from feeddrive.effects.source.torque_ripple import TorqueRipple
+from feeddrive.effects.transmission.backlash import Backlash
 from feeddrive.files import plants_folder
-from feeddrive.plant.files import read_plant
+from feeddrive.plant.file.files import read_plant
 from feeddrive.plant.plant import Plant
 
 

@@ -7,16 +7,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from feeddrive.diagnosis.evidence import prepare
+from feeddrive.diagnosis.finding.remembered import LEAST, Remembered
 from feeddrive.diagnosis.heat.evidence import prepare_heat
 from feeddrive.diagnosis.heat.prediction import heat_predictor
-from feeddrive.diagnosis.prediction import AxisPredictor
+from feeddrive.diagnosis.likelihood.evidence import prepare
+from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
 from feeddrive.diagnosis.recordings.recordings import RecordingPredictor
-from feeddrive.diagnosis.remembered import LEAST, Remembered
 from feeddrive.files import plants_folder
-from feeddrive.plant.files import read_plant
+from feeddrive.plant.file.files import read_plant
 from feeddrive.recording import Recording
-from feeddrive.thermal.files import read_thermal_plant
+from feeddrive.thermal.file.files import read_thermal_plant
 from feeddrive.typing import FloatArray
 
 

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from feeddrive.diagnosis.effect_results import _why_not
-from feeddrive.diagnosis.result import (
+from feeddrive.diagnosis.judging.effect_results import _why_not
+from feeddrive.diagnosis.judging.result import (
     ChannelSeries,
     Diagnosis,
     EffectResult,
@@ -27,16 +27,16 @@ from feeddrive.diagnosis.result import (
     error_without,
 )
 from feeddrive.errors import InputError
-from feeddrive.report.drawing import dress, new_figure
-from feeddrive.report.figure_effects import curve_figures
-from feeddrive.report.figures import render_figures, report_figures, save_figures
-from feeddrive.report.html import report_page, write_report
-from feeddrive.report.people import share_text, times_text
+from feeddrive.report.figures.drawing import dress, new_figure
+from feeddrive.report.figures.figure_effects import curve_figures
+from feeddrive.report.figures.figures import render_figures, report_figures, save_figures
+from feeddrive.report.figures.style import STYLE
+from feeddrive.report.pages.html import report_page, write_report
+from feeddrive.report.pages.sections import verdict_section
 from feeddrive.report.records import Occasion, used_sentence
-from feeddrive.report.sections import verdict_section
-from feeddrive.report.style import STYLE
-from feeddrive.report.verdict import is_noise, verdict_sentences
-from feeddrive.report.words import plain as words
+from feeddrive.report.words.people import share_text, times_text
+from feeddrive.report.words.verdict import is_noise, verdict_sentences
+from feeddrive.report.words.words import plain as words
 from tests.analytic import report_examples as examples
 
 NASTY = '<script>alert("1")</script> & $x_{ $'

@@ -11,11 +11,11 @@ from feeddrive.compensation.actions import Actions, actions, recorded_stroke
 from feeddrive.compensation.compensate import Prediction, Wishes, plant_table
 from feeddrive.compensation.cures import CURES, ORDER, cure, in_order
 from feeddrive.compensation.prediction import Figures
-from feeddrive.diagnosis.result import Diagnosis, EffectResult, ParameterResult
+from feeddrive.diagnosis.judging.result import Diagnosis, EffectResult, ParameterResult
 from feeddrive.effects.catalogue import EFFECTS, THERMAL_EFFECTS
 from feeddrive.metrology.circular import circular
 from feeddrive.metrology.positioning import positioning
-from feeddrive.report.section_actions import actions_section
+from feeddrive.report.pages.section_actions import actions_section
 from tests.analytic.report_examples import recording
 
 

@@ -7,11 +7,11 @@ import math
 import numpy as np
 import pytest
 
-from feeddrive.diagnosis.result import EffectResult, JudgedRecording, ParameterResult
+from feeddrive.diagnosis.judging.result import EffectResult, JudgedRecording, ParameterResult
+from feeddrive.report.figures.spectra import density_spectrum, order_spectrum
 from feeddrive.report.parameters import effect_sentence, parameter_text
-from feeddrive.report.people import fixed, scale_for_error, share_text, significant
 from feeddrive.report.reduction import balanced, binned, envelope, left_out_stretches
-from feeddrive.report.spectra import density_spectrum, order_spectrum
+from feeddrive.report.words.people import fixed, scale_for_error, share_text, significant
 
 
 def plain(text: str) -> str:

@@ -7,15 +7,15 @@ from typing import Any
 
 import numpy as np
 
-from feeddrive.diagnosis.attempt import Attempt
-from feeddrive.diagnosis.cross_validation import compare_left_out, least_gain, left_out_residual
-from feeddrive.diagnosis.fit import Fit
-from feeddrive.diagnosis.folds import block_numbers
-from feeddrive.diagnosis.round import simplest_of_the_best
+from feeddrive.diagnosis.finding.attempt import Attempt
+from feeddrive.diagnosis.finding.round import simplest_of_the_best
+from feeddrive.diagnosis.likelihood.cross_validation import compare_left_out, least_gain, left_out_residual
+from feeddrive.diagnosis.likelihood.fit import Fit
+from feeddrive.diagnosis.likelihood.folds import block_numbers
 from feeddrive.effects.base import Effect
-from feeddrive.effects.constant_force import ConstantForce
-from feeddrive.effects.lead_error_cumulative import LeadErrorCumulative
-from feeddrive.effects.payload import Payload
+from feeddrive.effects.chain.payload import Payload
+from feeddrive.effects.source.constant_force import ConstantForce
+from feeddrive.effects.travel.lead_error_cumulative import LeadErrorCumulative
 from feeddrive.plant.plant import Plant
 from tests.convergence.test_simulate import BENCH
 

@@ -18,18 +18,18 @@ from feeddrive.metrology.linear_response import linear_response
 from feeddrive.metrology.loops import ForceLoop
 from feeddrive.metrology.positioning import Positioning
 from feeddrive.metrology.response import Response
-from feeddrive.recording.reading import read_recording
-from feeddrive.recording.writing import write_recording
+from feeddrive.recording.files.reading import read_recording
+from feeddrive.recording.files.writing import write_recording
 from feeddrive.servo.cascade_function import cascade_controller
 from feeddrive.servo.linear_loop import open_position_loop, open_velocity_loop
 from feeddrive.servo.margins import margins
 from feeddrive.servo.vendor_names import ALIASES
-from feeddrive.simulate.acting_torque import ActingTorque
-from feeddrive.simulate.controlled import TorqueLoop, resting_state, simulate_controlled
-from feeddrive.simulate.scenario import Scenario
-from feeddrive.simulate.scenario_file import read_scenario
-from feeddrive.simulate.scenario_result import ScenarioResult
-from feeddrive.simulate.scenario_run import run_scenario
+from feeddrive.simulate.controlled.acting_torque import ActingTorque
+from feeddrive.simulate.controlled.controlled import TorqueLoop, resting_state, simulate_controlled
+from feeddrive.simulate.scenario.scenario import Scenario
+from feeddrive.simulate.scenario.scenario_file import read_scenario
+from feeddrive.simulate.scenario.scenario_result import ScenarioResult
+from feeddrive.simulate.scenario.scenario_run import run_scenario
 from tests.claims.book import CLAIMS
 
 
@@ -136,10 +136,10 @@ class _StoppedError(Exception):
 
 
 def test_resumed_run_is_bit_identical(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("feeddrive.simulate.scenario_run.STRETCH", 4000)
-    monkeypatch.setattr("feeddrive.simulate.scenario_run.CHECKPOINT_EVERY", 0.0)
+    monkeypatch.setattr("feeddrive.simulate.scenario.scenario_run.STRETCH", 4000)
+    monkeypatch.setattr("feeddrive.simulate.scenario.scenario_run.CHECKPOINT_EVERY", 0.0)
     monkeypatch.setattr(
-        "feeddrive.simulate.scenario_run.CHECKPOINT_SHARE", 1e9
+        "feeddrive.simulate.scenario.scenario_run.CHECKPOINT_SHARE", 1e9
     )  # at every stretch, however slow the disk
     wanted, checkpoint = scenario("sine_tracking"), tmp_path / "state.npz"
     whole = run_scenario(wanted)
@@ -162,10 +162,10 @@ def test_resumed_run_is_bit_identical(tmp_path: Path, monkeypatch: pytest.Monkey
 
 
 def test_checkpoint_of_another_scenario_is_not_used(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("feeddrive.simulate.scenario_run.STRETCH", 1000)
-    monkeypatch.setattr("feeddrive.simulate.scenario_run.CHECKPOINT_EVERY", 0.0)
+    monkeypatch.setattr("feeddrive.simulate.scenario.scenario_run.STRETCH", 1000)
+    monkeypatch.setattr("feeddrive.simulate.scenario.scenario_run.CHECKPOINT_EVERY", 0.0)
     monkeypatch.setattr(
-        "feeddrive.simulate.scenario_run.CHECKPOINT_SHARE", 1e9
+        "feeddrive.simulate.scenario.scenario_run.CHECKPOINT_SHARE", 1e9
     )  # at every stretch, however slow the disk
     checkpoint = tmp_path / "state.npz"
 

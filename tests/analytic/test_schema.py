@@ -20,18 +20,18 @@ from feeddrive.diagnosis.numbers.measured_file import read_measured_numbers
 from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.files import find_scenario_file, plants_folder
 from feeddrive.interface.keys import ROOTS, every_section
-from feeddrive.plant.entries import Origins, Table, read_toml
-from feeddrive.plant.files import declares_heat_alone, plant_from_entries
+from feeddrive.plant.file.entries import Origins, Table, read_toml
+from feeddrive.plant.file.files import declares_heat_alone, plant_from_entries
+from feeddrive.plant.file.plant_schema import plant_table
 from feeddrive.plant.plant import DeclaredCascade
-from feeddrive.plant.plant_schema import plant_table
-from feeddrive.quantity import unit_conversion
-from feeddrive.recording.mapping import read_mapping
+from feeddrive.recording.files.mapping import read_mapping
 from feeddrive.schema.key import Key, Kind
 from feeddrive.schema.section import Section, UndeclaredKeyError
-from feeddrive.simulate.scenario_controller import read_cascade
-from feeddrive.simulate.scenario_file import read_scenario
-from feeddrive.thermal.coupling_section import coupling
-from feeddrive.thermal.files import thermal_plant
+from feeddrive.simulate.scenario.scenario_controller import read_cascade
+from feeddrive.simulate.scenario.scenario_file import read_scenario
+from feeddrive.thermal.file.coupling_section import coupling
+from feeddrive.thermal.file.files import thermal_plant
+from feeddrive.units.quantity import unit_conversion
 
 NONSENSE = {"nonsense": "nobody means this"}
 PATH = Path("machine.toml")

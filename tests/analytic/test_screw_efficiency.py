@@ -11,7 +11,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from feeddrive.errors import InputError, ValidityWarning
-from feeddrive.parts.contact_angle_optimum import (
+from feeddrive.parts.friction_estimate import friction_from_torque, relative_torque
+from feeddrive.parts.screw.contact_angle_optimum import (
     best_contact_angle,
     best_contact_angle_back,
     efficiency_at_best_angle,
@@ -19,9 +20,8 @@ from feeddrive.parts.contact_angle_optimum import (
     highest_efficiency,
     largest_lead_angle,
 )
-from feeddrive.parts.friction_estimate import friction_from_torque, relative_torque
-from feeddrive.parts.preload_torque import preload_torque, relative_preload_torque
-from feeddrive.parts.screw_efficiency import (
+from feeddrive.parts.screw.preload_torque import preload_torque, relative_preload_torque
+from feeddrive.parts.screw.screw_efficiency import (
     back_driving_efficiency,
     back_driving_loss,
     driving_efficiency,
@@ -29,8 +29,8 @@ from feeddrive.parts.screw_efficiency import (
     jamming_friction,
     self_locking_friction,
 )
-from feeddrive.parts.screw_friction import ScrewFriction, ScrewGeometry
-from feeddrive.parts.slip_angle import (
+from feeddrive.parts.screw.screw_friction import ScrewFriction, ScrewGeometry
+from feeddrive.parts.screw.slip_angle import (
     groove_at,
     groove_of_screw,
     sliding_speed_ratio,
@@ -39,7 +39,7 @@ from feeddrive.parts.slip_angle import (
     slip_angles_screw_drives,
     thread_angle,
 )
-from feeddrive.parts.slip_forces import axial_force, screw_moment
+from feeddrive.parts.screw.slip_forces import axial_force, screw_moment
 
 LEAD_ANGLES = st.floats(math.radians(0.5), math.radians(44))
 CONTACT_ANGLES = st.floats(math.radians(5), math.radians(89))

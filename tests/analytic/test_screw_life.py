@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 
 from feeddrive.errors import InputError, ValidityWarning
-from feeddrive.parts.consumed_life import consumed_life, rigid_nut_forces
-from feeddrive.parts.life import (
+from feeddrive.parts.life.consumed_life import consumed_life, rigid_nut_forces
+from feeddrive.parts.life.life import (
     DutyPhase,
     equivalent_load,
     rated_revolutions,
@@ -22,18 +22,9 @@ from feeddrive.parts.life import (
     running_time,
     survival,
 )
-from feeddrive.parts.life_exponents import BALL_SCREW, LifeExponents
-from feeddrive.parts.load_distribution import Loading, NutBody, continuum_extremes, load_distribution, nut_body
-from feeddrive.parts.preload_loss import (
-    opening_force,
-    preload_share_from_stiffness,
-    preload_share_from_torque,
-    stiffness_share,
-    torque_share,
-)
-from feeddrive.parts.rating import combined_rating, double_nut_share, material_constant_of_test, rating
-from feeddrive.parts.screw_contact import BallTrack, contact_constant, nut_contact, screw_contact
-from feeddrive.parts.stress_cycles import (
+from feeddrive.parts.life.life_exponents import BALL_SCREW, LifeExponents
+from feeddrive.parts.life.rating import combined_rating, double_nut_share, material_constant_of_test, rating
+from feeddrive.parts.life.stress_cycles import (
     cycles_per_revolution,
     effective_screw_groove,
     nut_cycles,
@@ -42,12 +33,21 @@ from feeddrive.parts.stress_cycles import (
     screw_groove_per_turn,
     stressed_screw_groove,
 )
-from feeddrive.parts.subsurface_shear import (
+from feeddrive.parts.life.subsurface_shear import (
     axis_stresses,
     greatest_shear_on_axis,
     greatest_shear_under_line,
     line_shear,
 )
+from feeddrive.parts.screw.load_distribution import Loading, NutBody, continuum_extremes, load_distribution, nut_body
+from feeddrive.parts.screw.preload_loss import (
+    opening_force,
+    preload_share_from_stiffness,
+    preload_share_from_torque,
+    stiffness_share,
+    torque_share,
+)
+from feeddrive.parts.screw.screw_contact import BallTrack, contact_constant, nut_contact, screw_contact
 from feeddrive.recording.recording import Recording
 
 TRACK = BallTrack(3.175e-3, 25.5e-3, 0.55, math.radians(45), 6e-3, 2.5)

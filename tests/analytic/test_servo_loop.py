@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from feeddrive.effects.guide_friction import GuideFriction
+from feeddrive.effects.friction.guide_friction import GuideFriction
 from feeddrive.errors import InputError
-from feeddrive.plant.chain import Rigid, ThreeInertias
+from feeddrive.plant.chain.chain import Rigid, ThreeInertias
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade, Feedback, FeedForward
 from feeddrive.servo.cascade_function import PARAMETERS, REFERENCES, SIGNALS, cascade_controller

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from feeddrive.diagnosis.band import comparison_band
-from feeddrive.diagnosis.slow_rows import is_slow, known_motion, refuse_unknown_motion, sentence
+from feeddrive.diagnosis.likelihood.band import comparison_band
+from feeddrive.diagnosis.likelihood.slow_rows import is_slow, known_motion, refuse_unknown_motion, sentence
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording

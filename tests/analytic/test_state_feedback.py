@@ -9,9 +9,9 @@ import control
 import numpy as np
 import pytest
 
-from feeddrive.effects.guide_friction import GuideFriction
+from feeddrive.effects.friction.guide_friction import GuideFriction
 from feeddrive.errors import InputError
-from feeddrive.plant.chain import ThreeInertias
+from feeddrive.plant.chain.chain import ThreeInertias
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade, Feedback
 from feeddrive.servo.cascade_function import cascade_controller

@@ -11,6 +11,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from feeddrive.errors import InputError
+from feeddrive.parts.bearings.supports import Support
 from feeddrive.parts.combined_stiffness import (
     CombinedStiffness,
     Deformation,
@@ -21,9 +22,8 @@ from feeddrive.parts.combined_stiffness import (
 )
 from feeddrive.parts.coupling import Coupling
 from feeddrive.parts.motor import HoldingBrake, Motor
-from feeddrive.parts.screw_drive import BallScrewDrive
-from feeddrive.parts.supports import Support
-from feeddrive.parts.transmission import Transmission
+from feeddrive.parts.screw.screw_drive import BallScrewDrive
+from feeddrive.parts.screw.transmission import Transmission
 from tests.analytic.screw_fem import ScrewDrive, static_stiffness
 from tests.analytic.stiffness_cases import AT_NUT, drives, paper_drive
 

@@ -12,10 +12,10 @@ from feeddrive.diagnosis.stiffness.gap import explain_stiffness
 from feeddrive.errors import InputError
 from feeddrive.files import plants_folder
 from feeddrive.parts.combined_stiffness import combined_stiffness, stiffness_along
-from feeddrive.plant.files import read_plant
-from feeddrive.report.drawing import ReportFigure, render
-from feeddrive.report.figure_stiffness import participation_figure, stiffness_position_figure
-from feeddrive.report.figure_stiffness_gap import stiffness_gap_figure
+from feeddrive.plant.file.files import read_plant
+from feeddrive.report.figures.drawing import ReportFigure, render
+from feeddrive.report.figures.figure_stiffness import participation_figure, stiffness_position_figure
+from feeddrive.report.figures.figure_stiffness_gap import stiffness_gap_figure
 from tests.analytic.stiffness_cases import AT_NUT, paper_drive
 
 POSITIONS = np.linspace(0.1, 1.1, 11)

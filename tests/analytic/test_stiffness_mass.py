@@ -15,8 +15,8 @@ from feeddrive.errors import InputError
 from feeddrive.parts.combined_stiffness import combined_stiffness, natural_frequency
 from feeddrive.parts.effective_mass import added_mass, rayleigh_frequency
 from feeddrive.parts.motor import HoldingBrake
-from feeddrive.parts.screw_drive import BallScrewDrive
-from feeddrive.parts.transmission import Transmission
+from feeddrive.parts.screw.screw_drive import BallScrewDrive
+from feeddrive.parts.screw.transmission import Transmission
 from tests.analytic.screw_fem import ScrewDrive, frequencies
 from tests.analytic.stiffness_cases import AT_NUT, drives, paper_drive
 

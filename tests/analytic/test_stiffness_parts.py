@@ -8,14 +8,14 @@ from collections.abc import Callable
 import pytest
 
 from feeddrive.errors import InputError, ValidityWarning
-from feeddrive.parts.ball_screw import ScrewShaft
-from feeddrive.parts.bearing import SupportBearing
+from feeddrive.parts.bearings.bearing import SupportBearing
 from feeddrive.parts.coupling import Coupling
 from feeddrive.parts.material import STEEL, ShaftMaterial
 from feeddrive.parts.motor import HoldingBrake, Motor
-from feeddrive.parts.nut import Nut, stiffness_at_preload
-from feeddrive.parts.transmission import Transmission
-from feeddrive.parts.wedge import (
+from feeddrive.parts.screw.ball_screw import ScrewShaft
+from feeddrive.parts.screw.nut import Nut, stiffness_at_preload
+from feeddrive.parts.screw.transmission import Transmission
+from feeddrive.parts.screw.wedge import (
     self_locking,
     self_locking_lead,
     wedge_back_driving_efficiency,

@@ -7,9 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from feeddrive.errors import InputError, ValidityWarning
-from feeddrive.parts.ball_screw import ScrewShaft
-from feeddrive.parts.bearing import SupportBearing
-from feeddrive.parts.supports import ScrewSupports, Support
+from feeddrive.parts.bearings.bearing import SupportBearing
+from feeddrive.parts.bearings.supports import ScrewSupports, Support
+from feeddrive.parts.screw.ball_screw import ScrewShaft
 from tests.analytic.stiffness_cases import bearings, supports
 
 SCREW = ScrewShaft(lead=0.01, diameter=0.032, length=1.5)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from feeddrive.effects.guide_friction import GuideFriction
-from feeddrive.plant.chain import Rigid
-from feeddrive.plant.linear import linear_matrices
+from feeddrive.effects.friction.guide_friction import GuideFriction
+from feeddrive.plant.analysis.linear import linear_matrices
+from feeddrive.plant.chain.chain import Rigid
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.structure import structure_key
 from feeddrive.simulate.held_torque import simulate_torque

@@ -13,9 +13,9 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from feeddrive.effects.guide_friction import GuideFriction
-from feeddrive.effects.payload import Payload
-from feeddrive.effects.presliding import Presliding
+from feeddrive.effects.chain.payload import Payload
+from feeddrive.effects.friction.guide_friction import GuideFriction
+from feeddrive.effects.friction.presliding import Presliding
 from feeddrive.export.c_source import source_text
 from feeddrive.export.casadi_file import casadi_function
 from feeddrive.export.fmu_description import description_text
@@ -23,10 +23,10 @@ from feeddrive.export.model import model_of
 from feeddrive.export.notes import changes_with_time
 from feeddrive.export.point import export_point
 from feeddrive.files import shipped_scenarios
-from feeddrive.plant.linear import linear_matrices
-from feeddrive.plant.ode import ode
+from feeddrive.plant.analysis.linear import linear_matrices
+from feeddrive.plant.analysis.ode import ode
+from feeddrive.plant.analysis.steady import steady_motion
 from feeddrive.plant.plant import Plant, PositionVelocityController
-from feeddrive.plant.steady import steady_motion
 from feeddrive.plant.structure import forget_machines
 from feeddrive.plant.symbolic_turn import SYMBOLS, SymbolicTurn
 from feeddrive.servo import cascade_function
@@ -38,13 +38,13 @@ from feeddrive.servo.sampled_plant import sampled_plant
 from feeddrive.servo.scheduled import scheduled
 from feeddrive.servo.state_feedback import state_feedback
 from feeddrive.simulate import controlled_machine, position_velocity
-from feeddrive.simulate.controlled import TorqueLoop, simulate_controlled
+from feeddrive.simulate.controlled.controlled import TorqueLoop, simulate_controlled
+from feeddrive.simulate.controlled.position_velocity import position_velocity_controller
+from feeddrive.simulate.controlled.sensitivity import simulate_sensitivity
 from feeddrive.simulate.driven import motor_motion, simulate_driven
 from feeddrive.simulate.held_torque import simulate_torque
-from feeddrive.simulate.position_velocity import position_velocity_controller
-from feeddrive.simulate.scenario_file import read_scenario
-from feeddrive.simulate.scenario_run import run_scenario
-from feeddrive.simulate.sensitivity import simulate_sensitivity
+from feeddrive.simulate.scenario.scenario_file import read_scenario
+from feeddrive.simulate.scenario.scenario_run import run_scenario
 from tests.convergence.test_simulate import BENCH
 
 

@@ -8,17 +8,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from feeddrive.effects.payload import Payload
-from feeddrive.effects.structural_mode import StructuralMode
+from feeddrive.effects.chain.payload import Payload
+from feeddrive.effects.chain.structural_mode import StructuralMode
 from feeddrive.errors import InputError
 from feeddrive.files import plants_folder
-from feeddrive.plant.chain import Rigid, ThreeInertias
-from feeddrive.plant.effect_text import plant_text_with_effects
-from feeddrive.plant.files import read_plant
-from feeddrive.plant.linear import linear_matrices, state_names, steady_motion
-from feeddrive.plant.modes import braked_modes, free_modes
+from feeddrive.plant.analysis.linear import linear_matrices, state_names, steady_motion
+from feeddrive.plant.analysis.modes import braked_modes, free_modes
+from feeddrive.plant.analysis.summary import summarise
+from feeddrive.plant.chain.chain import Rigid, ThreeInertias
+from feeddrive.plant.file.effect_text import plant_text_with_effects
+from feeddrive.plant.file.files import read_plant
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.summary import summarise
 from feeddrive.simulate.driven import motor_motion, simulate_driven
 from tests.analytic.test_energy import free_run
 from tests.convergence.test_simulate import BENCH

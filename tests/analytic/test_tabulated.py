@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 
 from feeddrive.effects.base import Motion, Port
-from feeddrive.effects.tabulated_force import TabulatedForce
-from feeddrive.effects.tabulated_friction import TabulatedFriction
-from feeddrive.effects.tabulated_torque import TabulatedTorque
-from feeddrive.effects.tabulated_travel import TabulatedTravel
+from feeddrive.effects.friction.tabulated_friction import TabulatedFriction
+from feeddrive.effects.source.tabulated_force import TabulatedForce
+from feeddrive.effects.source.tabulated_torque import TabulatedTorque
+from feeddrive.effects.travel.tabulated_travel import TabulatedTravel
 from feeddrive.errors import InputError
 from feeddrive.files import plants_folder
-from feeddrive.plant.effect_text import plant_text_with_effects
-from feeddrive.plant.files import read_plant
-from feeddrive.plant.linear import ode, ode_parameters, state_names
+from feeddrive.plant.analysis.linear import ode, ode_parameters, state_names
+from feeddrive.plant.file.effect_text import plant_text_with_effects
+from feeddrive.plant.file.files import read_plant
 
 BENCH = read_plant(plants_folder() / "bench_axis.toml")
 FORCE = TabulatedForce.of(place="position", position=(0.1, 0.2, 0.4), force=(1.0, 5.0, -3.0))

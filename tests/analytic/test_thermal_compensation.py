@@ -15,9 +15,9 @@ from feeddrive.compensation.heat.thermal_sensors import Sensor
 from feeddrive.compensation.heat.thermal_trial import tried_machine
 from feeddrive.compensation.heat.thermal_unknowns import Unknowns
 from feeddrive.errors import InputError
-from feeddrive.thermal.full_model import full_model
+from feeddrive.thermal.full.full_model import full_model
 from feeddrive.thermal.rig import Body
-from feeddrive.thermal.warm_up import declared_rows, run
+from feeddrive.thermal.run.warm_up import declared_rows, run
 from tests.analytic.thermal_compensation_cases import (
     BENCH,
     DUTY,

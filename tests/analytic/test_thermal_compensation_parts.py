@@ -17,10 +17,10 @@ from feeddrive.compensation.heat.thermal_sensors import Sensor, lagged, mountabl
 from feeddrive.compensation.heat.thermal_trial import random_duty
 from feeddrive.compensation.heat.thermal_unknowns import Unknowns, stationary_step
 from feeddrive.errors import InputError
-from feeddrive.thermal.expansion import fixed_fixed
-from feeddrive.thermal.full_model import full_model
+from feeddrive.thermal.full.full_model import full_model
+from feeddrive.thermal.laws.expansion import fixed_fixed
 from feeddrive.thermal.rig import Body
-from feeddrive.thermal.warm_up import declared_rows
+from feeddrive.thermal.run.warm_up import declared_rows
 from feeddrive.typing import FloatArray
 from tests.analytic.thermal_compensation_cases import BENCH, ERROR, MODEL, RPM, STEP
 

@@ -11,16 +11,16 @@ import pytest
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant
-from feeddrive.parts.bearing_friction import viscous_torque
+from feeddrive.parts.bearings.bearing_friction import viscous_torque
 from feeddrive.parts.lubricant import mineral_oil
-from feeddrive.plant.files import read_plant
+from feeddrive.plant.file.files import read_plant
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade_function import cascade_controller
-from feeddrive.simulate.controlled import ControlledRun, TorqueLoop, resting_state, simulate_controlled
-from feeddrive.simulate.cycle_losses import CycleLosses, cycle_losses
+from feeddrive.simulate.controlled.controlled import ControlledRun, TorqueLoop, resting_state, simulate_controlled
+from feeddrive.simulate.scenario.cycle_losses import CycleLosses, cycle_losses
 from feeddrive.thermal.coupling import Changes, Coupling, Temperatures, viscous_share
-from feeddrive.thermal.coupling_section import read_coupling
-from feeddrive.thermal.nut_preload import Spacer
+from feeddrive.thermal.file.coupling_section import read_coupling
+from feeddrive.thermal.laws.nut_preload import Spacer
 from feeddrive.thermal.warmed_plant import warmed
 from tests.analytic.warm_cases import COUPLING, PLANT_FILE, THERMAL, short_cycle
 

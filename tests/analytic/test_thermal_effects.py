@@ -9,19 +9,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from feeddrive.diagnosis.physical_reading import READINGS
+from feeddrive.diagnosis.judging.physical_reading import READINGS
 from feeddrive.effects.base import Parameter
 from feeddrive.effects.catalogue import EFFECTS, THERMAL_EFFECTS
-from feeddrive.effects.thermal.base import Operation, ThermalEffect
-from feeddrive.effects.thermal.bearing_heat import reference_torque
+from feeddrive.effects.heat.base import Operation, ThermalEffect
+from feeddrive.effects.heat.bearing_heat import reference_torque
 from feeddrive.errors import InputError
 from feeddrive.files import plants_folder
-from feeddrive.plant.files import plant_text_with_effects, read_plant
-from feeddrive.thermal.files import read_thermal_plant
-from feeddrive.thermal.friction import Friction
-from feeddrive.thermal.model import HeatModel
-from feeddrive.thermal.reduction import reduce_model
-from feeddrive.thermal.warm_up import declared_rows, lagging, simulate
+from feeddrive.plant.file.files import plant_text_with_effects, read_plant
+from feeddrive.thermal.file.files import read_thermal_plant
+from feeddrive.thermal.laws.friction import Friction
+from feeddrive.thermal.reduced.model import HeatModel
+from feeddrive.thermal.reduced.reduction import reduce_model
+from feeddrive.thermal.run.warm_up import declared_rows, lagging, simulate
 from tests.analytic.thermal_cases import BENCH, RPM
 
 NEUTRAL: dict[str, dict[str, float]] = {

@@ -16,9 +16,9 @@ from feeddrive.effects.catalogue import THERMAL_EFFECTS
 from feeddrive.errors import InputError
 from feeddrive.interface.axis import load
 from feeddrive.thermal.equations import heat_equations, linear_heat
-from feeddrive.thermal.model import HeatModel
-from feeddrive.thermal.reduction import reduce_model
-from feeddrive.thermal.warm_up import simulate
+from feeddrive.thermal.reduced.model import HeatModel
+from feeddrive.thermal.reduced.reduction import reduce_model
+from feeddrive.thermal.run.warm_up import simulate
 from tests.analytic.thermal_cases import BENCH, RPM
 
 EFFECTS = (

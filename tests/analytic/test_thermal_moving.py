@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 
 from feeddrive.errors import InputError, ValidityWarning
-from feeddrive.thermal.explicit import ExplicitRun, run_explicitly
-from feeddrive.thermal.full_model import discretise, model_of
-from feeddrive.thermal.grid import Cells
-from feeddrive.thermal.model import Path
-from feeddrive.thermal.moving import moving_system, ripple_number
-from feeddrive.thermal.moving_family import moving_family
-from feeddrive.thermal.reduction import Sizes, compressed_basis, reduced_system
+from feeddrive.thermal.full.explicit import ExplicitRun, run_explicitly
+from feeddrive.thermal.full.full_model import discretise, model_of
+from feeddrive.thermal.full.grid import Cells
+from feeddrive.thermal.full.moving import moving_system, ripple_number
+from feeddrive.thermal.full.moving_family import moving_family
+from feeddrive.thermal.reduced.model import Path
+from feeddrive.thermal.reduced.reduction import Sizes, compressed_basis, reduced_system
+from feeddrive.thermal.reduced.system import HeatSystem
 from feeddrive.thermal.rig import Travel
-from feeddrive.thermal.system import HeatSystem
 from feeddrive.typing import FloatArray
 from tests.analytic.thermal_cases import BENCH, RPM, bench_parts, conductances, nut_heat
 

@@ -9,18 +9,18 @@ import numpy as np
 import pytest
 
 from feeddrive.errors import InputError, ValidityWarning
-from feeddrive.thermal.contact_conductance import (
+from feeddrive.thermal.file.files import read_thermal_plant
+from feeddrive.thermal.full.full_model import full_model
+from feeddrive.thermal.full.occupancy import cell_edges
+from feeddrive.thermal.laws.contact_conductance import (
     conductance_at_preload,
     conductance_per_area,
     constriction_resistance,
 )
-from feeddrive.thermal.expansion import FIXED_FREE, Supports, expansion, fixed_fixed, fixed_supported
-from feeddrive.thermal.files import read_thermal_plant
-from feeddrive.thermal.films import Films, rotating_cylinder_film
-from feeddrive.thermal.friction import Friction
-from feeddrive.thermal.full_model import full_model
-from feeddrive.thermal.nut_preload import Spacer, preload_change
-from feeddrive.thermal.occupancy import cell_edges
+from feeddrive.thermal.laws.expansion import FIXED_FREE, Supports, expansion, fixed_fixed, fixed_supported
+from feeddrive.thermal.laws.films import Films, rotating_cylinder_film
+from feeddrive.thermal.laws.friction import Friction
+from feeddrive.thermal.laws.nut_preload import Spacer, preload_change
 from tests.analytic.thermal_cases import BENCH, BENCH_FILE, RPM, conductances
 
 RIG = BENCH.rig

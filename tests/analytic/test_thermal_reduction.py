@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from feeddrive.errors import InputError, ValidityWarning
-from feeddrive.thermal.full_model import full_model
-from feeddrive.thermal.grid import Cells
-from feeddrive.thermal.model import HeatModel, Path
-from feeddrive.thermal.network import network
-from feeddrive.thermal.reduction import Sizes, compressed, reduce_model, reduced_system
-from feeddrive.thermal.reduction_error import reduction_error
+from feeddrive.thermal.full.full_model import full_model
+from feeddrive.thermal.full.grid import Cells
+from feeddrive.thermal.reduced.model import HeatModel, Path
+from feeddrive.thermal.reduced.network import network
+from feeddrive.thermal.reduced.reduction import Sizes, compressed, reduce_model, reduced_system
+from feeddrive.thermal.reduced.reduction_error import reduction_error
 from feeddrive.thermal.rig import Body, Travel
 from tests.analytic.thermal_cases import BENCH, QUICK, conductances
 

@@ -7,13 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from feeddrive.thermal.duty import Duty, constant_duty
-from feeddrive.thermal.full_model import NUT
-from feeddrive.thermal.ledger import with_ledger
-from feeddrive.thermal.model import AMBIENT, Path
+from feeddrive.thermal.full.full_model import NUT
+from feeddrive.thermal.reduced.model import AMBIENT, Path
 from feeddrive.thermal.rig import Body
-from feeddrive.thermal.study import study
-from feeddrive.thermal.warm_up import Rows, run
+from feeddrive.thermal.run.duty import Duty, constant_duty
+from feeddrive.thermal.run.ledger import with_ledger
+from feeddrive.thermal.run.study import study
+from feeddrive.thermal.run.warm_up import Rows, run
 from tests.analytic.thermal_cases import BENCH, QUICK, RPM
 
 PLANT = replace(BENCH, cells=QUICK)

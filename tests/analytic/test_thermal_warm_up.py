@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from feeddrive.errors import InputError, ValidityWarning
-from feeddrive.thermal.full_model import FRONT, NUT, full_model
-from feeddrive.thermal.model import HeatModel
-from feeddrive.thermal.reduction import reduce_model
-from feeddrive.thermal.warm_up import Rows, declared_rows, grouped, readings, run, simulate
+from feeddrive.thermal.full.full_model import FRONT, NUT, full_model
+from feeddrive.thermal.reduced.model import HeatModel
+from feeddrive.thermal.reduced.reduction import reduce_model
+from feeddrive.thermal.run.warm_up import Rows, declared_rows, grouped, readings, run, simulate
 from feeddrive.typing import FloatArray
 from tests.analytic.thermal_cases import BENCH, RPM
 

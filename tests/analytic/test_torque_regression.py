@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from feeddrive.errors import InputError
-from feeddrive.parts.screw_friction import ScrewFriction, ScrewGeometry
-from feeddrive.parts.torque_regression import split_torque
+from feeddrive.parts.screw.screw_friction import ScrewFriction, ScrewGeometry
+from feeddrive.parts.screw.torque_regression import split_torque
 
 GEOMETRY = ScrewGeometry(0.01, 0.041, math.pi / 4)
 PRELOADS = np.linspace(500.0, 6000.0, 12)

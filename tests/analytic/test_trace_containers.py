@@ -17,10 +17,10 @@ import pytest
 
 from feeddrive.errors import InputError
 from feeddrive.recording import read_recording
-from feeddrive.recording.formats.choosing import Wishes
-from feeddrive.recording.formats.opened import Understood, read_trace, understand
-from feeddrive.recording.formats.trace import Signal, Trace
-from feeddrive.recording.opening import open_file
+from feeddrive.recording.files.opening import open_file
+from feeddrive.recording.traces.choosing import Wishes
+from feeddrive.recording.traces.opened import Understood, read_trace, understand
+from feeddrive.recording.traces.trace import Signal, Trace
 from tests.analytic.trace_files import current, motion
 
 TIME = np.arange(400) * 1e-3

@@ -10,11 +10,11 @@ import pytest
 
 from feeddrive.errors import InputError
 from feeddrive.recording import read_recording
-from feeddrive.recording.formats.choosing import Wishes
-from feeddrive.recording.formats.opened import Understood, columns_of, read_trace, understand
-from feeddrive.recording.formats.trace import Signal, Trace
+from feeddrive.recording.files.opening import open_file
 from feeddrive.recording.frequency_response import FrequencyResponse, write_response
-from feeddrive.recording.opening import open_file
+from feeddrive.recording.traces.choosing import Wishes
+from feeddrive.recording.traces.opened import Understood, columns_of, read_trace, understand
+from feeddrive.recording.traces.trace import Signal, Trace
 from tests.analytic import trace_files as made
 
 SAMPLES = Path(__file__).parents[1] / "data" / "traces"
@@ -428,7 +428,7 @@ def test_frequency_response_of_a_sinumerik(tmp_path: Path) -> None:
 def test_spectra_of_the_sinumerik_file_are_those_of_its_raw_series() -> None:
     """The input is a binary sequence of 2047 samples, averaged over two runs; its spectra stand in the file."""
     from feeddrive.recording.formats.sinumerik_frf import _numbers
-    from feeddrive.recording.formats.xml_tree import parse_xml
+    from feeddrive.recording.traces.xml_tree import parse_xml
 
     text = gzip.decompress((SAMPLES / "sinumerik_frf" / "freq_trace.xml.gz").read_bytes()).decode("latin-1")
     root = parse_xml(text, "a.xml")

@@ -11,11 +11,11 @@ import pytest
 from feeddrive.errors import InputError
 from feeddrive.recording import Recording, read_recording, write_recording
 from feeddrive.recording.derived import with_angle
-from feeddrive.recording.formats.choosing import Wishes
-from feeddrive.recording.formats.held import at_updates, held_rows
-from feeddrive.recording.formats.opened import Understood, understand
-from feeddrive.recording.formats.resampling import Part, Series, on_one_grid, parts_of
-from feeddrive.recording.formats.trace import Signal, Trace
+from feeddrive.recording.traces.choosing import Wishes
+from feeddrive.recording.traces.held import at_updates, held_rows
+from feeddrive.recording.traces.opened import Understood, understand
+from feeddrive.recording.traces.resampling import Part, Series, on_one_grid, parts_of
+from feeddrive.recording.traces.trace import Signal, Trace
 from feeddrive.typing import FloatArray
 from tests.analytic.trace_files import current, motion
 

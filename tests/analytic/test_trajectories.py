@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 from scipy.integrate import cumulative_simpson
 
 from feeddrive.errors import InputError
-from feeddrive.simulate.cutting_force import Milling, RecordedForce, TriangleForce
-from feeddrive.simulate.jerk_limited import Limits, move, phases
-from feeddrive.simulate.motion import Pieces, Trajectory
-from feeddrive.simulate.trajectories import (
+from feeddrive.simulate.setpoints.cutting_force import Milling, RecordedForce, TriangleForce
+from feeddrive.simulate.setpoints.jerk_limited import Limits, move, phases
+from feeddrive.simulate.setpoints.motion import Pieces, Trajectory
+from feeddrive.simulate.setpoints.trajectories import (
     Circle,
     Sine,
     Wave,
@@ -24,7 +24,7 @@ from feeddrive.simulate.trajectories import (
     staircase,
     velocity_steps,
 )
-from feeddrive.simulate.waveforms import Multisine, Prbs, Sweep
+from feeddrive.simulate.setpoints.waveforms import Multisine, Prbs, Sweep
 
 SLOW = Limits(0.5, 5.0, 100.0)
 POSITIVE = st.floats(1e-2, 1e2)

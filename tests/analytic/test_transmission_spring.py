@@ -8,17 +8,17 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from feeddrive.effects.backlash import Backlash
 from feeddrive.effects.base import Effect
-from feeddrive.effects.constant_force import ConstantForce
-from feeddrive.effects.preload_loss import PreloadLoss
-from feeddrive.effects.stiffness_vs_position import LEAST_FACTOR, StiffnessVsPosition
+from feeddrive.effects.source.constant_force import ConstantForce
+from feeddrive.effects.transmission.backlash import Backlash
+from feeddrive.effects.transmission.preload_loss import PreloadLoss
+from feeddrive.effects.transmission.stiffness_vs_position import LEAST_FACTOR, StiffnessVsPosition
 from feeddrive.errors import InputError
 from feeddrive.files import plants_folder
-from feeddrive.plant.chain import Rigid, ThreeInertias
-from feeddrive.plant.effect_text import plant_text_with_effects
-from feeddrive.plant.files import read_plant
-from feeddrive.plant.linear import linear_matrices, steady_motion
+from feeddrive.plant.analysis.linear import linear_matrices, steady_motion
+from feeddrive.plant.chain.chain import Rigid, ThreeInertias
+from feeddrive.plant.file.effect_text import plant_text_with_effects
+from feeddrive.plant.file.files import read_plant
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.symbols import chain_symbols, parameter_symbols, parameter_values
 from feeddrive.plant.transmission_law import spring_law

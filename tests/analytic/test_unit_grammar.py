@@ -9,8 +9,8 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from feeddrive.errors import InputError
-from feeddrive.quantity import parse, unit_conversion
-from feeddrive.unit_grammar import LONGEST, GrammarError, check_unit
+from feeddrive.units.grammar import LONGEST, GrammarError, check_unit
+from feeddrive.units.quantity import parse, unit_conversion
 
 UNITS = [
     "m", "mm^2", "mm**2", "m^-1", "m^(-1)", "1/s", "N m/(rad/s)^(2/3)", "N m/W^0.5", "(m/min)/mm", "W/(m^2 K)",

@@ -10,13 +10,13 @@ import pytest
 from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.errors import InputError
 from feeddrive.interface.axis import Axis, load
-from feeddrive.plant.steady import steady_motion
+from feeddrive.plant.analysis.steady import steady_motion
 from feeddrive.recording import Recording
 from feeddrive.simulate.uniform_motion import uniform_motion
-from feeddrive.simulate.warm_log import friction_powers, warm_log
+from feeddrive.simulate.warm.warm_log import friction_powers, warm_log
 from feeddrive.thermal.coupling import Temperatures
-from feeddrive.thermal.friction import Friction
-from feeddrive.thermal.laws import laws_of, values_of
+from feeddrive.thermal.laws.friction import Friction
+from feeddrive.thermal.laws.laws import laws_of, values_of
 from feeddrive.thermal.plant import ThermalPlant
 from feeddrive.thermal.warm_plant import WarmPlant
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.stats import weibull_min
 
 from feeddrive.errors import InputError
-from feeddrive.parts.weibull import (
+from feeddrive.parts.life.weibull import (
     WeibullLaw,
     life_sample,
     likelihood_fit,
@@ -20,7 +20,7 @@ from feeddrive.parts.weibull import (
     median_ranks,
     rank_fit,
 )
-from feeddrive.parts.weibull_interval import complete_slope_interval, life_interval, slope_interval
+from feeddrive.parts.life.weibull_interval import complete_slope_interval, life_interval, slope_interval
 
 LAW = WeibullLaw(560e3, 3.6)
 

@@ -7,10 +7,10 @@ import math
 import numpy as np
 
 from feeddrive.files import plants_folder
-from feeddrive.thermal.files import read_thermal_plant
-from feeddrive.thermal.full_model import Discretisation, discretise
-from feeddrive.thermal.grid import Cells
-from feeddrive.thermal.model import Path
+from feeddrive.thermal.file.files import read_thermal_plant
+from feeddrive.thermal.full.full_model import Discretisation, discretise
+from feeddrive.thermal.full.grid import Cells
+from feeddrive.thermal.reduced.model import Path
 
 BENCH_FILE = plants_folder() / "thermal_bench.toml"
 BENCH = read_thermal_plant(BENCH_FILE)

@@ -11,9 +11,9 @@ from feeddrive.compensation.heat.thermal_error import table_error
 from feeddrive.compensation.heat.thermal_open_loop import compensation_model
 from feeddrive.compensation.heat.thermal_trial import TriedMachine, random_duty, tried_machine
 from feeddrive.files import find_plant
-from feeddrive.thermal.files import read_thermal_plant
-from feeddrive.thermal.full_model import full_model
-from feeddrive.thermal.grid import Cells
+from feeddrive.thermal.file.files import read_thermal_plant
+from feeddrive.thermal.full.full_model import full_model
+from feeddrive.thermal.full.grid import Cells
 
 BENCH = read_thermal_plant(find_plant("thermal_bench"))
 RPM = np.pi / 30

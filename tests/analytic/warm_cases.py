@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 from feeddrive.files import find_plant, find_scenario_file
-from feeddrive.simulate.scenario import Scenario
-from feeddrive.simulate.scenario_file import read_scenario
-from feeddrive.thermal.coupling_section import read_coupling
-from feeddrive.thermal.files import read_thermal_plant
-from feeddrive.thermal.grid import Cells
+from feeddrive.simulate.scenario.scenario import Scenario
+from feeddrive.simulate.scenario.scenario_file import read_scenario
+from feeddrive.thermal.file.coupling_section import read_coupling
+from feeddrive.thermal.file.files import read_thermal_plant
+from feeddrive.thermal.full.grid import Cells
 
 PLANT_FILE = find_plant("warm_axis")
 THERMAL = replace(read_thermal_plant(PLANT_FILE), cells=Cells(60, 2, 10, 2))

@@ -18,7 +18,7 @@ import feeddrive
 from feeddrive.cli import diagnosing
 from feeddrive.cli.main import main
 from feeddrive.files import find_plant, find_scenario_file
-from feeddrive.report.drawing import RenderedFigure
+from feeddrive.report.figures.drawing import RenderedFigure
 from tests.analytic import report_examples as examples
 
 PLANT = find_plant("bench_axis").read_bytes()
@@ -29,7 +29,7 @@ PROGRAM = """
 import pathlib, sys, time
 from feeddrive.cli import diagnosing
 from feeddrive.cli.main import main
-from feeddrive.report.drawing import RenderedFigure
+from feeddrive.report.figures.drawing import RenderedFigure
 from tests.analytic import report_examples as examples
 folder, name, others = pathlib.Path(sys.argv[1]), sys.argv[2], sys.argv[3:]
 def diagnose(*_):

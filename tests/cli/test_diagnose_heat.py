@@ -16,8 +16,8 @@ from feeddrive.diagnosis.heat.prediction import heat_predictor
 from feeddrive.diagnosis.ledger.continued import earlier_run
 from feeddrive.files import plants_folder
 from feeddrive.recording import read_recording
-from feeddrive.thermal.files import read_thermal_plant
-from feeddrive.thermal.warm_up import simulate
+from feeddrive.thermal.file.files import read_thermal_plant
+from feeddrive.thermal.run.warm_up import simulate
 
 BENCH = plants_folder() / "thermal_bench.toml"
 RPM = math.pi / 30

@@ -21,11 +21,11 @@ from feeddrive.export.model import model_of
 from feeddrive.export.point import Point
 from feeddrive.export.python_file import python_text
 from feeddrive.files import plants_folder
-from feeddrive.plant.entries import read_toml
-from feeddrive.plant.files import read_plant
-from feeddrive.report.html import report_page
+from feeddrive.plant.file.entries import read_toml
+from feeddrive.plant.file.files import read_plant
+from feeddrive.report.pages.html import report_page
 from feeddrive.servo.frequency_response import Case
-from feeddrive.simulate.controller_file import read_controller
+from feeddrive.simulate.controlled.controller_file import read_controller
 from feeddrive.tuning.demand import Demand
 from feeddrive.tuning.reasons import controller_text
 from feeddrive.tuning.recommendation import Recommendation, recommend

@@ -14,10 +14,10 @@ import pytest
 from feeddrive.cli.main import main
 from feeddrive.errors import InputError
 from feeddrive.files import plants_folder, shipped_plants
-from feeddrive.plant.entries import Origins, Table
-from feeddrive.plant.files import declares_heat_alone
-from feeddrive.thermal.files import thermal_plant
-from feeddrive.thermal.whole_file import drive_plant
+from feeddrive.plant.file.entries import Origins, Table
+from feeddrive.plant.file.files import declares_heat_alone
+from feeddrive.thermal.file.files import thermal_plant
+from feeddrive.thermal.file.whole_file import drive_plant
 
 _QUANTITY = re.compile(r"[+-]?[\d.]+(?:[eE][+-]?\d+)?(?P<unit>\s*[A-Za-z°µ%].*)")
 _WORDS = ("source", "tolerance", "format", "name", "structure", "description", "kind", "carriage")

@@ -85,7 +85,7 @@ def checkpoint(tmp_path_factory: pytest.TempPathFactory) -> bytes:
     """The checkpoint of a run that was stopped after its first stretch."""
     from feeddrive.files import find_scenario
     from feeddrive.simulate import scenario_run
-    from feeddrive.simulate.scenario_file import read_scenario
+    from feeddrive.simulate.scenario.scenario_file import read_scenario
 
     path = tmp_path_factory.mktemp("stopped") / "checkpoint.npz"
     scenario = read_scenario(find_scenario("step_position"), {"record.rate": "2 kHz"})

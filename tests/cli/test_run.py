@@ -9,7 +9,7 @@ import pytest
 
 from feeddrive.cli.main import main
 from feeddrive.files import find_scenario_file, scenarios_folder
-from feeddrive.recording.reading import read_recording
+from feeddrive.recording.files.reading import read_recording
 
 
 def test_run_writes_recording_figures_and_metrics(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

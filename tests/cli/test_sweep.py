@@ -19,8 +19,8 @@ import pytest
 
 from feeddrive.cli.main import main
 from feeddrive.files import find_scenario_file
-from feeddrive.simulate.sweep_design import make_design
-from feeddrive.simulate.sweep_values import read_parameters
+from feeddrive.simulate.sweep.sweep_design import make_design
+from feeddrive.simulate.sweep.sweep_values import read_parameters
 
 SWEEP = ["sweep", "step_position", "--set", "trajectory.duration=0.2 s"]
 GRID = ["--vary", "controller.position_gain=40:1000:4 1/s", "--vary", "plant.table.mass=100,200 kg"]
@@ -208,7 +208,7 @@ def test_scheduler_that_does_not_answer_is_told(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pytest.importorskip("distributed", reason="Dask is not installed: pip install 'feeddrive[dask]'")
-    monkeypatch.setattr("feeddrive.simulate.sweep_dask._PATIENCE", 0.2)
+    monkeypatch.setattr("feeddrive.simulate.sweep.sweep_dask._PATIENCE", 0.2)
     with warnings.catch_warnings(action="ignore"):
         assert main([*SWEEP, *GRID, "--scheduler", "tcp://127.0.0.1:9"]) == 2
     assert "no Dask scheduler answers" in capsys.readouterr().err

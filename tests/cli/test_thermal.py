@@ -9,7 +9,7 @@ import pytest
 
 from feeddrive.cli.main import main
 from feeddrive.files import find_plant
-from feeddrive.recording.reading import read_recording
+from feeddrive.recording.files.reading import read_recording
 from tests.analytic.thermal_cases import BENCH_FILE
 
 BENCH = str(BENCH_FILE)

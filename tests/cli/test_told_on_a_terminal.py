@@ -15,7 +15,7 @@ from feeddrive.cli.diagnosing import Job, Source
 from feeddrive.cli.main import main
 from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.files import find_plant, shipped_scenarios
-from feeddrive.report.words import effect_words
+from feeddrive.report.words.words import effect_words
 
 QUICK_WITH_OUT = (
     "list --out {}/given.txt",

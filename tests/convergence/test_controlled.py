@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from feeddrive.effects.backlash import Backlash
-from feeddrive.effects.drive_delay import DriveDelay
-from feeddrive.effects.presliding import Presliding
+from feeddrive.effects.friction.presliding import Presliding
+from feeddrive.effects.timing.drive_delay import DriveDelay
+from feeddrive.effects.transmission.backlash import Backlash
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant, Sensor
 from feeddrive.servo.sampled import SampledController
-from feeddrive.simulate.controlled import (
+from feeddrive.simulate.controlled.controlled import (
     ControlledRun,
     TorqueLoop,
     resting_state,

@@ -11,12 +11,12 @@ import pytest
 
 from feeddrive.errors import InputError
 from feeddrive.files import plants_folder
-from feeddrive.plant.files import read_plant
+from feeddrive.plant.file.files import read_plant
 from feeddrive.plant.plant import PositionVelocityController
 from feeddrive.recording import read_recording
-from feeddrive.simulate.closed_loop import simulate_closed_loop
-from feeddrive.simulate.declared_loop import DeclaredLoop, declared_loop
-from feeddrive.simulate.replay import replayed_command
+from feeddrive.simulate.controlled.closed_loop import simulate_closed_loop
+from feeddrive.simulate.controlled.declared_loop import DeclaredLoop, declared_loop
+from feeddrive.simulate.controlled.replay import replayed_command
 from feeddrive.typing import FloatArray
 from tests.recovery.declared_controller import controlled_plant
 from tests.recovery.planted import pair

@@ -7,13 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from feeddrive.effects.guide_friction import GuideFriction
-from feeddrive.effects.presliding import Presliding
-from feeddrive.effects.shaft_drag import NutDrag
+from feeddrive.effects.friction.guide_friction import GuideFriction
+from feeddrive.effects.friction.presliding import Presliding
+from feeddrive.effects.friction.shaft_drag import NutDrag
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.sampled import SampledController
-from feeddrive.simulate.controlled import TorqueLoop, simulate_controlled
+from feeddrive.simulate.controlled.controlled import TorqueLoop, simulate_controlled
 from feeddrive.simulate.output_error import OutputErrorFit, fit_recorded_run
 from feeddrive.simulate.recorded_run import RecordedRun, with_values
 from feeddrive.typing import FloatArray

@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from feeddrive.diagnosis.finding.search import search
 from feeddrive.diagnosis.preparation import prepared
-from feeddrive.diagnosis.search import search
-from feeddrive.effects.backlash import Backlash
 from feeddrive.effects.base import Effect
-from feeddrive.plant.files import read_plant
+from feeddrive.effects.transmission.backlash import Backlash
+from feeddrive.plant.file.files import read_plant
 from feeddrive.simulate import driven
 from feeddrive.simulate.driven import MotorMotion, motor_motion, simulate_driven
 from tests.convergence.test_simulate import SAMPLE, bench

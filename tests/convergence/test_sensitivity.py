@@ -11,15 +11,15 @@ import pytest
 from scipy.linalg import expm
 
 from feeddrive.compiler import find_compiler
-from feeddrive.effects.guide_friction import GuideFriction
-from feeddrive.effects.payload import Payload
-from feeddrive.effects.presliding import Presliding
-from feeddrive.effects.shaft_drag import NutDrag
+from feeddrive.effects.chain.payload import Payload
+from feeddrive.effects.friction.guide_friction import GuideFriction
+from feeddrive.effects.friction.presliding import Presliding
+from feeddrive.effects.friction.shaft_drag import NutDrag
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.sampled import SampledController
-from feeddrive.simulate.controlled import TorqueLoop, simulate_controlled
-from feeddrive.simulate.sensitivity import simulate_sensitivity
+from feeddrive.simulate.controlled.controlled import TorqueLoop, simulate_controlled
+from feeddrive.simulate.controlled.sensitivity import simulate_sensitivity
 from tests.claims.book import CLAIMS
 from tests.convergence.test_simulate import BENCH
 

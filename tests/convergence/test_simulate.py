@@ -12,17 +12,17 @@ from scipy.integrate import solve_ivp
 from scipy.io import loadmat
 
 from feeddrive.effects.base import Effect
-from feeddrive.effects.constant_force import ConstantForce
-from feeddrive.effects.drive_delay import DriveDelay
-from feeddrive.effects.guide_friction import GuideFriction
-from feeddrive.effects.lead_error_periodic import LeadErrorPeriodic
-from feeddrive.effects.presliding import Presliding
-from feeddrive.effects.shaft_drag import BearingDrag, NutDrag
+from feeddrive.effects.friction.guide_friction import GuideFriction
+from feeddrive.effects.friction.presliding import Presliding
+from feeddrive.effects.friction.shaft_drag import BearingDrag, NutDrag
+from feeddrive.effects.source.constant_force import ConstantForce
+from feeddrive.effects.timing.drive_delay import DriveDelay
+from feeddrive.effects.travel.lead_error_periodic import LeadErrorPeriodic
 from feeddrive.errors import InputError, ValidityWarning
-from feeddrive.plant.chain import Rigid, ThreeInertias, symbolic
+from feeddrive.plant.chain.chain import Rigid, ThreeInertias, symbolic
 from feeddrive.plant.equations import chain_symbols, effect_forces, parameter_symbols, parameter_values
 from feeddrive.plant.plant import Plant, PositionVelocityController
-from feeddrive.simulate.closed_loop import simulate_closed_loop
+from feeddrive.simulate.controlled.closed_loop import simulate_closed_loop
 from feeddrive.simulate.driven import motor_motion, simulate_driven
 from feeddrive.simulate.held_torque import initial_state, simulate_torque
 from feeddrive.typing import FloatArray

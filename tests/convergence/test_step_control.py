@@ -10,19 +10,19 @@ import numpy as np
 import pytest
 
 from feeddrive.compiler import find_compiler
-from feeddrive.effects.backlash import Backlash
 from feeddrive.effects.base import Effect
-from feeddrive.effects.drive_delay import DriveDelay
-from feeddrive.effects.friction_vs_position import FrictionVsPosition
-from feeddrive.effects.preload_loss import PreloadLoss
-from feeddrive.effects.presliding import Presliding
-from feeddrive.effects.stiffness_vs_position import StiffnessVsPosition
-from feeddrive.effects.stribeck import Stribeck
-from feeddrive.effects.structural_mode import StructuralMode
+from feeddrive.effects.chain.structural_mode import StructuralMode
+from feeddrive.effects.friction.friction_vs_position import FrictionVsPosition
+from feeddrive.effects.friction.presliding import Presliding
+from feeddrive.effects.friction.stribeck import Stribeck
+from feeddrive.effects.timing.drive_delay import DriveDelay
+from feeddrive.effects.transmission.backlash import Backlash
+from feeddrive.effects.transmission.preload_loss import PreloadLoss
+from feeddrive.effects.transmission.stiffness_vs_position import StiffnessVsPosition
+from feeddrive.engine.step.step_constants import SimulationError
 from feeddrive.plant.plant import Plant
 from feeddrive.simulate.driven import motor_motion, simulate_driven
 from feeddrive.simulate.held_torque import simulate_torque
-from feeddrive.simulate.step_constants import SimulationError
 from feeddrive.typing import FloatArray
 from tests.convergence.test_simulate import SAMPLE, bench, torque_curve
 

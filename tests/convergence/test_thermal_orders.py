@@ -10,10 +10,10 @@ import pytest
 from scipy.optimize import brentq
 from scipy.special import j0, j1
 
-from feeddrive.thermal.full_model import discretise, full_model, model_of
-from feeddrive.thermal.grid import Cells, cylinder
+from feeddrive.thermal.full.full_model import discretise, full_model, model_of
+from feeddrive.thermal.full.grid import Cells, cylinder
+from feeddrive.thermal.reduced.system import HeatSystem
 from feeddrive.thermal.rig import Steel
-from feeddrive.thermal.system import HeatSystem
 from tests.analytic.thermal_cases import BENCH, conductances, nut_heat
 
 STEEL = Steel()

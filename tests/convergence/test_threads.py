@@ -13,16 +13,16 @@ import numpy as np
 import pytest
 
 from feeddrive.compiler import find_compiler
-from feeddrive.effects.payload import Payload
-from feeddrive.effects.presliding import Presliding
+from feeddrive.effects.chain.payload import Payload
+from feeddrive.effects.friction.presliding import Presliding
+from feeddrive.engine.virtual_machine import Called
 from feeddrive.plant.structure import forget_machines
 from feeddrive.servo.cascade import Cascade
 from feeddrive.servo.cascade_function import cascade_controller
-from feeddrive.simulate.controlled import TorqueLoop, simulate_controlled
+from feeddrive.simulate.controlled.controlled import TorqueLoop, simulate_controlled
+from feeddrive.simulate.controlled.sensitivity import simulate_sensitivity
 from feeddrive.simulate.driven import motor_motion, simulate_driven
 from feeddrive.simulate.held_torque import simulate_torque
-from feeddrive.simulate.sensitivity import simulate_sensitivity
-from feeddrive.simulate.virtual_machine import Called
 from feeddrive.typing import FloatArray
 from tests.convergence.test_simulate import SAMPLE, bench, torque_curve
 

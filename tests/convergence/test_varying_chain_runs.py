@@ -6,15 +6,15 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from feeddrive.effects.guide_friction import GuideFriction
+from feeddrive.effects.friction.guide_friction import GuideFriction
+from feeddrive.engine.step.step_constants import SimulationError
+from feeddrive.plant.analysis.linear import ode
 from feeddrive.plant.equations import parameter_values
-from feeddrive.plant.linear import ode
 from feeddrive.plant.plant import Plant
 from feeddrive.simulate import compiled, engine, interpreted
-from feeddrive.simulate.controlled import simulate_controlled
+from feeddrive.simulate.controlled.controlled import simulate_controlled
 from feeddrive.simulate.driven import motor_motion, simulate_driven
 from feeddrive.simulate.held_torque import initial_state, simulate_torque
-from feeddrive.simulate.step_constants import SimulationError
 from tests.convergence.test_chain_against_elements import plant_of
 from tests.convergence.test_controlled import cascade, reference
 

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from feeddrive.errors import InputError
-from feeddrive.simulate.warm_up_result import CLOSES, WarmUpRun
-from feeddrive.simulate.warm_up_run import MacroSteps, run_warm_up
-from feeddrive.thermal.full_model import FRONT, NUT
+from feeddrive.simulate.warm.warm_up_result import CLOSES, WarmUpRun
+from feeddrive.simulate.warm.warm_up_run import MacroSteps, run_warm_up
+from feeddrive.thermal.full.full_model import FRONT, NUT
 from feeddrive.typing import FloatArray
 from tests.analytic.warm_cases import COUPLING, THERMAL, short_cycle
 

@@ -20,10 +20,10 @@ import numpy as np
 from feeddrive.cli.main import main
 from feeddrive.errors import InputError
 from feeddrive.recording import read_recording
-from feeddrive.recording.formats.choosing import Wishes
-from feeddrive.recording.formats.opened import read_trace, understand
-from feeddrive.recording.formats.trace import Trace
-from feeddrive.recording.opening import open_file
+from feeddrive.recording.files.opening import open_file
+from feeddrive.recording.traces.choosing import Wishes
+from feeddrive.recording.traces.opened import read_trace, understand
+from feeddrive.recording.traces.trace import Trace
 from tests.analytic import test_trace_containers as containers
 from tests.analytic import trace_files as made
 from tests.fuzz.harness import Attempt

@@ -7,16 +7,16 @@ import math
 import numpy as np
 import pytest
 
-from feeddrive.parts.contact_angle_optimum import (
+from feeddrive.parts.screw.contact_angle_optimum import (
     best_contact_angle,
     best_contact_angle_back,
     efficiency_at_best_angle,
     highest_efficiency,
     largest_lead_angle,
 )
-from feeddrive.parts.double_nut import OPENING, rigid_sharing
-from feeddrive.parts.preload_torque import preload_torque, relative_preload_torque
-from feeddrive.parts.screw_efficiency import (
+from feeddrive.parts.screw.double_nut import OPENING, rigid_sharing
+from feeddrive.parts.screw.preload_torque import preload_torque, relative_preload_torque
+from feeddrive.parts.screw.screw_efficiency import (
     back_driving_efficiency,
     back_driving_loss,
     driving_efficiency,
@@ -24,8 +24,8 @@ from feeddrive.parts.screw_efficiency import (
     jamming_friction,
     self_locking_friction,
 )
-from feeddrive.parts.screw_friction import ScrewFriction, ScrewGeometry
-from feeddrive.parts.slip_angle import groove_at, sliding_speed_ratio, slip_angle, thread_angle
+from feeddrive.parts.screw.screw_friction import ScrewFriction, ScrewGeometry
+from feeddrive.parts.screw.slip_angle import groove_at, sliding_speed_ratio, slip_angle, thread_angle
 from feeddrive.reproduce.paper_000 import rows
 from feeddrive.reproduce.row import Paper, Status
 

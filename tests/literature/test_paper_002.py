@@ -13,9 +13,9 @@ import pytest
 from feeddrive.reproduce.paper_002 import rows
 from feeddrive.reproduce.paper_002_sets import GRID, PRELOADS, SPEEDS, Assumptions, plant, warm_up
 from feeddrive.reproduce.row import Row, Status
-from feeddrive.thermal.explicit import run_explicitly
-from feeddrive.thermal.full_model import discretise
-from feeddrive.thermal.grid import Cells
+from feeddrive.thermal.full.explicit import run_explicitly
+from feeddrive.thermal.full.full_model import discretise
+from feeddrive.thermal.full.grid import Cells
 
 RPM = 0.10471975511965977
 WRONG_BY_A_LAW = {

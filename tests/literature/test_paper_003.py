@@ -11,12 +11,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from feeddrive.parts.guide_carriage import carriage_friction
-from feeddrive.parts.guide_coefficients import SET_A, SET_B
-from feeddrive.parts.guide_equilibrium import guide_equilibrium
-from feeddrive.parts.guide_film import Oil, film_thickness
-from feeddrive.parts.guide_geometry import HSR_20R, HSR_30R, BallGuide
-from feeddrive.parts.guide_stiffness import preload_force, unloading_force, vertical_stiffness
+from feeddrive.parts.guide.guide_carriage import carriage_friction
+from feeddrive.parts.guide.guide_coefficients import SET_A, SET_B
+from feeddrive.parts.guide.guide_equilibrium import guide_equilibrium
+from feeddrive.parts.guide.guide_film import Oil, film_thickness
+from feeddrive.parts.guide.guide_geometry import HSR_20R, HSR_30R, BallGuide
+from feeddrive.parts.guide.guide_stiffness import preload_force, unloading_force, vertical_stiffness
 from feeddrive.reproduce.paper_003 import ACCURACY, rows
 from feeddrive.reproduce.paper_003_equations import accuracy, printed_balance
 from feeddrive.reproduce.paper_003_loads import OneContact, preload_rate

@@ -15,7 +15,7 @@ import pytest
 
 from feeddrive.diagnosis.stiffness.candidates import DriveAt
 from feeddrive.diagnosis.stiffness.gap import explain_frequency, explain_stiffness
-from feeddrive.parts.ball_screw import ScrewShaft
+from feeddrive.parts.bearings.supports import check_position
 from feeddrive.parts.combined_stiffness import (
     Deformation,
     axial_from_torsional,
@@ -24,9 +24,9 @@ from feeddrive.parts.combined_stiffness import (
     stiffness_along,
 )
 from feeddrive.parts.effective_mass import added_mass, rayleigh_frequency
-from feeddrive.parts.screw_drive import BallScrewDrive
-from feeddrive.parts.supports import check_position
-from feeddrive.parts.wedge import self_locking, self_locking_lead, wedge_back_driving_efficiency, wedge_efficiency
+from feeddrive.parts.screw.ball_screw import ScrewShaft
+from feeddrive.parts.screw.screw_drive import BallScrewDrive
+from feeddrive.parts.screw.wedge import self_locking, self_locking_lead, wedge_back_driving_efficiency, wedge_efficiency
 from feeddrive.reproduce.paper_004 import rows
 from feeddrive.reproduce.row import Row, Status
 from tests.analytic.screw_fem import ScrewDrive, frequencies

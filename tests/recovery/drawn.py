@@ -7,13 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from feeddrive.diagnosis.attempt import compared
-from feeddrive.diagnosis.evidence import AxisEvidence, prepare
-from feeddrive.diagnosis.fit import Problem, fit
-from feeddrive.diagnosis.judge import Judged, prepared_for_judging
-from feeddrive.diagnosis.prediction import AxisPredictor
-from feeddrive.diagnosis.result import Trial
-from feeddrive.diagnosis.search import Search
+from feeddrive.diagnosis.finding.attempt import compared
+from feeddrive.diagnosis.finding.search import Search
+from feeddrive.diagnosis.judging.judge import Judged, prepared_for_judging
+from feeddrive.diagnosis.judging.result import Trial
+from feeddrive.diagnosis.likelihood.evidence import AxisEvidence, prepare
+from feeddrive.diagnosis.likelihood.fit import Problem, fit
+from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
 from feeddrive.effects.base import Effect
 from feeddrive.plant.plant import Plant
 from tests.recovery.planted import axis_plant, pair

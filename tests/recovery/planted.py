@@ -11,14 +11,14 @@ from pathlib import Path
 from typing import Any
 
 from feeddrive.diagnosis.diagnose import diagnose
-from feeddrive.diagnosis.evidence import prepare
-from feeddrive.diagnosis.fit import Problem
-from feeddrive.diagnosis.judge import channel_results, prepared_for_judging
-from feeddrive.diagnosis.prediction import AxisPredictor
-from feeddrive.diagnosis.result import ChannelResult, Diagnosis, EffectResult
+from feeddrive.diagnosis.judging.judge import channel_results, prepared_for_judging
+from feeddrive.diagnosis.judging.result import ChannelResult, Diagnosis, EffectResult
+from feeddrive.diagnosis.likelihood.evidence import prepare
+from feeddrive.diagnosis.likelihood.fit import Problem
+from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
 from feeddrive.effects.base import Effect
 from feeddrive.files import plants_folder
-from feeddrive.plant.files import read_plant
+from feeddrive.plant.file.files import read_plant
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording, read_recording
 from tests.recovery.suite.planting import in_the_package

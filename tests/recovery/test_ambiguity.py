@@ -12,14 +12,14 @@ from feeddrive.diagnosis.certainty.next_experiment import distance, hardly_known
 from feeddrive.diagnosis.certainty.noise_colour import independent_share
 from feeddrive.diagnosis.certainty.preferred import with_the_preferred
 from feeddrive.diagnosis.certainty.rehearsal import Rehearsal, rehearsals
-from feeddrive.diagnosis.cross_validation import compare_left_out
-from feeddrive.diagnosis.evidence import AxisEvidence, prepare
-from feeddrive.diagnosis.fit import Problem, fit
-from feeddrive.diagnosis.judge import share_of
-from feeddrive.diagnosis.prediction import AxisPredictor
+from feeddrive.diagnosis.judging.judge import share_of
+from feeddrive.diagnosis.likelihood.cross_validation import compare_left_out
+from feeddrive.diagnosis.likelihood.evidence import AxisEvidence, prepare
+from feeddrive.diagnosis.likelihood.fit import Problem, fit
+from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
 from feeddrive.effects.base import Effect, Port
 from feeddrive.effects.catalogue import EFFECTS
-from feeddrive.plant.moving_inertia import inertia_at_motor
+from feeddrive.plant.chain.moving_inertia import inertia_at_motor
 from tests.recovery.drawn import drawn, settled
 from tests.recovery.planted import axis_plant, pair
 

@@ -10,8 +10,8 @@ import pytest
 
 from feeddrive.diagnosis.calibration.plant_text import with_calibrated_values
 from feeddrive.diagnosis.diagnose import diagnose
-from feeddrive.diagnosis.result import Diagnosis
-from feeddrive.plant.files import read_plant
+from feeddrive.diagnosis.judging.result import Diagnosis
+from feeddrive.plant.file.files import read_plant
 from tests.generator.axis import BENCH
 from tests.generator.pair import recording_pair
 from tests.recovery.planted import axis_plant

@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 
 from feeddrive.diagnosis.diagnose import diagnose
-from feeddrive.diagnosis.result import Diagnosis
+from feeddrive.diagnosis.judging.result import Diagnosis
 from feeddrive.files import plants_folder
-from feeddrive.plant.files import read_plant
+from feeddrive.plant.file.files import read_plant
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 from tests.generator import BENCH, recording_pair

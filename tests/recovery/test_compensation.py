@@ -19,7 +19,7 @@ from feeddrive.compensation.forms.catalogue import FORMS, HEAT
 from feeddrive.compensation.sheet import left, predicted_rows, sections, sheet_text, text
 from feeddrive.compensation.temperature import HeatTable
 from feeddrive.servo.cascade import Feedback
-from feeddrive.simulate.controller_file import read_controller
+from feeddrive.simulate.controlled.controller_file import read_controller
 from tests.analytic import compensation_readers as read
 
 ROOT = Path(__file__).resolve().parents[2]

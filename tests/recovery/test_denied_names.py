@@ -6,21 +6,21 @@ from pathlib import Path
 
 import pytest
 
-from feeddrive.diagnosis.coordinates import read_coordinates, write_coordinates
 from feeddrive.diagnosis.diagnose import diagnose
-from feeddrive.diagnosis.evidence import Evidence
-from feeddrive.diagnosis.fit import fit
-from feeddrive.diagnosis.judge import Judged, prepared_for_judging
+from feeddrive.diagnosis.finding.search import Search
+from feeddrive.diagnosis.judging.judge import Judged, prepared_for_judging
+from feeddrive.diagnosis.judging.veto import ends_reached, without_denied, worse_by
+from feeddrive.diagnosis.likelihood.coordinates import read_coordinates, write_coordinates
+from feeddrive.diagnosis.likelihood.evidence import Evidence
+from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.preparation import prepared
-from feeddrive.diagnosis.search import Search
-from feeddrive.diagnosis.veto import ends_reached, without_denied, worse_by
 from feeddrive.effects.base import Effect
 from feeddrive.effects.catalogue import find_effect
-from feeddrive.effects.coulomb_asymmetry import CoulombAsymmetry
-from feeddrive.effects.payload import Payload
-from feeddrive.effects.stribeck import Stribeck
-from feeddrive.effects.torque_ripple import TorqueRipple
-from feeddrive.plant.files import read_plant
+from feeddrive.effects.chain.payload import Payload
+from feeddrive.effects.friction.coulomb_asymmetry import CoulombAsymmetry
+from feeddrive.effects.friction.stribeck import Stribeck
+from feeddrive.effects.source.torque_ripple import TorqueRipple
+from feeddrive.plant.file.files import read_plant
 from feeddrive.plant.plant import Plant
 from tests.recovery.rigid_runs import PLANT, Truth, rigid_run
 

@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 from feeddrive.diagnosis.diagnose import diagnose
-from feeddrive.diagnosis.result import Diagnosis
+from feeddrive.diagnosis.judging.result import Diagnosis
 from feeddrive.recording import Recording
 from tests.generator import effects as planted
 from tests.generator import recording_pair

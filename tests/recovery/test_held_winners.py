@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 from feeddrive.diagnosis import round as rounds
-from feeddrive.diagnosis.coordinates import read_coordinates
+from feeddrive.diagnosis.finding.search import search
+from feeddrive.diagnosis.likelihood.coordinates import read_coordinates
 from feeddrive.diagnosis.preparation import prepared
-from feeddrive.diagnosis.search import search
-from feeddrive.plant.files import read_plant
+from feeddrive.plant.file.files import read_plant
 from tests.recovery.rigid_runs import PLANT, Truth, rigid_run
 
 

@@ -17,10 +17,10 @@ from scipy import signal
 
 from feeddrive.diagnosis.certainty.information import cramer_rao
 from feeddrive.diagnosis.certainty.uncertainty import certainty, intervals
-from feeddrive.diagnosis.coordinates import read_coordinates
-from feeddrive.diagnosis.evidence import AxisEvidence, prepare
-from feeddrive.diagnosis.fit import Fit, Problem, fit
-from feeddrive.diagnosis.prediction import AxisPredictor
+from feeddrive.diagnosis.likelihood.coordinates import read_coordinates
+from feeddrive.diagnosis.likelihood.evidence import AxisEvidence, prepare
+from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
+from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
 from feeddrive.effects.base import Effect
 from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.typing import FloatArray

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from feeddrive.diagnosis.diagnose import diagnose
-from feeddrive.diagnosis.result import Diagnosis
+from feeddrive.diagnosis.judging.result import Diagnosis
 from feeddrive.errors import InputError
 from feeddrive.recording import Recording
 from tests.generator.axis import AXES

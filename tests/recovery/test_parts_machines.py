@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 
 from feeddrive.diagnosis.diagnose import diagnose
-from feeddrive.diagnosis.evidence import prepare
-from feeddrive.diagnosis.fit import Problem, fit
-from feeddrive.diagnosis.prediction import AxisPredictor
-from feeddrive.diagnosis.result import Diagnosis
+from feeddrive.diagnosis.judging.result import Diagnosis
+from feeddrive.diagnosis.likelihood.evidence import prepare
+from feeddrive.diagnosis.likelihood.fit import Problem, fit
+from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
 from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant
-from feeddrive.plant.files import read_plant
+from feeddrive.plant.file.files import read_plant
 from feeddrive.recording import Recording
 from tests.generator.screw_elements import Recorder, drive_of
 from tests.recovery.parts_runs import made, softer

@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from feeddrive.diagnosis.result import ChannelResult, Diagnosis
+from feeddrive.diagnosis.judging.result import ChannelResult, Diagnosis
 from tests.claims.book import CLAIMS
 from tests.recovery.planted import TRUTH, null_errors, verdict
 

@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 
 from feeddrive.diagnosis.preparation import prepared
-from feeddrive.diagnosis.recording_faults import refuse_faulty
+from feeddrive.diagnosis.suspicion.recording_faults import refuse_faulty
 from feeddrive.effects.base import Effect, Port
 from feeddrive.effects.catalogue import find_effect
-from feeddrive.effects.constant_force import ConstantForce
-from feeddrive.effects.friction_deviation import FrictionDeviation
-from feeddrive.effects.inertia_deviation import InertiaDeviation
-from feeddrive.effects.payload import Payload
+from feeddrive.effects.chain.inertia_deviation import InertiaDeviation
+from feeddrive.effects.chain.payload import Payload
+from feeddrive.effects.friction.friction_deviation import FrictionDeviation
+from feeddrive.effects.source.constant_force import ConstantForce
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording

@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from feeddrive.diagnosis.evidence import Evidence
-from feeddrive.diagnosis.fit import fit
-from feeddrive.diagnosis.judge import Judged, prepared_for_judging
+from feeddrive.diagnosis.finding.search import Search
+from feeddrive.diagnosis.judging.judge import Judged, prepared_for_judging
+from feeddrive.diagnosis.likelihood.evidence import Evidence
+from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.preparation import prepared
-from feeddrive.diagnosis.search import Search
 from feeddrive.diagnosis.simulated.loop_evidence import loop_evidence
 from feeddrive.diagnosis.simulated.loop_fit import LoopProblem, alike, foretold, loop_problem
 from feeddrive.diagnosis.simulated.refinement import DELAYED, Outcome, Refinement, refined, why_not_kept
@@ -21,8 +21,8 @@ from feeddrive.diagnosis.simulated.simulation import before_and_after
 from feeddrive.diagnosis.simulated.simulation_record import simulation_record
 from feeddrive.diagnosis.simulated.simulation_result import ErrorFigure
 from feeddrive.effects.base import Effect
-from feeddrive.effects.drive_delay import DriveDelay
-from feeddrive.effects.payload import Payload
+from feeddrive.effects.chain.payload import Payload
+from feeddrive.effects.timing.drive_delay import DriveDelay
 from feeddrive.plant.plant import DeclaredCascade, Plant
 from feeddrive.recording import Recording
 from feeddrive.typing import FloatArray

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from feeddrive.diagnosis.diagnose import diagnose
-from feeddrive.diagnosis.result import Diagnosis
+from feeddrive.diagnosis.judging.result import Diagnosis
 from feeddrive.errors import InputError
 from feeddrive.recording import Recording
 from tests.claims.book import CLAIMS

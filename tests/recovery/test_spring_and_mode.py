@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 from feeddrive.diagnosis.diagnose import diagnose
-from feeddrive.diagnosis.evidence import prepare
-from feeddrive.diagnosis.fit import Problem, fit
-from feeddrive.diagnosis.prediction import AxisPredictor
+from feeddrive.diagnosis.likelihood.evidence import prepare
+from feeddrive.diagnosis.likelihood.fit import Problem, fit
+from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
 from feeddrive.diagnosis.starts import mode, transmission
 from feeddrive.effects.base import Effect
 from feeddrive.effects.catalogue import EFFECTS

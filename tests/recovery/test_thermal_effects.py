@@ -15,10 +15,10 @@ import numpy as np
 import pytest
 
 from feeddrive.diagnosis.diagnose import diagnose
-from feeddrive.diagnosis.result import Diagnosis
+from feeddrive.diagnosis.judging.result import Diagnosis
 from feeddrive.files import plants_folder
 from feeddrive.recording import Recording, read_recording
-from feeddrive.thermal.files import read_thermal_plant
+from feeddrive.thermal.file.files import read_thermal_plant
 from feeddrive.thermal.plant import ThermalPlant
 from tests.generator.thermal import TRAIN, VALIDATE, Rig, measured, simulate, write_csv
 from tests.generator.thermal_effects import Planted, ThermalTruth

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from feeddrive.diagnosis.diagnose import diagnose
-from feeddrive.diagnosis.result import Diagnosis
+from feeddrive.diagnosis.judging.result import Diagnosis
 from feeddrive.errors import InputError
 from feeddrive.recording import Recording
 from tests.generator import BENCH

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from feeddrive.diagnosis.diagnose import diagnose
-from feeddrive.diagnosis.outputs import diagnosis_record
+from feeddrive.diagnosis.likelihood.outputs import diagnosis_record
 from tests.generator.axis import AXES
 from tests.generator.effects import LeadErrorPeriodic
 from tests.generator.effects.unlisted import CableDrag, Cogging, ForceSpot, LaterFriction, SquareDrag

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feeddrive.diagnosis.evidence import prepare
-from feeddrive.diagnosis.fit import Problem
-from feeddrive.diagnosis.judge import Judged, channel_results, prepared_for_judging
-from feeddrive.diagnosis.prediction import AxisPredictor
-from feeddrive.diagnosis.result import ChannelResult
+from feeddrive.diagnosis.judging.judge import Judged, channel_results, prepared_for_judging
+from feeddrive.diagnosis.judging.result import ChannelResult
+from feeddrive.diagnosis.likelihood.evidence import prepare
+from feeddrive.diagnosis.likelihood.fit import Problem
+from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
 from feeddrive.diagnosis.unexplained.result import Dependence
 from feeddrive.diagnosis.unexplained.unexplained import Rest, explain_rest
 from feeddrive.recording import Recording

@@ -13,8 +13,8 @@ from feeddrive.compensation.forms.linuxcnc import LINUXCNC
 from feeddrive.compensation.forms.sinumerik import SINUMERIK_CEC, SINUMERIK_ENC
 from feeddrive.compensation.table import CompensationTable
 from feeddrive.errors import InputError
-from feeddrive.plant.entries import nearest
-from feeddrive.quantity import format_quantity
+from feeddrive.plant.file.entries import nearest
+from feeddrive.units.quantity import format_quantity
 
 HEAT = "sinumerik-temp"
 """The one form that is no table of positions, see `compensation.temperature`."""

@@ -10,7 +10,7 @@ from enum import StrEnum
 
 from feeddrive.compensation.table import CompensationTable
 from feeddrive.errors import InputError
-from feeddrive.quantity import format_quantity
+from feeddrive.units.quantity import format_quantity
 
 
 class Side(StrEnum):

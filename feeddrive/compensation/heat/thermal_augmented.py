@@ -26,8 +26,8 @@ from feeddrive.compensation.heat.thermal_deviation import NUT_FILMS, SCREW_FILMS
 from feeddrive.compensation.heat.thermal_sensors import Sensor
 from feeddrive.compensation.heat.thermal_unknowns import Unknowns, stationary_step
 from feeddrive.errors import InputError
-from feeddrive.thermal.model import AMBIENT, HeatModel, Path
-from feeddrive.thermal.stepping import exact_propagator
+from feeddrive.thermal.reduced.model import AMBIENT, HeatModel, Path
+from feeddrive.thermal.reduced.stepping import exact_propagator
 from feeddrive.typing import FloatArray
 
 _LEAST_LAG = 0.01

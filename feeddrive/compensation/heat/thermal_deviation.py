@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from feeddrive.thermal.model import AMBIENT, COOLANT, Path
+from feeddrive.thermal.reduced.model import AMBIENT, COOLANT, Path
 from feeddrive.thermal.rig import refuse_negative
-from feeddrive.thermal.warm_up import Rows
+from feeddrive.thermal.run.warm_up import Rows
 from feeddrive.typing import FloatArray
 
 SCREW_FILMS = (Path.SCREW_FILM, Path.FRONT_FILM, Path.REAR_FILM)

@@ -7,10 +7,10 @@ through in full. It costs no sensor, and it is the prediction inside the observe
 from __future__ import annotations
 
 from feeddrive.compensation.heat.thermal_error import TableError
-from feeddrive.thermal.model import HeatModel, Path
 from feeddrive.thermal.plant import ThermalPlant
-from feeddrive.thermal.reduction import Sizes, reduce_model
-from feeddrive.thermal.warm_up import declared_rows, run
+from feeddrive.thermal.reduced.model import HeatModel, Path
+from feeddrive.thermal.reduced.reduction import Sizes, reduce_model
+from feeddrive.thermal.run.warm_up import declared_rows, run
 from feeddrive.typing import FloatArray
 
 ORDER = 16

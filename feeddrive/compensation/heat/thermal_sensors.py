@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from feeddrive.errors import InputError
-from feeddrive.thermal.full_model import FRONT, NUT, REAR
+from feeddrive.thermal.full.full_model import FRONT, NUT, REAR
 from feeddrive.thermal.plant import ThermalPlant
 from feeddrive.thermal.rig import refuse_negative, refuse_unless_positive
 from feeddrive.typing import FloatArray

@@ -10,11 +10,11 @@ import numpy as np
 from feeddrive.compensation.heat.thermal_deviation import deviating
 from feeddrive.compensation.heat.thermal_error import table_error
 from feeddrive.compensation.heat.thermal_sensors import Sensor, mountable_places, simulated_readings
-from feeddrive.thermal.expansion import FIXED_FREE, Supports
-from feeddrive.thermal.model import HeatModel
+from feeddrive.thermal.laws.expansion import FIXED_FREE, Supports
 from feeddrive.thermal.plant import ThermalPlant
+from feeddrive.thermal.reduced.model import HeatModel
 from feeddrive.thermal.rig import refuse_unless
-from feeddrive.thermal.warm_up import declared_rows, run
+from feeddrive.thermal.run.warm_up import declared_rows, run
 from feeddrive.typing import FloatArray
 
 _SUBSTEPS = 4

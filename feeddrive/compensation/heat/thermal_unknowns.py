@@ -22,7 +22,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feeddrive.thermal.full_model import FRONT
+from feeddrive.thermal.full.full_model import FRONT
 from feeddrive.thermal.rig import refuse_negative, refuse_unless_positive
 from feeddrive.typing import FloatArray
 

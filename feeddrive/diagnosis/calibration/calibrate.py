@@ -11,10 +11,10 @@ import numpy as np
 from feeddrive.diagnosis.calibration.calibration import Calibration
 from feeddrive.diagnosis.calibration.declared import CalibratedValue, as_effect, calibrated_values
 from feeddrive.diagnosis.certainty.noise_colour import score_covariance
-from feeddrive.diagnosis.evidence import Evidence
-from feeddrive.diagnosis.fit import Fit, Problem, linear_step
+from feeddrive.diagnosis.likelihood.evidence import Evidence
+from feeddrive.diagnosis.likelihood.fit import Fit, Problem, linear_step
 from feeddrive.effects.base import Effect, Value, number
-from feeddrive.effects.friction_deviation import FrictionDeviation
+from feeddrive.effects.friction.friction_deviation import FrictionDeviation
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 from feeddrive.typing import FloatArray

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from feeddrive.diagnosis.calibration.calibrate import calibrated_list
-from feeddrive.diagnosis.fit import Fit, Problem
+from feeddrive.diagnosis.likelihood.fit import Fit, Problem
 
 TOLD = 0.9
 """Deviation of a value over that of its tolerance, above which the recordings say nothing of it: it is not listed."""

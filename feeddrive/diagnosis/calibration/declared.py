@@ -10,7 +10,7 @@
 | torsional stiffness, damping, width of the sign change of friction, torque constant | no effect says so |
 
 Friction is one factor a port, on all that is declared there. A rigid machine shows one mass: its inertias are not told
-from it. Tolerances: `feeddrive.diagnosis.tolerances`.
+from it. Tolerances: `feeddrive.diagnosis.likelihood.tolerances`.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from feeddrive.diagnosis.declared_friction import declared_level, declared_viscous
-from feeddrive.diagnosis.tolerances import (
+from feeddrive.diagnosis.likelihood.tolerances import (
     DAMPING,
     FRICTION,
     MASS,
@@ -32,10 +32,10 @@ from feeddrive.diagnosis.tolerances import (
     written_share,
 )
 from feeddrive.effects.base import DriveEffect, Effect, FrictionEffect, Parameter, Port, Signature, Value, number
-from feeddrive.effects.friction_deviation import FrictionDeviation
-from feeddrive.effects.inertia_deviation import InertiaDeviation, declared_inertia
-from feeddrive.effects.payload import Payload
-from feeddrive.effects.stiffness_deviation import StiffnessDeviation
+from feeddrive.effects.chain.inertia_deviation import InertiaDeviation, declared_inertia
+from feeddrive.effects.chain.payload import Payload
+from feeddrive.effects.chain.stiffness_deviation import StiffnessDeviation
+from feeddrive.effects.friction.friction_deviation import FrictionDeviation
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import Expression, FloatArray
 

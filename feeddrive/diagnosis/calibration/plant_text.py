@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from feeddrive.diagnosis.calibration.calibrated_result import CalibratedResult
 from feeddrive.diagnosis.numbers.plant_text import with_written_values
-from feeddrive.quantity import format_quantity
+from feeddrive.units.quantity import format_quantity
 
 SOURCE = "calibrated by recordings"
 

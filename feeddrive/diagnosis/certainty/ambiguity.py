@@ -14,20 +14,20 @@ from math import log
 
 import numpy as np
 
-from feeddrive.diagnosis.attempt import Attempt
 from feeddrive.diagnosis.certainty.certainty_result import Ambiguity
 from feeddrive.diagnosis.certainty.imitations import imitations_of
 from feeddrive.diagnosis.certainty.rival_odds import Residuals, odds_and_distance
 from feeddrive.diagnosis.certainty.same_by_law import twins_of
-from feeddrive.diagnosis.coordinates import LOGARITHMIC
-from feeddrive.diagnosis.fit import Fit, fit
-from feeddrive.diagnosis.judge import Judged
-from feeddrive.diagnosis.search import Search
+from feeddrive.diagnosis.finding.attempt import Attempt
+from feeddrive.diagnosis.finding.search import Search
+from feeddrive.diagnosis.judging.judge import Judged
+from feeddrive.diagnosis.likelihood.coordinates import LOGARITHMIC
+from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.effects.base import Effect
-from feeddrive.effects.stiffness_deviation import PARTS, StiffnessDeviation, parts_of
+from feeddrive.effects.chain.stiffness_deviation import PARTS, StiffnessDeviation, parts_of
 from feeddrive.errors import InputError
+from feeddrive.plant.analysis.stiffness_budget import participation
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.stiffness_budget import participation
 
 SAME_ERROR = 1.05
 """Ratio of validation errors (rms) within which two effects count as the same."""

@@ -14,12 +14,12 @@ below F1 the two are one; a search that starts at forces which can be seen does 
 
 from __future__ import annotations
 
-from feeddrive.diagnosis.predictor import Machine
-from feeddrive.effects.backlash import Backlash
+from feeddrive.diagnosis.likelihood.predictor import Machine
 from feeddrive.effects.base import Effect
-from feeddrive.effects.preload_loss import PreloadLoss
+from feeddrive.effects.transmission.backlash import Backlash
+from feeddrive.effects.transmission.preload_loss import PreloadLoss
+from feeddrive.plant.analysis.stiffness_budget import nut_stiffness
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.stiffness_budget import nut_stiffness
 
 SOFTENED = 0.1
 """Ratio a of the start: far from both ends of its range, 0.01 (free play) and 1 (no loss)."""

@@ -15,8 +15,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from feeddrive.diagnosis.certainty.noise_colour import independent_share
-from feeddrive.diagnosis.coordinates import read_coordinates, spread_to_values
-from feeddrive.diagnosis.fit import Problem
+from feeddrive.diagnosis.likelihood.coordinates import read_coordinates, spread_to_values
+from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.effects.base import Effect
 from feeddrive.typing import FloatArray
 

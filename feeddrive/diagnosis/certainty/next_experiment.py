@@ -31,12 +31,12 @@ from feeddrive.diagnosis.certainty.information import fisher_information, invers
 from feeddrive.diagnosis.certainty.noise_colour import independent_share
 from feeddrive.diagnosis.certainty.rehearsal import Rehearsal, rehearsals
 from feeddrive.diagnosis.certainty.uncertainty import Interval
-from feeddrive.diagnosis.coordinates import read_coordinates, spread_to_values
-from feeddrive.diagnosis.evidence import AxisEvidence
-from feeddrive.diagnosis.fit import Fit, Problem
-from feeddrive.diagnosis.prediction import AxisPredictor
+from feeddrive.diagnosis.finding.search import Search
+from feeddrive.diagnosis.likelihood.coordinates import read_coordinates, spread_to_values
+from feeddrive.diagnosis.likelihood.evidence import AxisEvidence
+from feeddrive.diagnosis.likelihood.fit import Fit, Problem
+from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
 from feeddrive.diagnosis.recordings.recordings import is_shift
-from feeddrive.diagnosis.search import Search
 from feeddrive.effects.base import Effect
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray

@@ -22,7 +22,7 @@ import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
 from scipy.signal.windows import parzen
 
-from feeddrive.diagnosis.evidence import BLOCK, AxisEvidence, Evidence
+from feeddrive.diagnosis.likelihood.evidence import BLOCK, AxisEvidence, Evidence
 from feeddrive.typing import BoolArray, ComplexArray, FloatArray, IntegerArray
 
 WINDOW_FREEDOM = 3.71

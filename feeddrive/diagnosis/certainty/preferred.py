@@ -9,11 +9,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from feeddrive.diagnosis.certainty.ambiguity import AGAINST, Rival, at_its_limit
-from feeddrive.diagnosis.coordinates import read_coordinates
-from feeddrive.diagnosis.fit import Problem, fit
-from feeddrive.diagnosis.predictor import Machine
+from feeddrive.diagnosis.finding.search import Search
+from feeddrive.diagnosis.likelihood.coordinates import read_coordinates
+from feeddrive.diagnosis.likelihood.fit import Problem, fit
+from feeddrive.diagnosis.likelihood.predictor import Machine
 from feeddrive.diagnosis.recordings.recordings import is_shift
-from feeddrive.diagnosis.search import Search
 from feeddrive.effects.base import Effect
 
 

@@ -16,21 +16,21 @@ from pathlib import Path
 
 import numpy as np
 
-from feeddrive.diagnosis.evidence import SHORTEST, AxisEvidence, prepare
+from feeddrive.diagnosis.likelihood.evidence import SHORTEST, AxisEvidence, prepare
+from feeddrive.engine.step.step_constants import SimulationError
 from feeddrive.errors import InputError
 from feeddrive.files import shipped_scenarios
-from feeddrive.plant.entries import Origins, Table
-from feeddrive.plant.moving_inertia import inertia_at_motor
+from feeddrive.plant.chain.moving_inertia import inertia_at_motor
+from feeddrive.plant.file.entries import Origins, Table
 from feeddrive.plant.plant import DeclaredCascade, Plant
 from feeddrive.servo.cascade import Cascade
 from feeddrive.servo.linear_loop import refuse_unstable
-from feeddrive.simulate.cutting_force import NoForce, held
-from feeddrive.simulate.motion import Motion, Stop, Trajectory
-from feeddrive.simulate.scenario import Recorder, Scenario
-from feeddrive.simulate.scenario_controller import read_cascade
-from feeddrive.simulate.scenario_file import read_scenario
-from feeddrive.simulate.scenario_run import run_scenario
-from feeddrive.simulate.step_constants import SimulationError
+from feeddrive.simulate.scenario.scenario import Recorder, Scenario
+from feeddrive.simulate.scenario.scenario_controller import read_cascade
+from feeddrive.simulate.scenario.scenario_file import read_scenario
+from feeddrive.simulate.scenario.scenario_run import run_scenario
+from feeddrive.simulate.setpoints.cutting_force import NoForce, held
+from feeddrive.simulate.setpoints.motion import Motion, Stop, Trajectory
 from feeddrive.typing import FloatArray
 
 LOOKED_AT = 2000

@@ -23,10 +23,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from feeddrive.diagnosis.certainty.noise_colour import score_covariance
-from feeddrive.diagnosis.cross_validation import model_error_rows
-from feeddrive.diagnosis.fit import Fit, Problem
-from feeddrive.diagnosis.judge import Judged, error_series
-from feeddrive.diagnosis.predictor import Machine
+from feeddrive.diagnosis.judging.judge import Judged, error_series
+from feeddrive.diagnosis.likelihood.cross_validation import model_error_rows
+from feeddrive.diagnosis.likelihood.fit import Fit, Problem
+from feeddrive.diagnosis.likelihood.predictor import Machine
 from feeddrive.typing import FloatArray
 
 

@@ -17,7 +17,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from feeddrive.diagnosis.evidence import Evidence
+from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.effects.base import Effect
 from feeddrive.plant.plant import Plant
 

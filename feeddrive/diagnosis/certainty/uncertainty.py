@@ -28,10 +28,10 @@ from scipy.stats import t as student
 
 from feeddrive.diagnosis.certainty.information import inverse_information
 from feeddrive.diagnosis.certainty.noise_colour import fitted_away, score_covariance, spectral_freedom
-from feeddrive.diagnosis.coordinates import LOGARITHMIC, spread_to_values, write_coordinates
-from feeddrive.diagnosis.cross_validation import model_error_rows
-from feeddrive.diagnosis.fit import Fit, Problem
-from feeddrive.diagnosis.folds import blocks_in_time
+from feeddrive.diagnosis.likelihood.coordinates import LOGARITHMIC, spread_to_values, write_coordinates
+from feeddrive.diagnosis.likelihood.cross_validation import model_error_rows
+from feeddrive.diagnosis.likelihood.fit import Fit, Problem
+from feeddrive.diagnosis.likelihood.folds import blocks_in_time
 from feeddrive.effects.base import Effect
 from feeddrive.typing import FloatArray, IntegerArray
 

@@ -6,20 +6,20 @@ from dataclasses import replace
 
 import numpy as np
 
+from feeddrive.diagnosis.finding.scene import Candidate, Scene
 from feeddrive.diagnosis.heat.evidence import HeatEvidence
-from feeddrive.diagnosis.scene import Candidate, Scene
 from feeddrive.effects.base import Effect
-from feeddrive.effects.thermal.ambient_drift import AmbientDrift
-from feeddrive.effects.thermal.bearing_heat import BearingHeat
-from feeddrive.effects.thermal.contact_conductance_deviation import ContactConductanceDeviation
-from feeddrive.effects.thermal.convection_deviation import ConvectionDeviation
-from feeddrive.effects.thermal.cooling import Cooling
-from feeddrive.effects.thermal.heat_sink import HeatSink
-from feeddrive.effects.thermal.motor_heat import MotorHeat
-from feeddrive.effects.thermal.preload_growth import PreloadGrowth
-from feeddrive.effects.thermal.sensor_lag import SensorLag
-from feeddrive.effects.thermal.structure_growth import StructureGrowth
-from feeddrive.effects.thermal.viscosity_temperature import ViscosityTemperature
+from feeddrive.effects.heat.ambient_drift import AmbientDrift
+from feeddrive.effects.heat.bearing_heat import BearingHeat
+from feeddrive.effects.heat.contact_conductance_deviation import ContactConductanceDeviation
+from feeddrive.effects.heat.convection_deviation import ConvectionDeviation
+from feeddrive.effects.heat.cooling import Cooling
+from feeddrive.effects.heat.heat_sink import HeatSink
+from feeddrive.effects.heat.motor_heat import MotorHeat
+from feeddrive.effects.heat.preload_growth import PreloadGrowth
+from feeddrive.effects.heat.sensor_lag import SensorLag
+from feeddrive.effects.heat.structure_growth import StructureGrowth
+from feeddrive.effects.heat.viscosity_temperature import ViscosityTemperature
 
 DRIFT_NODES = 9
 """Nodes of a tabulated drift of the surroundings over the longest run."""

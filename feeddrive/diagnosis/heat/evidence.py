@@ -12,13 +12,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from feeddrive.diagnosis.evidence import Evidence
+from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.errors import InputError
 from feeddrive.recording import Recording
 from feeddrive.recording.channels import channel_unit
-from feeddrive.thermal.full_model import growth_name
+from feeddrive.thermal.full.full_model import growth_name
 from feeddrive.thermal.plant import ThermalPlant
-from feeddrive.thermal.warm_up import channel_of
+from feeddrive.thermal.run.warm_up import channel_of
 from feeddrive.typing import BoolArray, FloatArray
 
 SPEED, AMBIENT = "screw_speed", "ambient_temperature"

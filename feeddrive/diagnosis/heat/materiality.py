@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from feeddrive.effects.base import Effect, listed
-from feeddrive.effects.thermal.bearing_heat import reference_torque
-from feeddrive.thermal.friction import torque_law
+from feeddrive.effects.heat.bearing_heat import reference_torque
+from feeddrive.thermal.laws.friction import torque_law
 from feeddrive.thermal.plant import ThermalPlant
 
 LEAST_HEAT_SHARE = 2e-4

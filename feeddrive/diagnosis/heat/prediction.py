@@ -8,19 +8,19 @@ from typing import ClassVar
 
 import numpy as np
 
-from feeddrive.diagnosis.fit import Problem
+from feeddrive.diagnosis.finding.remembered import Remembered
+from feeddrive.diagnosis.finding.scene import Candidate, Scene
 from feeddrive.diagnosis.heat.candidates import HEAT_CANDIDATES
 from feeddrive.diagnosis.heat.evidence import HeatEvidence
 from feeddrive.diagnosis.heat.materiality import is_material_heat
-from feeddrive.diagnosis.predictor import Predictor
-from feeddrive.diagnosis.remembered import Remembered
-from feeddrive.diagnosis.scene import Candidate, Scene
+from feeddrive.diagnosis.likelihood.fit import Problem
+from feeddrive.diagnosis.likelihood.predictor import Predictor
 from feeddrive.effects.base import Effect
-from feeddrive.thermal.model import HeatModel, Path
 from feeddrive.thermal.plant import ThermalPlant
-from feeddrive.thermal.reduction import reduce_model
-from feeddrive.thermal.sensitivity import simulate_with_slopes
-from feeddrive.thermal.warm_up import channel_of, simulate
+from feeddrive.thermal.reduced.model import HeatModel, Path
+from feeddrive.thermal.reduced.reduction import reduce_model
+from feeddrive.thermal.run.sensitivity import simulate_with_slopes
+from feeddrive.thermal.run.warm_up import channel_of, simulate
 from feeddrive.typing import FloatArray
 
 ORDER = 48

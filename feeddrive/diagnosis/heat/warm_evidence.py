@@ -14,7 +14,7 @@ import numpy as np
 from feeddrive.diagnosis.heat.evidence import HEAT_BLOCK, MODEL_ERROR, HeatEvidence, model_error_of, smooth_noise
 from feeddrive.errors import InputError
 from feeddrive.recording import Recording
-from feeddrive.simulate.warm_log import HEAT_STEP, WarmLog, steady_mean, thermometers, warm_log
+from feeddrive.simulate.warm.warm_log import HEAT_STEP, WarmLog, steady_mean, thermometers, warm_log
 from feeddrive.thermal.plant import ThermalPlant
 from feeddrive.thermal.warm_plant import WarmPlant
 from feeddrive.typing import BoolArray, FloatArray

@@ -8,23 +8,23 @@ from typing import ClassVar
 
 import numpy as np
 
-from feeddrive.diagnosis.candidates import CANDIDATES
-from feeddrive.diagnosis.fit import Problem
+from feeddrive.diagnosis.finding.candidates import CANDIDATES
+from feeddrive.diagnosis.finding.materiality import is_material
+from feeddrive.diagnosis.finding.remembered import Remembered
+from feeddrive.diagnosis.finding.scene import AxisScene, Candidate
 from feeddrive.diagnosis.heat.candidates import HEAT_CANDIDATES
 from feeddrive.diagnosis.heat.materiality import is_material_heat
 from feeddrive.diagnosis.heat.prediction import heat_predictor
 from feeddrive.diagnosis.heat.warm_evidence import WarmEvidence
-from feeddrive.diagnosis.materiality import is_material
-from feeddrive.diagnosis.predictor import Predictor
-from feeddrive.diagnosis.remembered import Remembered
-from feeddrive.diagnosis.scene import AxisScene, Candidate
+from feeddrive.diagnosis.likelihood.fit import Problem
+from feeddrive.diagnosis.likelihood.predictor import Predictor
 from feeddrive.effects.base import Effect, Kind
+from feeddrive.engine.program import StepReport
 from feeddrive.plant.plant import Plant
 from feeddrive.simulate.driven import LoadMotion
-from feeddrive.simulate.program import StepReport
-from feeddrive.simulate.warm_log import WarmRun, friction_powers, simulate_log
-from feeddrive.thermal.model import HeatModel
+from feeddrive.simulate.warm.warm_log import WarmRun, friction_powers, simulate_log
 from feeddrive.thermal.plant import ThermalPlant
+from feeddrive.thermal.reduced.model import HeatModel
 from feeddrive.thermal.warm_plant import WarmPlant
 from feeddrive.typing import FloatArray
 

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from feeddrive.diagnosis.judging.result import EffectResult, ParameterResult
 from feeddrive.diagnosis.ledger.ledger import NAME, FileUse, checksum, runs_of
-from feeddrive.diagnosis.result import EffectResult, ParameterResult
 from feeddrive.effects.base import Effect, Port
 from feeddrive.effects.catalogue import THERMAL_EFFECTS, find_effect
 from feeddrive.errors import InputError
-from feeddrive.quantity import format_quantity
+from feeddrive.units.quantity import format_quantity
 
 
 @dataclass(frozen=True)

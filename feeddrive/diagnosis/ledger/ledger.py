@@ -16,8 +16,8 @@ from pathlib import Path
 from typing import Any
 
 from feeddrive import __version__
-from feeddrive.diagnosis.outputs import diagnosis_record
-from feeddrive.diagnosis.result import Diagnosis
+from feeddrive.diagnosis.judging.result import Diagnosis
+from feeddrive.diagnosis.likelihood.outputs import diagnosis_record
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 from feeddrive.files import write_text_atomically

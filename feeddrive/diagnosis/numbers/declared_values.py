@@ -1,6 +1,6 @@
 """Declared values of a plant file that may be other than declared: which, how well each is known, what would settle it.
 
-Tolerances are those of `feeddrive.diagnosis.tolerances`.
+Tolerances are those of `feeddrive.diagnosis.likelihood.tolerances`.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from feeddrive.diagnosis.tolerances import (
+from feeddrive.diagnosis.likelihood.tolerances import (
     CARRYING,
     DAMPING,
     FRICTION,
@@ -22,7 +22,7 @@ from feeddrive.diagnosis.tolerances import (
     deviation_of,
     written_share,
 )
-from feeddrive.quantity import parse
+from feeddrive.units.quantity import parse
 
 _LEAST_SHARE = 1e-4  # of the compliance; a stiffer part than that counts as rigid
 _LEAST_TOLERANCE = 1e-6  # of a value that is exact, so that its prior has a width

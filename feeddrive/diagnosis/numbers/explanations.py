@@ -40,14 +40,14 @@ from scipy.optimize import minimize_scalar
 from scipy.special import betaln
 from scipy.stats import chi2
 
+from feeddrive.diagnosis.likelihood.tolerances import BEYOND, WIDEST
 from feeddrive.diagnosis.numbers.declared_values import DeclaredValue, declared_values
 from feeddrive.diagnosis.numbers.measured_file import MeasuredNumber
-from feeddrive.diagnosis.tolerances import BEYOND, WIDEST
 from feeddrive.errors import InputError, ValidityWarning
-from feeddrive.plant.files import plant_from_entries
+from feeddrive.plant.analysis.stiffness_budget import stiffness_budget
+from feeddrive.plant.file.files import plant_from_entries
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.stiffness_budget import stiffness_budget
-from feeddrive.simulate.scenario_overrides import with_overrides
+from feeddrive.simulate.scenario.scenario_overrides import with_overrides
 from feeddrive.typing import FloatArray
 
 MOST = 2

@@ -20,11 +20,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from feeddrive.errors import InputError
+from feeddrive.plant.analysis.steady import steady_motions
+from feeddrive.plant.analysis.stiffness_budget import stiffness_budget
+from feeddrive.plant.analysis.summary import summarise
+from feeddrive.plant.chain.resolution import FIRST, resolved_modes
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.resolution import FIRST, resolved_modes
-from feeddrive.plant.steady import steady_motions
-from feeddrive.plant.stiffness_budget import stiffness_budget
-from feeddrive.plant.summary import summarise
 
 HELD, FREE = "held", "free"
 

@@ -26,10 +26,10 @@ from typing import Any
 
 from feeddrive.diagnosis.numbers.measurable import FREE, HELD, MEASURABLE, Measurable, Setting
 from feeddrive.errors import InputError
-from feeddrive.plant.entries import Table, read_toml, whole_file
+from feeddrive.plant.file.entries import Table, read_toml, whole_file
 from feeddrive.plant.plant import Plant
-from feeddrive.quantity import format_quantity, parse
 from feeddrive.schema.measured import MEASURED
+from feeddrive.units.quantity import format_quantity, parse
 
 FORMAT = "feeddrive-measured/1"
 _KEYS = ("quantity", "value", "at", "tolerance", "source")

@@ -13,6 +13,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from feeddrive import __version__
+from feeddrive.diagnosis.likelihood.tolerances import ASSERTED
 from feeddrive.diagnosis.numbers.declared_values import DeclaredValue
 from feeddrive.diagnosis.numbers.explanations import (
     Explanation,
@@ -26,10 +27,9 @@ from feeddrive.diagnosis.numbers.explanations import (
 from feeddrive.diagnosis.numbers.measured_file import MeasuredNumber
 from feeddrive.diagnosis.numbers.next_number import NextNumber, mixed, next_numbers
 from feeddrive.diagnosis.numbers.plant_text import with_written_values
-from feeddrive.diagnosis.tolerances import ASSERTED
 from feeddrive.plant.plant import Plant
-from feeddrive.quantity import format_quantity
 from feeddrive.typing import FloatArray
+from feeddrive.units.quantity import format_quantity
 
 FORMAT = "feeddrive-diagnosis/1"
 MOST_NAMED = 3

@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping
 
 from feeddrive.errors import InputError
-from feeddrive.plant.entries import parse_toml
+from feeddrive.plant.file.entries import parse_toml
 
 _HEADER = re.compile(r"^\s*\[([^\[\]]+)\]\s*(#.*)?$")
 _LIST_HEADER = re.compile(r"^\s*\[\[([^\[\]]+)\]\]\s*(#.*)?$")

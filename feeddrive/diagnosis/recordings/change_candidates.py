@@ -9,16 +9,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from feeddrive.diagnosis.coordinates import coordinates_of
 from feeddrive.diagnosis.declared_friction import declared_level, declared_viscous
-from feeddrive.diagnosis.fit import Problem
+from feeddrive.diagnosis.likelihood.coordinates import coordinates_of
+from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.diagnosis.recordings.recordings import RecordingShift, Target, is_shift, shift_of, target_of
 from feeddrive.effects.base import Effect
-from feeddrive.effects.constant_force import ConstantForce
-from feeddrive.effects.friction_deviation import FrictionDeviation
-from feeddrive.effects.lead_error_cumulative import LeadErrorCumulative
-from feeddrive.effects.payload import Payload
-from feeddrive.effects.stiffness_deviation import StiffnessDeviation
+from feeddrive.effects.chain.payload import Payload
+from feeddrive.effects.chain.stiffness_deviation import StiffnessDeviation
+from feeddrive.effects.friction.friction_deviation import FrictionDeviation
+from feeddrive.effects.source.constant_force import ConstantForce
+from feeddrive.effects.travel.lead_error_cumulative import LeadErrorCumulative
 from feeddrive.plant.plant import Plant
 
 UNCHANGING = ("order",)

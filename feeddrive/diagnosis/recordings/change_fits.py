@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from feeddrive.diagnosis.cross_validation import (
+from feeddrive.diagnosis.likelihood.cross_validation import (
     Comparison,
     compare_left_out,
     least_gain,
     left_out_residual,
 )
-from feeddrive.diagnosis.fit import Fit, Problem, fit
-from feeddrive.diagnosis.folds import block_numbers
+from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
+from feeddrive.diagnosis.likelihood.folds import block_numbers
 from feeddrive.diagnosis.recordings.change_candidates import Movable
 from feeddrive.diagnosis.recordings.recordings import RecordingShift, Target, is_shift
 from feeddrive.effects.base import Effect

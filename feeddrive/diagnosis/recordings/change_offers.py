@@ -10,14 +10,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from feeddrive.diagnosis.cross_validation import (
+from feeddrive.diagnosis.likelihood.cross_validation import (
     Comparison,
     compare_left_out,
     least_gain,
     left_out_residual,
 )
-from feeddrive.diagnosis.fit import Fit, Problem, linear_step
-from feeddrive.diagnosis.folds import block_numbers
+from feeddrive.diagnosis.likelihood.fit import Fit, Problem, linear_step
+from feeddrive.diagnosis.likelihood.folds import block_numbers
 from feeddrive.diagnosis.recordings.change_candidates import Movable
 from feeddrive.diagnosis.recordings.recordings import RecordingPredictor
 from feeddrive.thermal.plant import ThermalPlant

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from feeddrive.diagnosis.fit import Problem
+from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.diagnosis.recordings.change_result import CommonTrial, Measure, ParameterChange, PerRecording
 from feeddrive.diagnosis.recordings.change_values import Compared, compared_values, keys_of, material_difference
 from feeddrive.diagnosis.recordings.change_words import Moved, change_reading, change_statement

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from feeddrive.diagnosis.certainty.uncertainty import certainty
-from feeddrive.diagnosis.coordinates import Sine, TwoHeats, coordinates_of, write_coordinates
-from feeddrive.diagnosis.fit import Fit, Problem
+from feeddrive.diagnosis.likelihood.coordinates import Sine, TwoHeats, coordinates_of, write_coordinates
+from feeddrive.diagnosis.likelihood.fit import Fit, Problem
 from feeddrive.diagnosis.recordings.recordings import Target, in_recording
 from feeddrive.effects.base import Effect
 from feeddrive.typing import FloatArray

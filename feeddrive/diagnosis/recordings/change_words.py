@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from feeddrive.effects.base import Port
-from feeddrive.quantity import format_quantity
+from feeddrive.units.quantity import format_quantity
 
 EXPANSION = 11.7e-6
 """Expansion of steel [1/K], by which a change of lead is read as a temperature."""

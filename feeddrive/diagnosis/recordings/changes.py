@@ -13,8 +13,8 @@ from dataclasses import dataclass
 
 from scipy.stats import norm
 
-from feeddrive.diagnosis.cross_validation import Comparison
-from feeddrive.diagnosis.fit import Fit, Problem, fit
+from feeddrive.diagnosis.likelihood.cross_validation import Comparison
+from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
 from feeddrive.diagnosis.recordings.change_candidates import levels, movables
 from feeddrive.diagnosis.recordings.change_fits import (
     JOINT_STEPS,
@@ -29,7 +29,7 @@ from feeddrive.diagnosis.recordings.change_offers import Offer, offers
 from feeddrive.diagnosis.recordings.change_values import material_difference
 from feeddrive.diagnosis.recordings.recordings import Target
 from feeddrive.effects.base import Effect
-from feeddrive.effects.friction_deviation import FrictionDeviation
+from feeddrive.effects.friction.friction_deviation import FrictionDeviation
 
 FALSE_ALARMS = 0.05
 """Chance of one false change in a whole diagnosis, shared out among all parameters that are tried."""

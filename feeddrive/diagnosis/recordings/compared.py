@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from feeddrive.diagnosis.judge import Judged
+from feeddrive.diagnosis.judging.judge import Judged
+from feeddrive.diagnosis.judging.result import EffectResult
 from feeddrive.diagnosis.recordings.change_report import (
     Question,
     common_trials,
@@ -18,7 +19,6 @@ from feeddrive.diagnosis.recordings.change_result import ParameterChange, Record
 from feeddrive.diagnosis.recordings.judged_changes import JudgedChanges, judged_changes
 from feeddrive.diagnosis.recordings.recordings import RecordingShift, without_shifts
 from feeddrive.diagnosis.recordings.search import Searched
-from feeddrive.diagnosis.result import EffectResult
 from feeddrive.effects.base import Effect
 
 

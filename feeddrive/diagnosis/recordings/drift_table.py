@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from feeddrive.diagnosis.fit import fit
-from feeddrive.diagnosis.search import Search
+from feeddrive.diagnosis.finding.search import Search
+from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.effects.base import Effect, listed, number
 
 

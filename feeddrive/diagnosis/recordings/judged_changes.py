@@ -13,14 +13,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feeddrive.diagnosis.calibration.calibrate import with_recordings
-from feeddrive.diagnosis.fit import Problem
-from feeddrive.diagnosis.judge import Judged, error_series, judged_channels, share_of
+from feeddrive.diagnosis.finding.search import Search
+from feeddrive.diagnosis.judging.judge import Judged, error_series, judged_channels, share_of
+from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.diagnosis.recordings.change_report import Question, parameter_changes
 from feeddrive.diagnosis.recordings.change_result import ParameterChange
 from feeddrive.diagnosis.recordings.changes import Changes, find_changes
 from feeddrive.diagnosis.recordings.recordings import RecordingShift, without_shifts
 from feeddrive.diagnosis.recordings.search import numbered
-from feeddrive.diagnosis.search import Search
 from feeddrive.effects.base import Effect
 
 FITTED = "the fitted recordings"

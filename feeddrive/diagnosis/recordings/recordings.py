@@ -11,13 +11,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from feeddrive.diagnosis.coordinates import coordinates_of, read_coordinates, write_coordinates
-from feeddrive.diagnosis.evidence import Evidence
-from feeddrive.diagnosis.fit import Problem
-from feeddrive.diagnosis.predictor import Predictor
-from feeddrive.diagnosis.scene import AxisScene, Candidate, Scene
+from feeddrive.diagnosis.finding.scene import AxisScene, Candidate, Scene
+from feeddrive.diagnosis.likelihood.coordinates import coordinates_of, read_coordinates, write_coordinates
+from feeddrive.diagnosis.likelihood.evidence import Evidence
+from feeddrive.diagnosis.likelihood.fit import Problem
+from feeddrive.diagnosis.likelihood.predictor import Predictor
 from feeddrive.effects.base import Effect, Kind, Parameter, Port, Signature
-from feeddrive.effects.thermal.base import ThermalEffect
+from feeddrive.effects.heat.base import ThermalEffect
 from feeddrive.recording import Recording
 from feeddrive.typing import BoolArray, FloatArray
 

@@ -12,11 +12,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from feeddrive.diagnosis.cross_validation import compare_left_out
-from feeddrive.diagnosis.evidence import Evidence
-from feeddrive.diagnosis.fit import Problem
-from feeddrive.diagnosis.judge import judged_residual, shifted
-from feeddrive.diagnosis.predictor import Machine
+from feeddrive.diagnosis.judging.judge import judged_residual, shifted
+from feeddrive.diagnosis.likelihood.cross_validation import compare_left_out
+from feeddrive.diagnosis.likelihood.evidence import Evidence
+from feeddrive.diagnosis.likelihood.fit import Problem
+from feeddrive.diagnosis.likelihood.predictor import Machine
 from feeddrive.effects.base import Effect
 
 FIRST_SHARE = 0.15

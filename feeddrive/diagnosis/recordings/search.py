@@ -12,9 +12,10 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
-from feeddrive.diagnosis.attempt import with_predictable
-from feeddrive.diagnosis.evidence import Evidence
-from feeddrive.diagnosis.fit import Problem, fit
+from feeddrive.diagnosis.finding.attempt import with_predictable
+from feeddrive.diagnosis.finding.search import UNEXPLAINED, Search, search
+from feeddrive.diagnosis.likelihood.evidence import Evidence
+from feeddrive.diagnosis.likelihood.fit import Problem, fit
 from feeddrive.diagnosis.recordings.change_candidates import levels
 from feeddrive.diagnosis.recordings.change_words import FACTORS
 from feeddrive.diagnosis.recordings.changes import Changes, find_changes
@@ -27,7 +28,6 @@ from feeddrive.diagnosis.recordings.recordings import (
     without_shifts,
 )
 from feeddrive.diagnosis.recordings.still_needed import still_needed
-from feeddrive.diagnosis.search import UNEXPLAINED, Search, search
 from feeddrive.effects.base import Effect
 
 SAME = 0.01

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from feeddrive.diagnosis.coordinates import read_coordinates
-from feeddrive.diagnosis.cross_validation import compare_left_out, least_gain, left_out_residual
-from feeddrive.diagnosis.fit import Fit, Problem, fit, linear_step
-from feeddrive.diagnosis.folds import block_numbers
+from feeddrive.diagnosis.likelihood.coordinates import read_coordinates
+from feeddrive.diagnosis.likelihood.cross_validation import compare_left_out, least_gain, left_out_residual
+from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit, linear_step
+from feeddrive.diagnosis.likelihood.folds import block_numbers
 from feeddrive.diagnosis.recordings.recordings import RecordingShift, is_shift
 from feeddrive.effects.base import Effect
 from feeddrive.typing import FloatArray

@@ -27,20 +27,20 @@ import numpy as np
 
 from feeddrive.diagnosis.numbers.declared_values import DeclaredValue, declared_values
 from feeddrive.effects.base import Effect
-from feeddrive.effects.drive_delay import DriveDelay
-from feeddrive.effects.structural_mode import StructuralMode
+from feeddrive.effects.chain.structural_mode import StructuralMode
+from feeddrive.effects.timing.drive_delay import DriveDelay
 from feeddrive.errors import InputError, ValidityWarning
-from feeddrive.plant.files import plant_from_entries
-from feeddrive.plant.linear import INPUTS, OUTPUTS
+from feeddrive.plant.analysis.linear import INPUTS, OUTPUTS
+from feeddrive.plant.analysis.stiffness_budget import stiffness_budget
+from feeddrive.plant.chain.resolution import resolved
+from feeddrive.plant.file.files import plant_from_entries
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.resolution import resolved
-from feeddrive.plant.stiffness_budget import stiffness_budget
 from feeddrive.recording.frequency_response import FrequencyResponse
 from feeddrive.servo.cascade import Cascade
 from feeddrive.servo.frequency_response import Case, delay_of, transfer
 from feeddrive.servo.linear_loop import closed_velocity_loop, open_velocity_loop
 from feeddrive.servo.margins import frequency_response
-from feeddrive.simulate.scenario_overrides import with_overrides
+from feeddrive.simulate.scenario.scenario_overrides import with_overrides
 from feeddrive.typing import ComplexArray, FloatArray
 
 FEWEST_LINES = 20

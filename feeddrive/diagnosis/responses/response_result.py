@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from feeddrive import __version__
+from feeddrive.diagnosis.likelihood.tolerances import ASSERTED
 from feeddrive.diagnosis.numbers.plant_text import with_written_values
 from feeddrive.diagnosis.responses.response_problem import (
     DELAY_SIZE,
@@ -22,15 +23,14 @@ from feeddrive.diagnosis.responses.response_problem import (
     response_problem,
 )
 from feeddrive.diagnosis.responses.response_search import ResponseSearch, Step, search_response
-from feeddrive.diagnosis.tolerances import ASSERTED
 from feeddrive.effects.base import Effect
-from feeddrive.plant.effect_text import plant_text_with_effects
+from feeddrive.plant.file.effect_text import plant_text_with_effects
 from feeddrive.plant.plant import Plant
-from feeddrive.quantity import format_quantity
 from feeddrive.recording.frequency_response import FrequencyResponse
 from feeddrive.servo.cascade import Cascade
 from feeddrive.servo.frequency_response import Case
 from feeddrive.typing import ComplexArray, FloatArray
+from feeddrive.units.quantity import format_quantity
 
 FORMAT = "feeddrive-diagnosis/1"
 ODDS = math.log(ASSERTED / (1 - ASSERTED))

@@ -26,8 +26,8 @@ import numpy as np
 from scipy.optimize import least_squares, minimize
 from scipy.special import betaln
 
+from feeddrive.diagnosis.likelihood.tolerances import BEYOND
 from feeddrive.diagnosis.responses.response_problem import Lines, ResponseProblem
-from feeddrive.diagnosis.tolerances import BEYOND
 from feeddrive.errors import InputError
 from feeddrive.typing import FloatArray
 

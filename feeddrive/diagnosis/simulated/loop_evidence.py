@@ -13,18 +13,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feeddrive.diagnosis.band import white_noise
-from feeddrive.diagnosis.evidence import AxisEvidence, Evidence
-from feeddrive.diagnosis.timing import lagging
-from feeddrive.effects.channel_delay import lateness
+from feeddrive.diagnosis.likelihood.band import white_noise
+from feeddrive.diagnosis.likelihood.evidence import AxisEvidence, Evidence
+from feeddrive.diagnosis.suspicion.timing import lagging
+from feeddrive.effects.timing.channel_delay import lateness
+from feeddrive.engine.lateness import late_mean
+from feeddrive.engine.step.step_constants import SimulationError
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
-from feeddrive.simulate.controlled import simulate_controlled
-from feeddrive.simulate.declared_loop import DeclaredLoop, declared_loop
-from feeddrive.simulate.lateness import late_mean
-from feeddrive.simulate.replay import replayed_command
-from feeddrive.simulate.step_constants import SimulationError
+from feeddrive.simulate.controlled.controlled import simulate_controlled
+from feeddrive.simulate.controlled.declared_loop import DeclaredLoop, declared_loop
+from feeddrive.simulate.controlled.replay import replayed_command
 from feeddrive.typing import BoolArray, FloatArray
 
 MISSED = 0.25

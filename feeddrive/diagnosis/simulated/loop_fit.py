@@ -22,12 +22,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from feeddrive.diagnosis.coordinates import read_coordinates, write_coordinates
+from feeddrive.diagnosis.likelihood.coordinates import read_coordinates, write_coordinates
 from feeddrive.diagnosis.simulated.loop_evidence import LoopEvidence
 from feeddrive.effects.base import Effect, Kind
+from feeddrive.engine.step.step_constants import SimulationError
 from feeddrive.plant.plant import Plant
-from feeddrive.simulate.sensitivity import simulate_sensitivity
-from feeddrive.simulate.step_constants import SimulationError
+from feeddrive.simulate.controlled.sensitivity import simulate_sensitivity
 from feeddrive.typing import BoolArray, FloatArray
 
 SERIES = {"motor_torque": "command", "table_position": "table_position"}

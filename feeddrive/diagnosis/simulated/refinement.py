@@ -18,11 +18,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feeddrive.diagnosis.certainty.uncertainty import certainty
-from feeddrive.diagnosis.coordinates import write_coordinates
-from feeddrive.diagnosis.fit import fit
-from feeddrive.diagnosis.judge import Judged, channel_results
+from feeddrive.diagnosis.finding.search import Search
+from feeddrive.diagnosis.judging.judge import Judged, channel_results
+from feeddrive.diagnosis.likelihood.coordinates import write_coordinates
+from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.recordings.recordings import is_shift
-from feeddrive.diagnosis.search import Search
 from feeddrive.diagnosis.simulated.loop_evidence import LoopEvidence, loop_evidence
 from feeddrive.diagnosis.simulated.loop_fit import LoopProblem, coordinate_count, fit_loop, foretold, loop_problem
 from feeddrive.diagnosis.simulated.simulation import LoopErrors, before_and_after, loop_errors, machine_in

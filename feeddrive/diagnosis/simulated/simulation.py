@@ -10,10 +10,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from feeddrive.diagnosis.evidence import Evidence
-from feeddrive.diagnosis.fit import Problem
-from feeddrive.diagnosis.judge import Judged
-from feeddrive.diagnosis.predictor import Machine
+from feeddrive.diagnosis.judging.judge import Judged
+from feeddrive.diagnosis.likelihood.evidence import Evidence
+from feeddrive.diagnosis.likelihood.fit import Problem
+from feeddrive.diagnosis.likelihood.predictor import Machine
 from feeddrive.diagnosis.recordings.recordings import RecordingPredictor
 from feeddrive.diagnosis.simulated.loop_evidence import LoopEvidence
 from feeddrive.diagnosis.simulated.simulation_result import ErrorFigure

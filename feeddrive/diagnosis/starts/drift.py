@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from feeddrive.diagnosis.declared_friction import declared_viscous
-from feeddrive.diagnosis.scene import AxisScene
+from feeddrive.diagnosis.finding.scene import AxisScene
 from feeddrive.diagnosis.starts.periodogram import strongest_orders
 from feeddrive.diagnosis.starts.residual_force import residual_force
 from feeddrive.diagnosis.starts.starts import explains, highest_order, sine
-from feeddrive.effects.ball_pass_ripple import BallPassRipple
 from feeddrive.effects.base import Effect
-from feeddrive.effects.position_spring import PositionSpring
-from feeddrive.effects.thermal_growth import ThermalGrowth
-from feeddrive.effects.viscous_warmup import ViscousWarmup
+from feeddrive.effects.friction.viscous_warmup import ViscousWarmup
+from feeddrive.effects.source.ball_pass_ripple import BallPassRipple
+from feeddrive.effects.source.position_spring import PositionSpring
+from feeddrive.effects.travel.thermal_growth import ThermalGrowth
 
 SHARES_OF_DURATION = (0.15, 0.6)
 """Time constants that are tried first, over the duration; a longer one looks like a straight line."""

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from feeddrive.diagnosis.evidence import Evidence
-from feeddrive.diagnosis.scene import AxisScene
+from feeddrive.diagnosis.finding.scene import AxisScene
+from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.effects.base import Effect
-from feeddrive.effects.channel_delay import ChannelDelay
-from feeddrive.effects.drive_delay import DriveDelay
-from feeddrive.effects.inertia_deviation import InertiaDeviation
-from feeddrive.effects.torque_constant_droop import TorqueConstantDroop
+from feeddrive.effects.chain.inertia_deviation import InertiaDeviation
+from feeddrive.effects.source.torque_constant_droop import TorqueConstantDroop
+from feeddrive.effects.timing.channel_delay import ChannelDelay
+from feeddrive.effects.timing.drive_delay import DriveDelay
 from feeddrive.typing import FloatArray
 
 LONGEST = 0.1

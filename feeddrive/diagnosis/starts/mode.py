@@ -15,10 +15,10 @@ import numpy as np
 from scipy.optimize import minimize
 from scipy.signal.windows import hann
 
-from feeddrive.diagnosis.materiality import is_material
-from feeddrive.diagnosis.scene import AxisScene
+from feeddrive.diagnosis.finding.materiality import is_material
+from feeddrive.diagnosis.finding.scene import AxisScene
 from feeddrive.effects.base import Effect
-from feeddrive.effects.structural_mode import StructuralMode
+from feeddrive.effects.chain.structural_mode import StructuralMode
 from feeddrive.typing import BoolArray, ComplexArray, FloatArray
 
 FREQUENCIES = 60

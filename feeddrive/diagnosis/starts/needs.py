@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from feeddrive.diagnosis.declared_friction import declared_level
-from feeddrive.diagnosis.evidence import Evidence
-from feeddrive.diagnosis.scene import AxisScene
+from feeddrive.diagnosis.finding.scene import AxisScene
+from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.effects.base import Port
 from feeddrive.simulate.driven import LoadMotion
 

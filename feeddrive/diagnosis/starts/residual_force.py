@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from feeddrive.diagnosis.scene import AxisScene
-from feeddrive.plant.stiffness_budget import static_stiffness
+from feeddrive.diagnosis.finding.scene import AxisScene
+from feeddrive.plant.analysis.stiffness_budget import static_stiffness
 from feeddrive.typing import FloatArray
 
 

@@ -7,18 +7,18 @@ from collections.abc import Callable
 import numpy as np
 
 from feeddrive.diagnosis.declared_friction import declared_level, declared_viscous
-from feeddrive.diagnosis.scene import AxisScene
+from feeddrive.diagnosis.finding.scene import AxisScene
 from feeddrive.diagnosis.starts.periodogram import sine_at, strongest_orders
 from feeddrive.diagnosis.starts.position_curve import bump_of, friction_over_position
 from feeddrive.diagnosis.starts.residual_force import residual_forces
-from feeddrive.effects.backlash import Backlash
 from feeddrive.effects.base import Effect, Port
-from feeddrive.effects.friction_deviation import FrictionDeviation
-from feeddrive.effects.friction_vs_position import FrictionVsPosition
-from feeddrive.effects.lead_error_periodic import LeadErrorPeriodic
-from feeddrive.effects.presliding import Presliding
-from feeddrive.effects.stribeck import Stribeck
-from feeddrive.effects.torque_ripple import TorqueRipple
+from feeddrive.effects.friction.friction_deviation import FrictionDeviation
+from feeddrive.effects.friction.friction_vs_position import FrictionVsPosition
+from feeddrive.effects.friction.presliding import Presliding
+from feeddrive.effects.friction.stribeck import Stribeck
+from feeddrive.effects.source.torque_ripple import TorqueRipple
+from feeddrive.effects.transmission.backlash import Backlash
+from feeddrive.effects.travel.lead_error_periodic import LeadErrorPeriodic
 from feeddrive.typing import FloatArray
 
 TABLE_NODES = 12

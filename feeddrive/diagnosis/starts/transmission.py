@@ -13,14 +13,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from feeddrive.diagnosis.evidence import AxisEvidence
-from feeddrive.diagnosis.materiality import is_material
-from feeddrive.diagnosis.scene import AxisScene
+from feeddrive.diagnosis.finding.materiality import is_material
+from feeddrive.diagnosis.finding.scene import AxisScene
+from feeddrive.diagnosis.likelihood.evidence import AxisEvidence
 from feeddrive.effects.base import Effect
-from feeddrive.effects.preload_loss import PreloadLoss
-from feeddrive.effects.stiffness_deviation import StiffnessDeviation, parts_of
-from feeddrive.effects.stiffness_vs_position import StiffnessVsPosition
-from feeddrive.plant.stiffness_budget import nut_stiffness
+from feeddrive.effects.chain.stiffness_deviation import StiffnessDeviation, parts_of
+from feeddrive.effects.transmission.preload_loss import PreloadLoss
+from feeddrive.effects.transmission.stiffness_vs_position import StiffnessVsPosition
+from feeddrive.plant.analysis.stiffness_budget import nut_stiffness
 from feeddrive.typing import FloatArray
 
 LEAST_LAG = 0.004

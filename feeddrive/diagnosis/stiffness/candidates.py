@@ -8,10 +8,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from feeddrive.parts.bearing import SupportBearing
+from feeddrive.parts.bearings.bearing import SupportBearing
 from feeddrive.parts.combined_stiffness import combined_stiffness
-from feeddrive.parts.nut import Nut
-from feeddrive.parts.screw_drive import BallScrewDrive
+from feeddrive.parts.screw.nut import Nut
+from feeddrive.parts.screw.screw_drive import BallScrewDrive
 
 _SHORTEST_OVERHANG = 1e-3
 """Screw beyond the nut's middle that the search begins with [m]; the chain needs the nut on the screw."""

@@ -17,8 +17,8 @@ from scipy.optimize import brentq
 
 from feeddrive.diagnosis.stiffness.candidates import Candidate, DriveAt, slower_masses, softer_parts
 from feeddrive.errors import InputError, ValidityWarning
-from feeddrive.parts.screw_drive import BallScrewDrive
-from feeddrive.plant.held_frequency import held_frequency
+from feeddrive.parts.screw.screw_drive import BallScrewDrive
+from feeddrive.plant.analysis.held_frequency import held_frequency
 
 FrequencyModel = Callable[[BallScrewDrive, float], float]
 """First natural frequency [Hz] of a drive, motor held, with its nut at a position [m]."""

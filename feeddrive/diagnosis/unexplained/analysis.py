@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from feeddrive.diagnosis.cross_validation import LEAST_GAIN, compare_left_out
-from feeddrive.diagnosis.predictor import CHANCE
+from feeddrive.diagnosis.likelihood.cross_validation import LEAST_GAIN, compare_left_out
+from feeddrive.diagnosis.likelihood.predictor import CHANCE
 from feeddrive.diagnosis.unexplained.candidates import finer_steps, sines, terms_of
 from feeddrive.diagnosis.unexplained.floor import Excess, excess
 from feeddrive.diagnosis.unexplained.functional_anova import Decomposition, Found, decompose

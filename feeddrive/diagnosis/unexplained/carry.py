@@ -12,20 +12,20 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from feeddrive.diagnosis.coordinates import read_coordinates, write_coordinates
-from feeddrive.diagnosis.cross_validation import compare_left_out
-from feeddrive.diagnosis.fit import Problem
-from feeddrive.diagnosis.judge import Judged, error_series, judged_residual
+from feeddrive.diagnosis.judging.judge import Judged, error_series, judged_residual
+from feeddrive.diagnosis.likelihood.coordinates import read_coordinates, write_coordinates
+from feeddrive.diagnosis.likelihood.cross_validation import compare_left_out
+from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.diagnosis.unexplained.functional_anova import Found
 from feeddrive.diagnosis.unexplained.result import Carried, Table
 from feeddrive.diagnosis.unexplained.shape import table_of
 from feeddrive.diagnosis.unexplained.term import Form
 from feeddrive.effects.base import Effect, Port
+from feeddrive.effects.friction.tabulated_friction import TabulatedFriction
+from feeddrive.effects.source.tabulated_force import TabulatedForce
+from feeddrive.effects.source.tabulated_torque import TabulatedTorque
 from feeddrive.effects.tabulated import Tabulated
-from feeddrive.effects.tabulated_force import TabulatedForce
-from feeddrive.effects.tabulated_friction import TabulatedFriction
-from feeddrive.effects.tabulated_torque import TabulatedTorque
-from feeddrive.effects.tabulated_travel import TabulatedTravel
+from feeddrive.effects.travel.tabulated_travel import TabulatedTravel
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray

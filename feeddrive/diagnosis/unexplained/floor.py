@@ -19,8 +19,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feeddrive.diagnosis.band import NOISE_BLOCK
-from feeddrive.diagnosis.evidence import AxisEvidence, Evidence
+from feeddrive.diagnosis.likelihood.band import NOISE_BLOCK
+from feeddrive.diagnosis.likelihood.evidence import AxisEvidence, Evidence
 from feeddrive.typing import FloatArray, IntegerArray
 
 SCATTER = 5.25

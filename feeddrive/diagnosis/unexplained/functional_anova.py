@@ -17,7 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feeddrive.diagnosis.cross_validation import Comparison
+from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.unexplained.functional_sums import Sample, Sums
 from feeddrive.diagnosis.unexplained.term import Term
 from feeddrive.typing import FloatArray

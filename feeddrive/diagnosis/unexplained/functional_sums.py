@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feeddrive.diagnosis.cross_validation import Comparison, compare_left_out, prior_information
-from feeddrive.diagnosis.folds import FOLDS
+from feeddrive.diagnosis.likelihood.cross_validation import Comparison, compare_left_out, prior_information
+from feeddrive.diagnosis.likelihood.folds import FOLDS
 from feeddrive.diagnosis.unexplained.term import Term
 from feeddrive.typing import FloatArray, IntegerArray
 

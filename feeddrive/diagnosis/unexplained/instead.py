@@ -11,17 +11,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from feeddrive.diagnosis.cross_validation import (
+from feeddrive.diagnosis.finding.search import Search
+from feeddrive.diagnosis.judging.judge import Judged, channel_results, judged_residual
+from feeddrive.diagnosis.judging.result import ChannelResult
+from feeddrive.diagnosis.likelihood.cross_validation import (
     LEAST_GAIN,
     compare_left_out,
     least_gain,
     left_out_residual,
 )
-from feeddrive.diagnosis.fit import Problem, fit
-from feeddrive.diagnosis.folds import block_numbers
-from feeddrive.diagnosis.judge import Judged, channel_results, judged_residual
-from feeddrive.diagnosis.result import ChannelResult
-from feeddrive.diagnosis.search import Search
+from feeddrive.diagnosis.likelihood.fit import Problem, fit
+from feeddrive.diagnosis.likelihood.folds import block_numbers
 from feeddrive.diagnosis.unexplained.carry import Judgement, carried_result, with_carried
 from feeddrive.diagnosis.unexplained.floor import excess
 from feeddrive.diagnosis.unexplained.result import Instead

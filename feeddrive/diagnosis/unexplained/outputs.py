@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from feeddrive.diagnosis.result import Diagnosis
+from feeddrive.diagnosis.judging.result import Diagnosis
 from feeddrive.diagnosis.unexplained.result import Above, Carried, Dependence, Table, Unexplained
 
 

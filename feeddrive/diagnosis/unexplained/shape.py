@@ -11,8 +11,8 @@ from feeddrive.diagnosis.unexplained.functional_anova import Found
 from feeddrive.diagnosis.unexplained.result import Seen, Table
 from feeddrive.diagnosis.unexplained.term import Form, Term
 from feeddrive.diagnosis.unexplained.view import View
-from feeddrive.quantity import format_quantity
 from feeddrive.typing import FloatArray
+from feeddrive.units.quantity import format_quantity
 
 UNITS = {
     "time": "s",

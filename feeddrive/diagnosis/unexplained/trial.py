@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from feeddrive.diagnosis.fit import Problem
-from feeddrive.diagnosis.judge import Judged
-from feeddrive.diagnosis.result import ChannelResult
+from feeddrive.diagnosis.judging.judge import Judged
+from feeddrive.diagnosis.judging.result import ChannelResult
+from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.diagnosis.unexplained.analysis import Analysis, analyse
 from feeddrive.diagnosis.unexplained.carry import (
     DEAR,

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from feeddrive.diagnosis.fit import Problem
-from feeddrive.diagnosis.judge import Judged
-from feeddrive.diagnosis.result import ChannelResult
+from feeddrive.diagnosis.judging.judge import Judged
+from feeddrive.diagnosis.judging.result import ChannelResult
+from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.diagnosis.unexplained.analysis import Analysis
 from feeddrive.diagnosis.unexplained.carry import Judgement, carried_result, joint_step, judged_with, with_carried
 from feeddrive.diagnosis.unexplained.instead import instead_of

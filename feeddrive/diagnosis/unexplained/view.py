@@ -11,10 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feeddrive.diagnosis.evidence import AxisEvidence, Evidence
-from feeddrive.diagnosis.fit import Problem
-from feeddrive.diagnosis.folds import FOLDS, block_of_rows, dealt_blocks
-from feeddrive.diagnosis.predictor import Machine
+from feeddrive.diagnosis.likelihood.evidence import AxisEvidence, Evidence
+from feeddrive.diagnosis.likelihood.fit import Problem
+from feeddrive.diagnosis.likelihood.folds import FOLDS, block_of_rows, dealt_blocks
+from feeddrive.diagnosis.likelihood.predictor import Machine
 from feeddrive.diagnosis.unexplained.floor import Floor, noise_floor
 from feeddrive.diagnosis.unexplained.functional_sums import Sample
 from feeddrive.diagnosis.unexplained.term import Term

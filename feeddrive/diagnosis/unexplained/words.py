@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from feeddrive.diagnosis.result import ChannelResult
+from feeddrive.diagnosis.judging.result import ChannelResult
 from feeddrive.diagnosis.unexplained.result import Above, Dependence, Instead, Unexplained
-from feeddrive.quantity import format_quantity
+from feeddrive.units.quantity import format_quantity
 
 WORDS = {
     "motor_angle": "the motor angle",

@@ -22,8 +22,8 @@ import numpy as np
 from feeddrive.errors import InputError
 from feeddrive.metrology.measured.measurements import CircleTest, DriftTest, LinearTest
 from feeddrive.metrology.measured.readings import Readings
-from feeddrive.quantity import parse
 from feeddrive.typing import FloatArray
+from feeddrive.units.quantity import parse
 
 _RUN = re.compile(r"(up|down) ?(\d+)")
 _PLACE = re.compile(r"(?:deviation |error )?at (.+)")

@@ -15,11 +15,11 @@ from itertools import pairwise
 import numpy as np
 
 from feeddrive.effects.base import Effect
+from feeddrive.engine.step.step_constants import SimulationError
 from feeddrive.errors import InputError
 from feeddrive.metrology.measured.measurements import LinearTest
 from feeddrive.plant.plant import Plant
 from feeddrive.simulate.driven import motor_motion, simulate_driven
-from feeddrive.simulate.step_constants import SimulationError
 from feeddrive.typing import FloatArray
 
 SAMPLE = 1e-3

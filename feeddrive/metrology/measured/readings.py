@@ -16,11 +16,11 @@ from pathlib import Path
 import numpy as np
 
 from feeddrive.errors import InputError, quoted
-from feeddrive.quantity import parse, unit_conversion
-from feeddrive.recording.csv_file import Layout, find_table
-from feeddrive.recording.opening import first_bytes, head_of
-from feeddrive.recording.text_blocks import TextFile
+from feeddrive.recording.files.csv_file import Layout, find_table
+from feeddrive.recording.files.opening import first_bytes, head_of
+from feeddrive.recording.files.text_blocks import TextFile
 from feeddrive.typing import FloatArray
+from feeddrive.units.quantity import parse, unit_conversion
 
 _HEADING = re.compile(r"(?P<name>[^\[\]]*?)\s*(?:\[(?P<unit>[^\[\]]*)\])?")
 _REMARK = re.compile(r"#\s*(?P<key>[A-Za-z_ ]+?)\s*=\s*(?P<value>[^,;\t]+)")

@@ -7,7 +7,7 @@ import re
 
 from feeddrive.errors import InputError
 from feeddrive.parts.catalogue.reading import CataloguePart, catalogue, find_part
-from feeddrive.quantity import parse
+from feeddrive.units.quantity import parse
 
 
 def of_kind(kind: str) -> list[CataloguePart]:

@@ -17,9 +17,9 @@ from itertools import pairwise
 import numpy as np
 
 from feeddrive.errors import InputError
-from feeddrive.recording.formats.naming import axis_in
-from feeddrive.recording.formats.rows import number_rows
-from feeddrive.recording.formats.trace import Signal, Trace, clean, unique_names
+from feeddrive.recording.traces.naming import axis_in
+from feeddrive.recording.traces.rows import number_rows
+from feeddrive.recording.traces.trace import Signal, Trace, clean, unique_names
 from feeddrive.typing import FloatArray
 
 NAME, SAMPLER = "halscope log", "halsampler output"

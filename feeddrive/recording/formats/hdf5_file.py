@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from feeddrive.errors import InputError
-from feeddrive.recording.formats.container import optional, refuse_bomb, trace_of, vectors
-from feeddrive.recording.formats.trace import Trace
-from feeddrive.recording.opening import FileContent
+from feeddrive.recording.files.opening import FileContent
+from feeddrive.recording.traces.container import optional, refuse_bomb, trace_of, vectors
+from feeddrive.recording.traces.trace import Trace
 
 _MOST_DATASETS = 10_000
 _UNITS = ("unit", "units", "Unit", "Units", "UNIT")

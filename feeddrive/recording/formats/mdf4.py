@@ -14,11 +14,11 @@ import numpy as np
 
 import feeddrive
 from feeddrive.errors import InputError
+from feeddrive.recording.files.opening import FileContent
 from feeddrive.recording.formats import mdf4_worker
-from feeddrive.recording.formats.container import not_installed
-from feeddrive.recording.formats.naming import axis_in
-from feeddrive.recording.formats.trace import Signal, Trace, clean, unique_names
-from feeddrive.recording.opening import FileContent
+from feeddrive.recording.traces.container import not_installed
+from feeddrive.recording.traces.naming import axis_in
+from feeddrive.recording.traces.trace import Signal, Trace, clean, unique_names
 from feeddrive.typing import FloatArray
 
 NAME = "MDF file"

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from feeddrive.errors import InputError
-from feeddrive.recording.formats.container import optional, refuse_bomb, trace_of
-from feeddrive.recording.formats.trace import Trace
-from feeddrive.recording.opening import FileContent
+from feeddrive.recording.files.opening import FileContent
+from feeddrive.recording.traces.container import optional, refuse_bomb, trace_of
+from feeddrive.recording.traces.trace import Trace
 from feeddrive.typing import FloatArray
 
 NAME = "Parquet table"

@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from feeddrive.errors import InputError
-from feeddrive.recording.formats.rows import number_rows
-from feeddrive.recording.formats.trace import Signal, Trace, unique_names
+from feeddrive.recording.traces.rows import number_rows
+from feeddrive.recording.traces.trace import Signal, Trace, unique_names
 from feeddrive.typing import FloatArray
 
 NAME = "SINUMERIK Edge capture"

@@ -17,9 +17,9 @@ from xml.etree.ElementTree import Element
 import numpy as np
 
 from feeddrive.errors import InputError
-from feeddrive.recording.formats.xml_tree import parse_xml
+from feeddrive.recording.files.opening import FileContent
 from feeddrive.recording.frequency_response import FrequencyResponse
-from feeddrive.recording.opening import FileContent
+from feeddrive.recording.traces.xml_tree import parse_xml
 from feeddrive.typing import ComplexArray, FloatArray
 
 NAME = "SINUMERIK frequency response"

@@ -16,8 +16,8 @@ from xml.etree.ElementTree import Element
 import numpy as np
 
 from feeddrive.errors import InputError
-from feeddrive.recording.formats.trace import Signal, Trace, clean, unique_names
-from feeddrive.recording.formats.xml_tree import parse_xml
+from feeddrive.recording.traces.trace import Signal, Trace, clean, unique_names
+from feeddrive.recording.traces.xml_tree import parse_xml
 from feeddrive.typing import FloatArray
 
 NAME = "SINUMERIK Operate trace"

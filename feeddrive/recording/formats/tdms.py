@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 
 from feeddrive.errors import InputError
-from feeddrive.recording.formats.container import optional, trace_of
-from feeddrive.recording.formats.naming import axis_in, plain_words
-from feeddrive.recording.formats.trace import Signal, Trace, clean, unique_names
-from feeddrive.recording.opening import FileContent
+from feeddrive.recording.files.opening import FileContent
+from feeddrive.recording.traces.container import optional, trace_of
+from feeddrive.recording.traces.naming import axis_in, plain_words
+from feeddrive.recording.traces.trace import Signal, Trace, clean, unique_names
 from feeddrive.typing import FloatArray
 
 NAME = "TDMS file"

@@ -12,11 +12,11 @@ from itertools import accumulate
 import numpy as np
 
 from feeddrive.errors import InputError
-from feeddrive.recording.formats.naming import axis_in
-from feeddrive.recording.formats.rows import whole_rows
-from feeddrive.recording.formats.trace import Signal, Trace, clean, unique_names
 from feeddrive.recording.formats.twincat_header import Header, read_header
 from feeddrive.recording.formats.twincat_scaling import scaled
+from feeddrive.recording.traces.naming import axis_in
+from feeddrive.recording.traces.rows import whole_rows
+from feeddrive.recording.traces.trace import Signal, Trace, clean, unique_names
 from feeddrive.typing import BoolArray, FloatArray
 
 NAME = "TwinCAT 3 Scope export"

@@ -7,8 +7,8 @@ from itertools import combinations
 
 import numpy as np
 
-from feeddrive.recording.formats.trace import Signal
 from feeddrive.recording.formats.twincat_header import Header
+from feeddrive.recording.traces.trace import Signal
 from feeddrive.typing import FloatArray
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from scipy import signal
 
-from feeddrive.diagnosis.result import Diagnosis
+from feeddrive.diagnosis.judging.result import Diagnosis
 from tests.generator.driven import driven
 from tests.generator.runs import Array, at_rest, longest_step, transmitted
 from tests.recovery.fleet.case import Case

@@ -17,9 +17,9 @@ from types import FrameType
 from typing import Any
 
 from feeddrive.diagnosis.diagnose import diagnose
-from feeddrive.diagnosis.result import Diagnosis
+from feeddrive.diagnosis.judging.result import Diagnosis
 from feeddrive.errors import InputError
-from feeddrive.plant.files import plant_text_with_effects, read_plant
+from feeddrive.plant.file.files import plant_text_with_effects, read_plant
 from feeddrive.recording import read_recording
 from tests.recovery.fleet.case import Case, case
 from tests.recovery.fleet.floor import floors

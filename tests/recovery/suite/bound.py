@@ -21,9 +21,9 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.signal import welch
 
-from feeddrive.diagnosis.coordinates import read_coordinates, spread_to_values
-from feeddrive.diagnosis.evidence import Evidence
-from feeddrive.diagnosis.fit import Problem
+from feeddrive.diagnosis.likelihood.coordinates import read_coordinates, spread_to_values
+from feeddrive.diagnosis.likelihood.evidence import Evidence
+from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.effects.base import Effect
 
 SEGMENT = 1.0

@@ -9,7 +9,7 @@ from dataclasses import asdict
 from typing import Any, cast
 
 from feeddrive.diagnosis.diagnose import diagnose
-from feeddrive.diagnosis.result import Diagnosis
+from feeddrive.diagnosis.judging.result import Diagnosis
 from feeddrive.effects.base import Effect as PackageEffect
 from feeddrive.recording import Recording
 from tests.generator.axis import AXES

@@ -10,9 +10,9 @@ from feeddrive.effects.base import Port
 from feeddrive.effects.catalogue import EFFECTS, THERMAL_EFFECTS
 from feeddrive.errors import InputError
 from feeddrive.files import plants_folder
-from feeddrive.plant.files import read_plant
+from feeddrive.plant.file.files import read_plant
 from feeddrive.plant.plant import Plant
-from feeddrive.thermal.files import read_thermal_plant
+from feeddrive.thermal.file.files import read_thermal_plant
 from feeddrive.thermal.plant import ThermalPlant
 from tests.generator.axis import AXES
 from tests.generator.effects import Effect

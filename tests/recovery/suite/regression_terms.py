@@ -12,8 +12,8 @@ from collections.abc import Callable
 import numpy as np
 from scipy.signal import lfilter
 
-from feeddrive.diagnosis.evidence import AxisEvidence, Evidence
 from feeddrive.diagnosis.heat.evidence import HeatEvidence
+from feeddrive.diagnosis.likelihood.evidence import AxisEvidence, Evidence
 from tests.generator.axis import AxisParameters
 
 Terms = dict[str, np.ndarray]

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feeddrive.diagnosis.evidence import AxisEvidence, Evidence
-from feeddrive.diagnosis.judge import error_series, whole
-from feeddrive.diagnosis.predictor import Machine
+from feeddrive.diagnosis.judging.judge import error_series, whole
+from feeddrive.diagnosis.likelihood.evidence import AxisEvidence, Evidence
+from feeddrive.diagnosis.likelihood.predictor import Machine
 from tests.generator.axis import AxisParameters
 from tests.recovery.suite.regression_terms import terms_of
 from tests.recovery.suite.truth import Errors, Prepared

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feeddrive.diagnosis.evidence import Evidence
-from feeddrive.diagnosis.fit import Problem
-from feeddrive.diagnosis.judge import channel_results, prepared_for_judging
+from feeddrive.diagnosis.judging.judge import channel_results, prepared_for_judging
+from feeddrive.diagnosis.judging.result import ChannelResult
+from feeddrive.diagnosis.likelihood.evidence import Evidence
+from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.diagnosis.preparation import prepared
-from feeddrive.diagnosis.result import ChannelResult
 from feeddrive.effects.base import Effect
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording

@@ -1,0 +1,178 @@
+"""One candidate in one round: started, refined, and compared by blocked cross-validation."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from feeddrive.diagnosis.finding.scene import Candidate, Scene
+from feeddrive.diagnosis.likelihood.cross_validation import (
+    LEAST_GAIN,
+    Comparison,
+    compare_left_out,
+    least_gain,
+    left_out_residual,
+)
+from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit, linear_step
+from feeddrive.diagnosis.likelihood.folds import block_numbers
+from feeddrive.effects.base import Effect, TransmissionEffect
+from feeddrive.errors import InputError
+from feeddrive.typing import FloatArray
+
+JOINT_ITERATIONS = 4
+"""Steps of a joint fit inside the search; what is left is polished at its end."""
+
+
+SHORT_BLOCK = 0.05
+"""Length of a block for what shows in a brief passage [s]: fifteen independent values at 150 Hz."""
+
+
+FIT_ITERATIONS = 5
+"""Steps of a candidate's fit at most, before the best few are fitted together with what was found before."""
+
+
+PROMISE = 0.001
+"""Share of the squared error that one linear step must take away for a fit to be worth its simulations."""
+
+
+SCANNED_ITERATIONS = 3
+"""Steps of the best start of a scanned candidate, before it is ranked."""
+
+
+@dataclass(frozen=True)
+class Attempt:
+    """A candidate refined in one round, against the same recordings without it.
+
+    Attributes:
+        name: effect name.
+        fit: of all free effects.
+        comparison: against the effects found before.
+        problem: recordings with the samples that this candidate can predict.
+        errors: residual on blocks left out of the fit, weighted, shape (m,).
+    """
+
+    name: str
+    fit: Fit
+    comparison: Comparison
+    problem: Problem
+    errors: FloatArray
+
+    def for_the_record(self) -> Attempt:
+        """The attempt without series and slopes, which its round alone needs: those of all rounds fill gigabytes."""
+        none = np.zeros(0)
+        slopes = np.zeros((0, self.fit.jacobian.shape[1]))
+        return replace(self, fit=replace(self.fit, residual=none, jacobian=slopes), errors=none)
+
+
+def started(scene: Scene, candidate: Candidate) -> list[Attempt]:
+    """The best start of each form of a candidate, as one linear step leaves it; what was found before stays as it is.
+
+    Starts of scanned candidates are compared as they are, and the best takes a few steps: one linear step says nothing
+    of a law that jumps.
+    """
+    attempts: list[Attempt] = []
+    try:
+        forms = candidate.forms(scene)
+    except InputError:  # what the residual starts it from is not physical
+        return []
+    for starts in forms:
+        if candidate.scanned and attempts and attempts[0].comparison.gain < LEAST_GAIN:
+            break  # another form of a law that does not pay at all is not worth its simulations
+        try:
+            attempts.append(_best_start(scene, candidate, starts))
+        except InputError:  # cannot act together with what was found, or cannot be simulated
+            continue
+    return attempts
+
+
+def _best_start(scene: Scene, candidate: Candidate, starts: Sequence[Effect]) -> Attempt:
+    before = scene.found
+    problem = with_predictable(scene.problem, (*before, starts[0])) if _jumps(starts[0]) else scene.problem
+    problem = with_short_blocks(problem) if candidate.brief else problem
+    free = [False] * len(before) + [True]
+    tried = [fit(problem, (*before, start), free, 0, error_only=candidate.scanned) for start in starts]
+    if not candidate.scanned:
+        tried = [_one_linear_step(attempt) for attempt in tried]
+    result = min(tried, key=lambda attempt: attempt.squared_error)
+    if candidate.scanned:
+        result = fit(problem, result.effects, free, SCANNED_ITERATIONS)
+    return _usable(scene, problem, candidate.name, result)
+
+
+def refined(scene: Scene, attempt: Attempt) -> Attempt | None:
+    """The candidate fitted while what was found before stays as it is; None where it cannot be simulated."""
+    free = [False] * len(scene.found) + [True]
+    result = fit(attempt.problem, attempt.fit.effects, free, FIT_ITERATIONS)
+    try:
+        return _usable(scene, attempt.problem, attempt.name, result)
+    except InputError:
+        return None
+
+
+def _usable(scene: Scene, problem: Problem, name: str, result: Fit) -> Attempt:
+    if not (np.isfinite(result.squared_error) and np.all(np.isfinite(result.jacobian))):
+        raise InputError(f"{name} could not be simulated", name)
+    if not problem.possible(result.effects):
+        raise InputError(f"{name} would have friction push the axis", name)
+    if _jumps(result.effects[-1]):
+        problem = with_predictable(scene.problem, result.effects)
+    return compared(problem, name, result, scene.found)
+
+
+def _jumps(effect: Effect) -> bool:
+    return isinstance(effect, TransmissionEffect) and effect.has_play
+
+
+def _one_linear_step(fitted: Fit) -> Fit:
+    """The fit as one linear step would leave it, the values as they were; ranks starts at no simulation."""
+    step = linear_step(fitted.jacobian, fitted.residual)
+    return replace(fitted, residual=fitted.residual - fitted.jacobian @ step, coordinates=fitted.coordinates + step)
+
+
+def together(attempt: Attempt, found: Fit) -> Attempt:
+    """The candidate refitted together with what was found before."""
+    result = fit(attempt.problem, attempt.fit.effects, iterations=JOINT_ITERATIONS)
+    return compared(attempt.problem, attempt.name, result, found.effects)
+
+
+def compared(problem: Problem, name: str, result: Fit, before: Sequence[Effect]) -> Attempt:
+    """Compare a fit with the effects before it, both on the same samples and both with their own effects free."""
+    blocks = block_numbers(problem)
+    if len(blocks) != len(result.residual):
+        result = fit(problem, result.effects, _free(result, before), iterations=0)
+    reference = _reference(problem, before, result)
+    without = left_out_residual(problem, reference, blocks)
+    errors = left_out_residual(problem, result, blocks)
+    comparison = compare_left_out(without, errors, blocks, least_gain(problem, without, errors))
+    return Attempt(name, result, comparison, problem, errors)
+
+
+def _free(result: Fit, before: Sequence[Effect]) -> list[bool]:
+    """Which effects a fit had free: the last alone, or all."""
+    joint = result.effects[: len(before)] != tuple(before)
+    return [joint] * len(before) + [True] * (len(result.effects) - len(before))
+
+
+def _reference(problem: Problem, before: Sequence[Effect], result: Fit) -> Fit:
+    joint = result.effects[: len(before)] != tuple(before)
+    return fit(problem, before, [joint] * len(before), iterations=0)
+
+
+def with_short_blocks(problem: Problem) -> Problem:
+    """The problem with blocks of cross-validation so short that a brief passage spans several of them.
+
+    A chirp passes a resonance once, in less than a block: without that block nothing tells its frequency, and the error
+    on data not fitted would be that of a guess. Short blocks are still many correlation times of the band.
+    """
+    return replace(problem, evidence=tuple(replace(e, block=min(e.block, SHORT_BLOCK)) for e in problem.evidence))
+
+
+def with_predictable(problem: Problem, effects: Sequence[Effect]) -> Problem:
+    """The problem without the samples that tell nothing of a plant with these effects."""
+    plant = problem.machine(effects)
+    kept = tuple(e.where_predictable(problem.predictor.to_fit(plant, e)) for e in problem.evidence)
+    if any(not e.fit_rows.any() for e in kept):
+        return problem
+    return replace(problem, evidence=kept)

@@ -1,0 +1,71 @@
+"""What a start can be read from: the present residual and motion of every recording, and what a candidate is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from feeddrive.diagnosis.likelihood.fit import Problem
+from feeddrive.effects.base import Effect
+from feeddrive.plant.plant import Plant
+from feeddrive.simulate.driven import LoadMotion
+from feeddrive.typing import FloatArray
+
+
+@dataclass(frozen=True)
+class Scene:
+    """What a start can be read from: the present residual of every recording.
+
+    Attributes:
+        problem: declared plant and recordings.
+        found: effects found so far.
+        residuals: per recording, channel to measured less predicted in the band, shape (n,).
+    """
+
+    problem: Problem
+    found: tuple[Effect, ...]
+    residuals: tuple[dict[str, FloatArray], ...]
+
+    @property
+    def longest(self) -> int:
+        """Index of the recording with the most fitted samples."""
+        return int(np.argmax([e.fit_rows.sum() for e in self.problem.evidence]))
+
+
+@dataclass(frozen=True)
+class AxisScene(Scene):
+    """A scene of motion and torque.
+
+    Attributes:
+        runs: per recording, the motion of the load side.
+    """
+
+    runs: tuple[LoadMotion, ...]
+
+    @property
+    def plant(self) -> Plant:
+        """The declared plant."""
+        assert isinstance(self.problem.plant, Plant)
+        return self.problem.plant
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """An effect to try.
+
+    Attributes:
+        name: effect name.
+        forms: started separately, each a list of values of which the best is refined.
+        needs: why the recordings cannot show it, or an empty text.
+        scanned: whether the starts are compared as they are; otherwise after one step of the fit.
+        brief: whether a brief passage of the recording may be all that shows it.
+    """
+
+    name: str
+    forms: Callable[[Any], list[list[Effect]]]
+    needs: Callable[[Any], str]
+    scanned: bool = False
+    brief: bool = False

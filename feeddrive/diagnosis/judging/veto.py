@@ -1,0 +1,273 @@
+"""Names are taken away again that their own evidence denies; what remains is refitted and judged anew.
+
+An effect that the search took is not reported as found where
+
+- a value of it ran to the end of what is physical: the end is no estimate;
+- it does not lower the error on the judged data by more than its scatter; where they could hardly show it, the
+  gain on blocks left out of the fit must be three times its scatter instead;
+- the intervals of all its sizes hold the absent effect (no amplitude, a factor of one);
+- a channel is predicted worse with what was found than as declared, by more than the scatter of its rms, and this
+  effect worsens it most.
+
+One name goes at a time, that with the least gain of those that are denied: of two that say the same the other may then
+stand. An effect that differs between the fitted recordings may be absent from the judged one, and is denied by the last
+alone. Where the judged recording is known to differ in a level from the fitted ones (`judged_changes`), gain and
+worsening are asked with that level allowed for.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.stats import chi2
+
+from feeddrive.diagnosis.certainty.uncertainty import certainty
+from feeddrive.diagnosis.finding.search import CLEARLY_NEEDED, Search
+from feeddrive.diagnosis.judging.judge import Judged, Share, error_series, judged_channels, share_beyond, share_of
+from feeddrive.diagnosis.likelihood.coordinates import (
+    LEFT,
+    absent_coordinates,
+    coordinate_ends,
+    read_coordinates,
+    write_coordinates,
+)
+from feeddrive.diagnosis.likelihood.cross_validation import Comparison, compare_left_out, left_out_residual
+from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit, linear_step
+from feeddrive.diagnosis.likelihood.folds import block_numbers
+from feeddrive.diagnosis.recordings.judged_changes import judged_changes
+from feeddrive.diagnosis.recordings.recordings import RecordingShift, is_shift, without_shifts
+from feeddrive.effects.base import ChainEffect, Effect
+from feeddrive.plant.plant import Plant
+from feeddrive.typing import FloatArray, IntegerArray
+from feeddrive.units.quantity import format_quantity
+
+SCATTER = 2.0
+"""Standard deviations by which a channel must be worse: one of forty by chance."""
+
+SURE = 3.0
+"""Gain over its standard error, on blocks left out, of what the judged data cannot confirm: one of 700 by chance,
+as some hundred candidates and starts are tried."""
+
+
+@dataclass(frozen=True)
+class Denied:
+    """An effect that is not reported, and why."""
+
+    place: int
+    gain: float
+    reason: str
+
+
+def without_denied(
+    found: Search, judged: list[Judged], judge: Callable[[Search], list[Judged]]
+) -> tuple[Search, list[Judged]]:
+    """The search without the names that their own evidence denies, and its judged recordings.
+
+    Args:
+        found: what the search took.
+        judged: recordings with the found effects in.
+        judge: judges other effects.
+    """
+    while (denied := _first_denied(found, judged)) is not None:
+        effects = found.fit.effects
+        gone = effects[denied.place]
+        rest = _without_lost_shifts([effect for i, effect in enumerate(effects) if i != denied.place])
+        still_named = any(effect.name == gone.name for effect in rest)
+        reasons = found.impossible if still_named else {**found.impossible, gone.name: denied.reason}
+        found = replace(found, fit=fit(found.problem, rest), impossible=reasons)
+        judged = judge(found)
+    return found, judged
+
+
+def _first_denied(found: Search, judged: Sequence[Judged]) -> Denied | None:
+    """The denied effect with the least gain on data not fitted; None where there is none."""
+    effects, problem = found.fit.effects, found.problem
+    named = range(len(without_shifts(effects)))
+    if not named:
+        return None
+    shares = [_share(found, judged, i) for i in named]
+    idle, worst = [_no_gain(found, i, share) for i, share in enumerate(shares)], _worst_channel(problem, judged)
+    other = judged_changes(found, judged) if worst or any(idle) else None
+    if other is not None and other.carries:
+        idle = ["" if carries else reason for reason, carries in zip(idle, other.carries, strict=True)]
+        worst = _worst_channel(other.problem, other.allowed)
+    at_end, around_none = ends_reached(problem, found.fit), sizes_around_none(problem, found.fit)
+    denied = [
+        Denied(i, shares[i].comparison.gain, at_end[i] or idle[i] or around_none[i])
+        for i in named
+        if (at_end[i] or idle[i] or around_none[i]) and not _differs(effects, i)
+    ]
+    if worst and not denied:
+        place = min(named, key=lambda i: shares[i].explains[worst])
+        reason = f"with it {worst} is predicted worse than as declared on data not fitted, by more than its scatter"
+        denied = [Denied(place, shares[place].comparison.gain, reason)]
+    return min(denied, key=lambda one: one.gain, default=None)
+
+
+def _share(found: Search, judged: Sequence[Judged], place: int) -> Share:
+    """What an effect explains; where that is much, the others are moved by one linear step only, not refitted."""
+    problem, effects = found.problem, found.fit.effects
+    rest = (*effects[:place], *effects[place + 1 :])
+    counts = [len(read_coordinates([effect], problem.plant)) for effect in effects]
+    columns = slice(sum(counts[:place]), sum(counts[: place + 1]))
+    step = linear_step(np.delete(found.fit.jacobian, columns, axis=1), problem.residual(rest))
+    moved = write_coordinates(rest, problem.plant, np.delete(found.fit.coordinates, columns) + step)
+    share = share_beyond(problem, judged, moved)
+    clear = share.comparison.gain > max(CLEARLY_NEEDED, SURE * share.comparison.standard_error)
+    return share if clear else share_of(problem, judged, effects, place)
+
+
+def _without_lost_shifts(effects: Sequence[Effect]) -> tuple[Effect, ...]:
+    """The effects without differences of recordings that belong to none of them."""
+    machine = without_shifts(effects)
+    return tuple(
+        effect
+        for effect in effects
+        if not isinstance(effect, RecordingShift) or any(effect.target.meets(one) for one in machine)
+    )
+
+
+def _differs(effects: Sequence[Effect], place: int) -> bool:
+    return any(isinstance(one, RecordingShift) and one.target.meets(effects[place]) for one in effects)
+
+
+def _no_gain(found: Search, place: int, share: Share) -> str:
+    """Why data not fitted deny an effect; empty where they do not."""
+    comparison = share.comparison
+    if share.carries:
+        return ""
+    if share.shows:
+        scatter = max(comparison.standard_error, comparison.least)
+        return f"on the judged data it lowers the squared error by {comparison.gain:.2%}, scatter {scatter:.2%}"
+    inside = _left_out_gain(found, place)
+    if inside.gain > SURE * inside.standard_error:
+        return ""
+    return (
+        f"the judged data hardly show it, and on blocks left out of the fit it lowers the squared error by "
+        f"{inside.gain:.2%}, scatter {inside.standard_error:.2%}"
+    )
+
+
+def _left_out_gain(found: Search, place: int) -> Comparison:
+    """What an effect brings on blocks left out of the fit, the others refitted without it."""
+    problem, effects = found.problem, found.fit.effects
+    rest = fit(problem, [*effects[:place], *effects[place + 1 :]], iterations=2)
+    blocks = block_numbers(problem)
+    without, having = (left_out_residual(problem, one, blocks) for one in (rest, found.fit))
+    return compare_left_out(without, having, blocks)
+
+
+def ends_reached(problem: Problem, fitted: Fit) -> list[str]:
+    """Per effect, a sentence on the first value at an end of what is physical; empty where there is none.
+
+    Where the end is the absent effect, or a default, it is a value as any other: a damper of nothing, a share of none.
+    """
+    result = []
+    too_little = _leaves_too_little(problem, fitted.effects)
+    for effect in fitted.effects:
+        vector = read_coordinates([effect], problem.plant)
+        low, high = coordinate_ends([effect], problem.plant)
+        absent, _ = absent_coordinates([effect], problem.plant)
+        defaults = read_coordinates([effect.with_values(**_defaults(effect))], problem.plant)
+        # a coordinate is not resolved below the step of the slopes
+        # a sine has no end in either component, and one in both
+        tops = [p for p in effect.parameters if p.key == "amplitude" and np.isfinite(p.maximum)]
+        topped = any(float(effect.values[p.key]) >= p.maximum for p in tops if "phase" in effect.values)  # type: ignore[arg-type]
+        near = np.minimum(np.abs(vector - low), np.abs(high - vector)) < 1e-4 * np.maximum(1.0, np.abs(vector))
+        plain = np.isclose(vector, absent) | (np.isclose(vector, defaults) & np.isnan(absent))
+        ended = topped or np.any(near & ~plain) or (too_little and isinstance(effect, ChainEffect))
+        result.append(_end_sentence(effect) if ended and not is_shift(effect) else "")
+    return result
+
+
+def _leaves_too_little(problem: Problem, effects: Sequence[Effect]) -> bool:
+    """Whether several effects together leave less of a mass, an inertia or a stiffness than one may."""
+    if not isinstance(problem.plant, Plant):
+        return False
+    declared = problem.plant.chain_values()
+    after = problem.plant.with_effects(*without_shifts(effects)).chain_values()
+    kinds = ("mass", "inertia", "stiffness")
+    # rounding of the sum aside
+    return any(after[key] < LEFT * declared[key] * (1 - 1e-9) for key in declared if key.endswith(kinds))
+
+
+def _defaults(effect: Effect) -> dict[str, float]:
+    return {
+        p.key: p.default
+        for p in effect.parameters
+        if p.default is not None and isinstance(effect.values.get(p.key), float) and (p.minimum <= p.default)
+    }
+
+
+def _end_sentence(effect: Effect) -> str:
+    values = ", ".join(
+        f"{key.replace('_', ' ')} {format_quantity(value, effect.parameter(key).unit)}"
+        for key, value in effect.values.items()
+        if isinstance(value, float)
+    )
+    return f"a value of it ran to the end of what is physical ({values}), which is no estimate"
+
+
+def sizes_around_none(problem: Problem, fitted: Fit) -> list[str]:
+    """Per effect, a sentence where the 95 % intervals of all its sizes hold the absent effect; else empty.
+
+    Of components and nodes that belong together the whole is asked: their squares over their variances, against the
+    same quantile.
+    """
+    if not fitted.effects:
+        return []
+    known = certainty(problem, fitted)
+    absent, groups = absent_coordinates(fitted.effects, problem.plant)
+    beyond = fitted.coordinates - absent
+    half = np.sqrt(np.diag(known.half_covariance))
+    result, at = [], 0
+    for effect in fitted.effects:
+        count = len(read_coordinates([effect], problem.plant))
+        places = range(at, at + count)
+        sizes = sorted({int(groups[i]) for i in places if not math.isnan(absent[i])})
+        told = [_is_told(known.half_covariance, beyond, half, np.flatnonzero(groups == group)) for group in sizes]
+        result.append("" if any(told) or not sizes or is_shift(effect) else "its interval holds no effect at all")
+        at += count
+    return result
+
+
+def _is_told(covariance: FloatArray, beyond: FloatArray, half: FloatArray, group: IntegerArray) -> bool:
+    """Whether a group of coordinates is told from none."""
+    if len(group) == 1:
+        return bool(abs(beyond[group[0]]) > half[group[0]])
+    part = covariance[np.ix_(group, group)]
+    # half widths are 1.96 standard deviations
+    square = float(beyond[group] @ np.linalg.pinv(part, hermitian=True) @ beyond[group]) * 1.96**2
+    return square > float(chi2.ppf(0.95, len(group)))
+
+
+def _worst_channel(problem: Problem, judged: Sequence[Judged]) -> str:
+    """The channel that is worse than declared by the most, beyond its scatter; empty where none is."""
+    worse = {name: worse_by(problem, judged, name) for name in judged_channels(judged)}
+    name = max(worse, key=lambda one: worse[one])
+    return name if worse[name] > 0 else ""
+
+
+def worse_by(problem: Problem, judged: Sequence[Judged], name: str) -> float:
+    """Share by which a channel's squared error is larger than as declared, beyond its scatter; negative where not.
+
+    Both scatters count: that of the gain between blocks, and that of a mean square of 2 B T independent values.
+    """
+    before, after, blocks, first, values = [], [], [], 0, 0.0
+    for one in judged:
+        if name not in one.evidence.channels:
+            continue
+        rows = one.evidence.judged_rows
+        step = one.evidence.recording.sample_time
+        numbers = (np.flatnonzero(rows) * step / one.evidence.block).astype(np.int64)
+        before.append(error_series(problem, one.before, one.evidence)[name][rows])
+        after.append(error_series(problem, one.after, one.evidence)[name][rows])
+        blocks.append(first + numbers)
+        first += int(numbers.max(initial=-1)) + 1
+        values += 2 * one.evidence.edge * float(rows.sum()) * step
+    gain = compare_left_out(np.concatenate(before), np.concatenate(after), np.concatenate(blocks), 0.0)
+    scatter = max(gain.standard_error, math.sqrt(2 / max(values, 1.0)))
+    return -gain.gain - SCATTER * scatter

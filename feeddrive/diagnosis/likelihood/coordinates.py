@@ -1,0 +1,331 @@
+"""Coordinates in which an effect's parameters are fitted: scaled, logarithmic, or a sine's two components.
+
+Fits run in coordinates of size about one, so that one step length and one damping serve all of them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from feeddrive.diagnosis.declared_friction import declared_level, declared_viscous
+from feeddrive.diagnosis.likelihood.predictor import Machine
+from feeddrive.effects.base import Effect, Value
+from feeddrive.effects.chain.inertia_deviation import InertiaDeviation, declared_inertia
+from feeddrive.effects.tabulated import Tabulated
+from feeddrive.plant.plant import Plant
+from feeddrive.typing import FloatArray, IntegerArray
+
+ORDER_SIZE = 0.01
+"""Change of an order that shows over a stroke of some revolutions."""
+
+
+@dataclass(frozen=True)
+class Linear:
+    """value = size * coordinate."""
+
+    key: str
+    size: float
+
+    def read(self, effect: Effect) -> list[float]:
+        """Coordinates of the effect's values."""
+        value = effect.values[self.key]
+        return [number / self.size for number in (value if isinstance(value, tuple) else (value,))]
+
+    def write(self, effect: Effect, coordinates: Sequence[float]) -> dict[str, Value]:
+        """Values of the coordinates."""
+        parameter = effect.parameter(self.key)
+        numbers = [min(max(c * self.size, parameter.minimum), parameter.maximum) for c in coordinates]
+        if not isinstance(effect.values[self.key], tuple):
+            return {self.key: numbers[0]}
+        if self.key != "delta_force":
+            return {self.key: tuple(numbers)}
+        # a curve over the stroke is about its mean: a level of its own would be that of the declared friction
+        mean = sum(numbers) / len(numbers)
+        return {self.key: tuple(number - mean for number in numbers)}
+
+
+@dataclass(frozen=True)
+class Logarithmic:
+    """value = exp(coordinate)."""
+
+    key: str
+
+    def read(self, effect: Effect) -> list[float]:
+        """Coordinates of the effect's values."""
+        return [math.log(_number(effect, self.key))]
+
+    def write(self, effect: Effect, coordinates: Sequence[float]) -> dict[str, Value]:
+        """Values of the coordinates."""
+        parameter = effect.parameter(self.key)
+        value = math.exp(min(max(coordinates[0], -700.0), 700.0))
+        return {self.key: min(max(value, parameter.minimum), parameter.maximum)}
+
+
+@dataclass(frozen=True)
+class Sine:
+    """amplitude and phase as the two components of the sine."""
+
+    size: float
+
+    def read(self, effect: Effect) -> list[float]:
+        """Coordinates of the effect's values."""
+        amplitude, phase = _number(effect, "amplitude"), _number(effect, "phase")
+        return [amplitude * math.cos(phase) / self.size, amplitude * math.sin(phase) / self.size]
+
+    def write(self, effect: Effect, coordinates: Sequence[float]) -> dict[str, Value]:
+        """Values of the coordinates."""
+        a, b = coordinates
+        most = effect.parameter("amplitude").maximum
+        return {"amplitude": min(self.size * math.hypot(a, b), most), "phase": math.atan2(b, a)}
+
+
+@dataclass(frozen=True)
+class TwoHeats:
+    """Two heats that are linear in the prediction, in place of a heat and a share of it.
+
+    A motor's P a and P (1 - a): with `rest`. Two bearings' c and c s: without.
+    """
+
+    key: str
+    share: str
+    size: float
+    rest: bool
+
+    def read(self, effect: Effect) -> list[float]:
+        """Coordinates of the effect's values."""
+        whole, share = _number(effect, self.key) / self.size, _number(effect, self.share)
+        return [whole * share, whole * (1 - share)] if self.rest else [whole, whole * share]
+
+    def write(self, effect: Effect, coordinates: Sequence[float]) -> dict[str, Value]:
+        """Values of the coordinates, neither heat below zero."""
+        first, second = (max(c, 0.0) for c in coordinates)
+        whole = first + second if self.rest else first
+        over = whole if whole > 0 else 1.0
+        share = min((first if self.rest else second) / over, effect.parameter(self.share).maximum)
+        return {self.key: whole * self.size, self.share: share}
+
+
+Coordinate = Linear | Logarithmic | Sine | TwoHeats
+
+LOGARITHMIC = {
+    ("stribeck", "velocity"),
+    ("presliding", "stiffness"),
+    ("friction_vs_position", "half_width"),
+    ("preload_loss", "ratio"),
+    ("preload_loss", "force"),
+    ("structural_mode", "frequency"),
+    ("thermal_growth", "time_constant"),
+    ("viscous_warmup", "time_constant"),
+    ("ambient_drift", "period"),
+    ("convection_deviation", "factor"),
+    ("contact_conductance_deviation", "factor"),
+    ("heat_sink", "conductance"),
+    ("heat_sink", "capacity"),
+    ("structure_growth", "time_constant"),
+    ("sensor_lag", "time_constant"),
+}
+"""Parameters known to a factor before they are known at all."""
+
+TWO_HEATS = {
+    "motor_heat": TwoHeats("power", "share_at_rest", 1.0, rest=True),
+    "bearing_heat": TwoHeats("factor", "rear_share", 1.0, rest=False),
+}
+"""Heats that are linear, though their parameters are not."""
+
+FIXED = {
+    ("presliding", "break_away"),
+    ("friction_vs_position", "position"),
+    ("stiffness_vs_position", "low"),
+    ("stiffness_vs_position", "high"),
+    ("ambient_drift", "time"),
+    ("torque_constant_droop", "at_torque"),
+}
+"""Parameters that choose the form of a law; they are tried, not fitted."""
+
+FORM = {"centre", "order", "zero", "damping", "start"}
+"""Linear parameters that choose the form of a law, not its size."""
+
+FACTORS = {"factor", "coulomb_factor", "viscous_factor", "ratio"}
+"""Parameters that are 1 where the effect is absent; other sizes are 0."""
+
+GROWS_WITH = {("sensor_lag", "time_constant"): 1, ("heat_sink", "conductance"): 1, ("presliding", "stiffness"): -1}
+"""Sizes known to a factor, and the power of them that the effect grows with: its slope over their logarithm is then the
+effect itself, and a step of one takes it away."""
+
+LEAST = {("drive_delay", "delay"): 0.0}
+"""Ends of a search inside the physical range: a torque that acts before it is recorded is one recorded late, and that
+is `channel_delay`."""
+
+LEFT = 0.05
+"""Least share of a declared mass or inertia that an effect may leave, as of a stiffness (`stiffness_deviation`)."""
+
+
+def coordinates_of(effect: Effect, plant: Machine) -> list[Coordinate]:
+    """The coordinates in which the effect is fitted, for the form that its values choose."""
+    if {"amplitude", "phase"} <= set(effect.values):
+        return [Sine(effect.parameter("amplitude").size), Linear("order", ORDER_SIZE)]
+    if effect.name in TWO_HEATS:
+        return [TWO_HEATS[effect.name]]
+    if isinstance(effect, Tabulated):
+        return [Linear(key, effect.parameter(key).size) for key in effect.tables]
+    result: list[Coordinate] = []
+    for parameter in effect.parameters:
+        pair = (effect.name, parameter.key)
+        if parameter.key not in effect.values or pair in FIXED or parameter.key in _unused(effect, plant):
+            continue
+        if pair in LOGARITHMIC:
+            result.append(Logarithmic(parameter.key))
+        else:
+            result.append(Linear(parameter.key, parameter.size))
+    return result
+
+
+def _unused(effect: Effect, plant: Machine) -> set[str]:
+    """Parameters without effect in the form that the values choose."""
+    if effect.name == "friction_vs_position":
+        as_table = isinstance(effect.values["position"], tuple)
+        return {"peak", "centre", "half_width"} if as_table else {"delta_force"}
+    if effect.name == "ambient_drift":
+        return {"period", "amplitude"} if isinstance(effect.values["time"], tuple) else {"shape"}
+    if effect.name == "friction_deviation" and isinstance(plant, Plant):
+        unused = {"coulomb_factor"} if declared_level(plant, effect.port) == 0 else set()
+        return unused | ({"viscous_factor"} if declared_viscous(plant, effect.port) == 0 else set())
+    return set()
+
+
+def read_coordinates(effects: Sequence[Effect], plant: Machine) -> FloatArray:
+    """All coordinates of the effects in one vector."""
+    values = [c for effect in effects for coordinate in coordinates_of(effect, plant) for c in coordinate.read(effect)]
+    return np.array(values, dtype=float)
+
+
+def absent_coordinates(effects: Sequence[Effect], plant: Machine) -> tuple[FloatArray, IntegerArray]:
+    """Coordinates at which the effects are absent, and which belong together.
+
+    Returns:
+        The coordinates, NaN for those that choose the form of a law, and the number of the group of each; (k,) each.
+    """
+    absent: list[float] = []
+    groups: list[int] = []
+    for effect in effects:
+        for coordinate in coordinates_of(effect, plant):
+            count = len(coordinate.read(effect))
+            groups += [groups[-1] + 1 if groups else 0] * count
+            power = GROWS_WITH.get((effect.name, coordinate.key)) if isinstance(coordinate, Logarithmic) else None
+            absent += [_absent(coordinate)] * count if power is None else [coordinate.read(effect)[0] - power]
+    return np.array(absent, dtype=float), np.array(groups, dtype=np.int64)
+
+
+def coordinate_ends(effects: Sequence[Effect], plant: Machine) -> tuple[FloatArray, FloatArray]:
+    """Ends of what is physical on this plant, lower and upper, of every coordinate; (k,) each."""
+    low: list[float] = []
+    high: list[float] = []
+    for effect in effects:
+        for coordinate in coordinates_of(effect, plant):
+            ends = _ends(effect, coordinate, plant)
+            count = len(coordinate.read(effect))
+            low += [ends[0]] * count
+            high += [ends[1]] * count
+    return np.array(low, dtype=float), np.array(high, dtype=float)
+
+
+def _ends(effect: Effect, coordinate: Coordinate, plant: Machine) -> tuple[float, float]:
+    if isinstance(coordinate, Sine):
+        return -math.inf, math.inf
+    if isinstance(coordinate, TwoHeats):
+        return 0.0, math.inf
+    parameter = effect.parameter(coordinate.key)
+    least = max(LEAST.get((effect.name, coordinate.key), parameter.minimum), _least_left(effect, plant))
+    if isinstance(coordinate, Logarithmic):
+        return math.log(least) if least > 0 else -math.inf, math.log(parameter.maximum)
+    return least / coordinate.size, parameter.maximum / coordinate.size
+
+
+def _least_left(effect: Effect, plant: Machine) -> float:
+    """Least value of an effect that takes from a declared mass or inertia."""
+    if not isinstance(plant, Plant):
+        return -math.inf
+    if effect.name == "payload":
+        return -(1 - LEFT) * plant.chain_values()["table_mass"]
+    if isinstance(effect, InertiaDeviation):
+        return -(1 - LEFT) * declared_inertia(plant.chain_values(), effect.place)
+    return -math.inf
+
+
+def _absent(coordinate: Coordinate) -> float:
+    """Where the effect is absent in one coordinate; NaN where the coordinate chooses a form."""
+    if isinstance(coordinate, Logarithmic):
+        return 0.0 if coordinate.key in FACTORS else math.nan
+    if isinstance(coordinate, Linear):
+        return math.nan if coordinate.key in FORM else float(coordinate.key in FACTORS) / coordinate.size
+    return 0.0
+
+
+def write_coordinates(effects: Sequence[Effect], plant: Machine, vector: FloatArray) -> list[Effect]:
+    """The effects with the values of the vector, each inside what is physical on the plant."""
+    result, at = [], 0
+    for effect in effects:
+        changed: Effect = effect
+        for coordinate in coordinates_of(effect, plant):
+            count = len(coordinate.read(effect))
+            low, high = _ends(effect, coordinate, plant)
+            inside = [min(max(float(c), low), high) for c in vector[at : at + count]]
+            changed = changed.with_values(**coordinate.write(effect, inside))
+            at += count
+        result.append(changed)
+    return result
+
+
+def numbers(effect: Effect) -> list[str]:
+    """Names of the numbers of an effect's values, tables `key[i]`, in the order of `value_slopes`."""
+    return [
+        name
+        for key, value in effect.values.items()
+        for name in ([f"{key}[{i}]" for i in range(len(value))] if isinstance(value, tuple) else [key])
+    ]
+
+
+def value_slopes(effects: Sequence[Effect], plant: Machine, vector: FloatArray) -> FloatArray:
+    """Exact slope of every number of the effects' values with the coordinates, shape (numbers, k)."""
+    step = 1e-6
+    base = _flat(write_coordinates(effects, plant, vector))
+    up, down = (
+        [(_flat(write_coordinates(effects, plant, vector + way * unit)) - base) / way for unit in np.eye(len(vector))]
+        for way in (step, -step)
+    )
+    # at an end of a parameter's range it moves one way only
+    return np.column_stack([np.where(np.abs(a) >= np.abs(b), a, b) for a, b in zip(up, down, strict=True)])
+
+
+def spread_to_values(
+    effects: Sequence[Effect], plant: Machine, vector: FloatArray, covariance: FloatArray
+) -> list[dict[str, FloatArray]]:
+    """Standard deviation of every fitted value, by the exact slope of the coordinates; a list entry per effect."""
+    jacobian = value_slopes(effects, plant, vector)
+    deviation = np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", jacobian, covariance, jacobian), 0.0))
+    result, at = [], 0
+    for effect in effects:
+        found: dict[str, FloatArray] = {}
+        for key, value in effect.values.items():
+            count = len(value) if isinstance(value, tuple) else 1
+            found[key] = deviation[at : at + count]
+            at += count
+        result.append(found)
+    return result
+
+
+def _flat(effects: Sequence[Effect]) -> FloatArray:
+    numbers: list[float] = []
+    for effect in effects:
+        for value in effect.values.values():
+            numbers += list(value) if isinstance(value, tuple) else [float(value)]
+    return np.array(numbers)
+
+
+def _number(effect: Effect, key: str) -> float:
+    value = effect.values[key]
+    return float(value[0]) if isinstance(value, tuple) else float(value)

@@ -1,0 +1,282 @@
+"""A recording made ready for comparison: motor motion, measured channels in the band, and which samples count."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+from typing import Self
+
+import numpy as np
+
+from feeddrive.diagnosis.likelihood.band import END_CUT, Band, comparison_band, held, sensor_noise
+from feeddrive.diagnosis.likelihood.encoder_error import encoder_error
+from feeddrive.diagnosis.likelihood.slow_rows import is_slow, known_motion, refuse_unknown_motion, sentence
+from feeddrive.diagnosis.suspicion.flawed_rows import refuse_little_left, sound_rows, without_copied_position
+from feeddrive.diagnosis.suspicion.timing import lagging
+from feeddrive.diagnosis.suspicion.torque_channel import with_torque
+from feeddrive.errors import InputError
+from feeddrive.plant.plant import Plant
+from feeddrive.recording import Recording
+from feeddrive.simulate.driven import MotorMotion, motor_motion
+from feeddrive.typing import BoolArray, FloatArray
+
+PREDICTED = ("motor_torque", "table_position")
+"""Channels that are predicted from the measured motor motion."""
+
+SHORTEST = 3.0
+"""Shortest recording [s] that leaves something between the cut ends."""
+
+
+LEAST_ZERO = 1e-4
+"""Difference [m] of the zeros of table and motor that moves the nut: 0.1 mm of screw give way 0.5 nm per kilonewton."""
+
+BLOCK = 0.5
+"""Length of a block of cross-validation [s]: many correlation times of the band, and short against a stroke."""
+
+
+@dataclass(frozen=True, eq=False)
+class Evidence:
+    """One recording, ready for comparison; each is a key of its own.
+
+    Attributes:
+        recording: as read.
+        measured: channel to its series in the band, shape (n,), SI.
+        noise: channel to the rms of its sensor noise in the band.
+        counted: samples that count: not at the ends, and predictable; shape (n,).
+        fitted: samples that parameters are fitted on; the other counted ones are judged; shape (n,).
+        edge: upper edge of the band [Hz].
+        block: length of a block of cross-validation [s].
+        thinning: every how many samples carry all that is in the band.
+        floating: channels whose zero is not known, and taken out of every error.
+        model_error: channel to the rms of what the model itself may miss; channels left out are predicted exactly.
+    """
+
+    recording: Recording
+    measured: dict[str, FloatArray]
+    noise: dict[str, float]
+    counted: BoolArray
+    fitted: BoolArray
+    edge: float
+    block: float
+    thinning: int
+    floating: tuple[str, ...]
+    model_error: dict[str, float]
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Channels that are compared."""
+        return tuple(self.measured)
+
+    @property
+    def motion_speed(self) -> FloatArray:
+        """Speed that tells kinds of motion apart, (n,); 0 where no motion is known."""
+        return np.zeros(len(self.counted))
+
+    @property
+    def fit_rows(self) -> BoolArray:
+        """Samples that count and are fitted."""
+        return self.counted & self.fitted
+
+    @property
+    def judged_rows(self) -> BoolArray:
+        """Samples that count and are not fitted."""
+        return self.counted & ~self.fitted
+
+    def thinned(self, rows: BoolArray) -> BoolArray:
+        """Of these samples, those that carry all that is in the band."""
+        comb = np.zeros(len(rows), dtype=bool)
+        comb[:: self.thinning] = True
+        return rows & comb
+
+    def weighted(self, series: dict[str, FloatArray], rows: BoolArray) -> FloatArray:
+        """Channels at some samples over their noise, without what their sensors leave open, one after the other.
+
+        Args:
+            series: channel to measurement, prediction or their difference, (n,) each.
+            rows: the samples, (n,).
+        """
+        return np.concatenate(
+            [self.without_open(name, self.evened(name, series[name])[rows], rows) for name in self.channels]
+        )
+
+    def known_to(self, name: str) -> float:
+        """Rms of what the sensors add to a channel in the band."""
+        return self.noise[name]
+
+    def evened(self, name: str, series: FloatArray) -> FloatArray:
+        """A channel, (n,), with each frequency weighed by how well it is known there."""
+        return series
+
+    def without_open(self, name: str, part: FloatArray, rows: BoolArray) -> FloatArray:
+        """One channel over its noise, (k,), without what its sensor leaves open: the zero of a scale."""
+        part = part / self.noise[name]
+        return part - np.mean(part) if name in self.floating else part
+
+    def missed(self, name: str) -> float:
+        """Rms of what the model itself may miss of a channel."""
+        return self.model_error.get(name, 0.0)
+
+    def where_predictable(self, predictable: BoolArray) -> Self:
+        """The evidence without the samples that cannot be predicted."""
+        return replace(self, counted=self.counted & predictable)
+
+
+@dataclass(frozen=True, eq=False)
+class AxisEvidence(Evidence):
+    """A recording of motion and torque.
+
+    Attributes:
+        motion: of the motor.
+        band: of the comparison.
+        scaled_from: channel that the motor torque is only proportional to; empty where the torque is known.
+        zero: table position where the motor angle is zero [m], for a chain that depends on it; 0 where it is not known.
+        gains: channel to the gain of each frequency of its whole series, where the encoder's error shows in it.
+        added: channel to the rms in the band that the encoder's error adds to its noise; as `gains`.
+    """
+
+    motion: MotorMotion
+    band: Band
+    scaled_from: str = ""
+    zero: float = 0.0
+    gains: dict[str, FloatArray] = field(default_factory=dict)
+    added: dict[str, float] = field(default_factory=dict)
+
+    def known_to(self, name: str) -> float:
+        """Rms of what sensor and encoder add to a channel in the band."""
+        return math.hypot(self.noise[name], self.added.get(name, 0.0))
+
+    def evened(self, name: str, series: FloatArray) -> FloatArray:
+        """A channel, (n,), with each frequency weighed by sensor noise over that and the encoder's error."""
+        if name not in self.gains:
+            return series
+        known = np.isfinite(series)
+        mean = float(np.mean(series[known])) if known.any() else 0.0  # apart, so that gaps do not make steps
+        filled = np.where(known, series - mean, 0.0)
+        evened: FloatArray = np.fft.irfft(np.fft.rfft(filled) * self.gains[name], len(series))
+        return np.where(known, evened + self.gains[name][0] * mean, series)
+
+    def placed(self, plant: Plant) -> Plant:
+        """The plant with its nut where it stood: simulated positions count from the zero of the motor angle."""
+        return _placed(plant, self.zero)
+
+    @property
+    def motion_speed(self) -> FloatArray:
+        """Speed of the motor [rad/s], (n,)."""
+        return self.motion.speed[self.motion.samples]
+
+    def with_scale(self, scale: float) -> AxisEvidence:
+        """The evidence with its motor torque times `scale`."""
+        name = "motor_torque"
+        channels = {**self.recording.channels, name: scale * self.recording[name]}
+        measured = {**self.measured, name: scale * self.measured[name]}
+        noise = {**self.noise, name: abs(scale) * self.noise[name]}
+        added = {**self.added, name: abs(scale) * self.added[name]} if name in self.added else self.added
+        recording = replace(self.recording, channels=channels)
+        return replace(self, recording=recording, measured=measured, noise=noise, added=added)
+
+
+def prepare(recording: Recording, plant: Plant, share: float, hold: float | None = None) -> AxisEvidence:
+    """Evidence of a recording, its first `share` fitted and the rest judged.
+
+    Args:
+        recording: with a torque, a current or the table position beside the motor angle.
+        plant: whose lead and band apply.
+        share: 1 to fit on all of it, 0 to judge on all of it.
+        hold: how long the drive holds a torque [s]; None for a whole row.
+
+    Raises:
+        InputError: too short, or channels that are needed are missing.
+    """
+    recording = without_copied_position(_with_motor_angle(recording, plant), plant)
+    recording, scaled_from = with_torque(recording, plant)
+    measured_names = [name for name in PREDICTED if name in recording]
+    if not measured_names:
+        mend = "record the motor torque or current, or the table position beside the motor angle"
+        raise InputError("nothing that the motor's motion predicts", recording.name, mend)
+    if recording.duration < SHORTEST:
+        mend = f"record at least {SHORTEST:g} s"
+        raise InputError(f"the recording lasts {recording.duration:.3g} s, too short to compare", recording.name, mend)
+    rate = 1 / recording.sample_time
+    band = comparison_band(plant, rate)
+    time: FloatArray = np.arange(len(recording), dtype=np.float64) * recording.sample_time
+    raw = {name: recording[name] for name in measured_names}
+    slow = is_slow(recording)
+    acting = dict(raw)
+    if "motor_torque" in raw and not slow:
+        acting["motor_torque"] = (
+            held(raw["motor_torque"]) if hold is None else lagging(raw["motor_torque"], hold / 2, recording.sample_time)
+        )
+    counted = (time >= END_CUT) & (time <= time[-1] - END_CUT)
+    if slow:
+        known = known_motion(recording, plant, band)
+        refuse_unknown_motion(known, counted, recording)
+        recording = replace(recording, notes=(*recording.notes, sentence(known, recording)))
+        counted &= known
+    counted &= sound_rows(recording, plant.torque_limit, band)
+    refuse_little_left(counted, recording)
+    noise = {name: sensor_noise(series, band) for name, series in raw.items()}
+    zero = _zero_of_angle(recording, plant)
+    encoder = None if slow else encoder_error(_placed(plant, zero), recording, band, noise)
+    return AxisEvidence(
+        recording,
+        {name: band.filter(series) for name, series in acting.items()},
+        noise,
+        counted,
+        time < share * time[-1] if share < 1 else np.ones(len(time), dtype=bool),
+        band.edge,
+        BLOCK,
+        band.thinning,
+        tuple(name for name in measured_names if name == "table_position"),
+        {},
+        encoder.motion if encoder is not None else motor_motion(time, recording["motor_angle"]),
+        band,
+        scaled_from,
+        zero,
+        encoder.gains if encoder is not None else {},
+        encoder.added if encoder is not None else {},
+    )
+
+
+def _placed(plant: Plant, zero: float) -> Plant:
+    """The plant with its nut a way [m] further along."""
+    if not zero:
+        return plant
+    values = {**plant.chain.values, "first_nut_position": plant.chain.values["first_nut_position"] + zero}
+    return replace(plant, chain=replace(plant.chain, values=values))
+
+
+def _zero_of_angle(recording: Recording, plant: Plant) -> float:
+    """Table position where the motor angle is zero [m], for a chain that depends on where the table stands.
+
+    Raises:
+        InputError: the nut would not be on the screw.
+    """
+    if not plant.chain.varies:
+        return 0.0
+    turned = plant.chain.motor_radius * recording["motor_angle"]
+    measured = "table_position" in recording
+    zero = float(np.median(recording["table_position"] - turned)) if measured else 0.0
+    for position in (float(np.min(turned)) + zero, float(np.max(turned)) + zero):
+        try:
+            plant.chain.refuse_off_screw(position, recording.name)
+        except InputError as error:
+            mend = "record table_position, or shift motor_angle so that it is zero where the table is at 0"
+            if measured:
+                mend = "check zero and unit of table_position, and first_nut_position of the plant"
+            raise InputError(error.what, recording.name, mend) from None
+    return zero if abs(zero) > LEAST_ZERO else 0.0
+
+
+def _with_motor_angle(recording: Recording, plant: Plant) -> Recording:
+    """The recording with a motor angle: where there is no motor encoder, the table stands in for it."""
+    if "motor_angle" in recording:
+        return recording
+    if "table_position" not in recording:
+        raise InputError("neither motor_angle nor table_position", recording.name, "record one of them")
+    if plant.chain.elastic:
+        mend = 'record the motor angle, or declare the plant with structure = "rigid"'
+        raise InputError("no channel motor_angle, and the plant is elastic", recording.name, mend)
+    channels = dict(recording.channels)
+    channels["motor_angle"] = channels.pop("table_position") / plant.chain.motor_radius
+    note = "no motor encoder: the motor angle is taken from the table position"
+    return replace(recording, channels=channels, notes=(*recording.notes, note))

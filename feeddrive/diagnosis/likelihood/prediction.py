@@ -1,0 +1,179 @@
+"""What a plant predicts for a recording, in the band: motor torque and table position from the motor motion alone."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import ClassVar
+
+import numpy as np
+
+from feeddrive.diagnosis.calibration.declared import torque_gain
+from feeddrive.diagnosis.finding.candidates import CANDIDATES
+from feeddrive.diagnosis.finding.materiality import is_material
+from feeddrive.diagnosis.finding.remembered import Remembered
+from feeddrive.diagnosis.finding.scene import AxisScene, Candidate
+from feeddrive.diagnosis.likelihood.evidence import AxisEvidence
+from feeddrive.diagnosis.likelihood.fit import Problem
+from feeddrive.diagnosis.likelihood.predictability import predictable_samples, samples_to_fit
+from feeddrive.diagnosis.likelihood.predictor import Predictor
+from feeddrive.diagnosis.suspicion.timing import lag_of, lagging
+from feeddrive.diagnosis.suspicion.torque_channel import scale_of, scale_sentence
+from feeddrive.effects.base import ChainEffect, DriveEffect, Effect, Kind, Motion, Port, SourceEffect
+from feeddrive.engine.step.step_constants import SimulationError
+from feeddrive.plant.motor_torque import asked_torques
+from feeddrive.plant.plant import Plant
+from feeddrive.simulate.driven import LoadMotion, simulate_driven, unfollowed
+from feeddrive.typing import BoolArray, FloatArray
+
+
+@dataclass
+class AxisPredictor(Predictor[Plant, AxisEvidence]):
+    """Predicts recordings, and remembers what the load side did.
+
+    Not a frozen record: it is a cache.
+
+    Attributes:
+        scaled: fitted recordings whose torque is known but for its scale, which every plant sets for itself.
+        declared_scale: that their torque was brought to [N m per unit of the channel].
+    """
+
+    retries: ClassVar[int] = 1
+
+    scaled: tuple[AxisEvidence, ...] = ()
+    declared_scale: float = 1.0
+    _scales: dict[object, float] = field(default_factory=dict)
+    _runs: Remembered[LoadMotion] = field(default_factory=lambda: Remembered(lambda run: run.size))
+
+    def load_motion(self, plant: Plant, evidence: AxisEvidence) -> LoadMotion:
+        """Motion of the load side, without what acts at the motor alone."""
+        bare = evidence.placed(_load_side(plant))
+        return self._runs.found(evidence.motion, _values_key(bare), lambda: _simulated(bare, evidence))
+
+    def predict(self, plant: Plant, evidence: AxisEvidence) -> dict[str, FloatArray]:
+        """Channel to predicted series in the band, shape (n,), SI."""
+        run = self.load_motion(plant, evidence)
+        torque = torque_gain(plant) * asked_torques(plant, run.torque + motor_sources(plant, run))
+        raw = {"motor_torque": torque, "table_position": run.table_position}
+        step = evidence.recording.sample_time
+        series = {name: evidence.band.filter(raw[name]) for name in evidence.channels}
+        if evidence.scaled_from:
+            series["motor_torque"] *= self.scale(plant)
+        return {name: lagging(one, lag_of(plant, name), step) for name, one in series.items()}
+
+    def scale(self, plant: Plant) -> float:
+        """Factor on the predicted torque that fits the recordings in `scaled` best."""
+        key = _values_key(plant)
+        if key not in self._scales:
+            self._scales[key] = self._fitted_scale(plant)
+        return self._scales[key]
+
+    def _fitted_scale(self, plant: Plant) -> float:
+        measured, predicted = [], []
+        for evidence in self.scaled:
+            rows = evidence.thinned(evidence.fit_rows)
+            unscaled = self.predict(plant, replace(evidence, scaled_from=""))
+            predicted.append(unscaled["motor_torque"][rows])
+            measured.append(evidence.measured["motor_torque"][rows])
+        return scale_of(np.concatenate(measured), np.concatenate(predicted))
+
+    def told(self, before: Plant, after: Plant) -> tuple[str, ...]:
+        """The scale of the torque, where it is fitted."""
+        scales = [self.declared_scale / self.scale(plant) for plant in (before, after)] if self.scaled else []
+        return tuple(scale_sentence(self.scaled[0].scaled_from, *scales) for _ in scales[:1])
+
+    @property
+    def candidates(self) -> tuple[Candidate, ...]:
+        """Effects on motion and torque."""
+        return CANDIDATES
+
+    def scene(self, problem: Problem, found: Sequence[Effect]) -> AxisScene:
+        """Residuals and motion of the load side with the effects found so far."""
+        plant = problem.machine(found)
+        assert isinstance(plant, Plant)
+        residuals, runs = [], []
+        for evidence in problem.evidence:
+            assert isinstance(evidence, AxisEvidence)
+            predicted = self.predict(plant, evidence)
+            residuals.append({name: evidence.measured[name] - predicted[name] for name in evidence.channels})
+            runs.append(self.load_motion(plant, evidence))
+        return AxisScene(problem, tuple(found), tuple(residuals), tuple(runs))
+
+    def smooth(self, plant: Plant) -> bool:
+        """A chain that varies with the table's position is simulated from cell to cell."""
+        return not plant.chain.varies
+
+    def predictable(self, plant: Plant, evidence: AxisEvidence) -> BoolArray:
+        """Samples without chaos."""
+        return predictable_samples(plant, evidence)
+
+    def to_fit(self, plant: Plant, evidence: AxisEvidence) -> BoolArray:
+        """Samples without chaos, and without contacts that the encoder's noise moves."""
+        return samples_to_fit(plant, evidence)
+
+    def variables(self, plant: Plant, evidence: AxisEvidence) -> dict[str, FloatArray]:
+        """Motion that a residual may depend on."""
+        run = self.load_motion(plant, evidence)
+        return {
+            "table_velocity": run.table_velocity,
+            "table_position": run.table_position,
+            "motor_angle": run.motor_angle,
+        }
+
+    def reference(self, name: str, plant: Plant, evidence: AxisEvidence) -> FloatArray:
+        """The torque; of the table its motion beyond lead / 2 pi times the motor's."""
+        rows = evidence.judged_rows
+        if name != "table_position":
+            torque: FloatArray = evidence.measured[name][rows]
+            return torque
+        geared = plant.chain.motor_radius * evidence.band.filter(evidence.recording["motor_angle"])
+        beyond = (evidence.measured[name] - geared)[rows]
+        about_mean: FloatArray = beyond - beyond.mean()
+        return about_mean
+
+    def is_material(self, effect: Effect, plant: Plant) -> bool:
+        """The physical minimum of friction, forces and masses."""
+        return is_material(effect, plant)
+
+
+def motor_sources(plant: Plant, run: LoadMotion) -> FloatArray:
+    """Torque that the sources at the motor ask for [N m], shape (n,)."""
+    motion = Motion(run.motor_angle, run.motor_speed, run.time)
+    total = np.zeros(len(run.time))
+    for effect in plant.effects:
+        if isinstance(effect, SourceEffect) and effect.port == Port.MOTOR:
+            total += np.asarray(effect.force(motion, effect.values), dtype=float).ravel()
+    return total
+
+
+def _simulated(plant: Plant, evidence: AxisEvidence) -> LoadMotion:
+    """The driven simulation; no numbers where the plant cannot be followed with these values."""
+    try:
+        return simulate_driven(plant, evidence.motion)
+    except SimulationError:
+        return unfollowed(evidence.motion)
+
+
+def _load_side(plant: Plant) -> Plant:
+    """The plant as the load side sees it: chain effects in the chain's values, nothing that acts at the motor alone."""
+    kept = tuple(e for e in plant.effects if not (_at_motor_alone(e) or _in_values(e)))
+    values = plant.chain_values()
+    chain = replace(plant.chain, values={key: values[key] for key in plant.chain.values})
+    return replace(plant, chain=chain, effects=kept)
+
+
+def _in_values(effect: Effect) -> bool:
+    """Whether the chain's values hold all that the effect does."""
+    return isinstance(effect, ChainEffect) and not effect.adds_coordinate
+
+
+def _at_motor_alone(effect: Effect) -> bool:
+    """Whether the load side does not notice the effect when the motor motion is given."""
+    if effect.kind == Kind.TIMING or isinstance(effect, DriveEffect):
+        return True
+    return isinstance(effect, SourceEffect) and effect.port == Port.MOTOR
+
+
+def _values_key(plant: Plant) -> object:
+    effects = tuple((e.name, str(e.port), e.place, tuple(e.values.items())) for e in plant.effects)
+    return (tuple(plant.chain.values.items()), effects)

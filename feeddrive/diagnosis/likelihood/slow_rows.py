@@ -1,0 +1,112 @@
+"""Recordings with fewer rows than the drive has cycles: what their torque is, and where the motion is known.
+
+A drive holds its torque for one cycle, so that a recording with one row a cycle tells all of it. Where rows are further
+apart, a row is the torque of that instant, and between two rows the motor may have done anything. Where it was smooth,
+the fourth difference of its angle is small:
+
+    delta a = |D4 theta| / (12 h^2),    delta T = J delta a,    delta x = s delta a
+
+| symbol | meaning | unit |
+|---|---|---|
+| D4 theta | fourth difference of the motor angle over the rows | rad |
+| h | time between rows | s |
+| delta a | error of the acceleration, that of the second difference | rad/s^2 |
+| delta T, delta x | what it misses of the torque, of the table position | N m, m |
+| J | inertia of all that moves, at the motor | kg m^2 |
+| s | how far the table stays behind per acceleration (`feeddrive.plant.chain.moving_inertia`) | m s^2/rad |
+
+Rows at which either is more than the noise of its sensor are left out, and those at which the torque jumps from row to
+row. Valid where what the drive does between rows shows at the rows; a vibration at a multiple of their rate does not.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.ndimage import binary_dilation, uniform_filter1d
+
+from feeddrive.diagnosis.likelihood.band import Band, white_noise
+from feeddrive.errors import InputError
+from feeddrive.plant.chain.moving_inertia import inertia_at_motor, lag_per_acceleration
+from feeddrive.plant.plant import Plant
+from feeddrive.recording import Recording
+from feeddrive.typing import BoolArray, FloatArray
+
+SLOWEST_CYCLE = 2e-3
+"""Cycle of a servo loop at most [s]: those of machine tools take 0.03 to 2 ms."""
+
+ROUGH = 3.0
+"""Rms of fourth differences, as far as the filter reaches, over that of the quietest tenth, beyond which it is no
+noise: five independent ones exceed 2.4 once in 10^5, and the quietest tenth is a fifth below the mean."""
+
+VIBRATION = 2.0
+"""Length of stretches [s] of which nothing is kept where the torque jumps at half of their rows."""
+
+FEWEST_ROWS = 100
+"""Rows with known motion from which an effect can be told from noise at all."""
+
+
+def is_slow(recording: Recording) -> bool:
+    """Whether rows are further apart than any drive's cycles."""
+    return recording.sample_time > SLOWEST_CYCLE * (1 + 1e-6)
+
+
+def known_motion(recording: Recording, plant: Plant, band: Band) -> BoolArray:
+    """Rows of a slow recording at which the motion between rows is known, as far as the filter reaches; (n,).
+
+    Args:
+        recording: with a motor angle.
+        plant: whose inertia and stiffness apply.
+        band: of the comparison.
+    """
+    missed = np.zeros(len(recording))
+    missed[2:-2] = np.abs(np.diff(recording["motor_angle"], 4)) / (12 * recording.sample_time**2)
+    unknown: BoolArray = missed > _least_acceleration(recording, plant)
+    reach = int(np.ceil(band.sample_rate / band.edge))
+    if "motor_torque" in recording:
+        unknown |= _vibrating(recording["motor_torque"], band.sample_rate, reach)
+    return ~np.asarray(binary_dilation(unknown, iterations=reach))
+
+
+def _vibrating(torque: FloatArray, rate: float, reach: int) -> BoolArray:
+    """Rows between which the torque jumps, (n,)."""
+    squares = np.zeros(len(torque))
+    squares[2:-2] = np.diff(torque, 4) ** 2 / 70  # of white noise, its power
+    power = np.maximum(uniform_filter1d(squares, reach), 0.0)  # a running sum loses digits of what is much larger
+    jumps: BoolArray = np.sqrt(power) > ROUGH * white_noise(torque, rate)
+    # a vibration passes a multiple of the rows' rate and looks slow for a moment
+    share = uniform_filter1d(jumps.astype(float), max(1, round(VIBRATION * rate)), mode="nearest")
+    return np.asarray(jumps | (share > 0.5))
+
+
+def _least_acceleration(recording: Recording, plant: Plant) -> float:
+    """Error of the acceleration that shows in a channel [rad/s²]; infinite where none shows it."""
+    rate = 1 / recording.sample_time
+    shown = [np.inf]
+    if "motor_torque" in recording:
+        shown.append(white_noise(recording["motor_torque"], rate) / inertia_at_motor(plant))
+    if "table_position" in recording and plant.chain.elastic:
+        shown.append(white_noise(recording["table_position"], rate) / lag_per_acceleration(plant))
+    return float(min(shown))
+
+
+def refuse_unknown_motion(known: BoolArray, counted: BoolArray, recording: Recording) -> None:
+    """Refuse a recording of which hardly a row is left.
+
+    Raises:
+        InputError: fewer than `FEWEST_ROWS`.
+    """
+    left = int(np.sum(known & counted))
+    if left < FEWEST_ROWS:
+        what = f"the motion between rows {recording.sample_time * 1e3:.3g} ms apart is known at {left} of them"
+        mend = f"record at {1 / SLOWEST_CYCLE:.0f} Hz or more, or a motion of long strokes at constant speed"
+        raise InputError(what, recording.name, mend)
+
+
+def sentence(known: BoolArray, recording: Recording) -> str:
+    """What is to be said of a slow recording."""
+    lost = 100 * (1 - float(np.mean(known)))
+    return (
+        f"rows are {recording.sample_time * 1e3:.3g} ms apart, further than a drive's cycles: a torque is that of its "
+        f"row's instant, {lost:.0f} % of the rows are left out because the motion between them is not known, and "
+        f"nothing faster than {0.1 / recording.sample_time:.3g} Hz is seen"
+    )

@@ -1,0 +1,169 @@
+"""Life of a ball screw or bearing from its rating: revolutions, reliability, equivalent load of a duty.
+
+    L = (C / F)^p   [10^6 rev],      S(N) = exp(-ln(1/0.9) (N / L)^e),      F_m = (sum N_i F_i^p / sum N_i)^(1/p)
+
+| symbol | meaning | unit |
+|---|---|---|
+| C, F | basic dynamic axial rating, axial load | N |
+| L | rated life, which 90 % survive | 10^6 rev |
+| N, N_i | revolutions; in the i-th phase of a duty | rev |
+| S | probability of survival | 1 |
+| p, e | exponents of `feeddrive.parts.life.life_exponents` | 1 |
+| F_m | constant load that is as harmful as the duty | N |
+
+Validity: loads up to half the rating; clean, lubricated contacts; no factor for film or dirt.
+Source: paper 001, eqs. (7), (9) and, for the scatter, (24); the equivalent load is Miner's sum of the same law.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from feeddrive.errors import InputError, ValidityWarning
+from feeddrive.parts.elementary import power
+from feeddrive.parts.life.life_exponents import BALL_SCREW, LifeExponents
+from feeddrive.parts.values import PartValue, check_values
+
+MILLION = 1e6
+"""Revolutions in which rated life is counted."""
+
+HIGHEST_LOAD = 0.5
+"""Load over rating up to which the life law is used in design."""
+
+_SHARE = (PartValue("probability", "1", 0.0, 1.0),)
+_LEAD = (PartValue("lead", "m", 0.0, 1.0),)
+_SPEED = (PartValue("speed", "rad/s", 0.0, 1e6),)
+_TEST = (PartValue("force", "N", 0.0, 1e9), PartValue("revolutions", "1", 0.0, 1e30))
+_LOAD = (PartValue("rating", "N", 0.0, usual=(10.0, 5e6)), PartValue("force", "N", 0.0, open_ends=False))
+
+
+@dataclass(frozen=True)
+class DutyPhase:
+    """A part of a duty: axial force [N], screw speed [rad/s] and duration [s]; signs do not matter."""
+
+    force: float
+    speed: float
+    duration: float
+
+    @property
+    def revolutions(self) -> float:
+        """Revolutions, either way [rev]."""
+        return abs(self.speed * self.duration) / (2.0 * math.pi)
+
+
+def rated_revolutions(rating: float, force: float, exponents: LifeExponents = BALL_SCREW) -> float:
+    """Revolutions that 90 % survive [rev]; infinite without load.
+
+    Args:
+        rating: C [N]; of the double nut for a double nut, see `double_nut_share`.
+        force: F, size of the axial load of every nut, the preload included [N].
+        exponents: of the life law.
+
+    Raises:
+        InputError: a rating that is not positive, a negative force.
+
+    Warns:
+        ValidityWarning: a load above half the rating.
+    """
+    check_values("life", _LOAD, {"rating": rating, "force": force})
+    if force > HIGHEST_LOAD * rating:
+        text = f"life: a load of {force / rating:.2f} of the rating, the life law is trusted up to {HIGHEST_LOAD:g}"
+        warnings.warn(text, ValidityWarning, stacklevel=2)
+    if force == 0.0:
+        return math.inf
+    # As a power of ten, since a tiny load gives more revolutions than a number holds.
+    decades = exponents.load * math.log10(rating / force)
+    return MILLION * 10.0**decades if decades < 300.0 else math.inf
+
+
+def rating_of_test(force: float, revolutions: float, exponents: LifeExponents = BALL_SCREW) -> float:
+    """C [N] of what 90 % survived for `revolutions` [rev] under `force` [N].
+
+    Raises:
+        InputError: a force or revolutions that are not positive.
+    """
+    check_values("life test", _TEST, {"force": force, "revolutions": revolutions})
+    return float(force * (revolutions / MILLION) ** (1.0 / exponents.load))
+
+
+def survival(revolutions: float, rated: float, exponents: LifeExponents = BALL_SCREW) -> float:
+    """Probability S of surviving `revolutions` where 90 % survive `rated` [rev], which may be infinite.
+
+    Raises:
+        InputError: negative revolutions, or a rated life that is not positive.
+    """
+    if not (0.0 <= revolutions < math.inf and rated > 0.0):
+        what = f"{revolutions:g} revolutions of {rated:g} rated ones"
+        raise InputError(what, "life", "write revolutions of 0 or more and a rated life above 0")
+    return math.exp(math.log(0.9) * power(revolutions / rated, exponents.slope))
+
+
+def revolutions_at(probability: float, rated: float, exponents: LifeExponents = BALL_SCREW) -> float:
+    """Revolutions that the share `probability` survives where 90 % survive `rated` [rev].
+
+    Raises:
+        InputError: a probability that does not lie between 0 and 1, or a rated life that is not positive.
+    """
+    check_values("life", _SHARE, {"probability": probability})
+    if not rated > 0.0:
+        raise InputError(f"{rated:g} rated revolutions", "life", "write a rated life above 0")
+    return float(rated * (math.log(probability) / math.log(0.9)) ** (1.0 / exponents.slope))
+
+
+def life_together(lives: Sequence[float], exponents: LifeExponents = BALL_SCREW) -> float:
+    """Life that 90 % of sets of several bodies survive: L^-e is the sum of L_i^-e; infinite where all are.
+
+    Args:
+        lives: rated lives of the bodies, in any unit of work (revolutions, recordings), above 0.
+        exponents: of the life law.
+    """
+    shortest = min(lives)
+    if math.isinf(shortest):
+        return math.inf
+    return float(shortest * sum((life / shortest) ** -exponents.slope for life in lives) ** (-1.0 / exponents.slope))
+
+
+def equivalent_load(duty: tuple[DutyPhase, ...], exponents: LifeExponents = BALL_SCREW) -> float:
+    """F_m [N] of a duty.
+
+    Raises:
+        InputError: a duty that turns the screw nowhere, or a force that is not finite.
+    """
+    if not all(math.isfinite(phase.force) for phase in duty):
+        raise InputError("a force is not finite", "duty", "write it as a number of newtons")
+    total = sum(phase.revolutions for phase in duty)
+    if not (total > 0.0 and math.isfinite(total)):
+        raise InputError("the screw does not turn", "duty", "give one phase a speed and a duration")
+    largest = max(abs(phase.force) for phase in duty) or 1.0
+    mean = sum(phase.revolutions / total * (abs(phase.force) / largest) ** exponents.load for phase in duty)
+    return float(largest * mean ** (1.0 / exponents.load))
+
+
+def distance(revolutions: float, lead: float) -> float:
+    """Travel of the table [m] in `revolutions` [rev] of a screw of this lead [m]; infinite where they are.
+
+    Raises:
+        InputError: negative revolutions, or a lead that is not possible.
+    """
+    check_values("screw", _LEAD, {"lead": lead})
+    _refuse_negative(revolutions)
+    return revolutions * lead
+
+
+def running_time(revolutions: float, speed: float) -> float:
+    """Time [s] for `revolutions` [rev] at a speed [rad/s]; infinite where they are.
+
+    Raises:
+        InputError: negative revolutions, or a speed that is not positive.
+    """
+    _refuse_negative(revolutions)
+    check_values("life", _SPEED, {"speed": speed})
+    return revolutions * 2.0 * math.pi / speed
+
+
+def _refuse_negative(revolutions: float) -> None:
+    if not revolutions >= 0.0:
+        raise InputError(f"{revolutions:g} revolutions", "life", "write 0 or more")

@@ -1,0 +1,41 @@
+"""Torque that a preloaded double nut takes without axial load.
+
+    T_a = t_n F_0 L / 2 pi,     t_n = 1/eta_a - eta_b
+
+| symbol | meaning | unit |
+|---|---|---|
+| T_a | preload torque, to hold the nut or to turn the screw | N m |
+| F_0 | preload | N |
+| L | lead | m |
+| t_n | torque over that of an ideal screw with the axial load F_0 | 1 |
+| eta_a, eta_b | efficiencies of the nut that the screw drives, and of the one that drives the screw | 1 |
+
+Slow, dry or little lubricated: no viscous torque is in it. Linear in F_0.
+Source: paper 000, eq. (7). The available text has "- f_a" beside the first fraction; it belongs in its denominator.
+"""
+
+from __future__ import annotations
+
+import math
+
+from feeddrive.parts.screw.screw_efficiency import back_driving_loss, driving_loss
+from feeddrive.parts.screw.slip_angle import Groove
+from feeddrive.typing import Expression
+
+
+def relative_preload_torque(
+    groove: Groove, friction: Expression, friction_back: Expression | None = None
+) -> Expression:
+    """t_n for the friction f_a of the driven nut and f_b of the driving one (equal if not given)."""
+    other = friction if friction_back is None else friction_back
+    return driving_loss(groove, friction) + back_driving_loss(groove, other)
+
+
+def ideal_torque(force: Expression, lead: Expression) -> Expression:
+    """F L / 2 pi [N m]: torque of a screw without friction, for an axial force [N] and a lead [m]."""
+    return force * lead / (2 * math.pi)
+
+
+def preload_torque(groove: Groove, friction: Expression, preload: Expression, lead: Expression) -> Expression:
+    """T_a [N m] at a preload [N] and a lead [m]."""
+    return relative_preload_torque(groove, friction) * ideal_torque(preload, lead)

@@ -1,0 +1,292 @@
+"""The three-inertia machine that is nearest to a machine with a distributed screw, at one table position.
+
+With the motor held, a force on the table and a torque on the screw at the nut move these two by the compliance
+
+    H(s) = H_0 - s H_1 + ...,    H_0 = K^-1,  H_1 = K^-1 C K^-1    at the nut's angle and the table
+
+Drive, screw and nut act in series, so that H_0 and H_1 of the machine have the form of three inertias, and
+
+    1 / k_TS = H_0[phi, phi],    1 / k_XS = H_0[x, x] - r^2 / k_TS
+    c_TS = k_TS^2 H_1[phi, phi], c_XS = k_XS^2 (H_1[x, x] - r^2 H_1[phi, phi])
+
+give the static deflection of table and screw exactly, and to first order in frequency what is dissipated. Table mass,
+ratio and lead are the machine's. All that turns is J = i^2 J_m + J_s, exactly, so that a torque accelerates both alike.
+One value is left, the share of J that turns with the screw. It is the one for which
+
+    (ln f_held / f_held,machine)^2 + (ln f_free / f_free,machine)^2
+
+is least over the first anti-resonance (motor held) and the first resonance (motor free). By Rayleigh a frequency is off
+by half the relative error of its mode's kinetic energy, so that this is the share with the least error of the kinetic
+energy of the two lowest modes.
+
+Valid up to the first resonance, at this position: the second modes are told beside the machine's and need not agree.
+A machine whose first mode is not the table on its springs (a table lighter than the screw) is told by its errors.
+
+| symbol | meaning | unit |
+|---|---|---|
+| k_TS, c_TS | torsional stiffness and damping, motor to nut, at the screw | N m/rad, N m s/rad |
+| k_XS, c_XS | axial stiffness and damping of bearings, screw and nut | N/m, N s/m |
+| J_m, J_s, i | inertia at the motor, of the screw; motor turns per screw turn | kg m^2, kg m^2, 1 |
+| r | lead / 2 pi | m/rad |
+
+Source: series of axial and torsional chain, paper 004, eqs. (6)-(8); Rayleigh's quotient for the inertias.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+
+from feeddrive.effects.base import ChainEffect, Effect
+from feeddrive.effects.transmission.preload_loss import PreloadLoss
+from feeddrive.effects.transmission.stiffness_vs_position import StiffnessVsPosition
+from feeddrive.errors import InputError
+from feeddrive.plant.analysis.modes import braked_modes, free_modes
+from feeddrive.plant.analysis.stiffness_budget import nut_stiffness, stiffness_budget
+from feeddrive.plant.chain.chain import ThreeInertias
+from feeddrive.plant.chain.drive_values import without_brake
+from feeddrive.plant.chain.moving_inertia import inertia_at_motor
+from feeddrive.plant.chain.resolution import resolved_modes
+from feeddrive.plant.file.entries import parse_toml
+from feeddrive.plant.file.lumped_text import lumped_text
+from feeddrive.plant.plant import Plant
+from feeddrive.typing import FloatArray
+
+LEAST_SHARE = 1e-3
+"""Of the turning inertia that motor and screw keep at least: none of the three may be without mass."""
+
+_TRIED = 60  # shares from which the best is refined; the sum is smooth, with one minimum on machines
+
+
+@dataclass(frozen=True)
+class Compared:
+    """A figure of the machine, and of the three inertias: name, unit, both values [unit]."""
+
+    name: str
+    unit: str
+    machine: float
+    lumped: float
+
+    @property
+    def error(self) -> float:
+        """Relative error of the three inertias."""
+        return self.lumped / self.machine - 1
+
+
+@dataclass(frozen=True)
+class Lumped:
+    """A machine as three inertias.
+
+    Attributes:
+        plant: the three inertias, as read from `text`.
+        position: of the table, for which they hold [m].
+        compared: what agrees, and how well.
+        left_out: what three inertias do not have, in sentences.
+        text: the plant file.
+    """
+
+    plant: Plant
+    position: float
+    compared: tuple[Compared, ...]
+    left_out: tuple[str, ...]
+    text: str
+
+
+def lump(plant: Plant, position: float, further: tuple[str, ...] = ()) -> Lumped:
+    """The three-inertia machine nearest to `plant` with its table at `position` [m].
+
+    Args:
+        plant: an elastic machine.
+        position: of the table [m].
+        further: what the caller knows to be left out besides, in sentences.
+
+    Raises:
+        InputError: a rigid machine, or the nut would not be on the screw.
+    """
+    if not plant.chain.elastic:
+        raise InputError("a rigid machine has nothing to lump", plant.name, "name a machine with elastic parts")
+    plant.chain.refuse_off_screw(position, plant.name)
+    bare = _bare(plant)
+    values = _chain_values(bare, position)
+    model = replace(bare, chain=ThreeInertias(values), effects=(), drive=None)
+    compared = _compared(bare, model, position)
+    effects, remarks = _effects(plant, values)
+    left_out = (*_left_out(plant, bare, position), *further)
+    text = lumped_text(plant, values, effects, remarks, _heading(plant, position, compared, left_out))
+    made = _read(text, plant)
+    return Lumped(made, position, compared, left_out, text)
+
+
+def _read(text: str, plant: Plant) -> Plant:
+    from feeddrive.plant.file.files import plant_from_entries  # the reader of files imports plants
+
+    return plant_from_entries(parse_toml(text, f"{plant.name}, lumped"), Path(f"{plant.name}, lumped"))
+
+
+def _bare(plant: Plant) -> Plant:
+    """Chain and chain effects alone, the motor held ideally where it is held."""
+    kept = tuple(e for e in plant.effects if isinstance(e, ChainEffect) and not e.adds_coordinate)
+    return replace(plant, effects=kept, drive=without_brake(plant.drive) if plant.drive is not None else None)
+
+
+def _chain_values(bare: Plant, position: float) -> dict[str, float]:
+    p = bare.chain_values()
+    K, C, M = (
+        np.array(matrix(p, position), dtype=float)
+        for matrix in (bare.chain.stiffness, bare.chain.damping, bare.chain.mass)
+    )
+    nut = bare.chain.screw(p)[1:], bare.chain.table(p)[1:]
+    static, first = _compliances(K[1:, 1:], C[1:, 1:], np.array(nut, dtype=float))
+    r, rigid = bare.chain.radius, np.array(bare.chain.rigid_motion(p), dtype=float)
+    torsional, axial = 1 / static[0, 0], 1 / (static[1, 1] - r**2 * static[0, 0])
+    ratio = bare.chain.radius / bare.chain.motor_radius
+    turning = (float(rigid @ M @ rigid) - p["table_mass"]) * r**2
+    values = {
+        "lead": p["lead"],
+        "motor_inertia": 0.0,
+        "screw_inertia": 0.0,
+        "torsional_stiffness": torsional,
+        "torsional_damping": torsional**2 * first[0, 0],
+        "axial_stiffness": axial,
+        "axial_damping": axial**2 * (first[1, 1] - r**2 * first[0, 0]),
+        "table_mass": p["table_mass"],
+    }
+    values |= {"ratio": ratio} if abs(ratio - 1) > 1e-12 else {}
+    share = _screw_share(bare, values, turning, ratio, position)
+    return _shared(values, turning, ratio, share)
+
+
+def _compliances(K: FloatArray, C: FloatArray, rows: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """H_0 and H_1 at the nut's angle and the table, shape (2, 2) each."""
+    size = 1 / np.sqrt(np.diag(K))  # of the coordinates: the matrix spans nine decades
+    moved = size[:, None] * np.linalg.solve(size[:, None] * K * size, (rows * size).T)
+    return rows @ moved, moved.T @ C @ moved
+
+
+def _shared(values: Mapping[str, float], turning: float, ratio: float, share: float) -> dict[str, float]:
+    split = {"motor_inertia": (1 - share) * turning / ratio**2, "screw_inertia": share * turning}
+    return {**values, **split}
+
+
+def _screw_share(bare: Plant, values: Mapping[str, float], turning: float, ratio: float, position: float) -> float:
+    """Share of the turning inertia that is the screw's."""
+    wanted = np.log(_first_modes(bare, position))
+
+    def missed(share: float) -> float:
+        model = Plant("three inertias", ThreeInertias(_shared(values, turning, ratio, share)))
+        return float(np.sum((np.log(_first_modes(model, position)) - wanted) ** 2))
+
+    tried = np.linspace(LEAST_SHARE, 1 - LEAST_SHARE, _TRIED)
+    best = int(np.argmin([missed(float(share)) for share in tried]))
+    ends = float(tried[max(best - 1, 0)]), float(tried[min(best + 1, _TRIED - 1)])
+    return float(minimize_scalar(missed, bounds=ends, method="bounded", options={"xatol": 1e-7}).x)
+
+
+def _first_modes(plant: Plant, position: float) -> FloatArray:
+    """First anti-resonance and first resonance [Hz], shape (2,)."""
+    if isinstance(plant.chain, ThreeInertias):
+        return np.array([braked_modes(plant).frequencies[0], free_modes(plant).frequencies[1]])
+    found = resolved_modes(plant, position, 1)
+    return np.array([found.braked.frequencies[0], found.free.frequencies[1]])
+
+
+def _compared(machine: Plant, model: Plant, position: float) -> tuple[Compared, ...]:
+    there, here = resolved_modes(machine, position, 2), resolved_modes(model, position, 2)
+    of, by = stiffness_budget(machine, position), stiffness_budget(model, position)
+    rows = [
+        Compared("static stiffness at the table, motor held", "N/m", of.total, by.total),
+        Compared("torsional stiffness, felt at the table", "N/m", of.torsional, by.torsional),
+        Compared("axial stiffness", "N/m", of.axial, by.axial),
+        Compared(
+            "inertia at the motor", "kg m^2", inertia_at_motor(machine, position), inertia_at_motor(model, position)
+        ),
+    ]
+    names = ("first", "second")
+    for i, name in enumerate(names):
+        pair = there.braked.frequencies[i], here.braked.frequencies[i]
+        rows.append(Compared(f"{name} anti-resonance, motor held", "Hz", *map(float, pair)))
+    for i, name in enumerate(names):
+        pair = there.free.frequencies[i + 1], here.free.frequencies[i + 1]
+        rows.append(Compared(f"{name} resonance, motor free", "Hz", *map(float, pair)))
+    for kind, a, b in (("held", there.braked, here.braked), ("free", there.free, here.free)):
+        i = 0 if kind == "held" else 1
+        if a.damping[i] > 0:
+            rows.append(Compared(f"damping ratio of the first mode, motor {kind}", "1", float(a.damping[i]),
+                                 float(b.damping[i])))  # fmt: skip
+    return tuple(rows)
+
+
+def _effects(plant: Plant, values: Mapping[str, float]) -> tuple[tuple[Effect, ...], tuple[str, ...]]:
+    """The effects that stay effects, and where their values come from."""
+    nut = nut_stiffness(plant)
+    kept, remarks = [], []
+    for effect in plant.effects:
+        if isinstance(effect, ChainEffect) and not effect.adds_coordinate:
+            continue
+        made = _on_axial_spring(effect, nut, values["axial_stiffness"])
+        sources = dict.fromkeys(plant.origins.get(f"{effect.label}.{key}", "") for key in effect.values)
+        remark = "; ".join(source for source in sources if source)
+        if made is not effect:
+            remark = f"of the nut's spring, converted to the axial one; {remark}".rstrip("; ")
+        kept.append(made)
+        remarks.append(remark)
+    return tuple(kept), tuple(remarks)
+
+
+def _on_axial_spring(effect: Effect, nut: float, axial: float) -> Effect:
+    """A law of the nut's spring as one of the axial spring of three inertias, in which the nut is in series.
+
+    A nut softer by the factor a makes the axial spring softer by 1 / (1 + (1 / a - 1) k_XS / k_N).
+    """
+
+    def softened(factor: float) -> float:
+        return 1 / (1 + (1 / factor - 1) * axial / nut)
+
+    if isinstance(effect, PreloadLoss):
+        return effect.with_values(ratio=softened(float(effect.values["ratio"])))  # type: ignore[arg-type]
+    if isinstance(effect, StiffnessVsPosition):
+        share = float(effect.values["share_over_stroke"])  # type: ignore[arg-type]
+        return effect.with_values(share_over_stroke=1 - softened(1 - share))
+    return effect
+
+
+def _left_out(plant: Plant, bare: Plant, position: float) -> tuple[str, ...]:
+    lines = []
+    if plant.chain.varies and plant.stroke is not None:
+        ends = [stiffness_budget(bare, x).total * 1e-6 for x in plant.stroke]
+        here = stiffness_budget(bare, position).total * 1e-6
+        lines.append(
+            f"stiffness along the stroke: {ends[0]:.4g} N/µm at its low and {ends[1]:.4g} N/µm at its high end, "
+            f"{here:.4g} N/µm here and everywhere in this file"
+        )
+    if plant.drive is not None:
+        lines.append("parts, and what is checked of them: critical speed and buckling of the screw, rated life")
+        if plant.drive.motor.brake is not None:
+            lines.append("the brake: a held motor is held ideally")
+    merged = [e.label for e in plant.effects if isinstance(e, ChainEffect) and not e.adds_coordinate]
+    if merged:
+        lines.append(f"{', '.join(merged)} as effects: they are in the values")
+    return tuple(lines)
+
+
+def _heading(plant: Plant, position: float, compared: tuple[Compared, ...], left_out: tuple[str, ...]) -> list[str]:
+    """What the comments of the file say."""
+    scale = {"N/m": (1e-6, "N/µm"), "1": (100.0, "%")}
+    lines = [
+        f"{plant.name} as three inertias with the table at {1e3 * position:g} mm, written by `feeddrive lump`.",
+        "Valid up to the first resonance, near this position.",
+        "",
+        "machine -> this file:",
+    ]
+    for row in compared:
+        factor, unit = scale.get(row.unit, (1.0, row.unit))
+        told = f"{row.machine * factor:.5g} -> {row.lumped * factor:.5g} {unit}"
+        lines.append(f"  {row.name}: {told} ({100 * row.error:+.2f} %)")
+    lines += ["", "Not in this file:", *(f"  {line}" for line in left_out)] if left_out else []
+    assert all(math.isfinite(row.lumped) for row in compared)
+    return lines

@@ -1,0 +1,104 @@
+"""A distributed screw with as many coordinates as a frequency needs, and how far the declared chain holds.
+
+The chain of a plant file has one or two elements of the screw, which is what its simulations use. Where frequencies are
+asked for, the screw gets as many standing waves as they need (`feeddrive.plant.chain.standing_waves`), so that what is
+shown is the machine's. Other structures are what they are: they come back as they went in.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from feeddrive.plant.analysis.modes import Modes, braked_modes, free_modes
+from feeddrive.plant.chain.distributed_screw import DistributedScrew
+from feeddrive.plant.chain.drive_values import hubs_between
+from feeddrive.plant.chain.standing_waves import ScrewWithWaves, waves_needed
+from feeddrive.plant.plant import Plant
+
+ACCURACY = 0.005
+"""Relative error that the standing waves left out may make of a frequency; a bound, and far from reached by most."""
+
+GOOD = 0.01
+"""Relative error up to which a mode of the declared chain counts as right: a modal test tells a frequency to that."""
+
+FIRST = 4
+"""Modes of each kind that people ask for: a cutting process and a servo loop meet no higher ones."""
+
+_ROUNDS = 8  # waves lower frequencies, which then need no more of them: two or three do
+
+
+@dataclass(frozen=True)
+class ResolvedModes:
+    """Modes of the machine at one table position.
+
+    Attributes:
+        coordinates: rows of the shapes.
+        braked, free: the first ones; the free motion of the whole axis is counted beside them.
+        chain_valid_to: frequency of the highest mode up to which all modes of the declared chain are right to `GOOD`
+            [Hz]; infinite where nothing is left out of it, 0 where the first one is further off.
+    """
+
+    coordinates: tuple[str, ...]
+    braked: Modes
+    free: Modes
+    chain_valid_to: float
+
+
+def resolved(plant: Plant, frequency: float, positions: Sequence[float]) -> Plant:
+    """The plant with a screw that holds up to a frequency.
+
+    Args:
+        plant: the machine.
+        frequency: highest that is asked for [Hz].
+        positions: of the table [m].
+    """
+    chain = plant.chain.without_modes
+    if not isinstance(chain, DistributedScrew):
+        return plant
+    bare = DistributedScrew(plant.chain_values())
+    waves = max(waves_needed(bare, frequency, x, ACCURACY) for x in positions)
+    hubs = hubs_between(plant.drive) if plant.drive is not None else ()
+    return replace(plant, chain=ScrewWithWaves(chain.values, 1, waves, hubs))
+
+
+def resolved_modes(plant: Plant, position: float, count: int = FIRST) -> ResolvedModes:
+    """The first modes of the machine with the table at `position` [m].
+
+    Args:
+        plant: the machine.
+        position: of the table [m].
+        count: modes of each kind; fewer where the declared chain has fewer.
+
+    Raises:
+        InputError: the nut would not be on the screw.
+    """
+    own = _first(braked_modes(plant, position), count), _first(free_modes(plant, position), count + 1)
+    if not isinstance(plant.chain.without_modes, DistributedScrew):
+        return ResolvedModes(plant.chain.coordinates, *own, float("inf"))
+    counts = [len(modes.frequencies) for modes in own]
+    highest = max(float(modes.frequencies[-1]) for modes in own)
+    for _ in range(_ROUNDS):
+        fine = resolved(plant, highest, [position])
+        found = [_first(modes(fine, position), n) for modes, n in zip((braked_modes, free_modes), counts, strict=True)]
+        reached, highest = highest, max(float(modes.frequencies[-1]) for modes in found)
+        if highest <= reached:  # it held up to there
+            break
+    return ResolvedModes(fine.chain.coordinates, found[0], found[1], _valid_to(own, found))
+
+
+def _first(modes: Modes, count: int) -> Modes:
+    return replace(
+        modes, frequencies=modes.frequencies[:count], damping=modes.damping[:count], shapes=modes.shapes[:, :count]
+    )
+
+
+def _valid_to(own: Sequence[Modes], found: Sequence[Modes]) -> float:
+    """The highest mode up to which both kinds of modes are right [Hz]."""
+    pairs = [
+        (a.frequencies[b.frequencies > 0], b.frequencies[b.frequencies > 0]) for a, b in zip(own, found, strict=True)
+    ]
+    wrong = min((float(b[i]) for a, b in pairs for i in np.flatnonzero(np.abs(a / b - 1) > GOOD)), default=np.inf)
+    return max((float(f) for _, b in pairs for f in b if f < wrong), default=0.0)

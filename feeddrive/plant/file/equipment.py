@@ -1,0 +1,75 @@
+"""What a plant file declares around the mechanics: sensors and the controller."""
+
+from __future__ import annotations
+
+import re
+
+from feeddrive.errors import InputError
+from feeddrive.plant.file.entries import Table
+from feeddrive.plant.plant import DeclaredCascade, PositionVelocityController, Sensor
+from feeddrive.recording.channels import channel_unit
+
+SENSOR_KINDS = ("encoder", "scale", "tachometer", "current")
+SENSOR_PLACES = ("motor", "screw", "table")
+_SENSOR_KEYS = ("channel", "kind", "at", "resolution", "absolute", "source")
+_OF_HEAT = re.compile(r".*_temperature|table_growth_.*")
+_CONTROLLER_UNITS = {
+    "position_gain": "1/s",
+    "velocity_gain": "V s/m",
+    "output_limit": "V",
+    "torque_per_output": "N m/V",
+}
+MOST_SAMPLES = 64
+"""Over which a controller may take the difference of positions for its velocity."""
+
+
+def read_sensors(top: Table) -> tuple[Sensor, ...]:
+    """The declared sensors of a plant file, resolutions in the SI unit of their channel.
+
+    Raises:
+        InputError: unknown key, channel, kind or place, a negative resolution, or a channel declared twice.
+    """
+    sensors: list[Sensor] = []
+    for table in top.tables("sensor"):
+        if "thermal" in top.entries and _OF_HEAT.fullmatch(str(table.entries.get("channel"))):
+            continue  # `feeddrive.thermal.file.sensor_sections` reads it
+        sensor = _sensor(table)
+        if any(sensor.channel == other.channel for other in sensors):
+            raise InputError(f"{sensor.channel} is declared twice", table.where, "keep one of them")
+        sensors.append(sensor)
+    return tuple(sensors)
+
+
+def _sensor(table: Table) -> Sensor:
+    table.refuse_unknown(_SENSOR_KEYS)
+    channel = table.text("channel")
+    unit = channel_unit(channel, table.place("channel"))
+    resolution = 0.0
+    if "resolution" in table.entries:
+        resolution = table.quantity("resolution", unit, f"{channel}.resolution")
+    if resolution < 0:
+        raise InputError("the resolution is negative", table.place("resolution"), "write it positive")
+    absolute = table.entries.get("absolute", False)
+    if not isinstance(absolute, bool):
+        raise InputError(f"{absolute!r} is neither true nor false", table.place("absolute"), "write absolute = true")
+    return Sensor(channel, table.choice("kind", SENSOR_KINDS), table.choice("at", SENSOR_PLACES), resolution, absolute)
+
+
+def read_controller(top: Table) -> PositionVelocityController | DeclaredCascade | None:
+    """The declared controller of a plant file, SI; None where there is none.
+
+    Raises:
+        InputError: unknown key or kind, a value missing, without unit, or not above zero.
+    """
+    if "controller" not in top.entries:
+        return None
+    table = top.table("controller")
+    if table.choice("kind", ("position_velocity", "cascade")) == "cascade":
+        return DeclaredCascade({key: value for key, value in table.entries.items() if key != "kind"}, table.where)
+    table = table.of_kind("position_velocity")
+    table.refuse_undeclared()
+    values = {key: table.quantity(key, unit, f"controller.{key}") for key, unit in _CONTROLLER_UNITS.items()}
+    for key, value in values.items():
+        if value <= 0:
+            raise InputError(f"{value:g} is not above zero", table.place(key), "write a positive value")
+    return PositionVelocityController(**values, velocity_samples=table.whole("velocity_samples", 0, MOST_SAMPLES, 0))

@@ -1,0 +1,167 @@
+"""The [guide] of a plant file: which carriages, how many, what loads them, and the friction that follows.
+
+[guide]
+carriage = "HSR-30R"            # a known one, or its geometry in place of the name:
+ball_diameter = "5.556 mm"
+rail_conformity = 0.52          # groove radius over ball diameter
+carriage_conformity = 0.52
+contact_angle = "45 deg"
+preload_oversize = "5 µm"       # ball oversize; 0 for none
+balls_per_row = 12              # under load
+carriages = 4
+seal_drag = "6 N"               # of one carriage; may be left out
+load = "500 N"                  # vertical load of one carriage; may be left out: the table's weight, shared evenly
+coefficients = "A"              # of rolling and slip: set A or B; may be left out
+smoothing_velocity = "0.5 mm/s" # may be left out
+
+or a carriage of the catalogue, whose geometry is not published (`feeddrive.parts.guide.guide_rating`):
+
+carriage = "HGH25HA"
+carriages = 4
+preload_class = "Z0"            # may be left out: the lightest
+preload = "420 N"               # in place of that of the class
+friction_coefficient = 0.004    # as seal_drag, load and smoothing_velocity: may be left out
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+from feeddrive.effects.base import Effect
+from feeddrive.effects.friction.guide_friction import GuideFriction, guide_effect
+from feeddrive.errors import InputError
+from feeddrive.parts.catalogue.reading import CataloguePart, catalogue, nearest_names
+from feeddrive.parts.guide.guide_coefficients import SET_A, SET_B
+from feeddrive.parts.guide.guide_geometry import GUIDE_VALUES, HSR_20R, HSR_30R, BallGuide
+from feeddrive.parts.guide.guide_rating import rated_friction
+from feeddrive.plant.file.drive_sections import placed
+from feeddrive.plant.file.entries import Table
+from feeddrive.units.quantity import format_quantity, parse
+
+CARRIAGES = {"HSR-20R": HSR_20R, "HSR-30R": HSR_30R}
+"""Carriages whose geometry is published, by their name."""
+
+COEFFICIENTS = {"A": SET_A, "B": SET_B}
+_GEOMETRY = tuple(value.key for value in GUIDE_VALUES)
+_SHARED = ("carriage", "carriages", "seal_drag", "smoothing_velocity", "load", "source")
+_OF_GEOMETRY = (*_SHARED, "coefficients", *_GEOMETRY)
+_OF_RATING = (*_SHARED, "preload_class", "preload", "friction_coefficient")
+
+MOST = 1000
+"""Of carriages, and of balls in a row."""
+
+TURNING = 5e-4
+"""Where tanh of the guide friction turns unless it is said [m/s]."""
+
+
+def guide_friction_of(top: Table, gravity: float, before: Sequence[Effect]) -> list[tuple[Effect, str]]:
+    """The guide friction of a plant file and where it comes from; none without a [guide].
+
+    Args:
+        top: the file.
+        gravity: acceleration of fall [m/s^2].
+        before: effects that it declares itself.
+
+    Raises:
+        InputError: a value that is missing, without unit or not possible, or friction declared twice.
+    """
+    if "guide" not in top.entries:
+        return []
+    table = top.table("guide")
+    if any(isinstance(effect, GuideFriction) for effect in before):
+        raise InputError("guide and guide_friction are both declared", table.where, "keep one of them")
+    if "carriage" in table.entries and table.text("carriage") in _rated():
+        return [_rated_friction(top, gravity)]
+    table.refuse_unknown(_OF_GEOMETRY)
+    name, guide = _carriage(table)
+    coefficients = COEFFICIENTS[table.choice("coefficients", COEFFICIENTS, "A")]
+    count = table.whole("carriages", 1, MOST)
+    seal = table.quantity("seal_drag", "N", "guide.seal_drag") if "seal_drag" in table.entries else 0.0
+    load, turning = _load(top, gravity, count), TURNING
+    if "smoothing_velocity" in table.entries:
+        turning = table.quantity("smoothing_velocity", "m/s", "guide.smoothing_velocity")
+    effect = placed(table.where, lambda: guide_effect(guide, coefficients, count, load, seal, turning))
+    origin = f"computed from {count} carriages {name} with {format_quantity(load, 'N')} and seals of"
+    return [(effect, f"{origin} {format_quantity(seal, 'N')} each")]
+
+
+def _carriage(table: Table) -> tuple[str, BallGuide]:
+    """Name and geometry: a known carriage, or one whose geometry is written."""
+    written = [key for key in _GEOMETRY if key in table.entries]
+    if "carriage" in table.entries and written:
+        mend = "keep the name of a known carriage, or its geometry"
+        raise InputError(f"carriage and {written[0]} are both given", table.where, mend)
+    if not written:
+        name = table.text("carriage")
+        if name not in CARRIAGES:
+            raise InputError(f'no carriage "{name}"', table.place("carriage"), _known_carriages(name))
+        return name, CARRIAGES[name]
+    balls = table.whole("balls_per_row", 1, MOST)
+    size = {v.key: table.quantity(v.key, v.unit, f"guide.{v.key}") for v in GUIDE_VALUES if v.key != "balls_per_row"}
+    return "as written", placed(
+        table.where,
+        lambda: BallGuide(
+            size["ball_diameter"], size["rail_conformity"], size["carriage_conformity"], size["contact_angle"],
+            size["preload_oversize"], balls,
+        ),
+    )  # fmt: skip
+
+
+def _known_carriages(name: str) -> str:
+    """The remedy for an unknown carriage: those that are near, those whose geometry is known, or a geometry."""
+    near = ", ".join(nearest_names(name, "guide"))
+    guess = f"near in the catalogue are {near}; " if near else ""
+    known = f"of {', '.join(CARRIAGES)} the geometry is known"
+    return f"{guess}{known}; or write a geometry in place of the name: {', '.join(_GEOMETRY)}"
+
+
+def _rated() -> Mapping[str, CataloguePart]:
+    """Carriages of the catalogue by their name."""
+    return {name: part for name, part in catalogue().items() if part.kind == "guide"}
+
+
+def _rated_friction(top: Table, gravity: float) -> tuple[Effect, str]:
+    """Friction of carriages of the catalogue, from load, preload and seals, and where it comes from."""
+    table = top.table("guide")
+    table.refuse_unknown(_OF_RATING)
+    part = _rated()[table.text("carriage")]
+    count = table.whole("carriages", 1, MOST)
+    drag = _or_printed(table, "seal_drag", part.sections["guide"]["seal_drag"])
+    coefficient = _or_printed(table, "friction_coefficient", part.further["friction_coefficient"])
+    load, preload = _load(top, gravity, count), _preload(table, part)
+    turning = table.quantity("smoothing_velocity") if "smoothing_velocity" in table.entries else TURNING
+    one = placed(table.where, lambda: rated_friction(load, preload, coefficient, drag))
+    shown = f"{format_quantity(load, 'N')} and a preload of {format_quantity(preload, 'N')} each"
+    origin = f"computed from {count} carriages {part.name} under {shown}; {part.source}"
+    return GuideFriction.of(coulomb=count * one, smoothing_velocity=turning), origin
+
+
+def _preload(table: Table, part: CataloguePart) -> float:
+    """Of one carriage [N]: written, or that of its class."""
+    if "preload" in table.entries:
+        return table.quantity("preload", "N", "guide.preload")
+    shares = part.further["preload_share"]
+    name = table.text("preload_class", next(iter(shares)))
+    if name not in shares:
+        raise InputError(f'no class "{name}"', table.place("preload_class"), f"write one of {', '.join(shares)}")
+    if "dynamic_rating" not in part.further:
+        what = f"of {part.name} the catalogue's dynamic rating is not known, of which a preload class is a share"
+        raise InputError(what, table.place("preload"), 'write the preload of one carriage, such as preload = "400 N"')
+    return float(shares[name] * parse(part.further["dynamic_rating"], "N", part.name))
+
+
+def _or_printed(table: Table, key: str, printed: object) -> float:
+    """A value that is written, or that of the catalogue."""
+    if key in table.entries:
+        return table.quantity(key, "", f"guide.{key}")
+    return parse(printed, "1" if key == "friction_coefficient" else "N", key)
+
+
+def _load(top: Table, gravity: float, count: int) -> float:
+    """Vertical load of one carriage [N]: written, or the table's weight across the guide, shared evenly."""
+    guide, table = top.table("guide"), top.table("table")
+    if "load" in guide.entries:
+        return guide.quantity("load", "N", "guide.load")
+    angle = table.quantity("inclination", "rad", "table.inclination") if "inclination" in table.entries else 0.0
+    return table.quantity("mass", "kg", "table_mass") * gravity * math.cos(angle) / count

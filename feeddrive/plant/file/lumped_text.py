@@ -1,0 +1,115 @@
+"""A machine of three inertias as the text of a plant file."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from feeddrive.effects.base import Effect
+from feeddrive.plant.chain.chain import ThreeInertias
+from feeddrive.plant.file.effect_text import plant_text_with_effects
+from feeddrive.plant.file.ratings import RATINGS
+from feeddrive.plant.plant import DeclaredCascade, Plant, PositionVelocityController
+from feeddrive.recording.channels import channel_unit
+
+_SHOWN = {"N/m": (1e-6, "N/µm"), "m": (1e3, "mm")}
+"""Units in which the files of this project write a value."""
+
+_SECTIONS = ("motor", "ball_screw", "transmission", "table")
+
+
+def lumped_text(
+    plant: Plant, values: Mapping[str, float], effects: Sequence[Effect], remarks: Sequence[str], heading: Sequence[str]
+) -> str:
+    """The plant file of three inertias that stand for a machine.
+
+    Args:
+        plant: the machine, for what is carried over as it is: limits, ratings, stroke, sensors, controller.
+        values: of the chain of three inertias, SI.
+        effects, remarks: what acts on it, and a comment for each.
+        heading: lines of the comment at the top.
+    """
+    lines = [f"# {line}".rstrip() for line in heading]
+    lines += [
+        'format = "feeddrive-plant/1"',
+        f"name = {_text(plant.name + ', lumped')}",
+        'structure = "three_inertias"',
+    ]
+    lines += [f"source = {_text('lumped from ' + plant.name)}"]
+    for section in _SECTIONS:
+        lines += ["", f"[{section}]", *_section(plant, section, values)]
+    for sensor in plant.sensors:
+        lines += ["", "[[sensor]]", f"channel = {_text(sensor.channel)}", f"kind = {_text(sensor.kind)}"]
+        lines += [f"at = {_text(sensor.at)}"]
+        if sensor.resolution:
+            lines += [f"resolution = {_text(f'{sensor.resolution!r} {channel_unit(sensor.channel, sensor.channel)}')}"]
+    lines += _controller(plant)
+    return plant_text_with_effects("\n".join(lines) + "\n", effects, remarks)
+
+
+def _section(plant: Plant, section: str, values: Mapping[str, float]) -> list[str]:
+    known = (*ThreeInertias.required, *ThreeInertias.optional)
+    lines = [
+        f"{value.section_key} = {_quantity(values[value.key], value.unit)}"
+        for value in known
+        if value.section == section and value.key in values
+    ]
+    if section == "motor" and math.isfinite(plant.torque_limit):
+        lines.append(f"torque_limit = {_quantity(plant.torque_limit, 'N m')}")
+    if section == "motor" and plant.torque_constant is not None:
+        lines.append(f"torque_constant = {_quantity(plant.torque_constant, 'N m/A')}")
+    if section == "table" and plant.stroke is not None:
+        lines.append(f"stroke = [{', '.join(_quantity(end, 'm') for end in plant.stroke)}]")
+    for rating in RATINGS.get(section, ()):
+        datum = plant.data.get(f"{section}.{rating.key}")
+        if datum is not None:
+            lines.append(f"{rating.key} = {_quantity(datum.value, datum.unit)}")
+    return lines
+
+
+def _controller(plant: Plant) -> list[str]:
+    controller = plant.controller
+    if isinstance(controller, PositionVelocityController):
+        lines = [
+            "",
+            "[controller]",
+            'kind = "position_velocity"',
+            f'position_gain = "{controller.position_gain!r} 1/s"',
+            f'velocity_gain = "{controller.velocity_gain!r} V s/m"',
+            f'output_limit = "{controller.output_limit!r} V"',
+            f'torque_per_output = "{controller.torque_per_output!r} N m/V"',
+        ]
+        return lines + ([f"velocity_samples = {controller.velocity_samples}"] if controller.velocity_samples else [])
+    if isinstance(controller, DeclaredCascade):
+        return ["", *_table("controller", {"kind": "cascade", **controller.entries})]
+    return []
+
+
+def _table(name: str, entries: Mapping[str, Any]) -> list[str]:
+    """A table of TOML, its plain entries first, then its tables."""
+    lines = [f"[{name}]"]
+    later: list[str] = []
+    for key, value in entries.items():
+        if isinstance(value, Mapping):
+            later += ["", *_table(f"{name}.{key}", value)]
+        elif isinstance(value, list) and value and all(isinstance(one, Mapping) for one in value):
+            for one in value:
+                head, *rest = _table(f"{name}.{key}", one)
+                later += ["", f"[{head}]", *rest]
+        else:
+            lines.append(f"{key} = {json.dumps(value, ensure_ascii=False)}")
+    return [*lines, *later]
+
+
+def _quantity(value: float, unit: str) -> str:
+    if unit == "1":
+        return repr(float(value))
+    factor, shown = _SHOWN.get(unit, (1.0, unit))
+    return _text(f"{value * factor:.12g} {shown}")
+
+
+def _text(value: str) -> str:
+    """A string of TOML; its basic strings are written as those of JSON."""
+    return json.dumps(value, ensure_ascii=False)

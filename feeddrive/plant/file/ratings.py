@@ -1,0 +1,68 @@
+"""What a plant file says of a machine that enters no equation of motion: limits and ratings, for plausibility rules."""
+
+from __future__ import annotations
+
+from feeddrive.parts.values import PartValue, check_values
+from feeddrive.plant.file.drive_sections import BEARING_RATING, BEARING_VALUES, PART_VALUES
+from feeddrive.plant.file.entries import Table
+from feeddrive.plant.plant import Datum
+
+RATINGS: dict[str, tuple[PartValue, ...]] = {
+    "motor": (PartValue("max_speed", "rad/s", 0.0, 1e5, usual=(10.0, 3000.0), meaning="greatest speed of the motor"),),
+    "ball_screw": (
+        PartValue("static_rating", "N", 0.0, 1e8, usual=(500.0, 5e6), meaning="static load rating C0"),
+        PartValue("dynamic_rating", "N", 0.0, 1e8, usual=(200.0, 2e6), meaning="dynamic load rating C of one nut"),
+        PartValue("ball_circle", "m", 1e-3, 0.5, usual=(4e-3, 0.2), meaning="diameter of the circle of ball centres"),
+        PartValue(
+            "dn_limit", "m rad/s", 0.0, 1e3, usual=(1.0, 40.0), meaning="greatest product of ball circle and speed"
+        ),
+    ),
+    "table": (
+        PartValue("max_velocity", "m/s", 0.0, 50.0, usual=(0.01, 4.0), meaning="greatest velocity of the table"),
+        PartValue(
+            "max_acceleration", "m/s^2", 0.0, 1e4, usual=(0.1, 100.0), meaning="greatest acceleration of the table"
+        ),
+        PartValue("axial_load", "N", 0.0, 1e7, usual=(1.0, 1e6), meaning="process force along the axis"),
+    ),
+}
+"""Limits and ratings by section: greatest speeds and acceleration, C0 and C of the ball screw, process force."""
+
+
+def read_data(top: Table) -> dict[str, Datum]:
+    """Every value of parts and ratings that the file gives, by `section.key`.
+
+    Raises:
+        InputError: a value without unit, of another dimension or not possible.
+
+    Warns:
+        ValidityWarning: unusual rating.
+    """
+    found: dict[str, Datum] = {}
+    for section, known in PART_VALUES.items():
+        found |= _given(top.table(section), section, known)
+    for end in ("near", "far"):
+        table = top.table("bearing").table(end)
+        found |= _checked(table, f"bearing.{end}", BEARING_VALUES, (BEARING_RATING,))
+    for section, known in RATINGS.items():
+        found |= _checked(top.table(section), section, known, known)
+    return found
+
+
+def _checked(
+    table: Table, section: str, known: tuple[PartValue, ...], ratings: tuple[PartValue, ...]
+) -> dict[str, Datum]:
+    """The values that a section gives; those that are ratings are checked here, others where the part is made."""
+    found = _given(table, section, known)
+    given = tuple(value for value in ratings if f"{section}.{value.key}" in found)
+    check_values(table.where, given, {value.key: found[f"{section}.{value.key}"].value for value in given})
+    return found
+
+
+def _given(table: Table, section: str, known: tuple[PartValue, ...]) -> dict[str, Datum]:
+    return {
+        f"{section}.{value.key}": Datum(
+            table.quantity(value.key, value.unit, f"{section}.{value.key}", value.usual), value.unit
+        )
+        for value in known
+        if value.key in table.entries
+    }

@@ -1,0 +1,163 @@
+"""Reading a recording: open, understand, convert, check, and say what was found."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from feeddrive.errors import InputError, printable, quoted
+from feeddrive.recording.channels import Heading, read_heading
+from feeddrive.recording.checks.find_flaws import find_flaws
+from feeddrive.recording.checks.findings import sample_notes
+from feeddrive.recording.checks.flaws import filled, sentence
+from feeddrive.recording.checks.time_checks import check_time, clock_notes, mean_sample_time
+from feeddrive.recording.checks.unusable_samples import (
+    check_alive,
+    check_finite,
+    check_length,
+    check_sample_time,
+    check_size,
+)
+from feeddrive.recording.derived import with_angle
+from feeddrive.recording.files.csv_faults import is_number
+from feeddrive.recording.files.csv_file import Layout, TextTable, find_table
+from feeddrive.recording.files.foreign import mapped_columns, table_variables
+from feeddrive.recording.files.mapping import FileMapping, read_mapping
+from feeddrive.recording.files.mat_file import read_variables
+from feeddrive.recording.files.opening import FileContent, first_bytes, open_file
+from feeddrive.recording.files.text_blocks import TextFile
+from feeddrive.recording.frequency_response import FrequencyResponse
+from feeddrive.recording.recording import Recording
+from feeddrive.recording.traces.choosing import Wishes
+from feeddrive.recording.traces.opened import Understood, columns_of, could_be_trace, mapped, read_trace, understand
+from feeddrive.recording.traces.trace import Trace
+from feeddrive.typing import FloatArray
+
+
+def read_recording(path: Path, mapping: Path | None = None, *, decimal: str | None = None) -> Recording:
+    """Read and check a recording.
+
+    Args:
+        path: .csv or .csv.gz with headings `name [unit]`, a trace file of a drive or control, or with a mapping a .mat
+            or foreign text file.
+        mapping: mapping file; None for files with canonical headings.
+        decimal: "." or ","; None to let the file tell.
+
+    Raises:
+        InputError: the file cannot be used; one line with file, row, column, reason and mend.
+    """
+    path = Path(path)
+    if decimal not in (None, ".", ","):
+        raise InputError(f"{decimal!r} is not a decimal sign", "--decimal", "write . or ,")
+    known = read_mapping(Path(mapping)) if mapping is not None else None
+    if could_be_trace(first_bytes(path)):
+        content = open_file(path)
+        trace = read_trace(content, Wishes(sample_time=known.sample_time if known else None))
+        if trace is not None:
+            return _checked(content, *_traced(content, trace, known))
+    source = TextFile(path) if path.suffix != ".mat" else open_file(path)
+    if known is not None:
+        columns, first_row, notes = _foreign(source, known, decimal)
+    else:
+        columns, first_row, notes = _canonical(source, decimal)
+    return _checked(source, columns, first_row, notes)
+
+
+def _traced(
+    content: FileContent, trace: Trace | FrequencyResponse, mapping: FileMapping | None
+) -> tuple[dict[str, FloatArray], int, tuple[str, ...]]:
+    """Return the columns of a trace file, the row they begin in (its own has no meaning any more), and notes."""
+    where = str(content.path)
+    if isinstance(trace, FrequencyResponse):
+        mend = "lay it over the machine's by feeddrive bode PLANT --recording FILE"
+        raise InputError("is a frequency response, not a recording over time", where, mend)
+    understood = mapped(trace, mapping, where) if mapping is not None else understand(trace, Wishes(), where)
+    return columns_of(understood, where), 1, (trace.format, *understood.notes)
+
+
+def checked_trace(content: FileContent, understood: Understood) -> Recording:
+    """Check the channels of a trace file and make the recording.
+
+    Raises:
+        InputError: a question about the file has to be answered first, or as `read_recording`.
+    """
+    columns = columns_of(understood, str(content.path))
+    return _checked(content, columns, 1, (understood.trace.format, *understood.notes))
+
+
+def _canonical(
+    source: TextFile | FileContent, decimal: str | None
+) -> tuple[dict[str, FloatArray], int, tuple[str, ...]]:
+    """Return the columns of a file with canonical headings, the row they begin in, and notes."""
+    where = str(source.path)
+    if isinstance(source, FileContent):
+        held = ", ".join(quoted(name, 40) for name in list(read_variables(source))[:12])
+        raise InputError(f"a .mat file has no units (it holds {held})", where, "name its mapping file by --map")
+    text_table = find_table(source.blocks(), Layout(), where)
+    headings = _headings(text_table, where)
+    table = text_table.numbers(decimal)
+    columns = dict(zip((heading.channel for heading in headings), table.columns, strict=True))
+    with np.errstate(all="ignore"):  # a number beyond all bounds is refused where its row is known
+        for heading in headings:
+            columns[heading.channel] = heading.conversion.apply(columns[heading.channel])
+    return columns, table.first_row, (*source.notes, *table.notes)
+
+
+def _headings(table: TextTable, where: str) -> list[Heading]:
+    """Return the headings of a file with canonical channels."""
+    if all(is_number(name) for name in table.names):
+        mend = f'put one above the numbers, e.g. "time [s]{table.separator}motor_torque [N m]"'
+        raise InputError("there is no header row", where, mend)
+    headings = [read_heading(name, where) for name in table.names]
+    seen: set[str] = set()
+    for heading in headings:
+        if heading.channel in seen:
+            raise InputError(f'two columns "{heading.channel}"', where, "keep one of them")
+        seen.add(heading.channel)
+    if "time" not in seen:
+        raise InputError("there is no time column", where, 'add "time [s]", or name a mapping with sample_time')
+    return headings
+
+
+def _foreign(
+    source: TextFile | FileContent, mapping: FileMapping, decimal: str | None
+) -> tuple[dict[str, FloatArray], int, tuple[str, ...]]:
+    """Return the columns of a foreign file, the row they begin in (1 in a .mat file), and notes."""
+    where = str(source.path)
+    said = f"read through the mapping {printable(mapping.name)}"
+    if isinstance(source, FileContent):
+        return mapped_columns(read_variables(source), mapping, where), 1, (said,)
+    table = find_table(source.blocks(), mapping.layout, where).numbers(decimal or mapping.layout.decimal)
+    notes = (said, *source.notes, *table.notes)
+    return mapped_columns(table_variables(table), mapping, where), table.first_row, notes
+
+
+def _checked(
+    source: TextFile | FileContent, columns: dict[str, FloatArray], first_row: int, notes: tuple[str, ...]
+) -> Recording:
+    """Check the columns and make the recording."""
+    where = str(source.path)
+    check_length(columns["time"].size, where)
+    for name, samples in columns.items():
+        check_finite(samples, name, first_row, where)
+        check_size(samples, name, first_row, where)
+    time = columns.pop("time")
+    if not columns:
+        raise InputError("there is no channel beside the time", where, 'add e.g. "motor_torque [N m]"')
+    check_time(time, first_row, where)
+    sample_time = mean_sample_time(time)
+    check_sample_time(sample_time, where)
+    check_alive(columns, where)
+    columns, derived = with_angle(columns, time)
+    flaws = find_flaws(columns, sample_time, first_row, where)
+    columns = filled(columns, flaws)
+    found = (
+        *notes,
+        *derived,
+        *clock_notes(time, sample_time),
+        *sample_notes(columns),
+        *(sentence(one, first_row) for one in flaws),
+    )
+    name = printable(source.path.name)
+    return Recording(name, time, columns, sample_time, where, source.sha256, found, tuple(flaws))

@@ -1,0 +1,59 @@
+"""The part of the report that says what to do: which part first, which value to set, which file to load."""
+
+from __future__ import annotations
+
+from feeddrive.compensation.actions import Actions
+from feeddrive.compensation.cures import COMPENSATE, REPAIR, SET, cure
+from feeddrive.compensation.sheet import left, predicted_rows
+from feeddrive.diagnosis.judging.result import Diagnosis, EffectResult
+from feeddrive.report.certainty import experiment_sentences
+from feeddrive.report.pages.markup import bullets, number, paragraph, section, table, words
+from feeddrive.report.parameters import effect_sentence
+from feeddrive.report.words.people import DASH, error_text
+
+_KINDS = {REPAIR: "Look at", SET: "Set", COMPENSATE: "Compensate", "watch": "Watch"}
+_FILES = {
+    "table": "feeddrive compensate FOLDER --form linuxcnc|sinumerik-enc|sinumerik-cec|isg|heidenhain-csv|"
+             "fanuc-parameters|csv --out FILE",
+    "heat": "feeddrive compensate FOLDER --form sinumerik-temp --out FILE",
+    "friction": "the sheet of feeddrive compensate, friction at reversals",
+    "cogging": "feeddrive compensate FOLDER --out FILE, which writes FILE_cogging.csv",
+}  # fmt: skip
+
+
+def actions_section(diagnosis: Diagnosis, found: Actions | None) -> str:
+    """What to do, in order, and what it brings; nothing where nothing was found."""
+    if found is None or (not found.effects and found.predicted is None):
+        return ""
+    by_name = {one.name: one for one in diagnosis.effects}
+    heads = [words("First to last"), words("What"), words("Found"), words("File")]
+    rows = [
+        [words(f"{i}. {_KINDS[cure(name).kind]}"), words(cure(name).look_at), words(_found(by_name[name])),
+         words(_FILES.get(cure(name).form, DASH))]
+        for i, name in enumerate(found.effects, 1)
+    ]  # fmt: skip
+    experiments = experiment_sentences(diagnosis)
+    after = paragraph("Next experiment:") + bullets(experiments) if experiments else ""
+    listed = table(heads, rows) if rows else ""
+    return section("What to do", listed, _predicted(found), after)
+
+
+def _found(effect: EffectResult) -> str:
+    told = effect_sentence(effect)
+    return told if effect.carries else f"{told} (not confirmed on data not fitted)"
+
+
+def _predicted(found: Actions) -> str:
+    if found.predicted is None:
+        return paragraph(f"Not predicted: {found.why_not}.", "note") if found.why_not else ""
+    heads = [words("Predicted"), *map(number, ("before", "after repair", "after compensation"))]
+    rows = [
+        [words(name), *(number(DASH if one is None else error_text(one, "m")) for one in values)]
+        for name, values in predicted_rows(found.predicted)
+    ]
+    ends = [1e3 * one for one in found.predicted.wishes.stroke or found.predicted.table.positions[[0, -1]].tolist()]
+    note = (
+        f"Simulated from {ends[0]:.4g} mm to {ends[1]:.4g} mm with the position loop closed at the motor, in slow "
+        "motion; one approach per direction, so that nothing scatters. Repair renews preload; compensation is a table."
+    )
+    return table(heads, rows) + bullets(left(found.predicted)) + paragraph(note, "note")

@@ -1,0 +1,75 @@
+"""The section on what no named effect explains: how much, on what it depends, and what the plant carries for it."""
+
+from __future__ import annotations
+
+from feeddrive.diagnosis.judging.result import ChannelResult, Diagnosis
+from feeddrive.diagnosis.unexplained.result import Carried, Dependence, Unexplained
+from feeddrive.report.pages.markup import Cell, bullets, catalogue_name, number, paragraph, section, table, words
+from feeddrive.report.words.people import DASH, error_text, fixed, share_text
+from feeddrive.report.words.words import joined, plain, variable_words
+
+
+def unexplained_section(diagnosis: Diagnosis, pictures: str = "") -> str:
+    """What is left above noise, on what it depends, and which tables the plant carries for it."""
+    if not diagnosis.unexplained:
+        return section("What is unexplained", paragraph("Nothing above the sensor noise."))
+    channels = {channel.name: channel for channel in diagnosis.channels}
+    heads = [words("Channel"), number("share of the signal's square"), number("left"), number("noise floor"),
+             number("of it above the noise"), words("Depends on")]  # fmt: skip
+    rows = [_row(name, one, channels.get(name)) for name, one in diagnosis.unexplained.items()]
+    said = [f"{plain(name)}: {one.statement}" for name, one in diagnosis.unexplained.items() if one.statement]
+    note = (
+        "Taken on data that were not fitted, with the named effects and without the tables. The noise floor is "
+        "estimated from the recording; ± is twice the standard error. The share in brackets is the part of the "
+        "unexplained square that a curve over this variable takes away."
+    )
+    return section(
+        "What is unexplained", table(heads, rows), bullets(said) if said else "", pictures, _carried(diagnosis),
+        paragraph(note, "note"),
+    )  # fmt: skip
+
+
+def _row(name: str, one: Unexplained, channel: ChannelResult | None) -> list[Cell]:
+    levels = [DASH, DASH, DASH]
+    if one.above is not None and channel is not None:
+        rms, floor = (error_text(level, channel.unit) for level in (one.above.rms, one.above.floor))
+        percent, doubt = 100 * one.above.share, 200 * one.above.standard_error
+        levels = [rms, floor, f"{fixed(percent, 0)} ± {fixed(doubt, 0)} %"]
+    depends = words(_dependences(one))
+    return [words(plain(name)), number(share_text(one.share)), *map(number, levels), depends]
+
+
+def _dependences(unexplained: Unexplained) -> str:
+    """The variables that what is left depends on."""
+    texts = [_dependence(one) for one in unexplained.depends_on]
+    if not texts and unexplained.above is not None and not unexplained.above.is_left:
+        return "nothing is left above the noise"
+    return joined(texts) or "none of the measured variables"
+
+
+def _dependence(one: Dependence) -> str:
+    period = f", period {one.period}" if one.period else ""
+    times = f" with {variable_words(one.times)}" if one.times else ""
+    return f"{variable_words(one.variable)}{times} ({share_text(one.share)}{period})"
+
+
+def _carried(diagnosis: Diagnosis) -> str:
+    """A table of the terms that the plant carries, with the errors with and without each."""
+    units = {channel.name: channel.unit for channel in diagnosis.channels}
+    found = [one for left in diagnosis.unexplained.values() for one in left.carried]
+    if not found:
+        return ""
+    heads = [words("Carried in plant_after.toml"), words("Over"), words("Channel"), number("explains"),
+             number("rms without it"), number("with it")]  # fmt: skip
+    rows = [row for one in found for row in _carried_rows(one, units)]
+    return table(heads, rows) + paragraph("These are tables of what was seen, not laws: they hold over the range "
+                                          "that was recorded and are constant outside it.", "note")  # fmt: skip
+
+
+def _carried_rows(one: Carried, units: dict[str, str]) -> list[list[Cell]]:
+    rows = []
+    for place, (name, share) in enumerate(one.explains.items()):
+        first = [Cell(catalogue_name(one.name)), words(plain(one.variable))] if place == 0 else [words(""), words("")]
+        errors = [error_text(errors[name], units[name]) for errors in (one.before, one.after)]
+        rows.append([*first, words(plain(name)), number(share_text(share)), *map(number, errors)])
+    return rows

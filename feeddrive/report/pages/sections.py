@@ -1,0 +1,116 @@
+"""The findings of the report as HTML: verdict, errors, effects."""
+
+from __future__ import annotations
+
+import math
+
+from feeddrive.diagnosis.judging.result import ChannelResult, Diagnosis, EffectResult, ErrorFigures, error_without
+from feeddrive.report.pages.markup import (
+    Cell,
+    catalogue_name,
+    number,
+    paragraph,
+    section,
+    table,
+    text,
+    words,
+)
+from feeddrive.report.parameters import parameter_text
+from feeddrive.report.records import used_sentence
+from feeddrive.report.words.people import (
+    DASH,
+    Scale,
+    band_text,
+    scale_for_error,
+    share_text,
+    significant,
+    times_text,
+    with_unit,
+)
+from feeddrive.report.words.verdict import is_noise, verdict_sentences
+from feeddrive.report.words.words import effect_words, plain
+
+
+def verdict_section(diagnosis: Diagnosis) -> str:
+    """The verdict in a box, the main finding in bold; calm only where nothing was found and nothing is left."""
+    first, *others = verdict_sentences(diagnosis)
+    noise = diagnosis.channels and all(is_noise(channel) for channel in diagnosis.channels)
+    clean = noise and diagnosis.nothing_missing and not diagnosis.changes.changes
+    lines = "".join(paragraph(sentence) for sentence in others) + paragraph(used_sentence(diagnosis), "note")
+    return f'<div class="verdict{" clean" if clean else ""}">{paragraph(first, "main")}{lines}</div>\n'
+
+
+def error_section(diagnosis: Diagnosis) -> str:
+    """Error before and after for each channel."""
+    if not diagnosis.channels:
+        return ""
+    heads = [words("Channel"), words("Band"), words("")]
+    heads += [number(one) for one in ("rms", "largest", "relative", "sensor noise", "rms / noise")]
+    rows = [row for channel in diagnosis.channels for row in _error_rows(channel, diagnosis.nothing_missing)]
+    note = (
+        "Taken on data that were not fitted, inside the band. Relative: rms error over rms of the measured signal; for "
+        "the table position, over the rms of its difference from lead × motor angle; of a "
+        "temperature in °C, so that its size depends on the zero of that scale."
+    )
+    return section("Error before and after", table(heads, rows, "pairs"), paragraph(note, "note"))
+
+
+def _error_rows(channel: ChannelResult, nothing_missing: bool) -> list[list[Cell]]:
+    """One row before and one after, only one where both are the same plant."""
+    scale = scale_for_error(channel.unit)
+    band = band_text(channel.band_hz)
+    name = Cell(f"<b>{text(plain(channel.name))}</b>")
+    if nothing_missing:
+        return [[name, words(band), words("declared plant"), *_errors(channel, channel.before, scale)]]
+    gain = channel.before.rms / channel.after.rms if channel.after.rms > 0.0 else math.nan
+    better = words(f"rms {significant(gain, 2)} times smaller") if gain >= 1.05 else words("")
+    return [
+        [name, words(band), words("before"), *_errors(channel, channel.before, scale)],
+        [better, words(""), words("after"), *_errors(channel, channel.after, scale)],
+    ]
+
+
+def _errors(channel: ChannelResult, figures: ErrorFigures, scale: Scale) -> list[Cell]:
+    """The figures of one row."""
+    noise = channel.noise_rms if channel.noise_rms > 0.0 else math.nan
+    shown = [with_unit(significant(one * scale.factor), scale.unit) for one in (figures.rms, figures.max)]
+    noise_text = with_unit(significant(noise * scale.factor), scale.unit) if math.isfinite(noise) else DASH
+    return [*map(number, shown), number(share_text(figures.relative)), number(noise_text),
+            number(significant(figures.rms / noise))]  # fmt: skip
+
+
+def effects_section(diagnosis: Diagnosis) -> str:
+    """Each effect with parameters, what it explains, whether it carries, evidence and reading."""
+    if not diagnosis.effects:
+        return section("Effects found", paragraph("None: no effect was added to the declared plant."))
+    channels = [channel.name for channel in diagnosis.channels]
+    heads = [words("Effect"), words("Parameter"), number("value"), number("95 % interval"), words("Error without it"),
+             words("Carries over")]  # fmt: skip
+    rows = [row for effect in diagnosis.effects for row in _effect_rows(effect, channels)]
+    stories = "".join(_story(effect) for effect in diagnosis.effects)
+    note = paragraph(
+        "Error without it: how many times larger the rms error on data not fitted is when this effect alone is left "
+        "out and the others are fitted again. Carries over: it lowers that error.",
+        "note",
+    )
+    return section("Effects found", table(heads, rows, "effects"), note, f"<dl>{stories}</dl>" if stories else "")
+
+
+def _effect_rows(effect: EffectResult, channels: list[str]) -> list[list[Cell]]:
+    """One row per parameter; the name and the shares stand in the first."""
+    texts = [parameter_text(key, parameter) for key, parameter in effect.parameters.items()]
+    cells = [[words(one.name), number(one.value), number(one.interval or DASH)] for one in texts]
+    cells = cells or [[words(DASH), words(""), words("")]]
+    name = Cell(f"<b>{text(effect_words(effect.name))}</b><br>{catalogue_name(effect.name)}")
+    ordered = sorted(effect.explains, key=lambda one: channels.index(one) if one in channels else len(channels))
+    shares = [f"{text(plain(one))} {text(times_text(error_without(effect.explains[one])))}" for one in ordered]
+    first = [name, *cells[0], Cell("<br>".join(shares) or DASH), words("yes" if effect.carries else "no")]
+    return [first, *([words(""), *row, words(""), words("")] for row in cells[1:])]
+
+
+def _story(effect: EffectResult) -> str:
+    """Evidence and physical reading of an effect."""
+    if not (effect.evidence or effect.reading):
+        return ""
+    reading = f" <i>{text(effect.reading)}</i>" if effect.reading else ""
+    return f"<dt>{text(effect_words(effect.name))}</dt><dd>{text(effect.evidence)}{reading}</dd>\n"

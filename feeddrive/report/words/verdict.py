@@ -1,0 +1,114 @@
+"""The verdict: what the declared plant lacks, how well the mended one predicts, and what stays open, in sentences."""
+
+from __future__ import annotations
+
+import math
+
+from feeddrive.diagnosis.judging.result import ChannelResult, Diagnosis
+from feeddrive.report.pages.section_changes import change_sentences
+from feeddrive.report.parameters import effect_sentence
+from feeddrive.report.words.people import error_text, share_text, significant
+from feeddrive.report.words.words import effect_words, joined, plain, variable_words
+
+_NOISE_REACHED = 1.5
+"""An error up to this multiple of the sensor noise counts as noise: the noise itself is only estimated."""
+
+
+def verdict_sentences(diagnosis: Diagnosis) -> list[str]:
+    """The verdict in plain text, the main finding first."""
+    tables = _tables(diagnosis) if diagnosis.effects else ""
+    beside = f"Beside these it carries what no named effect explains: {tables}." if tables else ""
+    found = [_main_finding(diagnosis), beside, *change_sentences(diagnosis)]
+    sentences = [*found, _errors(diagnosis), *_above_noise(diagnosis)]
+    return [sentence for sentence in sentences + _doubts(diagnosis) if sentence]
+
+
+def noise_multiple(channel: ChannelResult) -> float:
+    """Error after over sensor noise; NaN where no noise is known."""
+    return channel.after.rms / channel.noise_rms if channel.noise_rms > 0.0 else math.nan
+
+
+def is_noise(channel: ChannelResult) -> bool:
+    """Whether what is left of a channel is no more than sensor noise."""
+    return noise_multiple(channel) <= _NOISE_REACHED
+
+
+def _main_finding(diagnosis: Diagnosis) -> str:
+    """What is missing, or that nothing is."""
+    if not diagnosis.channels:
+        return "No channel could be judged."
+    if diagnosis.effects:
+        found = "; ".join(effect_sentence(effect) for effect in diagnosis.effects)
+        return f"The declared plant lacks: {found}."
+    if tables := _tables(diagnosis):
+        return f"The declared plant lacks something of no known name: {tables}."
+    if diagnosis.changes.changes:
+        return "No effect is missing in every recording, but the recordings differ."
+    within = ", its values calibrated within their tolerances," if diagnosis.calibrated else ""
+    if all(is_noise(channel) for channel in diagnosis.channels):
+        return f"Nothing is missing: the declared plant{within} explains the recording down to sensor noise."
+    return "No known effect was found that the declared plant lacks, but it does not explain the recording fully."
+
+
+def _tables(diagnosis: Diagnosis) -> str:
+    """What the plant carries as tables because no named effect explains it."""
+    carried = [one for left in diagnosis.unexplained.values() for one in left.carried]
+    return "; ".join(f"{effect_words(one.name)} over {plain(one.variable)}" for one in carried)
+
+
+def _errors(diagnosis: Diagnosis) -> str:
+    """The rms error of each channel."""
+    if not diagnosis.channels:
+        return ""
+    listed = ", ".join(_error(channel, diagnosis.nothing_missing) for channel in diagnosis.channels)
+    return f"Error on data not fitted: {listed}."
+
+
+def _error(channel: ChannelResult, nothing_missing: bool) -> str:
+    """One channel of the sentence about errors."""
+    before, after = (error_text(figures.rms, channel.unit) for figures in (channel.before, channel.after))
+    change = after if nothing_missing else f"{before} → {after}"
+    noise = f" (sensor noise {error_text(channel.noise_rms, channel.unit)})" if channel.noise_rms > 0.0 else ""
+    return f"{plain(channel.name)} {change} rms{noise}"
+
+
+def _above_noise(diagnosis: Diagnosis) -> list[str]:
+    """Channels whose error stays above noise, and channels that became worse."""
+    sentences = []
+    for channel in diagnosis.channels:
+        if channel.after.rms > 1.02 * channel.before.rms:
+            sentences.append(f"{_begin(plain(channel.name))} is predicted worse with the effects than without.")
+        if noise_multiple(channel) > _NOISE_REACHED:
+            sentences.append(_left(diagnosis, channel))
+    return sentences
+
+
+def _left(diagnosis: Diagnosis, channel: ChannelResult) -> str:
+    """How much of a channel is left above noise and what it depends on."""
+    multiple = significant(noise_multiple(channel), 2)
+    left = f"Still unexplained: the error of {plain(channel.name)} is {multiple} times the sensor noise"
+    known = diagnosis.unexplained.get(channel.name)
+    if known is None or not known.depends_on:
+        return f"{left}."
+    return f"{left}; it depends on {joined([variable_words(one.variable) for one in known.depends_on])}."
+
+
+def _doubts(diagnosis: Diagnosis) -> list[str]:
+    """Effects that do not carry over, ambiguous sets and the simulated loop."""
+    sentences = [
+        f"These data cannot tell apart: {joined([effect_words(name) for name in names])}."
+        for names in diagnosis.ambiguous
+    ]
+    idle = [effect_words(effect.name) for effect in diagnosis.effects if not effect.carries]
+    if idle:
+        sentences.append(f"Not confirmed on data not fitted: {joined(idle)}.")
+    if diagnosis.simulation is not None:
+        run = diagnosis.simulation
+        change = f"{share_text(run.before)} → {share_text(run.after)}"
+        sentences.append(f"Closed-loop simulation error of {plain(run.channel)}, relative: {change}.")
+    return sentences
+
+
+def _begin(text: str) -> str:
+    """A sentence's beginning."""
+    return text[:1].upper() + text[1:]

@@ -1,0 +1,257 @@
+"""What acts on the heat network, written once in CasADi: films, contact, friction heats and the effects on them.
+
+    g = g_0 Π cᵢ,    Q = Q_0 + Σ Qᵢ,    Q_nut = s ω (T_1 Π lᵢ(ΔT) + T_v Π vᵢ(ΔT)),    θ_i = θ_recorded + Σ Δθᵢ
+
+| symbol | meaning | unit |
+|---|---|---|
+| g | film coefficients and contact conductance; the coolant's conductances add | W/(m² K), W/K |
+| Q | heats of nut and seats | W |
+| T_1, T_v, s | load and viscous torque of the nut, share of the heat | N m, 1 |
+| l, v | factors at the nut's rise ΔT | 1 |
+| θ_i | surroundings | K |
+
+Where the plant has a coupling, T_1 follows the preload and T_v the oil of nut and bearings (`thermal.coupling`).
+Simulation in rows, linearisation, exact sensitivities and export all take the two functions of `laws_of`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+
+import casadi as ca
+import numpy as np
+
+from feeddrive.effects.base import Value
+from feeddrive.effects.heat.base import Operation
+from feeddrive.effects.heat.bearing_heat import reference_torque
+from feeddrive.plant.symbolic_turn import SYMBOLS
+from feeddrive.thermal.coupling import viscous_share
+from feeddrive.thermal.full.full_model import END, FRONT, NUT, REAR, SHAFT, growth_name
+from feeddrive.thermal.laws.films import film_on_nut, film_on_screw
+from feeddrive.thermal.laws.friction import torque_law
+from feeddrive.thermal.plant import ThermalPlant
+from feeddrive.thermal.reduced.model import AMBIENT, Path
+from feeddrive.typing import Expression, FloatArray
+
+PATHS = tuple(Path)
+INPUTS = (NUT, FRONT, REAR, AMBIENT)
+"""Inputs of the network that the laws give: heats [W], rise of the surroundings [K]."""
+
+FOLLOWED = (NUT, SHAFT, FRONT, REAR)
+"""Outputs of the network that friction may follow [K]."""
+
+Groups = Mapping[str, Mapping[str, Value]]
+
+
+@dataclass(frozen=True, eq=False)
+class Laws:
+    """The laws of one structure of plant.
+
+    Attributes:
+        names: of the parameters, `group.key`, tables `group.key[i]`; groups are "film", "contact", "nut",
+            "front_bearing", "rear_bearing" and the labels of effects.
+        acting: (speed [rad/s], start [s], step [s], rise of the recorded surroundings [K], rises of `FOLLOWED` (4) [K],
+            temperature at the start [degC], parameters) -> (conductances of `PATHS`, inputs of `INPUTS`).
+        factors: (rises of `FOLLOWED`, temperature at the start, parameters) -> factors on the nut's load torque, on its
+            viscous torque, on that of the bearings.
+        sensing: (time [s], parameters) -> (growth of the frame at `growth_places` [m], lags by channel and effect [s],
+            conductance and capacity of each attached body [W/K, J/K]).
+        lagging: channel to the rows of `sensing`'s lags.
+        bodies: labels of the effects that attach one.
+        follows: whether heats depend on `FOLLOWED`.
+    """
+
+    names: tuple[str, ...]
+    acting: ca.Function
+    factors: ca.Function
+    sensing: ca.Function
+    lagging: Mapping[str, tuple[int, ...]]
+    bodies: tuple[str, ...]
+    follows: bool
+
+
+def growth_places(plant: ThermalPlant) -> dict[str, float]:
+    """Growths that the network gives, and where the nut is then [m]."""
+    return {growth_name(x): x for x in plant.rig.growth_positions} | {END: plant.rig.length}
+
+
+def channels(plant: ThermalPlant) -> tuple[str, ...]:
+    """Channels of sensors that may lag."""
+    return tuple(dict.fromkeys(e.place for e in plant.effects if e.place_key == "channel"))
+
+
+def groups_of(plant: ThermalPlant) -> Groups:
+    """Parameters by group: those that the file declares, then those of its effects."""
+    seats = {"front_film": plant.rig.front.film or 0.0, "rear_film": plant.rig.rear.film or 0.0}
+    frictions = {"nut": plant.nut, "front_bearing": plant.front, "rear_bearing": plant.rear}
+    declared = {name: vars(friction) for name, friction in frictions.items() if friction is not None}
+    own = {effect.label: effect.values for effect in plant.effects}
+    return {"film": vars(plant.films), "contact": {"conductance": plant.contact, **seats}, **declared, **own}
+
+
+def values_of(plant: ThermalPlant) -> FloatArray:
+    """Parameters of `Laws.names`."""
+    found: list[float] = []
+    for group in groups_of(plant).values():
+        for value in group.values():
+            found += value if isinstance(value, tuple) else [float(value)]
+    return np.array(found)
+
+
+def laws_of(plant: ThermalPlant) -> Laws:
+    """The laws of a plant; plants that differ in values alone share them."""
+    lengths = tuple(
+        (name, key, len(value) if isinstance(value, tuple) else 0)
+        for name, group in groups_of(plant).items() for key, value in group.items()
+    )  # fmt: skip
+    forms = tuple((effect.name, effect.place) for effect in plant.effects)
+    joined = () if plant.coupling is None else (plant.coupling, plant.preload, plant.ambient, plant.rig)
+    return _laws((lengths, forms, joined, tuple(plant.rig.growth_positions), plant.rig.length), _Holder(plant))
+
+
+class _Holder:
+    """Carries a plant past the cache, whose key is the structure alone."""
+
+    def __init__(self, plant: ThermalPlant) -> None:
+        self.plant = plant
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Holder)
+
+    def __hash__(self) -> int:
+        return 0
+
+
+@lru_cache(maxsize=128)
+def _laws(_: tuple[object, ...], holder: _Holder) -> Laws:
+    with SYMBOLS.taken():
+        return _made(holder.plant)
+
+
+def _made(plant: ThermalPlant) -> Laws:
+    groups, names = _symbols(groups_of(plant))
+    columns = ca.vertcat(*[symbol for group in groups.values() for symbol in group.values()])
+    given = {name: ca.SX.sym(name) for name in ("speed", "start", "step", "air", "cold")}
+    rises = ca.SX.sym("rises", len(FOLLOWED))
+    turning = ca.fabs(given["speed"])
+    run = Operation(turning, given["start"], given["step"], _bearing(plant, groups, turning))
+    g = _conductances(plant, groups, run)
+    u = _inputs(plant, groups, run, given["air"], dict(zip(FOLLOWED, ca.vertsplit(rises), strict=True)), given["cold"])
+    arguments = [given["speed"], given["start"], given["step"], given["air"], rises, given["cold"], columns]
+    shown = [
+        ca.densify(ca.vertcat(*[g[path] for path in PATHS])),
+        ca.densify(ca.vertcat(*[u[name] for name in INPUTS])),
+    ]
+    acting = ca.Function("heat_laws", arguments, shown, [*[*given][:4], "rises", "cold", "p"], ["g", "u"])
+    named = dict(zip(FOLLOWED, ca.vertsplit(rises), strict=True))
+    factors = ca.Function("heat_factors", [rises, given["cold"], columns],
+                          [ca.vertcat(*_factors(plant, groups, named, given["cold"]))])  # fmt: skip
+    sensing, lagging, bodies = _sensing(plant, groups, columns)
+    return Laws(names, acting, factors, sensing, lagging, bodies, bool(ca.depends_on(shown[1], rises)))
+
+
+def _symbols(groups: Groups) -> tuple[dict[str, dict[str, Expression]], tuple[str, ...]]:
+    symbols: dict[str, dict[str, Expression]] = {}
+    names: list[str] = []
+    for name, group in groups.items():
+        symbols[name] = {}
+        for key, value in group.items():
+            length = len(value) if isinstance(value, tuple) else 1
+            symbols[name][key] = ca.SX.sym(f"{name}.{key}", length)
+            names += [f"{name}.{key}[{i}]" for i in range(length)] if isinstance(value, tuple) else [f"{name}.{key}"]
+    return symbols, tuple(names)
+
+
+def _bearing(plant: ThermalPlant, groups: Mapping[str, Mapping[str, Expression]], speed: Expression) -> Expression:
+    """Torque of the front bearing, as declared [N m]."""
+    return reference_torque(speed) if plant.front is None else torque_law(speed, groups["front_bearing"])
+
+
+def _conductances(
+    plant: ThermalPlant, groups: Mapping[str, Mapping[str, Expression]], run: Operation
+) -> dict[Path, Expression]:
+    contact = groups["contact"]
+    found: dict[Path, Expression] = {
+        Path.CONTACT: contact["conductance"],
+        Path.SCREW_FILM: film_on_screw(run.speed, groups["film"]),
+        Path.NUT_FILM: film_on_nut(run.speed, groups["film"]),
+        Path.FRONT_FILM: contact["front_film"],
+        Path.REAR_FILM: contact["rear_film"],
+        Path.COOLING: ca.SX(0),
+    }
+    films = {Path.SCREW_FILM: "screw", Path.NUT_FILM: "nut", Path.FRONT_FILM: FRONT, Path.REAR_FILM: REAR}
+    for effect in plant.effects:
+        p = groups[effect.label]
+        for path, film in films.items():
+            found[path] *= effect.film_factor(film, p)
+        found[Path.CONTACT] *= effect.contact_factor(p)
+        found[Path.COOLING] += effect.coolant_conductance(run, p)
+    return found
+
+
+def _inputs(
+    plant: ThermalPlant, groups: Mapping[str, Mapping[str, Expression]], run: Operation, air: Expression,
+    rises: Mapping[str, Expression], cold: Expression,
+) -> dict[str, Expression]:  # fmt: skip
+    load, oil, bearing_oil = _factors(plant, groups, rises, cold)
+    found: dict[str, Expression] = {AMBIENT: air, FRONT: ca.SX(0), REAR: ca.SX(0)}
+    for effect in plant.effects:
+        p = groups[effect.label]
+        found[AMBIENT] += effect.surroundings(run, p)
+        for place, heat in effect.heats(run, p).items():
+            found[place] += heat
+    rubbing = {
+        NUT: ("nut", load, oil),
+        FRONT: ("front_bearing", 1, bearing_oil),
+        REAR: ("rear_bearing", 1, bearing_oil),
+    }
+    for place, (group, by_load, by_oil) in rubbing.items():
+        if group in groups:
+            torque = torque_law(run.speed, groups[group], by_load, by_oil)
+            found[place] = found.get(place, 0) + groups[group]["heat_share"] * run.speed * torque
+    return found
+
+
+def _factors(
+    plant: ThermalPlant, groups: Mapping[str, Mapping[str, Expression]], rises: Mapping[str, Expression],
+    cold: Expression,
+) -> tuple[Expression, Expression, Expression]:  # fmt: skip
+    """On the nut's load torque, on its viscous torque, on that of the bearings."""
+    load, oil, bearing_oil = ca.SX(1), ca.SX(1), ca.SX(1)
+    joined = plant.coupling
+    if joined is not None:
+        steel, diameter = plant.rig.steel, 2 * plant.rig.radius
+        share = 1 + joined.preload_slope(plant.preload, diameter, steel.expansion) * (rises[NUT] - rises[SHAFT])
+        mean = (1 - joined.rear_share) * rises[FRONT] + joined.rear_share * rises[REAR]
+        load = ca.fmax(share, 0)
+        oil = viscous_share(joined.nut_oil, cold + rises[NUT], plant.ambient)
+        bearing_oil = viscous_share(joined.bearing_oil, cold + mean, plant.ambient)
+    for effect in plant.effects:
+        p = groups[effect.label]
+        load *= effect.load_factor(rises[NUT], p)
+        oil *= effect.viscous_factor(rises[NUT], p)
+    return load, oil, bearing_oil
+
+
+def _sensing(
+    plant: ThermalPlant, groups: Mapping[str, Mapping[str, Expression]], columns: Expression
+) -> tuple[ca.Function, dict[str, tuple[int, ...]], tuple[str, ...]]:
+    time = ca.SX.sym("time")
+    frame = [
+        sum((effect.growth(x, time, groups[effect.label]) for effect in plant.effects), ca.SX(0))
+        for x in growth_places(plant).values()
+    ]
+    lags: list[Expression] = []
+    lagging: dict[str, tuple[int, ...]] = {}
+    for channel in channels(plant):
+        own = [e.lag(channel, groups[e.label]) for e in plant.effects if e.place == channel]
+        lagging[channel] = tuple(range(len(lags), len(lags) + len(own)))
+        lags += own
+    bodies = {e.label: e.attached(groups[e.label]) for e in plant.effects}
+    held = {label: body for label, body in bodies.items() if body is not None}
+    shown = [ca.vertcat(ca.SX.zeros(0, 1), *of) for of in (frame, lags, [v for body in held.values() for v in body])]
+    function = ca.Function("heat_sensing", [time, columns], [ca.densify(one) for one in shown],
+                           ["time", "p"], ["frame", "lags", "bodies"])  # fmt: skip
+    return function, lagging, tuple(held)
