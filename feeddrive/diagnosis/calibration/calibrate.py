@@ -15,7 +15,6 @@ from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, linear_step
 from feeddrive.effects.base import Effect, Value, number
 from feeddrive.effects.friction.friction_deviation import FrictionDeviation
-from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 from feeddrive.typing import FloatArray
 
@@ -42,7 +41,7 @@ interval would be narrower than its tolerance by half a per cent."""
 
 def calibrated(problem: Problem) -> Problem:
     """The problem with its declared values fitted within their tolerances, nothing else being there."""
-    if problem.calibration is not None or not isinstance(problem.plant, Plant):
+    if problem.calibration is not None or not problem.predictor.of_motion:
         return problem
     values = calibrated_values(problem.plant)
     if not values:
@@ -232,7 +231,7 @@ def beyond_tolerance(problem: Problem, found: Fit) -> tuple[Problem, Effect] | N
         The problem without it among the values that are fitted, and the effect.
     """
     able = [one for one in calibrated_list(problem, found) if one.value.name and one.beyond > SURE]
-    if not able or problem.calibration is None or not isinstance(problem.plant, Plant):
+    if not able or problem.calibration is None:
         return None
     best = max(able, key=lambda one: one.beyond).value
     known = problem.calibration
