@@ -170,7 +170,7 @@ class Plant:
             InputError: none is declared.
         """
         if self.network is None:
-            raise InputError("declares no heat", self.name, "declare the machine's heat in [thermal]")
+            raise InputError("declares no heat", self.name, "add [thermal] with the heat of the machine")
         return self.network
 
     @property
