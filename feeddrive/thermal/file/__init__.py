@@ -1,0 +1,1 @@
+"""The heat of a plant file: its sections, read."""
