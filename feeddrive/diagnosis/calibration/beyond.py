@@ -25,7 +25,7 @@ def beyond_tolerance(problem: Problem, found: Fit) -> tuple[Problem, Effect] | N
         The problem without it among the values that are fitted, and the effect.
     """
     able = [one for one in calibrated_list(problem, found) if one.value.name and one.beyond > SURE]
-    if not able or problem.calibration is None or not isinstance(problem.plant, Plant):
+    if not able or problem.calibration is None:
         return None
     best = max(able, key=lambda one: one.beyond).value
     problem, (effect,) = said_by_effects(problem, [as_effect(problem.plant, best, 0.0)])
@@ -42,7 +42,7 @@ def said_by_effects(problem: Problem, effects: Sequence[Effect]) -> tuple[Proble
         together the machine that it was.
     """
     known, plant = problem.calibration, problem.plant
-    if known is None or not known.values or not isinstance(plant, Plant):
+    if known is None or not known.values:
         return problem, tuple(effects)
     result, kept = list(effects), [True] * len(known.values)
     for i, (value, coordinate) in enumerate(zip(known.values, known.coordinates, strict=True)):

@@ -14,7 +14,6 @@ from feeddrive.diagnosis.certainty.noise_colour import score_covariance
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, linear_step
 from feeddrive.effects.base import Effect
-from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 from feeddrive.typing import FloatArray
 
@@ -37,7 +36,7 @@ interval would be narrower than its tolerance by half a per cent."""
 
 def calibrated(problem: Problem) -> Problem:
     """The problem with its declared values fitted within their tolerances, nothing else being there."""
-    if problem.calibration is not None or not isinstance(problem.plant, Plant):
+    if problem.calibration is not None or not problem.predictor.of_motion:
         return problem
     values = calibrated_values(problem.plant)
     if not values:

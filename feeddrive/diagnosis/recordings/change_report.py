@@ -13,7 +13,6 @@ from feeddrive.diagnosis.recordings.change_words import Moved, change_reading, c
 from feeddrive.diagnosis.recordings.changes import Changes
 from feeddrive.diagnosis.recordings.recordings import Target, in_recording, without_shifts
 from feeddrive.effects.base import Effect
-from feeddrive.plant.plant import Plant
 
 
 @dataclass(frozen=True)
@@ -110,7 +109,7 @@ def neutral_somewhere(problem: Problem, effects: Sequence[Effect], effect: Effec
         here = in_recording(effects, problem.plant, number)
         same = [e for e in here if (e.name, e.port, e.place) == (effect.name, effect.port, effect.place)]
         if same:
-            within = is_within_tolerance(same[-1], problem.plant) if isinstance(problem.plant, Plant) else None
+            within = is_within_tolerance(same[-1], problem.plant)
             if within or not problem.predictor.is_material(same[-1], problem.plant):
                 return True
     return False

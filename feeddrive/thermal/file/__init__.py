@@ -1,1 +1,0 @@
-"""The heat of a plant file: its sections, read."""
