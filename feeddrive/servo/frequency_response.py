@@ -24,8 +24,8 @@ from feeddrive.effects.base import TimingEffect
 from feeddrive.effects.chain.payload import Payload
 from feeddrive.errors import InputError
 from feeddrive.plant.analysis.linear import INPUTS, MOVING, OUTPUTS, state_space
-from feeddrive.plant.file.entries import nearest
 from feeddrive.plant.analysis.rest import freed, held
+from feeddrive.plant.file.entries import nearest
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.margins import frequency_response
 from feeddrive.servo.resonances import Resonance, resonances

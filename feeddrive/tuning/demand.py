@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from feeddrive.errors import InputError
 from feeddrive.effects.base import Port
+from feeddrive.errors import InputError
 from feeddrive.plant.analysis.linear import MOVING
 from feeddrive.plant.analysis.rest import ports_without_presliding
 from feeddrive.plant.plant import Plant
