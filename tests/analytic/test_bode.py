@@ -169,9 +169,8 @@ def test_small_response_does_not_cancel() -> None:
     if np.finfo(np.longdouble).nmant < 63:
         pytest.skip("the longest number of this machine is a double")
     plant = read_plant(find_plant("kimm_testbed"))
-    radius = plant.chain.motor_radius
-    servo = Cascade(radius, 125e-6, 4, 60.0, 8.0, 5e-3, 5e-3, current_lag=160e-6, dead_time=125e-6, torque_filters=(pt2(600.0, 0.7),) * 3,
-                    feedback=Feedback.MOTOR)  # fmt: skip
+    servo = Cascade(plant.chain.motor_radius, 125e-6, 4, 60.0, 8.0, 5e-3, 5e-3, torque_filters=(pt2(600.0, 0.7),) * 3,
+                    current_lag=160e-6, dead_time=125e-6, feedback=Feedback.MOTOR)  # fmt: skip
     loop = closed_loop(plant, servo, 0.05, 0.5)["measured_position", "position"]
     frequency = np.array([300.0, 800.0, 970.0, 995.0])
     a, b, c = (np.asarray(one, dtype=np.clongdouble) for one in (loop.A, loop.B, loop.C))
