@@ -21,6 +21,7 @@ from feeddrive.diagnosis.judging.result import Diagnosis
 from feeddrive.diagnosis.ledger.continued import Earlier, changed_since
 from feeddrive.diagnosis.ledger.ledger import FileUse, RunFiles, runs_of, write_ledger, written_earlier
 from feeddrive.diagnosis.likelihood.outputs import diagnosis_json, write_outputs
+from feeddrive.diagnosis.preparation import informative
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError, printable
 from feeddrive.files import shipped_plants
@@ -88,6 +89,7 @@ def run_job(job: Job, as_json: bool = False) -> Diagnosis:
     declared = _bytes(job.plant)
     plant = load(job.plant).plant  # refused before the recordings are read
     fitted, judged = ([_read(source) for source in sources] for sources in (job.recordings, job.validation))
+    fitted, judged = (list(informative(plant, ones)) for ones in (fitted, judged))  # the rest is given back
     if _bytes(job.plant) != declared:
         raise InputError("was changed while it was read", str(job.plant), "diagnose again")
     with working("reading") as said:

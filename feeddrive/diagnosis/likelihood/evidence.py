@@ -17,6 +17,7 @@ from feeddrive.diagnosis.suspicion.torque_channel import with_torque
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
+from feeddrive.recording.long.joined import clock
 from feeddrive.simulate.driven import MotorMotion, motor_motion
 from feeddrive.typing import BoolArray, FloatArray
 
@@ -225,6 +226,7 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
     noise = {name: sensor_noise(series, band) for name, series in raw.items()}
     zero = _zero_of_angle(recording, plant)
     encoder = None if slow else encoder_error(_placed(plant, zero), recording, band, noise)
+    motion = encoder.motion if encoder is not None else motor_motion(time, recording["motor_angle"])
     return AxisEvidence(
         recording,
         {name: band.filter(series) for name, series in acting.items()},
@@ -236,7 +238,7 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
         band.thinning,
         tuple(name for name in measured_names if name == "table_position"),
         {},
-        encoder.motion if encoder is not None else motor_motion(time, recording["motor_angle"]),
+        replace(motion, time=clock(recording)),
         band,
         scaled_from,
         zero,
