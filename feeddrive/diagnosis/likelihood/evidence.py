@@ -223,7 +223,11 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
         counted &= known
     counted &= sound_rows(recording, plant.torque_limit, band)
     refuse_little_left(counted, recording)
-    noise = {name: sensor_noise(series, band) for name, series in raw.items()}
+    sensed = dict(raw)
+    if "motor_torque" in raw and "injected_torque" in recording and not scaled_from:
+        # the jumps of an injected binary sequence are no noise of the torque's sensor
+        sensed["motor_torque"] = raw["motor_torque"] - recording["injected_torque"]
+    noise = {name: sensor_noise(series, band) for name, series in sensed.items()}
     zero = _zero_of_angle(recording, plant)
     encoder = None if slow else encoder_error(_placed(plant, zero), recording, band, noise)
     motion = encoder.motion if encoder is not None else motor_motion(time, recording["motor_angle"])
