@@ -33,7 +33,7 @@ from feeddrive.plant.motor_torque import acting_torques, asked_torques
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 from feeddrive.servo.sampled import SampledController
-from feeddrive.simulate import scenario_run
+from feeddrive.simulate.scenario import scenario_run
 from feeddrive.simulate.controlled.controlled import TorqueLoop, simulate_controlled
 from feeddrive.simulate.controlled.sensitivity import simulate_sensitivity
 from feeddrive.simulate.held_torque import simulate_torque

@@ -55,15 +55,14 @@ def test_import_loads_nothing_heavy() -> None:
     assert found.stdout.strip() == "[]"
 
 
-_WITH_EXAMPLES = (
-    "axis", "benching", "compensating", "design", "drafts", "experiments", "explaining", "keys", "motion", "quantities",
-    "shipped", "sweeping", "warm_up",
-)  # fmt: skip
-
-
-@pytest.mark.parametrize(
-    "module", [*(f"feeddrive.interface.{one}" for one in _WITH_EXAMPLES), "feeddrive.recording.recording"]
+_WITH_EXAMPLES = sorted(
+    ".".join(path.relative_to(ROOT).with_suffix("").parts)
+    for path in (ROOT / "feeddrive").rglob("*.py")
+    if ">>> import feeddrive as fd" in path.read_text(encoding="utf-8")
 )
+
+
+@pytest.mark.parametrize("module", _WITH_EXAMPLES)
 def test_examples_in_docstrings(module: str) -> None:
     found = doctest.testmod(importlib.import_module(module))
     assert found.attempted > 0
