@@ -17,10 +17,10 @@ matplotlib.use("Agg")
 
 from feeddrive.cli import output
 from feeddrive.cli.main import COMMANDS, load, main
+from feeddrive.engine import compiled
 from feeddrive.errors import InputError
 from feeddrive.interface.runs import scenario as running
 from feeddrive.interface.runs import sweep as sweeping
-from feeddrive.engine import compiled
 
 MOST_TICKS = 4000
 """Of a run; a longer one that is possible is cut, for interpreted it takes its time."""

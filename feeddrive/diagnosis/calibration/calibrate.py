@@ -1,4 +1,4 @@
-"""Declared values fitted within their tolerances beside a set of effects, and named where they are beyond them."""
+"""Declared values fitted within their tolerances beside a set of effects."""
 
 from __future__ import annotations
 
@@ -9,13 +9,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feeddrive.diagnosis.calibration.calibration import Calibration
-from feeddrive.diagnosis.calibration.declared import CalibratedValue, as_effect, calibrated_values
+from feeddrive.diagnosis.calibration.declared import CalibratedValue, calibrated_values
 from feeddrive.diagnosis.certainty.noise_colour import score_covariance
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, linear_step
-from feeddrive.effects.base import Effect, Value, number
-from feeddrive.effects.friction.friction_deviation import FrictionDeviation
-from feeddrive.plant.plant import Plant
+from feeddrive.effects.base import Effect
 from feeddrive.recording import Recording
 from feeddrive.typing import FloatArray
 
@@ -31,10 +29,6 @@ PASSES = 4
 TOLERANCE = 2.0
 """Deviations of a coordinate that a tolerance is, by definition (`tolerances`)."""
 
-SURE = 3.0
-"""Deviations of what the recordings alone say by which a value must lie beyond its tolerance: one of 700 by chance, as
-a dozen values are asked, once or twice a search."""
-
 UNSEEN = 0.1
 """Deviations by which a value within its tolerance moves all rows together, below which they do not see it: its
 interval would be narrower than its tolerance by half a per cent."""
@@ -42,7 +36,7 @@ interval would be narrower than its tolerance by half a per cent."""
 
 def calibrated(problem: Problem) -> Problem:
     """The problem with its declared values fitted within their tolerances, nothing else being there."""
-    if problem.calibration is not None or not isinstance(problem.plant, Plant):
+    if problem.calibration is not None or not problem.predictor.of_motion:
         return problem
     values = calibrated_values(problem.plant)
     if not values:
@@ -61,17 +55,24 @@ def recalibrated(problem: Problem, effects: Sequence[Effect]) -> Problem:
     known = problem.calibration
     if known is None or not known.values:
         return problem
-    slopes = {e.recording: slopes_of(problem, effects, e) for e in problem.evidence}
-    sloped = replace(problem, calibration=replace(known, slopes=slopes))
-    assert sloped.whitener is not None
+    sloped = with_new_slopes(problem, effects)
+    assert sloped.calibration is not None and sloped.whitener is not None
     if not np.all(np.isfinite(sloped.whitener.columns)):
         return problem
     residual = sloped.unwhitened(effects)
     # what is left once the values are as they are most likely tells how much a row is worth
     left = residual - sloped.whitener.columns @ (sloped.whitener.most_likely(residual) - known.coordinates)
     variance = _variance(sloped, left)
-    sloped = replace(problem, calibration=replace(known, slopes=slopes, variance=variance))
+    sloped = replace(problem, calibration=replace(sloped.calibration, variance=variance))
     return _stepped(sloped, effects, residual)
+
+
+def with_new_slopes(problem: Problem, effects: Sequence[Effect]) -> Problem:
+    """The problem with the slopes of its declared values beside these effects, the values as they are."""
+    if problem.calibration is None or not problem.calibration.values:
+        return problem
+    slopes = {e.recording: slopes_of(problem, effects, e) for e in problem.evidence}
+    return replace(problem, calibration=replace(problem.calibration, slopes=slopes))
 
 
 def slopes_of(problem: Problem, effects: Sequence[Effect], evidence: Evidence) -> dict[str, FloatArray]:
@@ -131,10 +132,11 @@ def _without_unseen(problem: Problem) -> Problem:
     """The problem without values that its recordings do not see."""
     assert problem.calibration is not None and problem.whitener is not None
     seen = np.sum(problem.whitener.columns**2, axis=0) > UNSEEN**2 * problem.calibration.variance
-    return _with(problem, seen)
+    return with_kept(problem, seen)
 
 
-def _with(problem: Problem, kept: Sequence[bool] | np.ndarray[tuple[int], np.dtype[np.bool_]]) -> Problem:
+def with_kept(problem: Problem, kept: Sequence[bool] | np.ndarray[tuple[int], np.dtype[np.bool_]]) -> Problem:
+    """The problem with some of its declared values fitted, the others as declared."""
     known = problem.calibration
     assert known is not None
     places = np.flatnonzero(np.asarray(kept))
@@ -223,28 +225,3 @@ def _own_slopes(problem: Problem, found: Fit) -> FloatArray:
         return np.zeros((0, 0))
     bare = replace(problem, plant=problem.machine(), calibration=None)
     return bare.jacobian(found.effects, [True] * len(found.effects), bare.predicted(found.effects))
-
-
-def beyond_tolerance(problem: Problem, found: Fit) -> tuple[Problem, Effect] | None:
-    """The declared value that is surest to be beyond its tolerance, as an effect; None where none is asserted.
-
-    Returns:
-        The problem without it among the values that are fitted, and the effect.
-    """
-    able = [one for one in calibrated_list(problem, found) if one.value.name and one.beyond > SURE]
-    if not able or problem.calibration is None or not isinstance(problem.plant, Plant):
-        return None
-    best = max(able, key=lambda one: one.beyond).value
-    known = problem.calibration
-    alike = [(one.name, one.place) == (best.name, best.place) for one in known.values]
-    effects = [
-        as_effect(problem.plant, one, float(c))
-        for one, c, same in zip(known.values, known.coordinates, alike, strict=True)
-        if same
-    ]
-    effect = effects[0]
-    if isinstance(effect, FrictionDeviation):  # Coulomb and viscous friction of a port are one effect
-        keys = ("coulomb_factor", "viscous_factor")
-        factors: dict[str, Value] = {key: float(np.prod([number(e.values[key]) for e in effects])) for key in keys}
-        effect = effect.with_values(**factors)
-    return _with(problem, [not same for same in alike]), effect

@@ -48,7 +48,6 @@ class AxisScene(Scene):
     @property
     def plant(self) -> Plant:
         """The declared plant."""
-        assert isinstance(self.problem.plant, Plant)
         return self.problem.plant
 
 

@@ -12,7 +12,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from feeddrive.diagnosis.calibration.calibrate import beyond_tolerance, calibrated, recalibrated
+from feeddrive.diagnosis.calibration.beyond import beyond_tolerance
+from feeddrive.diagnosis.calibration.calibrate import calibrated, recalibrated
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, Attempt, together
 from feeddrive.diagnosis.finding.pairs import masked_pair
 from feeddrive.diagnosis.finding.round import TIE, one_round, simplest_of_the_best

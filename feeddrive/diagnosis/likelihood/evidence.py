@@ -242,7 +242,7 @@ def _placed(plant: Plant, zero: float) -> Plant:
     if not zero:
         return plant
     values = {**plant.chain.values, "first_nut_position": plant.chain.values["first_nut_position"] + zero}
-    return replace(plant, chain=replace(plant.chain, values=values))
+    return plant.with_chain_values(values)
 
 
 def _zero_of_angle(recording: Recording, plant: Plant) -> float:

@@ -28,7 +28,7 @@ from feeddrive.typing import BoolArray, FloatArray
 
 
 @dataclass
-class AxisPredictor(Predictor[Plant, AxisEvidence]):
+class AxisPredictor(Predictor[AxisEvidence]):
     """Predicts recordings, and remembers what the load side did.
 
     Not a frozen record: it is a cache.
@@ -83,6 +83,11 @@ class AxisPredictor(Predictor[Plant, AxisEvidence]):
         return tuple(scale_sentence(self.scaled[0].scaled_from, *scales) for _ in scales[:1])
 
     @property
+    def of_motion(self) -> bool:
+        """It does."""
+        return True
+
+    @property
     def candidates(self) -> tuple[Candidate, ...]:
         """Effects on motion and torque."""
         return CANDIDATES
@@ -90,7 +95,6 @@ class AxisPredictor(Predictor[Plant, AxisEvidence]):
     def scene(self, problem: Problem, found: Sequence[Effect]) -> AxisScene:
         """Residuals and motion of the load side with the effects found so far."""
         plant = problem.machine(found)
-        assert isinstance(plant, Plant)
         residuals, runs = [], []
         for evidence in problem.evidence:
             assert isinstance(evidence, AxisEvidence)
@@ -156,10 +160,10 @@ def _simulated(plant: Plant, evidence: AxisEvidence) -> LoadMotion:
 
 def _load_side(plant: Plant) -> Plant:
     """The plant as the load side sees it: chain effects in the chain's values, nothing that acts at the motor alone."""
-    kept = tuple(e for e in plant.effects if not (_at_motor_alone(e) or _in_values(e)))
+    kept = tuple(e for e in plant.motion_effects if not (_at_motor_alone(e) or _in_values(e)))
     values = plant.chain_values()
     chain = replace(plant.chain, values={key: values[key] for key in plant.chain.values})
-    return replace(plant, chain=chain, effects=kept)
+    return replace(plant, mechanics=chain, effects=kept)
 
 
 def _in_values(effect: Effect) -> bool:

@@ -18,6 +18,7 @@ from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.diagnosis.likelihood.predictor import Predictor
 from feeddrive.effects.base import Effect, Kind, Parameter, Port, Signature
 from feeddrive.effects.heat.base import ThermalEffect
+from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 from feeddrive.typing import BoolArray, FloatArray
 
@@ -82,7 +83,7 @@ class RecordingShift(Effect):
 
 @dataclass(frozen=True)
 class ThermalRecordingShift(RecordingShift, ThermalEffect):
-    """The same on a plant of temperatures."""
+    """A shift of an effect on heat."""
 
     ports = (Port.THERMAL,)
 
@@ -97,7 +98,7 @@ def without_shifts(effects: Sequence[Effect]) -> tuple[Effect, ...]:
     return tuple(effect for effect in effects if not is_shift(effect))
 
 
-def in_recording(effects: Sequence[Effect], plant: Any, number: int | None) -> tuple[Effect, ...]:
+def in_recording(effects: Sequence[Effect], plant: Plant, number: int | None) -> tuple[Effect, ...]:
     """The effects as they are in one recording, the shifts taken out.
 
     Args:
@@ -114,7 +115,7 @@ def in_recording(effects: Sequence[Effect], plant: Any, number: int | None) -> t
     return tuple(result)
 
 
-def _moved(effect: Effect, plant: Any, shift: RecordingShift) -> Effect:
+def _moved(effect: Effect, plant: Plant, shift: RecordingShift) -> Effect:
     coordinates = coordinates_of(effect, plant)
     by = shift.values["shift"]
     steps = by if isinstance(by, tuple) else (by,)
@@ -125,18 +126,18 @@ def _moved(effect: Effect, plant: Any, shift: RecordingShift) -> Effect:
 
 
 @dataclass
-class RecordingPredictor(Predictor[Any, Any]):
+class RecordingPredictor(Predictor[Any]):
     """Predicts each recording with its own shifts.
 
     Attributes:
-        inner: predicts one kind of machine.
+        inner: predicts one kind of recording.
         numbers: recording to its number; a recording that is not there has no shifts.
     """
 
-    inner: Predictor[Any, Any]
+    inner: Predictor[Any]
     numbers: Mapping[Recording, int]
 
-    def machine(self, plant: Any, evidence: Evidence) -> Any:
+    def machine(self, plant: Plant, evidence: Evidence) -> Plant:
         """The plant as it is in this recording, without shifts."""
         if not any(is_shift(effect) for effect in plant.effects):
             return plant
@@ -144,11 +145,16 @@ class RecordingPredictor(Predictor[Any, Any]):
         return replace(plant, effects=in_recording(plant.effects, plant, number))
 
     @property
+    def of_motion(self) -> bool:
+        """As the inner one."""
+        return self.inner.of_motion
+
+    @property
     def candidates(self) -> tuple[Candidate, ...]:
         """Effects that are tried."""
         return self.inner.candidates
 
-    def predict(self, plant: Any, evidence: Any) -> dict[str, FloatArray]:
+    def predict(self, plant: Plant, evidence: Any) -> dict[str, FloatArray]:
         """Channel to its prediction, (n,), SI."""
         return self.inner.predict(self.machine(plant, evidence), evidence)
 
@@ -167,35 +173,36 @@ class RecordingPredictor(Predictor[Any, Any]):
             return replace(whole, runs=runs)
         return whole
 
-    def variables(self, plant: Any, evidence: Any) -> dict[str, FloatArray]:
+    def variables(self, plant: Plant, evidence: Any) -> dict[str, FloatArray]:
         """Variables that a residual may depend on."""
         return self.inner.variables(self.machine(plant, evidence), evidence)
 
-    def reference(self, name: str, plant: Any, evidence: Any) -> FloatArray:
+    def reference(self, name: str, plant: Plant, evidence: Any) -> FloatArray:
         """Series that a relative error refers to."""
         return self.inner.reference(name, plant, evidence)
 
-    def is_material(self, effect: Effect, plant: Any) -> bool:
+    def is_material(self, effect: Effect, plant: Plant) -> bool:
         """Whether an effect is of a size that matters."""
         return self.inner.is_material(effect, plant)
 
-    def told(self, before: Any, after: Any) -> tuple[str, ...]:
+    def told(self, before: Plant, after: Plant) -> tuple[str, ...]:
         """What is to be said of the way to predict, recordings without shifts."""
         plain = [replace(plant, effects=without_shifts(plant.effects)) for plant in (before, after)]
         return self.inner.told(*plain)
 
-    def predictable(self, plant: Any, evidence: Any) -> BoolArray:
+    def predictable(self, plant: Plant, evidence: Any) -> BoolArray:
         """Samples that can be predicted."""
         return self.inner.predictable(self.machine(plant, evidence), evidence)
 
-    def to_fit(self, plant: Any, evidence: Any) -> BoolArray:
+    def to_fit(self, plant: Plant, evidence: Any) -> BoolArray:
         """Samples that a fit can learn from."""
         return self.inner.to_fit(self.machine(plant, evidence), evidence)
 
 
-def shift_of(target: Target, recording: int, count: int, thermal: bool) -> RecordingShift:
+def shift_of(target: Target, recording: int, count: int) -> RecordingShift:
     """A shift of nothing yet, of as many coordinates as the target has."""
-    kind, port = (ThermalRecordingShift, Port.THERMAL) if thermal else (RecordingShift, Port.TABLE)
+    on_heat = target.port is Port.THERMAL
+    kind, port = (ThermalRecordingShift, Port.THERMAL) if on_heat else (RecordingShift, Port.TABLE)
     return kind(
         values={"shift": (0.0,) * count}, port=port, label=RecordingShift.name, target=target, recording=recording
     )

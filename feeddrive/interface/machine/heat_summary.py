@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from feeddrive.interface.shown import Listing, Shown
-from feeddrive.thermal.plant import ThermalPlant
+from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.run.summary import HeatRow, heat_rows
 from feeddrive.thermal.sensors import HeatSensor
 from feeddrive.units.quantity import format_quantity
@@ -21,7 +21,7 @@ class HeatSummary(Shown):
         plant: the heat of the machine.
     """
 
-    plant: ThermalPlant
+    plant: Heat
 
     def listing(self) -> Listing:
         """The declared values."""

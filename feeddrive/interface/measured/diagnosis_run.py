@@ -138,7 +138,7 @@ def diagnose_files(job: Job, progress: Callable[[str], None] = lambda _: None) -
     fitted, judged = ([_read(source) for source in sources] for sources in (job.recordings, job.validation))
     if _bytes(job.plant) != declared:
         raise InputError("was changed while it was read", str(job.plant), "diagnose again")
-    plant = axis.machine(fitted)
+    plant = axis.plant
     result, effects = diagnose(plant, fitted, judged, job.split, job.simulate, progress, job.start)
     if job.earlier is not None:
         since = changed_since(job.earlier.told, result.effects)

@@ -50,7 +50,7 @@ def figure_listing(one: dict[str, Any]) -> Listing:
 
 def _shown(key: str, value: Any, one: dict[str, Any] | None = None) -> str:
     if value is None:
-        return "never" if key in ("time", "settling") else "–"
+        return {"time": "never", "settling": "not settled"}.get(key, "–")
     if isinstance(value, list):
         return ", ".join(_shown(key, item, one) for item in value)
     if isinstance(value, float):
