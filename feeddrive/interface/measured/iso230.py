@@ -12,8 +12,8 @@ import numpy as np
 
 from feeddrive.errors import InputError
 from feeddrive.interface.axis import Axis
+from feeddrive.interface.measured.reading import read
 from feeddrive.interface.quantities import Quantity, si
-from feeddrive.interface.reading import read
 from feeddrive.interface.shown import Listing, Shown
 from feeddrive.metrology.circular import Circular, circular
 from feeddrive.metrology.measured.forms import circle_test, drift_test, linear_test, part_of
@@ -72,6 +72,21 @@ class Iso230(Shown):
         records = [{"figure": key, "value": value, "unit": unit_of(key)} for key, value in found.items()]
         rows = [[key, format_quantity(value, unit_of(key))] for key, value in found.items()]
         return Listing(f"{self.name}: {STANDARDS[self.part]}", ("figure", "value"), rows, records)
+
+    def tables(self) -> tuple[Listing, ...]:
+        """The figures, and with a plant what it explains of the mean deviations."""
+        if self.share is None:
+            return (self.listing(),)
+        one = self.share
+        named = {"measured": (one.measured, ""), "the plant alone": (one.predicted, "")}
+        named["left"] = (one.left, f"{100 * one.left.explains:.1f} %")
+        named |= {f"left without {key}": (left, f"{100 * left.explains:.1f} %") for key, left in one.without.items()}
+        rows = [
+            [name, *(format_quantity(v, "m") for v in (left.systematic, left.mean_range, left.reversal)), explains]
+            for name, (left, explains) in named.items()
+        ]
+        title = "What the plant explains of the mean deviations"
+        return (self.listing(), Listing(title, ("", "E", "M", "B", "explains"), rows))
 
     def record(self) -> dict[str, Any]:
         """Plain values for JSON, SI."""

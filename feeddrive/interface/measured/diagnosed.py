@@ -11,15 +11,19 @@ from feeddrive.compensation.actions import Actions, actions
 from feeddrive.diagnosis.calibration.plant_text import with_calibrated_values
 from feeddrive.diagnosis.diagnose import diagnose as find_what_lacks
 from feeddrive.diagnosis.judging.result import Diagnosis
-from feeddrive.diagnosis.likelihood.outputs import diagnosis_record, write_outputs
+from feeddrive.diagnosis.likelihood.outputs import diagnosis_json, diagnosis_record, write_outputs
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 from feeddrive.interface.axis import Axis, axis_of_text
-from feeddrive.interface.reading import as_recording
+from feeddrive.interface.measured.reading import as_recording
 from feeddrive.interface.shown import Listing, Shown
 from feeddrive.plant.file.effect_text import plant_text_with_effects
 from feeddrive.recording.recording import Recording
+from feeddrive.report.certainty import experiment_sentences
+from feeddrive.report.pages.section_calibrated import calibrated_lines
 from feeddrive.report.parameters import parameter_text
+from feeddrive.report.records import used_sentence
+from feeddrive.report.simulated import simulation_lines
 from feeddrive.report.words.people import error_text, share_text
 from feeddrive.report.words.verdict import verdict_sentences
 
@@ -97,11 +101,32 @@ class Diagnosed(Shown):
     @property
     def verdict(self) -> str:
         """What is missing, how well the mended plant predicts, what stays open."""
-        return " ".join(verdict_sentences(self.diagnosis))
+        return " ".join(self.sentences)
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """The verdict, sentence by sentence."""
+        return tuple(verdict_sentences(self.diagnosis))
 
     def __repr__(self) -> str:
         """The verdict."""
         return self.verdict
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What goes with the errors: data used, each effect in words, what is alike, what to record next."""
+        found = self.diagnosis
+        lines = [used_sentence(found)]
+        lines += [f"{one.name}: {one.evidence} {one.reading}" for one in found.effects]
+        lines += calibrated_lines(found)
+        lines += [f"since the earlier diagnosis: {sentence}" for sentence in found.kept.since]
+        lines += [
+            f"cannot be told apart by these recordings: {', '.join(one.names)}: {one.reason}" for one in found.alike
+        ]
+        lines += experiment_sentences(found)
+        lines += found.correlation.told if found.correlation is not None else ()
+        lines += simulation_lines(found.simulation) if found.simulation is not None else ()
+        return tuple(lines)
 
     @property
     def effects(self) -> Effects:
@@ -123,6 +148,10 @@ class Diagnosed(Shown):
     def record(self) -> dict[str, Any]:
         """The content of `diagnosis.json`."""
         return diagnosis_record(self.diagnosis)
+
+    def json(self) -> str:
+        """The text of `diagnosis.json`."""
+        return diagnosis_json(self.diagnosis)
 
     def report(self, path: str | Path) -> Path:
         """Write the report, one HTML file.

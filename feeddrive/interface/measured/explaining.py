@@ -11,14 +11,12 @@ from feeddrive.diagnosis.responses.response_result import diagnose_response
 from feeddrive.errors import InputError
 from feeddrive.export.point import export_point
 from feeddrive.interface.axis import Axis
-from feeddrive.interface.numbers import Explained
-from feeddrive.interface.responses import ExplainedResponse
+from feeddrive.interface.measured.numbers import Explained
+from feeddrive.interface.measured.reading import read_response_file
+from feeddrive.interface.measured.responses import ExplainedResponse
 from feeddrive.interface.servo import Servo, cascade_for
 from feeddrive.plant.file.named_parts import with_named_parts
-from feeddrive.recording.files.opening import open_file
 from feeddrive.recording.frequency_response import FrequencyResponse
-from feeddrive.recording.traces.choosing import Wishes
-from feeddrive.recording.traces.opened import read_trace
 from feeddrive.servo.frequency_response import Case
 
 
@@ -63,19 +61,3 @@ def explain(
     cascade = None if controller is None else cascade_for(axis.plant, controller)
     found = diagnose_response(entries, axis.path, axis.plant, response, case, said, cascade)
     return ExplainedResponse(axis, found)
-
-
-MOST_BYTES = 20_000_000
-"""A larger file is no frequency response: a million lines of them are half of that."""
-
-
-def read_response_file(path: Path) -> FrequencyResponse | None:
-    """The frequency response of a file; None where it is something else.
-
-    Raises:
-        InputError: no such file, or a frequency response that cannot be used.
-    """
-    if path.is_file() and path.stat().st_size > MOST_BYTES:
-        return None
-    found = read_trace(open_file(path), Wishes())
-    return found if isinstance(found, FrequencyResponse) else None

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from feeddrive.errors import InputError
-from feeddrive.interface.design import Controller
 from feeddrive.interface.quantities import Quantity, si
+from feeddrive.interface.runs.controllers import Controller
 from feeddrive.interface.shown import Listing, Shown, needed_pandas
 from feeddrive.metrology.recorded_response import recorded_response
 from feeddrive.metrology.response import Response, StepResponse, step_response

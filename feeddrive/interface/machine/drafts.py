@@ -10,7 +10,7 @@ from pathlib import Path
 from feeddrive.errors import InputError
 from feeddrive.files import write_text_atomically
 from feeddrive.interface.axis import Axis, axis_of_text
-from feeddrive.interface.machine_tables import Check
+from feeddrive.interface.machine.check import Check
 from feeddrive.interface.quantities import Quantity, si
 from feeddrive.interface.shown import Listing, Shown
 from feeddrive.parts.catalogue.reading import KINDS, CataloguePart, catalogue

@@ -1,4 +1,4 @@
-"""Tables of `feeddrive thermal`."""
+"""Tables of a warm-up: temperatures, errors, time constants, energy, models, network."""
 
 from __future__ import annotations
 
@@ -6,11 +6,8 @@ import math
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from rich.console import RenderableType
-from rich.table import Table
-from rich.text import Text
 
-from feeddrive.cli.output import table
+from feeddrive.interface.shown import Listing
 from feeddrive.thermal.full.full_model import NUT
 from feeddrive.thermal.reduced.network import Network
 from feeddrive.thermal.run.study import ThermalStudy, WarmUp
@@ -19,12 +16,12 @@ from feeddrive.units.quantity import format_quantity
 _ROWS = 10
 
 
-def thermal_tables(found: ThermalStudy, lumps: Network) -> list[RenderableType]:
+def warm_up_tables(found: ThermalStudy, lumps: Network) -> tuple[Listing, ...]:
     """What people read, in the order in which they ask."""
-    return [*_over_time(found), _warm_ups(found), _constants(found), _energy(found), _models(found), *_network(lumps)]
+    return (*_over_time(found), _warm_ups(found), _constants(found), _energy(found), _models(found), *_network(lumps))
 
 
-def _over_time(found: ThermalStudy) -> list[Table]:
+def _over_time(found: ThermalStudy) -> list[Listing]:
     """Temperatures, and the error at the table, at some times."""
     duty, travel = found.duty, found.plant.rig.travel
     speed = format_quantity(float(np.mean(np.abs(duty.speeds))), "rad/s")
@@ -35,14 +32,12 @@ def _over_time(found: ThermalStudy) -> list[Table]:
     return [_series(title, others, found), _series("Error at the table, growth of the screw", grown, found)]
 
 
-def _series(title: str, names: Sequence[str], found: ThermalStudy) -> Table:
+def _series(title: str, names: Sequence[str], found: ThermalStudy) -> Listing:
     times = found.duty.times
     step = max(len(times) // _ROWS, 1)
     kept = range(len(times) - 1, -1, -step)[::-1]
     rows = [[_time(times[i]), *(_shown(name, float(found.series[name][i])) for name in names)] for i in kept]
-    made = table(title, ["time", *(_heading(name) for name in names)], rows)
-    made.columns[0].no_wrap = True
-    return made
+    return Listing(title, ["time", *(_heading(name) for name in names)], rows)
 
 
 def _heading(name: str) -> str:
@@ -61,11 +56,11 @@ def _time(seconds: float) -> str:
     return f"{seconds / 60:.4g} min" if seconds >= 60 else f"{seconds:.3g} s"
 
 
-def _warm_ups(found: ThermalStudy) -> Table:
+def _warm_ups(found: ThermalStudy) -> Listing:
     rows = [_warm_up(name, one, found) for name, one in found.warm_up.items()]
     band = format_quantity(found.within, "m")
     last = "error it settles at" if found.duty.is_constant else "error at the end of the run"
-    return table("Warm-up of the table's position", ("nut at", last, f"within {band} after", "63.2 % after"), rows)
+    return Listing("Warm-up of the table's position", ("nut at", last, f"within {band} after", "63.2 % after"), rows)
 
 
 def _warm_up(name: str, one: WarmUp, found: ThermalStudy) -> list[str]:
@@ -74,17 +69,17 @@ def _warm_up(name: str, one: WarmUp, found: ThermalStudy) -> list[str]:
     return [place, format_quantity(one.final, "m"), _time(one.time) + beyond, _time(one.rise_time)]
 
 
-def _constants(found: ThermalStudy) -> Table:
+def _constants(found: ThermalStudy) -> Listing:
     names = list(found.constants[0].shares) if found.constants else []
     rows = [
         [_time(one.value), *(f"{one.shares[name] + 0.0:.1%}".replace("-0.0%", "0.0%") for name in names)]
         for one in found.constants
     ]
     headings = [_heading("nut_temperature" if name == NUT else f"table_{name}").split(" [")[0] for name in names]
-    return table("Time constants, and their shares in a step", ["τ", *headings], rows)
+    return Listing("Time constants, and their shares in a step", ["τ", *headings], rows)
 
 
-def _energy(found: ThermalStudy) -> Table:
+def _energy(found: ThermalStudy) -> Listing:
     energy = found.energy
     rows = [[f"heat in: {_words(name)}", _energy_text(value)] for name, value in energy.heats.items() if value]
     rows += [
@@ -92,7 +87,7 @@ def _energy(found: ThermalStudy) -> Table:
         ["stored in steel and bodies", _energy_text(energy.stored)],
         ["does not close by", f"{energy.imbalance:.1e} of the largest"],
     ]
-    return table("Energy of the run", ("", "energy"), rows)
+    return Listing("Energy of the run", ("", "energy"), rows)
 
 
 def _words(name: str) -> str:
@@ -103,13 +98,13 @@ def _energy_text(value: float) -> str:
     return f"{value / 1e3:.4g} kJ"
 
 
-def _models(found: ThermalStudy) -> Table:
+def _models(found: ThermalStudy) -> Listing:
     rise, growth = _largest(found.reduction_errors)
     rows = [
         ["full, finite volumes", str(found.model.order - 1), "", ""],
         ["reduced", str(found.order), f"{1e3 * rise:.2g} mK", f"{1e9 * growth:.2g} nm"],
     ]
-    return table("Models, errors in this run", ("model", "states", "temperatures", "growths"), rows)
+    return Listing("Models, errors in this run", ("model", "states", "temperatures", "growths"), rows)
 
 
 def _largest(errors: Mapping[str, float]) -> tuple[float, float]:
@@ -118,16 +113,20 @@ def _largest(errors: Mapping[str, float]) -> tuple[float, float]:
     return max(others), max(grown)
 
 
-def _network(lumps: Network) -> list[RenderableType]:
+def _network(lumps: Network) -> list[Listing]:
     edges = 1e3 * lumps.edges
     spans = {f"shaft_{i + 1}": f"{edges[i]:.4g} to {edges[i + 1]:.4g} mm" for i in range(len(edges) - 1)}
-    nodes = [[lump.name, spans.get(lump.name, ""), f"{lump.capacity:.4g} J/K", f"{lump.to_air:.3g} W/K"]
-             for lump in lumps.lumps]  # fmt: skip
-    links = [[link.first, link.second, f"{link.conductance:.3g} W/K", f"{1 / link.conductance:.3g} K/W"]
-             for link in lumps.links if link.conductance > 0]  # fmt: skip
+    nodes = [
+        [one.name, spans.get(one.name, ""), f"{one.capacity:.4g} J/K", f"{one.to_air:.3g} W/K"] for one in lumps.lumps
+    ]
+    links = [
+        [one.first, one.second, f"{one.conductance:.3g} W/K", f"{1 / one.conductance:.3g} K/W"]
+        for one in lumps.links
+        if one.conductance > 0
+    ]
+    title = "Network: nodes, at the mean conductances of the run"
+    remark = "The network is for reading; its errors are some per cent. Numbers above are those of the full model."
     return [
-        table("Network: nodes, at the mean conductances of the run", ("node", "shaft from the front end", "capacity",
-                                                                      "to the air"), nodes),
-        table("Network: conductances between nodes", ("from", "to", "conductance", "resistance"), links),
-        Text("The network is for reading; its errors are some per cent. Numbers above are those of the full model."),
-    ]  # fmt: skip
+        Listing(title, ("node", "shaft from the front end", "capacity", "to the air"), nodes),
+        Listing("Network: conductances between nodes", ("from", "to", "conductance", "resistance"), links, (), remark),
+    ]
