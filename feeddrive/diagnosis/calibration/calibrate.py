@@ -10,9 +10,11 @@ import numpy as np
 
 from feeddrive.diagnosis.calibration.calibration import Calibration
 from feeddrive.diagnosis.calibration.declared import CalibratedValue, as_effect, calibrated_values
+from feeddrive.diagnosis.calibration.known import known_values
 from feeddrive.diagnosis.certainty.noise_colour import score_covariance
 from feeddrive.diagnosis.likelihood.evidence import Evidence
-from feeddrive.diagnosis.likelihood.fit import Fit, Problem, linear_step
+from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
+from feeddrive.diagnosis.likelihood.tolerances import BEYOND
 from feeddrive.effects.base import Effect, Value, number
 from feeddrive.effects.friction.friction_deviation import FrictionDeviation
 from feeddrive.plant.plant import Plant
@@ -22,18 +24,21 @@ from feeddrive.typing import FloatArray
 STEP = 1e-3
 """Change of the logarithm of a value from which its slope is taken; ten times that of a coordinate of size one."""
 
+LONG = 30 * STEP
+"""The same where a prediction goes from cell to cell (`fit.COARSE`)."""
+
 ENOUGH = 0.1
 """Move of a value over its deviation that needs no new slopes: it moves the evidence by a two-hundredth."""
 
-PASSES = 4
-"""New slopes at most, before anything is found."""
-
-TOLERANCE = 2.0
-"""Deviations of a coordinate that a tolerance is, by definition (`tolerances`)."""
+PASSES = 8
+"""New slopes at most, before anything is found and beside a value that is beyond its tolerance."""
 
 SURE = 3.0
-"""Deviations of what the recordings alone say by which a value must lie beyond its tolerance: one of 700 by chance, as
-a dozen values are asked, once or twice a search."""
+"""Deviations by which no values within their tolerances may explain the recordings, and one beyond its does: one of 700
+by chance for each of a dozen values, where the truth is at the very end of a tolerance."""
+
+AGAINST = 2 * math.log(20.0)
+"""Twice the logarithm of the odds from which a value is refused that is not the likeliest (as `ambiguity`)."""
 
 UNSEEN = 0.1
 """Deviations by which a value within its tolerance moves all rows together, below which they do not see it: its
@@ -48,20 +53,26 @@ def calibrated(problem: Problem) -> Problem:
     if not values:
         return problem
     start = replace(problem, calibration=Calibration(values, np.zeros(len(values)), {}, 1.0))
-    start = _without_unseen(recalibrated(start, ()))
-    for _ in range(PASSES - 1):
-        before, start = start, recalibrated(start, ())
-        if np.max(np.abs(_moved(before, start)), initial=0.0) < ENOUGH:
+    start = _without_unseen(recalibrated(start, (), rough=True))
+    for turn in range(PASSES):
+        before, start = start, recalibrated(start, (), rough=turn == 0)
+        if turn > 0 and np.max(np.abs(_moved(before, start)), initial=0.0) < ENOUGH:
             break
     return recalibrated(start.levelled(), ())
 
 
-def recalibrated(problem: Problem, effects: Sequence[Effect]) -> Problem:
-    """The problem with new slopes, and its declared values as they are most likely beside these effects."""
+def recalibrated(problem: Problem, effects: Sequence[Effect], rough: bool = False) -> Problem:
+    """The problem with new slopes, and its declared values as they are most likely beside these effects.
+
+    Args:
+        problem: with the values to begin from.
+        effects: beside them.
+        rough: slopes from one side only, where the values are far away still.
+    """
     known = problem.calibration
     if known is None or not known.values:
         return problem
-    slopes = {e.recording: slopes_of(problem, effects, e) for e in problem.evidence}
+    slopes = {e.recording: slopes_of(problem, effects, e, rough) for e in problem.evidence}
     sloped = replace(problem, calibration=replace(known, slopes=slopes))
     assert sloped.whitener is not None
     if not np.all(np.isfinite(sloped.whitener.columns)):
@@ -74,21 +85,32 @@ def recalibrated(problem: Problem, effects: Sequence[Effect]) -> Problem:
     return _stepped(sloped, effects, residual)
 
 
-def slopes_of(problem: Problem, effects: Sequence[Effect], evidence: Evidence) -> dict[str, FloatArray]:
-    """Channel to its slope with the coordinates of the declared values, (n, k), SI."""
+def slopes_of(
+    problem: Problem, effects: Sequence[Effect], evidence: Evidence, rough: bool = False
+) -> dict[str, FloatArray]:
+    """Channel to its slope with the coordinates of the declared values, (n, k), SI.
+
+    From both sides where the step must be long (`LONG`): one side's slope would be that of half a step away, and where
+    two values are alike, fits along it end where the slopes are wrong, not where the values are right.
+    """
     known = problem.calibration
     assert known is not None
-    base = problem.predictor.predict(problem.machine(effects), evidence)
-    slopes = {name: np.empty((len(base[name]), len(known.values))) for name in evidence.channels}
-    length = STEP if problem.predictor.smooth(problem.plant) else 30 * STEP
-    for i, value in enumerate(known.values):
-        step = length / value.deviation
+
+    def at(place: int, step: float) -> dict[str, FloatArray]:
         coordinates = known.coordinates.copy()
-        coordinates[i] += step
+        coordinates[place] += step
         there = replace(problem, calibration=replace(known, coordinates=coordinates)).machine(effects)
-        predicted = problem.predictor.predict(there, evidence)
+        return problem.predictor.predict(there, evidence)
+
+    smooth, base = problem.predictor.smooth(problem.plant), at(0, 0.0)
+    slopes = {name: np.empty((len(base[name]), len(known.values))) for name in evidence.channels}
+    for i, value in enumerate(known.values):
+        step = (STEP if smooth else LONG) / value.deviation
+        after, before, apart = at(i, step), base, step
+        if not smooth and not rough:
+            before, apart = at(i, -step), 2 * step
         for name in evidence.channels:
-            slopes[name][:, i] = (predicted[name] - base[name]) / step
+            slopes[name][:, i] = (after[name] - before[name]) / apart
     return slopes
 
 
@@ -161,14 +183,14 @@ class Calibrated:
     Attributes:
         value: which.
         coordinate: most likely, as the plant has it.
-        deviation: of the coordinate, given the recordings.
-        beyond: by how many of its own deviations the recordings alone put the coordinate beyond its tolerance.
+        deviation: of the coordinate, given the recordings and the tolerances of all as deviations.
+        ends: of its 95 % interval as coordinates, all others within their tolerances (`known`).
     """
 
     value: CalibratedValue
     coordinate: float
     deviation: float
-    beyond: float
+    ends: tuple[float, float]
 
     @property
     def number(self) -> float:
@@ -178,73 +200,67 @@ class Calibrated:
     @property
     def ci95(self) -> tuple[float, float]:
         """Interval of 95 % [SI]."""
-        half = 1.96 * self.deviation
-        low, high = (self.value.declared * self.value.factor(self.coordinate + way * half) for way in (-1, 1))
+        low, high = (self.value.declared * self.value.factor(end) for end in self.ends)
         return low, high
 
 
 def calibrated_list(problem: Problem, found: Fit) -> tuple[Calibrated, ...]:
-    """What is known of the declared values beside a fitted set.
-
-    The information of the recordings is H S⁻¹ H, with H = K'K of the slopes less what the effects' own slopes explain
-    and S the covariance of K'r by the colour of the residual; the prior's is one.
-    """
-    known, whitened = problem.calibration, problem.whitener
-    if known is None or whitened is None:
+    """What is known of the declared values beside a fitted set."""
+    known, calibration, whitened = known_values(problem, found), problem.calibration, problem.whitener
+    if known is None or calibration is None or whitened is None:
         return ()
-    columns, rows = whitened.columns, [e.fit_rows for e in problem.evidence]
-    residual = problem.unwhitened(found.effects)
-    own = _own_slopes(problem, found)
-    columns = (
-        columns - own @ np.column_stack([linear_step(own, column) for column in columns.T]) if own.size else columns
-    )
-    left = residual - whitened.columns @ (whitened.most_likely(residual) - known.coordinates)
-    score = score_covariance(problem.evidence, rows, left, columns)
-    normal = columns.T @ columns
-    weight = normal @ np.linalg.pinv(score, rcond=1e-10, hermitian=True)
-    precision = weight @ normal + np.eye(len(normal))
-    covariance = np.linalg.inv(0.5 * (precision + precision.T))
-    mean = covariance @ (weight @ (columns.T @ (residual + whitened.offset)))
-    settled = whitened.most_likely(residual)
+    settled = whitened.most_likely(problem.unwhitened(found.effects))
+    deviations = np.sqrt(np.diag(known.covariance))
     result = []
     for i, value in enumerate(known.values):
-        known_to, told = float(covariance[i, i]), max(1 - float(covariance[i, i]), 1e-9)
-        beyond, spread = (
-            abs(float(mean[i])) / told - TOLERANCE,
-            math.sqrt(known_to / told),
-        )  # without the prior of this value
-        result.append(Calibrated(value, float(settled[i]), math.sqrt(known_to), beyond / spread))
+        coordinate, (low, high) = float(settled[i]), known.interval(i)
+        ends = min(low, coordinate), max(high, coordinate)
+        result.append(Calibrated(value, coordinate, float(deviations[i]), ends))
     return tuple(result)
-
-
-def _own_slopes(problem: Problem, found: Fit) -> FloatArray:
-    """Slopes of the effects that were found, not whitened, (m, k)."""
-    if not found.effects:
-        return np.zeros((0, 0))
-    bare = replace(problem, plant=problem.machine(), calibration=None)
-    return bare.jacobian(found.effects, [True] * len(found.effects), bare.predicted(found.effects))
 
 
 def beyond_tolerance(problem: Problem, found: Fit) -> tuple[Problem, Effect] | None:
     """The declared value that is surest to be beyond its tolerance, as an effect; None where none is asserted.
 
+    One is beyond its tolerance where no values within theirs explain the recordings, and some do that are all but it
+    within theirs. Of values that are alike to the recordings the likeliest is taken; `other_places` says the others.
+
     Returns:
-        The problem without it among the values that are fitted, and the effect.
+        The problem without it among the values that are fitted, and the effect, from its likeliest value.
     """
-    able = [one for one in calibrated_list(problem, found) if one.value.name and one.beyond > SURE]
-    if not able or problem.calibration is None or not isinstance(problem.plant, Plant):
+    known = known_values(problem, found)
+    if known is None or not isinstance(problem.plant, Plant):
         return None
-    best = max(able, key=lambda one: one.beyond).value
-    known = problem.calibration
-    alike = [(one.name, one.place) == (best.name, best.place) for one in known.values]
-    effects = [
-        as_effect(problem.plant, one, float(c))
-        for one, c, same in zip(known.values, known.coordinates, alike, strict=True)
-        if same
-    ]
+    least, able = known.least(), [i for i, value in enumerate(known.values) if value.name]
+    gained = {i: least - known.least(i) for i in able}
+    most = max(gained.values(), default=0.0)
+    if most < SURE**2:
+        return None
+    alike = [i for i in able if gained[i] > most - AGAINST]
+    costs = {i: known.likeliest(i, BEYOND / known.values[i].deviation) for i in alike}
+    place = min(alike, key=lambda i: costs[i][1])
+    best, u = known.values[place], costs[place][0]
+    same = [(one.name, one.place) == (best.name, best.place) for one in known.values]
+    effects = [as_effect(problem.plant, known.values[i], known.c(i, float(u[i]))) for i in np.flatnonzero(same)]
     effect = effects[0]
     if isinstance(effect, FrictionDeviation):  # Coulomb and viscous friction of a port are one effect
         keys = ("coulomb_factor", "viscous_factor")
         factors: dict[str, Value] = {key: float(np.prod([number(e.values[key]) for e in effects])) for key in keys}
         effect = effect.with_values(**factors)
-    return _with(problem, [not same for same in alike]), effect
+    rest = [not one for one in same]
+    others = np.array([known.c(i, float(u[i])) for i in np.flatnonzero(rest)])
+    freed = _with(problem, rest)
+    assert freed.calibration is not None
+    freed = replace(freed, calibration=replace(freed.calibration, coordinates=others))
+    return _together(freed, (*found.effects, effect))
+
+
+def _together(problem: Problem, effects: Sequence[Effect]) -> tuple[Problem, Effect]:
+    """Effects and declared values fitted in turn until neither moves: alike, each bends what the other is told by."""
+    for _ in range(PASSES):
+        before = problem = recalibrated(problem, effects)
+        effects = fit(problem, effects).effects
+        problem = problem.settled(effects)
+        if np.max(np.abs(_moved(before, problem)), initial=0.0) < ENOUGH:
+            break
+    return problem, effects[-1]
