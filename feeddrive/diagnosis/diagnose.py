@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feeddrive.blas_threads import one_thread
-from feeddrive.diagnosis.calibration.calibrated_result import calibrated_results
+from feeddrive.diagnosis.calibration.calibrated_result import calibrated_results, known_together
 from feeddrive.diagnosis.certainty.ambiguity import Rival, ambiguous_sets, other_places, rivals_of
 from feeddrive.diagnosis.certainty.correlation import correlation
 from feeddrive.diagnosis.certainty.next_experiment import next_experiments
@@ -124,6 +124,7 @@ def diagnose(
             *begun.told,
             *(open_lag(found.fit.effects, every) if hold is None else ()),
             *other_places(found, judged),
+            *known_together(found.problem, found.fit),
             *last_state(searched),
             *_notes(begun.problem.evidence, begun.judged, found),
             *refinement.notes,
