@@ -13,7 +13,6 @@ from feeddrive.diagnosis.certainty.correlation import TOGETHER
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem
 from feeddrive.effects.chain.stiffness_deviation import PARTS
 from feeddrive.plant.analysis.stiffness_budget import participation
-from feeddrive.plant.plant import Plant
 
 TOLD = 0.9
 """Deviation of a value over that of its tolerance, above which the recordings say nothing of it: it is not listed."""
