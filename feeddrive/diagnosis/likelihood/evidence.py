@@ -253,10 +253,7 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
 
 def _placed(plant: Plant, zero: float) -> Plant:
     """The plant with its nut a way [m] further along."""
-    if not zero:
-        return plant
-    values = {**plant.chain.values, "first_nut_position": plant.chain.values["first_nut_position"] + zero}
-    return plant.with_chain_values(values)
+    return plant.with_chain_values(plant.chain.nut_moved(zero)) if zero else plant
 
 
 def _zero_of_angle(recording: Recording, plant: Plant) -> float:
