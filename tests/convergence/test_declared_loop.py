@@ -14,10 +14,10 @@ from feeddrive.files import plants_folder
 from feeddrive.plant.file.files import read_plant
 from feeddrive.plant.plant import PositionVelocityController
 from feeddrive.recording import read_recording
-from feeddrive.simulate.controlled.closed_loop import simulate_closed_loop
 from feeddrive.simulate.controlled.declared_loop import DeclaredLoop, declared_loop
 from feeddrive.simulate.controlled.replay import replayed_command
 from feeddrive.typing import FloatArray
+from tests.convergence.declared_run import simulate_closed_loop
 from tests.recovery.declared_controller import controlled_plant
 from tests.recovery.planted import pair
 

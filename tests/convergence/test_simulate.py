@@ -22,10 +22,10 @@ from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.plant.chain.chain import Rigid, ThreeInertias, symbolic
 from feeddrive.plant.equations import chain_symbols, effect_forces, parameter_symbols, parameter_values
 from feeddrive.plant.plant import Plant, PositionVelocityController
-from feeddrive.simulate.controlled.closed_loop import simulate_closed_loop
 from feeddrive.simulate.driven import motor_motion, simulate_driven
 from feeddrive.simulate.held_torque import initial_state, simulate_torque
 from feeddrive.typing import FloatArray
+from tests.convergence.declared_run import simulate_closed_loop
 
 SAMPLE = 1e-3
 BENCH = ThreeInertias(

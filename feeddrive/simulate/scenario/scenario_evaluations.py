@@ -18,9 +18,15 @@ from feeddrive.plant.file.entries import Table
 from feeddrive.simulate.scenario.scenario import Evaluation
 
 SIGNALS = (
-    "setpoint", "motor_torque", "motor_angle", "motor_speed", "table_position", "table_velocity", "cutting_force",
+    "setpoint",
+    "motor_torque",
+    "motor_angle",
+    "motor_speed",
+    "table_position",
+    "table_velocity",
+    "cutting_force",
     "speed_command",
-)  # fmt: skip
+)
 """Series of a run that may be evaluated."""
 
 _WORD = "word"
