@@ -16,6 +16,8 @@ _RECORDED = (
     "table_position",
     "table_velocity",
     "cutting_force",
+    "injected_torque",
+    "injected_speed",
 )
 _EVALUATED = (*_RECORDED, "speed_command")
 

@@ -15,6 +15,7 @@ from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.ledger.continued import Earlier, changed_since, earlier_run
 from feeddrive.diagnosis.ledger.ledger import FileUse, RunFiles, checksum, runs_of, write_ledger, written_earlier
 from feeddrive.diagnosis.likelihood.outputs import write_outputs
+from feeddrive.diagnosis.preparation import informative
 from feeddrive.effects.base import Effect
 from feeddrive.effects.tabulated import Tabulated
 from feeddrive.errors import InputError
@@ -136,6 +137,7 @@ def diagnose_files(job: Job, progress: Callable[[str], None] = lambda _: None) -
     declared = _bytes(job.plant)
     axis = load(job.plant)  # refused before the recordings are read
     fitted, judged = ([_read(source) for source in sources] for sources in (job.recordings, job.validation))
+    fitted, judged = (list(informative(axis.plant, ones)) for ones in (fitted, judged))  # the rest is given back
     if _bytes(job.plant) != declared:
         raise InputError("was changed while it was read", str(job.plant), "diagnose again")
     plant = axis.plant
