@@ -13,8 +13,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from feeddrive.diagnosis.stiffness.candidates import DriveAt
-from feeddrive.diagnosis.stiffness.gap import explain_frequency, explain_stiffness
 from feeddrive.parts.bearings.supports import check_position
 from feeddrive.parts.combined_stiffness import (
     Deformation,
@@ -32,6 +30,8 @@ from feeddrive.parts.screw.wedge import (
     wedge_efficiency,
 )
 from feeddrive.reproduce.paper_004 import rows
+from feeddrive.reproduce.paper_004_candidates import DriveAt
+from feeddrive.reproduce.paper_004_gap import explain_frequency, explain_stiffness
 from feeddrive.reproduce.row import Row, Status
 from tests.analytic.rayleigh import added_mass, rayleigh_frequency
 from tests.analytic.screw_fem import ScrewDrive, frequencies

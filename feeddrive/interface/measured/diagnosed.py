@@ -56,8 +56,15 @@ class Effects(Shown):
             for key, parameter in one.parameters.items():
                 shown = parameter_text(key, parameter)
                 rows.append([one.name, shown.name, shown.value, shown.interval])
-                records.append({"effect": one.name, "parameter": key, "value": parameter.value,
-                                "unit": parameter.unit, "ci95": parameter.ci95})  # fmt: skip
+                records.append(
+                    {
+                        "effect": one.name,
+                        "parameter": key,
+                        "value": parameter.value,
+                        "unit": parameter.unit,
+                        "ci95": parameter.ci95,
+                    }
+                )
         title = "Effects that the axis lacks" if rows else "No effect is missing"
         return Listing(title, ("effect", "value of", "value", "95 % interval"), rows, records)
 
@@ -71,15 +78,28 @@ class Errors(Shown):
     def listing(self) -> Listing:
         """One row per channel."""
         rows = [
-            [one.name, error_text(one.before.rms, one.unit), error_text(one.after.rms, one.unit),
-             share_text(one.before.relative), share_text(one.after.relative), error_text(one.noise_rms, one.unit)]
+            [
+                one.name,
+                error_text(one.before.rms, one.unit),
+                error_text(one.after.rms, one.unit),
+                share_text(one.before.relative),
+                share_text(one.after.relative),
+                error_text(one.noise_rms, one.unit),
+            ]
             for one in self._diagnosis.channels
-        ]  # fmt: skip
+        ]
         records = [
-            {"channel": one.name, "unit": one.unit, "before rms": one.before.rms, "after rms": one.after.rms,
-             "before relative": one.before.relative, "after relative": one.after.relative, "noise rms": one.noise_rms}
+            {
+                "channel": one.name,
+                "unit": one.unit,
+                "before rms": one.before.rms,
+                "after rms": one.after.rms,
+                "before relative": one.before.relative,
+                "after relative": one.after.relative,
+                "noise rms": one.noise_rms,
+            }
             for one in self._diagnosis.channels
-        ]  # fmt: skip
+        ]
         headings = ("channel", "error before", "after", "relative before", "after", "sensor noise")
         return Listing("Errors on data not fitted", headings, rows, records)
 

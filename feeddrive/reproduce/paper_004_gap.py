@@ -1,9 +1,8 @@
-"""Which single or joint changes of a drive explain a measured stiffness and a measured natural frequency.
+"""Which single changes of the drive of paper 004 explain its measured stiffness, and which its natural frequency.
 
 One static and one dynamic number cannot tell the candidates apart: any one of `softer_parts` meets the stiffness, any
-one of `slower_masses` then meets the frequency. So the answer is the list of all pairs, each with the measurements that
-would decide, and never one of them alone. Source: paper 004 blames the guides' friction, which has the wrong sign:
-guides that carry part of the force make a drive stiffer.
+one of `slower_masses` then meets the frequency. Source: paper 004, which blames the guides' friction; that has the
+wrong sign, for guides that carry part of the force make a drive stiffer.
 """
 
 from __future__ import annotations
@@ -15,10 +14,10 @@ from dataclasses import dataclass
 
 from scipy.optimize import brentq
 
-from feeddrive.diagnosis.stiffness.candidates import Candidate, DriveAt, slower_masses, softer_parts
 from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.parts.screw.screw_drive import BallScrewDrive
 from feeddrive.plant.analysis.held_frequency import held_frequency
+from feeddrive.reproduce.paper_004_candidates import Candidate, DriveAt, slower_masses, softer_parts
 
 FrequencyModel = Callable[[BallScrewDrive, float], float]
 """First natural frequency [Hz] of a drive, motor held, with its nut at a position [m]."""
@@ -37,22 +36,6 @@ class Solved:
     candidate: Candidate
     value: float
     state: DriveAt
-
-
-@dataclass(frozen=True)
-class Explanation:
-    """Two changes that together meet both measurements.
-
-    Attributes:
-        static: what makes it softer.
-        dynamic: what then makes its frequency right.
-        stiffness, frequency: of the drive with both [N/m, Hz].
-    """
-
-    static: Solved
-    dynamic: Solved
-    stiffness: float
-    frequency: float
 
 
 def frequency_of(state: DriveAt, model: FrequencyModel = held_frequency) -> float:
@@ -90,27 +73,6 @@ def explain_frequency(start: DriveAt, measured: float, model: FrequencyModel = h
     if not 0.0 < measured < math.inf:
         raise InputError(f"{measured:g} Hz is not a frequency", "measured frequency", "write it in Hz")
     return _all_solved(slower_masses(start), lambda state: frequency_of(state, model), measured)
-
-
-def explain_both(
-    start: DriveAt, stiffness: float, frequency: float, model: FrequencyModel = held_frequency
-) -> tuple[Explanation, ...]:
-    """All pairs of one softer part and one other mass that meet a static and a dynamic measurement.
-
-    Args:
-        start: drive as declared.
-        stiffness: measured [N/m].
-        frequency: measured [Hz].
-        model: natural frequency of a drive.
-
-    Raises:
-        InputError: as `explain_stiffness` and `explain_frequency`.
-    """
-    return tuple(
-        Explanation(static, dynamic, dynamic.state.stiffness, frequency_of(dynamic.state, model))
-        for static in explain_stiffness(start, stiffness)
-        for dynamic in explain_frequency(static.state, frequency, model)
-    )
 
 
 def _all_solved(
