@@ -30,7 +30,8 @@ def first_job(arguments: Sequence[str], options: Options) -> Job:
     split = SPLIT if options.split is None else options.split
     fitted = tuple(_source(Path(name), options) for name in arguments[1:])
     judged = tuple(_source(path, options) for path in options.validate)
-    return Job(find_plant(arguments[0]), fitted, judged, options.out, split, options.simulate)
+    plant = find_plant(arguments[0])
+    return Job(plant, fitted, judged, options.out, split, options.simulate, measured=options.measured)
 
 
 def continued_job(arguments: Sequence[str], folder: Path, options: Options) -> Job:
@@ -64,6 +65,7 @@ def continued_job(arguments: Sequence[str], folder: Path, options: Options) -> J
         options.simulate,
         tuple(effect for effect in earlier.effects if not isinstance(effect, Tabulated)),
         earlier,
+        options.measured,
     )
 
 

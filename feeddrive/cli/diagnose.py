@@ -31,6 +31,9 @@ def command(
     split: Annotated[
         float | None, typer.Option("--split", help="Share fitted where no --validate is given; 0.75 if left out.")
     ] = None,
+    measured: Annotated[
+        Path | None, typer.Option("--measured", help="File of numbers that were measured beside the recordings.")
+    ] = None,
     mapping: Annotated[Path | None, typer.Option("--map", help="Mapping of a foreign file to channels.")] = None,
     decimal: Annotated[str | None, typer.Option("--decimal", help="Decimal sign of CSV files: '.' or ','.")] = None,
     simulate: Annotated[
@@ -48,6 +51,8 @@ def command(
     from feeddrive.cli.explaining import are_no_recordings, explain_and_tell
 
     if earlier is None and are_no_recordings(arguments[1:]):
+        if measured is not None:
+            raise InputError("is for numbers beside recordings", "--measured", "name the file behind the plant")
         explain_and_tell(arguments[0], arguments[1], at, controller, out, as_json)
         return
     if controller is not None:
@@ -56,6 +61,6 @@ def command(
     from feeddrive.cli.continuing import continued_job, first_job
     from feeddrive.cli.diagnosing import Options, run_job
 
-    options = Options(out, tuple(validate or ()), split, mapping, decimal, simulate)
+    options = Options(out, tuple(validate or ()), split, mapping, decimal, simulate, measured)
     job = first_job(arguments, options) if earlier is None else continued_job(arguments, earlier, options)
     run_job(job, as_json)

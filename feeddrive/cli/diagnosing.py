@@ -21,6 +21,7 @@ from feeddrive.diagnosis.judging.result import Diagnosis
 from feeddrive.diagnosis.ledger.continued import Earlier, changed_since
 from feeddrive.diagnosis.ledger.ledger import FileUse, RunFiles, runs_of, write_ledger, written_earlier
 from feeddrive.diagnosis.likelihood.outputs import diagnosis_json, write_outputs
+from feeddrive.diagnosis.numbers.measured_file import read_measured_numbers
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError, printable
 from feeddrive.files import shipped_plants
@@ -31,6 +32,7 @@ from feeddrive.report.certainty import experiment_sentences
 from feeddrive.report.figures.figures import render_figures, save_figures
 from feeddrive.report.pages.html import write_report
 from feeddrive.report.pages.section_calibrated import calibrated_lines
+from feeddrive.report.pages.section_measured import measured_lines
 from feeddrive.report.records import Occasion, used_sentence
 from feeddrive.report.simulated import simulation_lines
 from feeddrive.report.words.people import error_text, share_text
@@ -49,6 +51,7 @@ class Options:
     mapping: Path | None = None
     decimal: str | None = None
     simulate: bool = False
+    measured: Path | None = None
 
 
 @dataclass(frozen=True)
@@ -72,6 +75,7 @@ class Job:
     simulate: bool = False
     start: tuple[Effect, ...] = ()
     earlier: Earlier | None = None
+    measured: Path | None = None
 
 
 def run_job(job: Job, as_json: bool = False) -> Diagnosis:
@@ -90,8 +94,9 @@ def run_job(job: Job, as_json: bool = False) -> Diagnosis:
     fitted, judged = ([_read(source) for source in sources] for sources in (job.recordings, job.validation))
     if _bytes(job.plant) != declared:
         raise InputError("was changed while it was read", str(job.plant), "diagnose again")
+    numbers = read_measured_numbers(job.measured, plant) if job.measured is not None else ()
     with working("reading") as said:
-        result, effects = diagnose(plant, fitted, judged, job.split, job.simulate, said, job.start)
+        result, effects = diagnose(plant, fitted, judged, job.split, job.simulate, said, job.start, numbers)
         result = _since(result, job)
         said("predicting what a repair and a compensation bring")
         todo = actions(result, plant.with_effects(*effects))
@@ -125,6 +130,7 @@ def _command(job: Job) -> str:
     first = job.recordings[0]  # files typed together are read alike
     words += ["--map", str(first.mapping)] if first.mapping is not None else []
     words += ["--decimal", first.decimal] if first.decimal is not None else []
+    words += ["--measured", str(job.measured)] if job.measured is not None else []
     words += [] if job.validation else ["--split", f"{job.split:g}"]
     return shlex.join([*words, *(["--simulate"] if job.simulate else []), "--out", str(job.out)])
 
@@ -189,7 +195,7 @@ def _print_summary(result: Diagnosis, report: Path) -> None:
     say(used_sentence(result))
     for effect in result.effects:
         say(f"{effect.name}: {effect.evidence} {effect.reading}")
-    for line in calibrated_lines(result):
+    for line in (*calibrated_lines(result), *measured_lines(result)):
         say(line)
     for sentence in result.kept.since:
         say(f"since the earlier diagnosis: {sentence}")

@@ -12,6 +12,7 @@ from feeddrive.diagnosis.calibration.plant_text import with_calibrated_values
 from feeddrive.diagnosis.diagnose import diagnose as find_what_lacks
 from feeddrive.diagnosis.judging.result import Diagnosis
 from feeddrive.diagnosis.likelihood.outputs import diagnosis_record, write_outputs
+from feeddrive.diagnosis.numbers.measured_file import read_measured_numbers
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 from feeddrive.interface.axis import Axis, axis_of_text
@@ -172,6 +173,7 @@ def diagnose(
     validate: Given | Sequence[Given] | None = None,
     split: float = 0.75,
     simulate: bool = False,
+    measured: str | Path | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> Diagnosed:
     """Find what an axis lacks.
@@ -182,6 +184,7 @@ def diagnose(
         validate: to judge on; the last part of each fitted one if left out.
         split: share that is fitted then.
         simulate: also simulate the closed loop where a controller is declared.
+        measured: TOML file of numbers that were measured beside, `[[measured]]`: a stiffness, a natural frequency.
         progress: called with a word for what is being done.
 
     Raises:
@@ -190,7 +193,9 @@ def diagnose(
     fitted, judged = _several(recording, "recording"), _several(validate, "validate")
     if not fitted:
         raise InputError("no recording is given", "recording", "give fd.read(...), or the path of a file")
-    result, effects = find_what_lacks(axis.plant, fitted, judged, split, simulate, progress or (lambda _: None), ())
+    numbers = read_measured_numbers(Path(measured), axis.plant) if measured is not None else ()
+    said = progress or (lambda _: None)
+    result, effects = find_what_lacks(axis.plant, fitted, judged, split, simulate, said, (), numbers)
     return Diagnosed(axis, result, tuple(effects))
 
 
