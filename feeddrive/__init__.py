@@ -68,6 +68,7 @@ _HOMES = {
     "tune": "interface.servo",
     "warm_up": "interface.warm_up",
     "watch": "interface.watching",
+    "watch_fleet": "interface.fleet",
     "with_load": "interface.design",
 }
 

@@ -5,12 +5,14 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from rich.console import Console
 
 from feeddrive.cli.output import escaped, table, warnings_as_lines
 from feeddrive.errors import InputError, printable
 from feeddrive.interface.axis import load
+from feeddrive.interface.fleet import OVERVIEW, Fleet, watch_fleet
 from feeddrive.interface.watching import watch
 from feeddrive.report.words.trend_words import shown_quantities
 
@@ -30,6 +32,8 @@ class Asked:
     absolute: tuple[str, ...]
     limit: tuple[str, ...]
     search: bool
+    each: bool = False
+    scheduler: str = ""
 
 
 def follow_and_tell(asked: Asked, as_json: bool) -> None:
@@ -38,13 +42,25 @@ def follow_and_tell(asked: Asked, as_json: bool) -> None:
     Raises:
         InputError: a folder, a plant or an option that cannot be used.
     """
-    limits = dict(map(_limit, asked.limit))
+    if asked.scheduler and not asked.each:
+        raise InputError("a cluster follows several axes", "--scheduler", "say --each, with a folder for each axis")
+    options: dict[str, Any] = {
+        "map": asked.mapping, "decimal": asked.decimal or None, "stamp": asked.stamp, "every": asked.every or None,
+        "first": asked.first, "absolute": asked.absolute, "limits": dict(map(_limit, asked.limit)),
+        "search": asked.search,
+    }  # fmt: skip
     with warnings_as_lines(), Console(stderr=True).status("looking into the folder") as status:
-        found = watch(
-            asked.folder, load(asked.plant), out=asked.out, map=asked.mapping, decimal=asked.decimal or None,
-            stamp=asked.stamp, every=asked.every or None, first=asked.first, absolute=asked.absolute, limits=limits,
-            search=asked.search, progress=lambda text: status.update(printable(text)),
-        )  # fmt: skip
+
+        def said(text: str) -> None:
+            status.update(printable(text))
+
+        if asked.each:
+            fleet = watch_fleet(
+                asked.folder, asked.plant, out=asked.out, scheduler=asked.scheduler, progress=said, **options
+            )
+            _tell_fleet(fleet, as_json)
+            return
+        found = watch(asked.folder, load(asked.plant), out=asked.out, progress=said, **options)
         place = found.save()
     if as_json:
         print(escaped(json.dumps(found.record(), indent=2, ensure_ascii=False)))
@@ -60,6 +76,17 @@ def follow_and_tell(asked: Asked, as_json: bool) -> None:
     if waiting:
         console.print(f"{waiting} files are not used; trend.html says why", markup=False)
     console.print(f"page: {printable(str((place / 'trend.html').resolve()))}", markup=False)
+
+
+def _tell_fleet(fleet: Fleet, as_json: bool) -> None:
+    if as_json:
+        print(escaped((fleet.out / OVERVIEW).read_text(encoding="utf-8")), end="")
+        return
+    console = Console(soft_wrap=True, highlight=False)
+    listing = fleet.listing()
+    rows = [[printable(cell) for cell in row] for row in listing.rows]
+    console.print(table(listing.title, listing.headings, rows), markup=False)
+    console.print(f"pages: {printable(str(fleet.out))}, trend.html in the folder of each axis", markup=False)
 
 
 def _limit(text: str) -> tuple[str, str]:

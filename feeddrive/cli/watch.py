@@ -30,6 +30,12 @@ def command(
         typer.Option(help="What a quantity may move by: 'play=10 µm', 'coulomb=20 %'; again for others."),
     ] = None,
     search: Annotated[bool, typer.Option(help="Diagnose what is before and after each change; takes minutes.")] = False,
+    each: Annotated[
+        bool, typer.Option(help="Every folder in FOLDER is an axis of its own; a plant.toml in it is its plant.")
+    ] = False,
+    scheduler: Annotated[
+        str, typer.Option(metavar="ADDRESS", help="Dask scheduler that follows the axes of --each, tcp://host:8786.")
+    ] = "",
     as_json: JsonOption = False,
 ) -> None:
     """Say what changed on an axis, since when, at what odds; what is new in the folder costs seconds.
@@ -39,6 +45,7 @@ def command(
     from feeddrive.cli.following import Asked, follow_and_tell
 
     asked = Asked(
-        folder, plant, out, mapping, decimal, stamp, every, first, tuple(absolute or ()), tuple(limit or ()), search
-    )
+        folder, plant, out, mapping, decimal, stamp, every, first, tuple(absolute or ()), tuple(limit or ()), search,
+        each, scheduler,
+    )  # fmt: skip
     follow_and_tell(asked, as_json)
