@@ -28,6 +28,7 @@ _HOMES = {
     "Effect": "effects.base",
     "Explained": "interface.numbers",
     "ExplainedResponse": "interface.responses",
+    "Fleet": "interface.fleet",
     "InputError": "errors",
     "Iso230": "interface.iso230",
     "Keys": "interface.keys",
