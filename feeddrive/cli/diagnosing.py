@@ -25,6 +25,7 @@ from feeddrive.diagnosis.likelihood.outputs import diagnosis_json, write_outputs
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError, printable
 from feeddrive.files import shipped_plants
+from feeddrive.interface.benching import bench_of_diagnosis
 from feeddrive.output_folder import output_folder, refuse_unusable, take_away
 from feeddrive.recording import Recording, read_recording
 from feeddrive.report.certainty import experiment_sentences
@@ -95,14 +96,15 @@ def run_job(job: Job, as_json: bool = False) -> Diagnosis:
         result, effects = diagnose(plant, fitted, judged, job.split, job.simulate, said, job.start)
         result = _since(result, job)
         said("predicting what a repair and a compensation bring")
-        todo = actions(result, plant.with_effects(*effects))
+        after = plant.with_effects(*effects)
+        todo, bench = actions(result, after), bench_of_diagnosis(after, result)
         said("writing the report")
         pictures = render_figures(result)
         with output_folder(job.out) as folder:
             write_outputs(result, effects, declared.decode("utf-8").replace("\r\n", "\n"), folder)
             save_figures(result, folder, pictures)
             occasion = Occasion(_command(job), _today())
-            write_report(result, folder / "report.html", pictures, occasion, todo)
+            write_report(result, folder / "report.html", pictures, occasion, todo, bench)
             # Read now: another diagnosis may have written here meanwhile.
             there = runs_of(job.out)
             take_away(folder, written_earlier(there))  # a figure that this run has no reason to draw

@@ -122,8 +122,9 @@ def _reversal_words(done: Compensated, usual: float) -> str:
     return (
         f"The play goes over within {within}: chosen for the least contour error on the circle of "
         f"{1e3 * circle.radius:.3g} mm at {60 * circle.limits.velocity:.3g} m/min, "
-        f"{micrometres(done.prediction.after.contour)} in place of {micrometres(usual)}. Quicker throws the table across, slower leaves it behind; the best time "
-        "goes with the square root of play and radius, and with 1 / feed."
+        f"{micrometres(done.prediction.after.contour)} in place of {micrometres(usual)}. Quicker throws the table "
+        "across, slower leaves it behind; the best time goes with the square root of play and of radius, and with 1 / "
+        "feed."
     )
 
 
