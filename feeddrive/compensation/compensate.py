@@ -18,7 +18,7 @@ from feeddrive.compensation.plant_deviations import PlantDeviations, plant_devia
 from feeddrive.compensation.prediction import Applied, Figures, best_reversal, figures, motions, sticking
 from feeddrive.compensation.recorded_deviations import RecordedDeviations
 from feeddrive.compensation.repair import repaired
-from feeddrive.compensation.table import CompensationTable, Deviations, fitted, grid
+from feeddrive.compensation.table import CompensationTable, Deviations, fitted, grid, stepped
 from feeddrive.errors import InputError
 from feeddrive.plant.file.entries import Origins, Table
 from feeddrive.plant.plant import DeclaredCascade, Plant
@@ -33,7 +33,7 @@ from feeddrive.units.quantity import format_quantity
 POINTS_PER_PERIOD = 16
 """Wished for per period of a lead error: straight pieces of least squares then leave 0.8 % of a sine, 8 leave 3 %."""
 
-_NICE = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)
+_NICE = (1.0, 1.2, 1.5, 1.6, 2.0, 2.5, 3.0, 3.2, 4.0, 5.0, 6.0, 8.0)
 _USUAL_RATE, _POSITION_RATE, _BANDWIDTH, _DEAD_TIME = 8000.0, 2000.0, 1000.0, 125e-6
 """Of a drive that nobody has declared: those of `feeddrive tune`."""
 
@@ -114,7 +114,7 @@ class Compensated:
         inside = (self.known.positions >= self.table.positions[0]) & (self.known.positions <= self.table.positions[-1])
         places = self.known.positions[inside]
         rest = [
-            one[inside] - self.table.at(places, reverse)
+            one[inside] - self.table.at(places, reverse, self.control.stepwise)
             for one, reverse in ((self.known.forward, False), (self.known.reverse, True))
         ]
         return float(max(np.max(np.abs(one)) for one in rest))
@@ -289,7 +289,7 @@ def _table(
     step = every if every is not None else _step(wanted, width, found.shortest)
     points = grid(stroke, step, reference)
     _refuse_too_many(wanted, points, width)
-    return as_held(wanted, fitted(known, points, reference, step))
+    return as_held(wanted, (stepped if wanted.stepwise else fitted)(known, points, reference, step))
 
 
 def _refuse_too_many(wanted: Control, points: Sequence[float] | np.ndarray, width: float) -> None:
