@@ -95,7 +95,7 @@ def test_written_file_takes_the_planted_errors_away(form: str) -> None:
 
 @pytest.mark.parametrize(("length", "unit"), [(0.4, 1e-7), (0.2, 1e-7), (0.4, 1e-8), (0.4, 1e-6)])
 def test_distance_of_points_is_what_fanuc_leaves(length: float, unit: float) -> None:
-    """Jumps of the steepest slope times the distance of the points, and two roundings, which tell where they are 1 um."""
+    """Jumps of the steepest slope times the distance of the points, and roundings, which tell where they are 1 um."""
     made = plant_table(planted().plant, Wishes("fanuc-parameters", stroke=(0.0, length), resolution=unit))
     axis = read.read_fanuc(text(made))
     axis.unit = 1e3 * unit
