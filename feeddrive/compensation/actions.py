@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import cast
 
 import numpy as np
 
@@ -75,13 +76,15 @@ def values_to_set(after: Plant) -> dict[str, str]:
     for one in after.effects:
         if one.name == "lead_error_cumulative":
             lead = 2e3 * math.pi * radius
-            found[one.name] = f"{lead * (1 + float(one.values['slope'])):.7g} mm per revolution, not {lead:.7g} mm"
+            found[one.name] = (
+                f"{lead * (1 + cast(float, one.values['slope'])):.7g} mm per revolution, not {lead:.7g} mm"
+            )
         elif one.name == "payload":
             found[one.name] = f"moving mass {format_quantity(after.chain_values()['table_mass'], 'kg')}"
         elif one.name == "constant_force":
-            found[one.name] = f"torque offset {format_quantity(radius * float(one.values['force']), 'N m')}"
+            found[one.name] = f"torque offset {format_quantity(radius * cast(float, one.values['force']), 'N m')}"
         elif one.name == "backlash":
-            found[one.name] = f"until then, backlash value {format_quantity(float(one.values['width']), 'm')}"
+            found[one.name] = f"until then, backlash value {format_quantity(cast(float, one.values['width']), 'm')}"
     return found
 
 

@@ -177,10 +177,11 @@ def compensate_plant(
         InputError: as `plant_table`; no controller that keeps the usual margins.
     """
     made = plant_table(plant, wishes, cascade, unsure_of_play, where)
-    assert made.lost is not None
+    lost = made.lost
+    assert lost is not None
     loop = cascade_of(plant, cascade)
-    test = motions(_stroke(plant, wishes, where), made.lost)
-    moved = sticking(plant, made.lost)
+    test = motions(_stroke(plant, wishes, where), lost)
+    moved = sticking(plant, lost)
     renewed = repaired(moved)
     applied, usual = best_reversal(moved, loop, test, Applied(made.control, made.table, _limits(plant)))
     made = replace(made, control=applied.control)
@@ -190,7 +191,7 @@ def compensate_plant(
     )  # fmt: skip
     if not beside:
         return replace(made, prediction=prediction)
-    friction = friction_values(moved, loop, test.circle, made.lost, applied) if made.lost.torque > 0 else None
+    friction = friction_values(moved, loop, test.circle, lost, applied) if lost.torque > 0 else None
     return replace(made, prediction=prediction, friction=friction, cogging=cogging_map(plant, loop))
 
 
