@@ -183,7 +183,7 @@ class Diagnosed(Shown):
         """
         from feeddrive.report.pages.html import write_report
 
-        write_report(self.diagnosis, Path(path), todo=self._actions())
+        write_report(self.diagnosis, Path(path), todo=self._actions(), bench=self._bench())
         return Path(path)
 
     def save(self, folder: str | Path) -> Path:
@@ -199,12 +199,19 @@ class Diagnosed(Shown):
         pictures = render_figures(self.diagnosis)
         write_outputs(self.diagnosis, self.found, self.axis.text, place)
         save_figures(self.diagnosis, place, pictures)
-        write_report(self.diagnosis, place / "report.html", pictures, todo=self._actions())
+        write_report(self.diagnosis, place / "report.html", pictures, todo=self._actions(), bench=self._bench())
         return place
 
     def _actions(self) -> Actions:
         """What to do, with a prediction where a table helps."""
         return actions(self.diagnosis, self.plant.plant)
+
+    def _bench(self) -> str:
+        """The page for the tab of the report."""
+        from feeddrive.interface.benching import bench_of_diagnosis  # which takes a diagnosis
+
+        plant = self.plant
+        return bench_of_diagnosis(plant.plant if plant.has_motion else None, self.diagnosis)
 
     def listing(self) -> Listing:
         """The effects, or where there are none the errors."""

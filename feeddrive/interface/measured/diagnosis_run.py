@@ -22,6 +22,7 @@ from feeddrive.effects.tabulated import Tabulated
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant, shipped_plants
 from feeddrive.interface.axis import load
+from feeddrive.interface.benching import bench_of_diagnosis
 from feeddrive.interface.measured.diagnosed import Diagnosed
 from feeddrive.output_folder import finish_interrupted, output_folder, refuse_unusable, take_away
 from feeddrive.recording import Recording, read_recording
@@ -152,13 +153,14 @@ def diagnose_files(job: Job, progress: Callable[[str], None] = lambda _: None) -
         since = changed_since(job.earlier.told, result.effects)
         result = replace(result, kept=replace(result.kept, since=since))
     progress("predicting what a repair and a compensation bring")
-    todo = actions(result, plant.with_effects(*effects))
+    after = plant.with_effects(*effects)
+    todo, bench = actions(result, after), bench_of_diagnosis(after, result)
     progress("writing the report")
     pictures = render_figures(result)
     with output_folder(job.out) as folder:
         write_outputs(result, effects, declared.decode("utf-8").replace("\r\n", "\n"), folder)
         save_figures(result, folder, pictures)
-        write_report(result, folder / "report.html", pictures, Occasion(_command(job), _today()), todo)
+        write_report(result, folder / "report.html", pictures, Occasion(_command(job), _today()), todo, bench)
         # Read now: another diagnosis may have written here meanwhile.
         there = runs_of(job.out)
         take_away(folder, written_earlier(there))  # a figure that this run has no reason to draw
