@@ -13,12 +13,12 @@ from pathlib import Path
 
 import numpy as np
 
-from feeddrive.thermal.file.files import read_thermal_plant
-from feeddrive.thermal.full.explicit import ExplicitRun, run_explicitly
+from feeddrive.plant.file.files import read_plant
+from feeddrive.reproduce.heat.explicit import ExplicitRun, run_explicitly
+from feeddrive.reproduce.heat.moving import moving_system, ripple_number
+from feeddrive.reproduce.heat.moving_family import moving_family
 from feeddrive.thermal.full.full_model import discretise, full_model, model_of
 from feeddrive.thermal.full.grid import Cells
-from feeddrive.thermal.full.moving import moving_system, ripple_number
-from feeddrive.thermal.full.moving_family import moving_family
 from feeddrive.thermal.reduced.network import network
 from feeddrive.thermal.reduced.reduction import Sizes, compressed_basis, reduce_model, reduced_system
 from feeddrive.thermal.reduced.reduction_error import reduction_error
@@ -28,7 +28,7 @@ from feeddrive.thermal.run.warm_up import simulate
 
 ROOT = Path(__file__).resolve().parents[1]
 SHIPPED = ROOT / "plants" / "thermal_bench.toml"
-BENCH = read_thermal_plant(SHIPPED)
+BENCH = read_plant(SHIPPED).heat
 RPM = math.pi / 30
 WORKING = Sizes(heats=(("nut", 1.3), ("front", 1.0), ("rear", 0.17)))
 HOURS = 3 * 3600.0

@@ -21,6 +21,7 @@ from feeddrive.output_folder import output_folder, refuse_unusable
 from feeddrive.plant.analysis.linear import INPUTS, OUTPUTS
 from feeddrive.plant.chain.resolution import resolved, resolved_modes
 from feeddrive.plant.file.entries import nearest
+from feeddrive.plant.file.files import read_plant
 from feeddrive.plant.plant import Plant
 from feeddrive.recording.files.reading import read_recording
 from feeddrive.recording.frequency_response import FrequencyResponse
@@ -31,7 +32,6 @@ from feeddrive.servo.loop_response import loops_of, refuse_unstable_case
 from feeddrive.servo.response_family import Family, closed_family, controlled_family, mechanics_family, open_family
 from feeddrive.servo.response_json import family_content, measured_content
 from feeddrive.simulate.controlled.controller_file import read_controller
-from feeddrive.thermal.file.whole_file import read_drive_plant
 from feeddrive.tuning.demand import cases_of
 from feeddrive.units.quantity import parse, unit_conversion
 
@@ -64,7 +64,7 @@ def run(request: Request, as_json: bool, out: Path | None) -> None:
     """
     refuse_unusable(out)
     with warnings_as_lines():
-        plant = read_drive_plant(find_plant(request.plant))
+        plant = read_plant(find_plant(request.plant))
         cases = read_cases(plant, request.at, request.positions, request.payload)
         low, high = _range(request.frequencies)
         valid_to = min(resolved_modes(plant, case.position).chain_valid_to for case in cases)

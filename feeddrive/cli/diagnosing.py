@@ -14,7 +14,6 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
-from feeddrive.cli.machine import read_machine
 from feeddrive.cli.output import escaped, working
 from feeddrive.compensation.actions import actions
 from feeddrive.diagnosis.diagnose import diagnose
@@ -25,6 +24,7 @@ from feeddrive.diagnosis.likelihood.outputs import diagnosis_json, write_outputs
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError, printable
 from feeddrive.files import shipped_plants
+from feeddrive.interface.axis import load
 from feeddrive.output_folder import output_folder, refuse_unusable, take_away
 from feeddrive.recording import Recording, read_recording
 from feeddrive.report.certainty import experiment_sentences
@@ -86,9 +86,8 @@ def run_job(job: Job, as_json: bool = False) -> Diagnosis:
     refuse_unusable(job.out)
     runs_of(job.out)  # refused now if it cannot be read, and not when all is done
     declared = _bytes(job.plant)
-    read_machine(job.plant)  # refused before the recordings are read
+    plant = load(job.plant).plant  # refused before the recordings are read
     fitted, judged = ([_read(source) for source in sources] for sources in (job.recordings, job.validation))
-    plant = read_machine(job.plant, fitted)  # a file may declare motion and heat
     if _bytes(job.plant) != declared:
         raise InputError("was changed while it was read", str(job.plant), "diagnose again")
     with working("reading") as said:

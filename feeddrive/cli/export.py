@@ -16,8 +16,8 @@ from feeddrive.export.writing import Form, write_export
 from feeddrive.files import find_plant
 from feeddrive.interface.axis import load
 from feeddrive.output_folder import output_folder, refuse_unusable
+from feeddrive.plant.file.files import read_plant
 from feeddrive.plant.plant import Plant
-from feeddrive.thermal.file.whole_file import read_drive_plant
 from feeddrive.units.quantity import format_quantity
 
 
@@ -68,7 +68,7 @@ def command(
             content = {"format": "feeddrive-exported/1", "plant": axis.name, "files": [str(path) for path in paths]}
             deliver(content, [f"{path}: heat of {axis.name}" for path in paths], as_json, None)
             return
-        machine = read_drive_plant(find_plant(plant))
+        machine = read_plant(find_plant(plant))
         point = export_point(machine, at)
         with output_folder(out) as folder:
             files = {form: write_export(machine, form, point, folder) for form in dict.fromkeys(to)}

@@ -15,8 +15,8 @@ from feeddrive.cli.output import JsonOption, chain_remark, deliver, finite, tabl
 from feeddrive.files import find_plant, write_bytes_atomically, write_text_atomically
 from feeddrive.output_folder import output_folder, refuse_unusable
 from feeddrive.plant.analysis.mode_map import ModeMap, mode_map
+from feeddrive.plant.file.files import read_plant
 from feeddrive.plant.plant import Plant
-from feeddrive.thermal.file.whole_file import read_drive_plant
 from feeddrive.typing import FloatArray
 from feeddrive.units.quantity import parse
 
@@ -35,7 +35,7 @@ def command(
     """Natural frequencies along the stroke, with the motor held by its brake or servo, and free."""
     refuse_unusable(out)
     with warnings_as_lines():
-        machine = read_drive_plant(find_plant(plant))
+        machine = read_plant(find_plant(plant))
         places = np.array([parse(text, "m", "--at") for text in at]) if at else None
         found = mode_map(machine, places)
         if out is not None:

@@ -167,7 +167,7 @@ def _evaluation_table(one: dict[str, Any]) -> Table:
 
 def _shown(key: str, value: Any, one: dict[str, Any] | None = None) -> str:
     if value is None:
-        return "never" if key in ("time", "settling") else "–"
+        return {"time": "never", "settling": "not settled"}.get(key, "–")
     if isinstance(value, list):
         return ", ".join(_shown(key, item, one) for item in value)
     if isinstance(value, float):

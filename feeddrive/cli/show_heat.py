@@ -9,13 +9,13 @@ from typing import Any
 from rich.table import Table
 
 from feeddrive.cli.output import table
-from feeddrive.thermal.plant import ThermalPlant
+from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.run.summary import HeatRow, heat_rows
 from feeddrive.thermal.sensors import HeatSensor
 from feeddrive.units.quantity import format_quantity
 
 
-def heat_content(plant: ThermalPlant) -> dict[str, Any]:
+def heat_content(plant: Heat) -> dict[str, Any]:
     """Everything as plain values, SI."""
     return {
         "format": "feeddrive-show/1",
@@ -28,7 +28,7 @@ def heat_content(plant: ThermalPlant) -> dict[str, Any]:
     }
 
 
-def heat_tables(plant: ThermalPlant) -> list[Table]:
+def heat_tables(plant: Heat) -> list[Table]:
     """The same for people."""
     rows = heat_rows(plant)
     values = [[key, format_quantity(value, unit), source] for key, value, unit, source in _values(plant)]
@@ -47,7 +47,7 @@ def heat_tables(plant: ThermalPlant) -> list[Table]:
     return [shown for shown in tables if shown.row_count]
 
 
-def _values(plant: ThermalPlant) -> list[tuple[str, float, str, str]]:
+def _values(plant: Heat) -> list[tuple[str, float, str, str]]:
     """Key, SI value, unit and source."""
     rig, steel = plant.rig, plant.rig.steel
     found = [

@@ -17,10 +17,10 @@ from feeddrive.cli.warming_tables import thermal_tables
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant, write_bytes_atomically, write_text_atomically
 from feeddrive.output_folder import output_folder, refuse_unusable
+from feeddrive.plant.file.files import read_plant
 from feeddrive.recording.files.writing import write_recording
 from feeddrive.recording.recording import Recording
-from feeddrive.thermal.file.whole_file import read_heat_plant
-from feeddrive.thermal.plant import ThermalPlant
+from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.reduced.network import Network, network
 from feeddrive.thermal.rig import Travel
 from feeddrive.thermal.run.duty import AMBIENT_CHANNEL, SPEED, Duty, constant_duty, read_duty
@@ -70,8 +70,8 @@ def warm_and_tell(name: str, asked: Asked, as_json: bool, out: Path | None) -> N
     tell_written(out, as_json)
 
 
-def _plant(name: str, stroke: str | None) -> ThermalPlant:
-    plant = read_heat_plant(find_plant(name))
+def _plant(name: str, stroke: str | None) -> Heat:
+    plant = read_plant(find_plant(name)).heat
     if stroke is None:
         return plant
     plant.rig.refuse_travel(travel := _travel(stroke, plant.rig.travel))
@@ -90,7 +90,7 @@ def _travel(text: str, declared: Travel) -> Travel:
     return Travel(middle - ends[0] / 2, middle + ends[0] / 2)
 
 
-def _duty(plant: ThermalPlant, asked: Asked) -> Duty:
+def _duty(plant: Heat, asked: Asked) -> Duty:
     if asked.duty is None:
         speed = plant.highest_speed / 2 if asked.speed is None else parse(asked.speed, "rad/s", "--speed")
         return constant_duty(speed, parse(asked.duration or _USUAL_DURATION, "s", "--duration"), plant.ambient)

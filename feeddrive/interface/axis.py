@@ -11,11 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from feeddrive.diagnosis.heat.warm_evidence import is_warm_log
-from feeddrive.diagnosis.likelihood.slow_rows import is_slow
 from feeddrive.effects.base import Effect
-from feeddrive.effects.catalogue import THERMAL_EFFECTS
-from feeddrive.effects.heat.base import ThermalEffect
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant, write_text_atomically
 from feeddrive.interface.machine_tables import Check, Life, Modes, Stiffness
@@ -28,16 +24,10 @@ from feeddrive.plant.chain.moving_inertia import inertia_at_motor
 from feeddrive.plant.file.declared_check import check_declared
 from feeddrive.plant.file.effect_text import plant_text_with_effects
 from feeddrive.plant.file.entries import parse_toml
-from feeddrive.plant.file.files import declares_heat_alone, plant_from_entries
-from feeddrive.plant.file.plant_schema import plant_table
+from feeddrive.plant.file.files import plant_from_entries
 from feeddrive.plant.plant import Plant
-from feeddrive.recording import Recording
 from feeddrive.simulate.scenario.scenario_overrides import with_overrides
-from feeddrive.thermal.file.coupling_section import coupling
-from feeddrive.thermal.file.files import SECTION, thermal_plant
-from feeddrive.thermal.plant import ThermalPlant
-from feeddrive.thermal.run.plausibility import check_thermal_plant
-from feeddrive.thermal.warm_plant import WarmPlant, warm_plant
+from feeddrive.thermal.heat import Heat
 
 if TYPE_CHECKING:
     import casadi
@@ -105,12 +95,12 @@ class Axis:
 
     def __repr__(self) -> str:
         """Name, structure, effects, stroke."""
-        if not self.has_motion:
-            return f"Axis {self.heat.name!r}: heat alone, {len(self.heat.effects)} effects"
         plant = self.plant
+        if not plant.has_motion:
+            return f"Axis {plant.name!r}: heat alone, {len(plant.effects)} effects"
         low, high = ("" if plant.stroke is None else _short(end) for end in plant.stroke or (0.0, 0.0))
         stroke = f", stroke {low} to {high}" if plant.stroke else ""
-        heat = ", with heat" if self.has_heat else ""
+        heat = ", with heat" if plant.has_heat else ""
         return f"Axis {plant.name!r}: {plant.chain.structure}, {len(plant.effects)} effects{stroke}{heat}"
 
     @cached_property
@@ -119,63 +109,34 @@ class Axis:
         written = parse_toml(self.text, str(self.path))
         return with_overrides(written, dict(self.values))
 
+    @cached_property
+    def plant(self) -> Plant:
+        """The machine: chain, effects and drive, and its heat where it is declared."""
+        return plant_from_entries(self.entries, self.path).with_effects(*self.added)
+
     @property
     def has_motion(self) -> bool:
         """Whether the file declares masses and drives."""
-        return not declares_heat_alone(self.entries)
+        return self.plant.has_motion
 
     @property
     def has_heat(self) -> bool:
         """Whether the file declares heat."""
-        return SECTION in self.entries
+        return self.plant.has_heat
 
-    @cached_property
-    def plant(self) -> Plant:
-        """The equations of motion, with chain, effects and drive.
-
-        Raises:
-            InputError: the file declares heat alone.
-        """
-        motion = [one for one in self.added if not isinstance(one, ThermalEffect)]
-        return plant_from_entries(self.entries, self.path).with_effects(*motion)
-
-    @cached_property
-    def heat(self) -> ThermalPlant:
+    @property
+    def heat(self) -> Heat:
         """The heat of the machine.
 
         Raises:
             InputError: the file declares none.
         """
-        top = plant_table(self.entries, str(self.path))
-        found = thermal_plant(top, self.path.stem)
-        return found.with_effects(*(one for one in self.added if isinstance(one, ThermalEffect)))
-
-    @cached_property
-    def warm(self) -> WarmPlant:
-        """Motion and heat as one machine.
-
-        Raises:
-            InputError: the file does not declare masses, heat and how they are joined.
-        """
-        return warm_plant(self.plant, self.heat, coupling(plant_table(self.entries, str(self.path))))
-
-    def machine(self, recordings: Sequence[Recording] = ()) -> Plant | ThermalPlant | WarmPlant:
-        """What of the machine recordings are of: its motion, its heat, or both where a log of hours holds both."""
-        if not self.has_motion:
-            return self.heat
-        if not self.has_heat or not recordings:
-            return self.plant
-        if all("screw_speed" in one and "motor_torque" not in one for one in recordings):
-            return self.heat
-        joined = "coupling" in self.entries[SECTION]
-        if joined and all(is_slow(one) and is_warm_log(one, self.heat) for one in recordings):
-            return self.warm
-        return self.plant
+        return self.plant.heat
 
     @property
     def name(self) -> str:
         """Name of the machine."""
-        return self.plant.name if self.has_motion else self.heat.name
+        return self.plant.name
 
     @property
     def inertia_at_motor(self) -> float:
@@ -193,10 +154,7 @@ class Axis:
         Raises:
             InputError: the first thing that cannot be used.
         """
-        if self.has_motion:
-            _ = self.plant
-        if self.has_heat:
-            _ = self.heat
+        _ = self.plant
 
     def with_values(self, values: Mapping[str, Quantity | Sequence[str]]) -> Axis:
         """The axis with other values.
@@ -231,8 +189,6 @@ class Axis:
         for one in effects:
             if not isinstance(one, Effect):
                 raise InputError(f"{one!r} is no effect", "with_effects", 'give fd.effect("backlash", width="7.5 um")')
-            if one.name in THERMAL_EFFECTS and not self.has_heat:
-                raise InputError(f"{one.name} acts on heat, and none is declared", str(self.path), "declare [thermal]")
         changed = replace(self, added=(*self.added, *effects))
         changed.refuse_unusable()
         return changed
@@ -290,8 +246,6 @@ class Axis:
         Raises:
             InputError: a gain that is not above zero.
         """
-        if not self.has_motion:
-            return Check(self.name, check_thermal_plant(self.heat))
         gain = None if position_gain is None else si(position_gain, "1/s", "position_gain")
         if gain is not None and not gain > 0:
             raise InputError(f"{position_gain} is no gain", "position_gain", "write one above zero, such as '50 1/s'")

@@ -153,8 +153,7 @@ class Diagnosed(Shown):
 
     def _actions(self) -> Actions:
         """What to do, with a prediction where a table helps."""
-        plant = self.plant
-        return actions(self.diagnosis, plant.plant if plant.has_motion else None)
+        return actions(self.diagnosis, self.plant.plant)
 
     def listing(self) -> Listing:
         """The effects, or where there are none the errors."""
@@ -191,9 +190,7 @@ def diagnose(
     fitted, judged = _several(recording, "recording"), _several(validate, "validate")
     if not fitted:
         raise InputError("no recording is given", "recording", "give fd.read(...), or the path of a file")
-    result, effects = find_what_lacks(
-        axis.machine(fitted), fitted, judged, split, simulate, progress or (lambda _: None), ()
-    )
+    result, effects = find_what_lacks(axis.plant, fitted, judged, split, simulate, progress or (lambda _: None), ())
     return Diagnosed(axis, result, tuple(effects))
 
 

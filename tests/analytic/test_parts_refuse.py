@@ -27,9 +27,6 @@ from feeddrive.parts.life.life import (
     survival,
 )
 from feeddrive.parts.life.life_exponents import diameter_exponent, load_exponent
-from feeddrive.parts.life.rating import combined_rating, material_constant_of_test, rating
-from feeddrive.parts.life.stress_cycles import effective_screw_groove
-from feeddrive.parts.life.subsurface_shear import axis_stresses, greatest_shear_on_axis
 from feeddrive.parts.life.weibull import WeibullLaw
 from feeddrive.parts.life.weibull_interval import complete_slope_interval
 from feeddrive.parts.lubricant import mineral_oil
@@ -37,7 +34,10 @@ from feeddrive.parts.screw.load_distribution import continuum_extremes, load_dis
 from feeddrive.parts.screw.preload_loss import opening_force, preload_share_from_stiffness, preload_share_from_torque
 from feeddrive.parts.screw.screw_contact import BallTrack
 from feeddrive.parts.screw.screw_friction import ScrewFriction, ScrewGeometry
-from feeddrive.parts.screw.wedge import self_locking_lead
+from feeddrive.reproduce.life.rating import combined_rating, material_constant_of_test, rating
+from feeddrive.reproduce.life.stress_cycles import effective_screw_groove
+from feeddrive.reproduce.life.subsurface_shear import axis_stresses, greatest_shear_on_axis
+from feeddrive.reproduce.screw.wedge import self_locking_lead
 
 TRACK = BallTrack(3.175e-3, 25.5e-3, 0.55, math.pi / 4, 6e-3, 2.5)
 BODY = nut_body(TRACK, 0.04)

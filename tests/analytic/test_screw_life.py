@@ -23,22 +23,6 @@ from feeddrive.parts.life.life import (
     survival,
 )
 from feeddrive.parts.life.life_exponents import BALL_SCREW, LifeExponents
-from feeddrive.parts.life.rating import combined_rating, double_nut_share, material_constant_of_test, rating
-from feeddrive.parts.life.stress_cycles import (
-    cycles_per_revolution,
-    effective_screw_groove,
-    nut_cycles,
-    screw_cycles,
-    screw_cycles_along,
-    screw_groove_per_turn,
-    stressed_screw_groove,
-)
-from feeddrive.parts.life.subsurface_shear import (
-    axis_stresses,
-    greatest_shear_on_axis,
-    greatest_shear_under_line,
-    line_shear,
-)
 from feeddrive.parts.screw.load_distribution import Loading, NutBody, continuum_extremes, load_distribution, nut_body
 from feeddrive.parts.screw.preload_loss import (
     opening_force,
@@ -49,6 +33,22 @@ from feeddrive.parts.screw.preload_loss import (
 )
 from feeddrive.parts.screw.screw_contact import BallTrack, contact_constant, nut_contact, screw_contact
 from feeddrive.recording.recording import Recording
+from feeddrive.reproduce.life.rating import combined_rating, double_nut_share, material_constant_of_test, rating
+from feeddrive.reproduce.life.stress_cycles import (
+    cycles_per_revolution,
+    effective_screw_groove,
+    nut_cycles,
+    screw_cycles,
+    screw_cycles_along,
+    screw_groove_per_turn,
+    stressed_screw_groove,
+)
+from feeddrive.reproduce.life.subsurface_shear import (
+    axis_stresses,
+    greatest_shear_on_axis,
+    greatest_shear_under_line,
+    line_shear,
+)
 
 TRACK = BallTrack(3.175e-3, 25.5e-3, 0.55, math.radians(45), 6e-3, 2.5)
 BODY = nut_body(TRACK, 0.04)

@@ -28,7 +28,6 @@ from feeddrive.plant.analysis.ode import ode
 from feeddrive.plant.analysis.steady import steady_motion
 from feeddrive.plant.plant import Plant, PositionVelocityController
 from feeddrive.plant.structure import forget_machines
-from feeddrive.plant.symbolic_turn import SYMBOLS, SymbolicTurn
 from feeddrive.servo import cascade_function
 from feeddrive.servo.cascade import Cascade, Feedback
 from feeddrive.servo.cascade_function import cascade_controller
@@ -45,6 +44,7 @@ from feeddrive.simulate.driven import motor_motion, simulate_driven
 from feeddrive.simulate.held_torque import simulate_torque
 from feeddrive.simulate.scenario.scenario_file import read_scenario
 from feeddrive.simulate.scenario.scenario_run import run_scenario
+from feeddrive.symbolic_turn import SYMBOLS, SymbolicTurn
 from tests.convergence.test_simulate import BENCH
 
 

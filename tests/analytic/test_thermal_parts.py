@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from feeddrive.errors import InputError, ValidityWarning
-from feeddrive.thermal.file.files import read_thermal_plant
+from feeddrive.plant.file.files import read_plant
 from feeddrive.thermal.full.full_model import full_model
 from feeddrive.thermal.full.occupancy import cell_edges
 from feeddrive.thermal.laws.contact_conductance import (
@@ -154,7 +154,7 @@ def test_bad_files_are_refused_with_place_and_mend(tmp_path: FilePath, old: str,
     count = -1 if old == "[thermal" else 1
     path.write_text(text.replace(old, new, count), encoding="utf-8")
     with pytest.raises(InputError, match=message) as refusal:
-        read_thermal_plant(path)
+        read_plant(path)
     assert str(path) in str(refusal.value)
 
 
@@ -168,7 +168,7 @@ def test_bearings_may_have_heat_and_film(tmp_path: FilePath) -> None:
         '[[thermal.body]]\nname = "motor"\nport = "front"\ncapacity = "900 J/K"\nconductance = "0.5 W/K"\n',
         encoding="utf-8",
     )
-    plant = read_thermal_plant(path)
+    plant = read_plant(path).heat
     assert plant.bodies[0].capacity == pytest.approx(900.0)
     assert "motor" in plant.full_model().readings
     assert plant.front is not None and plant.rear is None

@@ -16,7 +16,12 @@ from scipy.stats import beta
 from feeddrive.parts.life.consumed_life import consumed_life
 from feeddrive.parts.life.life import rated_revolutions, rating_of_test, survival
 from feeddrive.parts.life.life_exponents import BALL_BEARING, BALL_SCREW, diameter_exponent, load_exponent
-from feeddrive.parts.life.rating import (
+from feeddrive.parts.life.weibull import WeibullLaw, life_sample, line_fit, rank_fit
+from feeddrive.parts.life.weibull_interval import complete_slope_interval
+from feeddrive.parts.screw.load_distribution import Loading, continuum_extremes, load_distribution, nut_body
+from feeddrive.parts.screw.preload_loss import opening_force, stiffness_share, torque_share
+from feeddrive.parts.screw.screw_contact import BallTrack, nut_contact, screw_contact
+from feeddrive.reproduce.life.rating import (
     combined_rating,
     double_nut_share,
     load_integrals,
@@ -24,7 +29,7 @@ from feeddrive.parts.life.rating import (
     rating,
     rating_along_screw,
 )
-from feeddrive.parts.life.stress_cycles import (
+from feeddrive.reproduce.life.stress_cycles import (
     ball_travel_share,
     cycles_per_revolution,
     nut_cycles,
@@ -35,12 +40,7 @@ from feeddrive.parts.life.stress_cycles import (
     stressed_screw_groove,
     stroke_ratio,
 )
-from feeddrive.parts.life.subsurface_shear import greatest_shear_on_axis, greatest_shear_under_line
-from feeddrive.parts.life.weibull import WeibullLaw, life_sample, line_fit, rank_fit
-from feeddrive.parts.life.weibull_interval import complete_slope_interval
-from feeddrive.parts.screw.load_distribution import Loading, continuum_extremes, load_distribution, nut_body
-from feeddrive.parts.screw.preload_loss import opening_force, stiffness_share, torque_share
-from feeddrive.parts.screw.screw_contact import BallTrack, nut_contact, screw_contact
+from feeddrive.reproduce.life.subsurface_shear import greatest_shear_on_axis, greatest_shear_under_line
 from feeddrive.reproduce.paper_001 import rows
 from feeddrive.reproduce.row import Paper, Status
 

@@ -76,4 +76,4 @@ def test_what_is_planted_is_named(case: str, tmp_path: Path) -> None:
             assert key in ("at_speed", "share_at_rest") or abs(shown - value) <= WITHIN * abs(value), (key, shown)
     assert at_the_floor(found) == []
     after = found.plant
-    assert len(after.warm.effects) == len(fd.load("warm_axis").warm.effects) + 1
+    assert len(after.plant.effects) == len(fd.load("warm_axis").plant.effects) + 1

@@ -1,23 +1,19 @@
-"""Declared values fitted within their tolerances beside a set of effects, and named where they are beyond them."""
+"""Declared values fitted within their tolerances beside a set of effects."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from feeddrive.diagnosis.calibration.calibration import Calibration
-from feeddrive.diagnosis.calibration.declared import CalibratedValue, as_effect, calibrated_values
+from feeddrive.diagnosis.calibration.declared import CalibratedValue, calibrated_values
 from feeddrive.diagnosis.calibration.known import known_values
 from feeddrive.diagnosis.certainty.noise_colour import score_covariance
 from feeddrive.diagnosis.likelihood.evidence import Evidence
-from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
-from feeddrive.diagnosis.likelihood.tolerances import BEYOND
-from feeddrive.effects.base import Effect, Value, number
-from feeddrive.effects.friction.friction_deviation import FrictionDeviation
-from feeddrive.plant.plant import Plant
+from feeddrive.diagnosis.likelihood.fit import Fit, Problem
+from feeddrive.effects.base import Effect
 from feeddrive.recording import Recording
 from feeddrive.typing import FloatArray
 
@@ -33,13 +29,6 @@ ENOUGH = 0.1
 PASSES = 8
 """New slopes at most, before anything is found and beside a value that is beyond its tolerance."""
 
-SURE = 3.0
-"""Deviations by which no values within their tolerances may explain the recordings, and one beyond its does: one of 700
-by chance for each of a dozen values, where the truth is at the very end of a tolerance."""
-
-AGAINST = 2 * math.log(20.0)
-"""Twice the logarithm of the odds from which a value is refused that is not the likeliest (as `ambiguity`)."""
-
 UNSEEN = 0.1
 """Deviations by which a value within its tolerance moves all rows together, below which they do not see it: its
 interval would be narrower than its tolerance by half a per cent."""
@@ -47,7 +36,7 @@ interval would be narrower than its tolerance by half a per cent."""
 
 def calibrated(problem: Problem) -> Problem:
     """The problem with its declared values fitted within their tolerances, nothing else being there."""
-    if problem.calibration is not None or not isinstance(problem.plant, Plant):
+    if problem.calibration is not None or not problem.predictor.of_motion:
         return problem
     values = calibrated_values(problem.plant)
     if not values:
@@ -56,7 +45,7 @@ def calibrated(problem: Problem) -> Problem:
     start = _without_unseen(recalibrated(start, (), rough=True))
     for turn in range(PASSES):
         before, start = start, recalibrated(start, (), rough=turn == 0)
-        if turn > 0 and np.max(np.abs(_moved(before, start)), initial=0.0) < ENOUGH:
+        if turn > 0 and np.max(np.abs(moved(before, start)), initial=0.0) < ENOUGH:
             break
     return recalibrated(start.levelled(), ())
 
@@ -72,17 +61,24 @@ def recalibrated(problem: Problem, effects: Sequence[Effect], rough: bool = Fals
     known = problem.calibration
     if known is None or not known.values:
         return problem
-    slopes = {e.recording: slopes_of(problem, effects, e, rough) for e in problem.evidence}
-    sloped = replace(problem, calibration=replace(known, slopes=slopes))
-    assert sloped.whitener is not None
+    sloped = with_new_slopes(problem, effects, rough)
+    assert sloped.calibration is not None and sloped.whitener is not None
     if not np.all(np.isfinite(sloped.whitener.columns)):
         return problem
     residual = sloped.unwhitened(effects)
     # what is left once the values are as they are most likely tells how much a row is worth
     left = residual - sloped.whitener.columns @ (sloped.whitener.most_likely(residual) - known.coordinates)
     variance = _variance(sloped, left)
-    sloped = replace(problem, calibration=replace(known, slopes=slopes, variance=variance))
+    sloped = replace(problem, calibration=replace(sloped.calibration, variance=variance))
     return _stepped(sloped, effects, residual)
+
+
+def with_new_slopes(problem: Problem, effects: Sequence[Effect], rough: bool = False) -> Problem:
+    """The problem with the slopes of its declared values beside these effects, the values as they are."""
+    if problem.calibration is None or not problem.calibration.values:
+        return problem
+    slopes = {e.recording: slopes_of(problem, effects, e, rough) for e in problem.evidence}
+    return replace(problem, calibration=replace(problem.calibration, slopes=slopes))
 
 
 def slopes_of(
@@ -153,10 +149,11 @@ def _without_unseen(problem: Problem) -> Problem:
     """The problem without values that its recordings do not see."""
     assert problem.calibration is not None and problem.whitener is not None
     seen = np.sum(problem.whitener.columns**2, axis=0) > UNSEEN**2 * problem.calibration.variance
-    return _with(problem, seen)
+    return with_kept(problem, seen)
 
 
-def _with(problem: Problem, kept: Sequence[bool] | np.ndarray[tuple[int], np.dtype[np.bool_]]) -> Problem:
+def with_kept(problem: Problem, kept: Sequence[bool] | np.ndarray[tuple[int], np.dtype[np.bool_]]) -> Problem:
+    """The problem with some of its declared values fitted, the others as declared."""
     known = problem.calibration
     assert known is not None
     places = np.flatnonzero(np.asarray(kept))
@@ -171,7 +168,7 @@ def _with(problem: Problem, kept: Sequence[bool] | np.ndarray[tuple[int], np.dty
     )
 
 
-def _moved(before: Problem, after: Problem) -> FloatArray:
+def moved(before: Problem, after: Problem) -> FloatArray:
     assert before.calibration is not None and after.calibration is not None
     return after.calibration.coordinates - before.calibration.coordinates
 
@@ -217,50 +214,3 @@ def calibrated_list(problem: Problem, found: Fit) -> tuple[Calibrated, ...]:
         ends = min(low, coordinate), max(high, coordinate)
         result.append(Calibrated(value, coordinate, float(deviations[i]), ends))
     return tuple(result)
-
-
-def beyond_tolerance(problem: Problem, found: Fit) -> tuple[Problem, Effect] | None:
-    """The declared value that is surest to be beyond its tolerance, as an effect; None where none is asserted.
-
-    One is beyond its tolerance where no values within theirs explain the recordings, and some do that are all but it
-    within theirs. Of values that are alike to the recordings the likeliest is taken; `other_places` says the others.
-
-    Returns:
-        The problem without it among the values that are fitted, and the effect, from its likeliest value.
-    """
-    known = known_values(problem, found)
-    if known is None or not isinstance(problem.plant, Plant):
-        return None
-    least, able = known.least(), [i for i, value in enumerate(known.values) if value.name]
-    gained = {i: least - known.least(i) for i in able}
-    most = max(gained.values(), default=0.0)
-    if most < SURE**2:
-        return None
-    alike = [i for i in able if gained[i] > most - AGAINST]
-    costs = {i: known.likeliest(i, BEYOND / known.values[i].deviation) for i in alike}
-    place = min(alike, key=lambda i: costs[i][1])
-    best, u = known.values[place], costs[place][0]
-    same = [(one.name, one.place) == (best.name, best.place) for one in known.values]
-    effects = [as_effect(problem.plant, known.values[i], known.c(i, float(u[i]))) for i in np.flatnonzero(same)]
-    effect = effects[0]
-    if isinstance(effect, FrictionDeviation):  # Coulomb and viscous friction of a port are one effect
-        keys = ("coulomb_factor", "viscous_factor")
-        factors: dict[str, Value] = {key: float(np.prod([number(e.values[key]) for e in effects])) for key in keys}
-        effect = effect.with_values(**factors)
-    rest = [not one for one in same]
-    others = np.array([known.c(i, float(u[i])) for i in np.flatnonzero(rest)])
-    freed = _with(problem, rest)
-    assert freed.calibration is not None
-    freed = replace(freed, calibration=replace(freed.calibration, coordinates=others))
-    return _together(freed, (*found.effects, effect))
-
-
-def _together(problem: Problem, effects: Sequence[Effect]) -> tuple[Problem, Effect]:
-    """Effects and declared values fitted in turn until neither moves: alike, each bends what the other is told by."""
-    for _ in range(PASSES):
-        before = problem = recalibrated(problem, effects)
-        effects = fit(problem, effects).effects
-        problem = problem.settled(effects)
-        if np.max(np.abs(_moved(before, problem)), initial=0.0) < ENOUGH:
-            break
-    return problem, effects[-1]

@@ -13,7 +13,6 @@ from feeddrive.diagnosis.certainty.correlation import TOGETHER
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem
 from feeddrive.effects.chain.stiffness_deviation import PARTS
 from feeddrive.plant.analysis.stiffness_budget import participation
-from feeddrive.plant.plant import Plant
 
 TOLD = 0.9
 """Deviation of a value over that of its tolerance, above which the recordings say nothing of it: it is not listed."""
@@ -58,7 +57,7 @@ def calibrated_results(problem: Problem, found: Fit) -> tuple[CalibratedResult, 
 def known_together(problem: Problem, found: Fit) -> tuple[str, ...]:
     """A sentence for every two stiffnesses whose sum is known and neither of them, with what each gives way."""
     known, plant = known_values(problem, found), problem.plant
-    if known is None or not isinstance(plant, Plant):
+    if known is None:
         return ()
     deviations = np.sqrt(np.diag(known.covariance))
     alike = known.covariance / np.outer(deviations, deviations) < -TOGETHER

@@ -99,6 +99,10 @@ class Evidence:
             [self.without_open(name, self.evened(name, series[name])[rows], rows) for name in self.channels]
         )
 
+    def in_band(self, series: FloatArray) -> FloatArray:
+        """A series, (n,), as it shows in the comparison."""
+        return series
+
     def known_to(self, name: str) -> float:
         """Rms of what the sensors add to a channel in the band."""
         return self.noise[name]
@@ -140,6 +144,10 @@ class AxisEvidence(Evidence):
     zero: float = 0.0
     gains: dict[str, FloatArray] = field(default_factory=dict)
     added: dict[str, float] = field(default_factory=dict)
+
+    def in_band(self, series: FloatArray) -> FloatArray:
+        """A series or columns, (n,), in the band of the comparison."""
+        return self.band.filter(series)
 
     def known_to(self, name: str) -> float:
         """Rms of what sensor and encoder add to a channel in the band."""
@@ -242,7 +250,7 @@ def _placed(plant: Plant, zero: float) -> Plant:
     if not zero:
         return plant
     values = {**plant.chain.values, "first_nut_position": plant.chain.values["first_nut_position"] + zero}
-    return replace(plant, chain=replace(plant.chain, values=values))
+    return plant.with_chain_values(values)
 
 
 def _zero_of_angle(recording: Recording, plant: Plant) -> float:

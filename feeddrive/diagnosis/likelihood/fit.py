@@ -29,7 +29,7 @@ from feeddrive.diagnosis.likelihood.coordinates import (
     write_coordinates,
 )
 from feeddrive.diagnosis.likelihood.evidence import Evidence
-from feeddrive.diagnosis.likelihood.predictor import Machine, Predictor
+from feeddrive.diagnosis.likelihood.predictor import Predictor
 from feeddrive.effects.base import Effect
 from feeddrive.plant.passive_friction import is_passive
 from feeddrive.plant.plant import Plant
@@ -102,22 +102,22 @@ class Problem:
     Attributes:
         plant: as declared.
         evidence: recordings.
-        predictor: of their kind of machine.
+        predictor: of their kind.
         calibration: of the declared values; None where all are taken as exact.
     """
 
-    plant: Machine
+    plant: Plant
     evidence: tuple[Evidence, ...]
-    predictor: Predictor[Any, Any]
+    predictor: Predictor[Any]
     calibration: Calibration | None = None
 
-    def machine(self, effects: Sequence[Effect] = ()) -> Any:  # a plant of the predictor's kind
+    def machine(self, effects: Sequence[Effect] = ()) -> Plant:
         """The plant with its declared values as calibrated, and further effects."""
         return self._calibrated.with_effects(*effects)
 
     @cached_property
-    def _calibrated(self) -> Machine:
-        if self.calibration is None or not isinstance(self.plant, Plant):
+    def _calibrated(self) -> Plant:
+        if self.calibration is None:
             return self.plant
         return with_values(self.plant, self.calibration.values, self.calibration.coordinates)
 
@@ -174,7 +174,7 @@ class Problem:
     def possible(self, effects: Sequence[Effect]) -> bool:
         """Whether the plant with these effects is one that a file may hold: its friction takes power everywhere."""
         plant = self.machine(effects)
-        return not isinstance(plant, Plant) or is_passive(plant)
+        return not self.predictor.of_motion or is_passive(plant)
 
     def measured(self) -> FloatArray:
         """Weighted measurement at the fitted samples of all recordings, whitened."""

@@ -11,7 +11,7 @@ Source: paper 004, eqs. (5) to (8): axial and torsional spring chain act in seri
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -98,7 +98,7 @@ def participation(plant: Plant, key: str, position: float) -> float:
     """Share of a chain value in the compliance at the table, motor held ideally: -d ln(1/k) / d ln(value) [1]."""
     step = 1e-4
     values = {**plant.chain.values, key: plant.chain.values[key] * (1 + step)}
-    stiffer = replace(plant, chain=replace(plant.chain, values=values))
+    stiffer = plant.with_chain_values(values)
     ratio = static_stiffness(stiffer, position) / static_stiffness(plant, position)
     return math.log(ratio) / math.log(1 + step)
 

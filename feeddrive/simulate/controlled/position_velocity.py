@@ -20,8 +20,8 @@ import casadi as ca
 import numpy as np
 
 from feeddrive.plant.plant import Plant, PositionVelocityController
-from feeddrive.plant.symbolic_turn import SYMBOLS
 from feeddrive.servo.sampled import SampledController
+from feeddrive.symbolic_turn import SYMBOLS
 from feeddrive.typing import Expression
 
 PARAMETERS = ("position_gain", "velocity_gain", "output_limit", "torque_per_output", "radius", "sample_time")

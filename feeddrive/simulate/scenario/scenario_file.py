@@ -33,6 +33,7 @@ from feeddrive.errors import InputError
 from feeddrive.files import find_plant
 from feeddrive.plant.file.effect_sections import read_effects
 from feeddrive.plant.file.entries import Table, read_toml, whole_file
+from feeddrive.plant.file.files import plant_from_entries
 from feeddrive.plant.file.plant_schema import EFFECT
 from feeddrive.plant.passive_friction import refuse_active_friction
 from feeddrive.plant.plant import Plant
@@ -49,7 +50,6 @@ from feeddrive.simulate.scenario.scenario_motion import read_excitation, read_fo
 from feeddrive.simulate.scenario.scenario_overrides import with_absolute_paths, with_overrides
 from feeddrive.simulate.scenario.scenario_values import boolean, positive, quantities, texts, whole
 from feeddrive.simulate.setpoints.trajectories import refuse_beyond_travel
-from feeddrive.thermal.file.whole_file import drive_plant
 
 FORMAT = "feeddrive-scenario/1"
 SCENARIO = scenario(EFFECT)
@@ -156,7 +156,7 @@ def _plant_path(top: Table, folder: Path) -> Path:
 
 
 def _plant(path: Path, overrides: Mapping[str, str]) -> Plant:
-    return drive_plant(with_overrides(read_toml(path, "plant file"), overrides), path)
+    return plant_from_entries(with_overrides(read_toml(path, "plant file"), overrides), path)
 
 
 def _ticks(top: Table, cascade: Cascade, trajectory: float) -> int:

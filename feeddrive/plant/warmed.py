@@ -2,16 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
-from feeddrive.effects.base import Effect
+from feeddrive.effects.base import Effect, number
 from feeddrive.effects.friction.nut_friction import NutFriction
 from feeddrive.effects.friction.shaft_drag import BearingDrag, NutDrag
 from feeddrive.effects.travel.lead_error_cumulative import LeadErrorCumulative
 from feeddrive.plant.chain.linear_chain import Chain
+from feeddrive.plant.equations import parameter_names
 from feeddrive.plant.plant import Plant
 from feeddrive.thermal.coupling import Changes
+
+LOAD, NUT_OIL, BEARING_OIL = 0, 1, 2
+"""Rows of `feeddrive.thermal.laws.laws.Laws.factors`."""
+
+_FOLLOWING: dict[type[Effect], dict[str, int]] = {
+    NutFriction: {"preload": LOAD, "viscous": NUT_OIL},
+    NutDrag: {"coulomb": LOAD, "viscous": NUT_OIL},
+    BearingDrag: {"viscous": BEARING_OIL},
+}
+"""Values of declared friction that follow a temperature, each in proportion to a factor."""
+
+
+def followed(plant: Plant) -> dict[int, int]:
+    """Row of the motion's parameters to the row of `Laws.factors` that it follows."""
+    names = parameter_names(plant)
+    return {
+        names.index(f"{effect.label}.{key}"): factor
+        for effect in plant.effects
+        for key, factor in _FOLLOWING.get(type(effect), {}).items()
+        if f"{effect.label}.{key}" in names
+    }
 
 
 def warmed(plant: Plant, changes: Changes, slope: float, nut_stiffness: float) -> Plant:
@@ -23,33 +44,22 @@ def warmed(plant: Plant, changes: Changes, slope: float, nut_stiffness: float) -
         slope: of the screw's growth along the stroke [m/m]; it adds to a declared travel deviation.
         nut_stiffness: declared, of the whole nut [N/m]; it is one of the springs in `axial_stiffness`.
     """
-    effects = tuple(_warmed_effect(effect, changes) for effect in plant.effects)
+    factors = (changes.preload, changes.nut_viscous, changes.bearing_viscous)
+    effects = [
+        effect.with_values(**{key: number(effect.values[key]) * factors[row] for key, row in keys.items()})
+        if (keys := _FOLLOWING.get(type(effect)))
+        else effect
+        for effect in plant.effects
+    ]
     if not any(isinstance(effect, LeadErrorCumulative) for effect in effects):
-        effects = (*effects, LeadErrorCumulative.of(slope=0.0))
+        effects.append(LeadErrorCumulative.of(slope=0.0))
     grown = tuple(
-        effect.with_values(slope=_number(effect, "slope") + slope)
+        effect.with_values(slope=number(effect.values["slope"]) + slope)
         if isinstance(effect, LeadErrorCumulative)
         else effect
         for effect in effects
     )
-    return replace(plant, effects=grown, chain=_stiffened(plant.chain, changes.nut_stiffness, nut_stiffness))
-
-
-def _warmed_effect(effect: Effect, changes: Changes) -> Effect:
-    """Friction of nut and bearings; anything else as it is."""
-    laws: dict[type[Effect], Callable[[], Effect]] = {
-        NutFriction: lambda: effect.with_values(
-            preload=_number(effect, "preload") * changes.preload,
-            viscous=_number(effect, "viscous") * changes.nut_viscous,
-        ),
-        NutDrag: lambda: effect.with_values(
-            coulomb=_number(effect, "coulomb") * changes.preload_torque,
-            viscous=_number(effect, "viscous") * changes.nut_viscous,
-        ),
-        BearingDrag: lambda: effect.with_values(viscous=_number(effect, "viscous") * changes.bearing_viscous),
-    }
-    law = laws.get(type(effect))
-    return effect if law is None else law()
+    return replace(plant, effects=grown, mechanics=_stiffened(plant.chain, changes.nut_stiffness, nut_stiffness))
 
 
 def _stiffened(chain: Chain, share: float, nut_stiffness: float) -> Chain:
@@ -61,9 +71,3 @@ def _stiffened(chain: Chain, share: float, nut_stiffness: float) -> Chain:
         added = (1 / share - 1) / nut_stiffness
         values["axial_stiffness"] = 1 / (1 / values["axial_stiffness"] + added)
     return replace(chain, values=values)
-
-
-def _number(effect: Effect, key: str) -> float:
-    value = effect.values[key]
-    assert isinstance(value, float | int)
-    return float(value)

@@ -19,13 +19,11 @@ The temperature for which friction and preload are declared is `ambient`, the pr
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 from feeddrive.errors import InputError
 from feeddrive.parts.lubricant import Lubricant
-from feeddrive.plant.file.entries import Table, read_toml
-from feeddrive.plant.file.plant_schema import plant_table
+from feeddrive.plant.file.entries import Table
 from feeddrive.thermal.coupling import Coupling
 from feeddrive.thermal.laws.nut_preload import Spacer
 
@@ -36,28 +34,18 @@ _KEYS = (
 _SPACERS = {spacer.name.lower(): spacer for spacer in Spacer}
 
 
-def read_coupling(path: Path) -> Coupling:
-    """Read the coupling of a plant file.
-
-    Raises:
-        InputError: no such file or section, unknown key, a value that is missing, without unit or impossible.
-    """
-    return coupling(plant_table(read_toml(path, "plant file"), str(path)))
-
-
-def coupling(top: Table) -> Coupling:
-    """The coupling that a whole plant file declares.
+def read_coupling(top: Table) -> Coupling | None:
+    """The coupling that a whole plant file declares; None where it declares none.
 
     Args:
         top: the whole file.
 
     Raises:
-        InputError: as `read_coupling`.
+        InputError: unknown key, a value that is missing, without unit or impossible.
     """
     thermal = top.table("thermal")
     if "coupling" not in thermal.entries:
-        mend = "declare in [thermal.coupling] how its heat and its drive are joined"
-        raise InputError("has no [thermal.coupling] section", top.where, mend)
+        return None
     table = thermal.table("coupling")
     table.refuse_unknown(_KEYS)
     oil = _oil(table, "nut_oil")

@@ -1,4 +1,4 @@
-"""A thermal plant: the rig with its films, contact and friction, and what they are at a speed and a preload."""
+"""The heat of a machine: the rig with its films, contact and friction, and what they are at a speed and a preload."""
 
 from __future__ import annotations
 
@@ -8,9 +8,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from feeddrive.effects.base import Effect
 from feeddrive.effects.heat.base import ThermalEffect
-from feeddrive.errors import InputError
 from feeddrive.thermal.coupling import Coupling
 from feeddrive.thermal.full.full_model import FRONT, NUT, REAR, full_model
 from feeddrive.thermal.full.grid import Cells
@@ -24,7 +22,7 @@ from feeddrive.typing import FloatArray
 
 
 @dataclass(frozen=True)
-class ThermalPlant:
+class Heat:
     """What a plant file declares about heat.
 
     Attributes:
@@ -70,23 +68,13 @@ class ThermalPlant:
         refuse_unless_positive(self.lead, "m/rad", "lead")
         refuse_unless_positive(self.highest_speed, "rad/s", "highest_speed")
 
-    def with_effects(self, *effects: Effect) -> ThermalPlant:
-        """The plant with further effects, labelled name, name_2, name_3.
-
-        Raises:
-            InputError: an effect that does not act on temperatures or growth.
-        """
-        labelled = list(self.effects)
-        for effect in effects:
-            if not isinstance(effect, ThermalEffect):
-                raise InputError(f"{effect.name} does not act on heat", self.name, "leave it out")
-            count = 1 + sum(other.name == effect.name for other in labelled)
-            labelled.append(replace(effect, label=effect.name if count == 1 else f"{effect.name}_{count}"))
-        return replace(self, effects=tuple(labelled))
-
-    def without_effects(self) -> ThermalPlant:
-        """What is declared beside effects."""
-        return replace(self, effects=())
+    def joined(self, coupling: Coupling) -> Heat:
+        """The same network heated by the friction of the motion in place of its own."""
+        nut, *ends = (
+            None if one is None else replace(one, heat_share=0.0) for one in (self.nut, self.front, self.rear)
+        )
+        assert nut is not None
+        return replace(self, coupling=coupling, nut=nut, front=ends[0], rear=ends[1])
 
     @property
     def attached(self) -> tuple[Body, ...]:

@@ -51,26 +51,21 @@ A file with `[thermal]` and no `structure` declares heat alone, no chain. Nothin
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import fields
-from pathlib import Path
 
-from feeddrive.effects.catalogue import EFFECTS, THERMAL_EFFECTS
-from feeddrive.effects.heat.base import ThermalEffect
+from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
-from feeddrive.plant.file.effect_sections import read_effects
-from feeddrive.plant.file.entries import Table, read_toml
-from feeddrive.plant.file.files import FORMAT, declares_heat_alone
-from feeddrive.plant.file.plant_schema import plant_table
-from feeddrive.thermal.file.coupling_section import coupling
-from feeddrive.thermal.file.sensor_sections import read_heat_sensors
+from feeddrive.plant.file.entries import Table, declares_heat_alone
+from feeddrive.plant.file.heat.sensor_sections import read_heat_sensors
+from feeddrive.thermal.coupling import Coupling
+from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.laws.declared_friction import bearings_of, nut_of
 from feeddrive.thermal.laws.films import Films
 from feeddrive.thermal.laws.friction import Friction
-from feeddrive.thermal.plant import ThermalPlant
 from feeddrive.thermal.rig import Body, Nut, Rig, Seat, Steel, Travel, refuse_unless
 
 SECTION = "thermal"
-_TOP_OF_HEAT_ALONE = ("format", "name", "source", "description", "ball_screw", "effect", "sensor", SECTION)
 _LENGTHS = ("shaft_radius", "shaft_length", "nut_outer_radius", "nut_length")
 _STEEL = {"conductivity": "W/(m K)", "heat_capacity": "J/(m^3 K)", "expansion": "1/K", "elasticity": "Pa"}
 _OTHER = (
@@ -82,41 +77,26 @@ _BODY = {"capacity": "J/K", "conductance": "W/K", "to_air": "W/K"}
 _SEAT = {"seat_length": "m", "film": "W/(m^2 K)", "end_share": "1"}
 
 
-def read_thermal_plant(path: Path) -> ThermalPlant:
-    """Read the thermal section of a plant file.
-
-    Args:
-        path: of the file; its other sections are not looked at, but for the lead and the name.
-
-    Raises:
-        InputError: no such file, not TOML, another format, no thermal section, unknown key, a value that is missing,
-            without unit, of another dimension or impossible.
-    """
-    entries = read_toml(path, "plant file")
-    if entries.get("format") != FORMAT:
-        raise InputError(
-            "is not a plant file of this version", str(path), f'write format = "{FORMAT}" in its first line'
-        )
-    if declares_heat_alone(entries):
-        plant_table(entries, str(path)).refuse_unknown(_TOP_OF_HEAT_ALONE)
-    return thermal_plant(plant_table(entries, str(path)), path.stem)
-
-
-def thermal_plant(top: Table, name: str) -> ThermalPlant:
-    """The thermal plant that a whole plant file declares; see `read_thermal_plant`.
+def read_heat(top: Table, name: str, effects: Sequence[Effect], joint: Coupling | None) -> Heat | None:
+    """What a plant file declares about heat; None where it declares nothing.
 
     Args:
         top: the whole file.
         name: where the file gives none.
+        effects: that it declares; friction of a motion that is joined to the heat is declared by them.
+        joint: how the two are joined, where they are.
+
+    Raises:
+        InputError: unknown key, a value that is missing, without unit, of another dimension or impossible.
     """
     if SECTION not in top.entries:
-        raise InputError("has no [thermal] section", top.where, "declare the machine's heat in one")
+        return None
     table = top.table(SECTION)
     table.refuse_unknown((*_LENGTHS, *_STEEL, *_OTHER))
     sensors = read_heat_sensors(top)
-    declared = _declared(top, table)
     try:
-        plant = ThermalPlant(
+        declared = _declared(top, table, effects, joint)
+        return Heat(
             name=top.text("name", name),
             rig=_rig(table, tuple(sensor.at for sensor in sensors if isinstance(sensor.at, float))),
             films=Films(*(_value(table.table("film"), f.name, "W/(m^2 K)") for f in fields(Films))),
@@ -132,23 +112,22 @@ def thermal_plant(top: Table, name: str) -> ThermalPlant:
             sensors=sensors,
             origins=top.origins.found,
         )
-        found = read_effects(top, THERMAL_EFFECTS)
-        return plant.with_effects(*(effect for effect in found if isinstance(effect, ThermalEffect)))
     except InputError as error:
         # What the rig refuses is told with the file and the section in front.
         inside = error.where.startswith(table.where)
         raise error if inside else InputError(error.what, f"{table.where}, {error.where}", error.mend) from None
 
 
-def _declared(top: Table, table: Table) -> tuple[Friction | None, Friction | None, Friction | None]:
+def _declared(
+    top: Table, table: Table, effects: Sequence[Effect], joint: Coupling | None
+) -> tuple[Friction | None, Friction | None, Friction | None]:
     """Friction of nut, front and rear bearing that the file's own motion declares, where the two are coupled."""
-    if "coupling" not in table.entries or declares_heat_alone(top.entries):
+    if joint is None or declares_heat_alone(top.entries):
         return None, None, None
-    effects = read_effects(plant_table(top.entries, top.where), EFFECTS)
-    joined, ambient = coupling(top), _value(table, "ambient", "degC")
+    ambient = _value(table, "ambient", "degC")
     diameter = 2 * _value(table, "shaft_radius", "m")
-    nut = nut_of(effects, joined, ambient, diameter, _lead(top, table))
-    return nut, *bearings_of(effects, joined, ambient, diameter)
+    nut = nut_of(effects, joint, ambient, diameter, _lead(top, table))
+    return nut, *bearings_of(effects, joint, ambient, diameter)
 
 
 def _rig(table: Table, scales: tuple[float, ...]) -> Rig:
