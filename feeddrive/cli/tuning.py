@@ -11,8 +11,7 @@ from typing import Any
 from rich.table import Table
 
 from feeddrive import __version__
-from feeddrive.cli.boding import quantities
-from feeddrive.cli.output import deliver, table, tell_written, warnings_as_lines, working
+from feeddrive.cli.output import deliver, quantities, table, tell_written, warnings_as_lines, working
 from feeddrive.cli.tuning_drive import drive_content, drive_tables, write_drive
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant, find_scenario_or_controller, write_bytes_atomically, write_text_atomically

@@ -25,7 +25,7 @@ from feeddrive.diagnosis.judging.veto import without_denied
 from feeddrive.diagnosis.ledger.entry import kept_of
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.fit import Problem
-from feeddrive.diagnosis.preparation import Shown, prepared, shown
+from feeddrive.diagnosis.preparation import Shown, informative, prepared, shown
 from feeddrive.diagnosis.recordings.compared import compared_recordings, last_state, machine_as_last, with_carrying
 from feeddrive.diagnosis.recordings.recordings import without_shifts
 from feeddrive.diagnosis.recordings.rehoming import rehomed_plant
@@ -76,6 +76,7 @@ def diagnose(
     """
     if not 0.2 <= split <= 0.95:
         raise InputError(f"--split is {split:g}", "", "use a share between 0.2 and 0.95, such as 0.75")
+    recordings, validation = informative(plant, recordings), informative(plant, validation)
     every = (*recordings, *validation)
     in_motion = shown(plant, recordings) is Shown.MOTION
     in_the_loop = simulate and in_motion

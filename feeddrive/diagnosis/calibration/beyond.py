@@ -33,10 +33,10 @@ def beyond_tolerance(problem: Problem, found: Fit) -> tuple[Problem, Effect] | N
     within theirs. Of values that are alike to the recordings the likeliest is taken; `other_places` says the others.
 
     Returns:
-        The problem without it among the values that are fitted, and the effect, fitted beside them.
+        The problem without it among the values that are fitted, and the effect, from its likeliest value.
     """
-    known, calibration = known_values(problem, found), problem.calibration
-    if known is None or calibration is None:
+    known = known_values(problem, found)
+    if known is None or problem.calibration is None:
         return None
     least, able = known.least(), [i for i, value in enumerate(known.values) if value.name]
     gained = {i: least - known.least(i) for i in able}
@@ -44,12 +44,12 @@ def beyond_tolerance(problem: Problem, found: Fit) -> tuple[Problem, Effect] | N
     if most < SURE**2:
         return None
     alike = [i for i in able if gained[i] > most - AGAINST]
-    likeliest = {i: known.likeliest(i, BEYOND / known.values[i].deviation) for i in alike}
-    place = min(alike, key=lambda i: likeliest[i][1])
-    coordinates = np.array([known.c(i, float(u)) for i, u in enumerate(likeliest[place][0])])
-    problem = replace(problem, calibration=replace(calibration, coordinates=coordinates))
-    problem, effects = said_by_effects(problem, [as_effect(problem.plant, known.values[place], 0.0)])
-    return _together(problem, (*found.effects, *effects))
+    costs = {i: known.likeliest(i, BEYOND / known.values[i].deviation) for i in alike}
+    place = min(alike, key=lambda i: costs[i][1])
+    likeliest = np.array([known.c(i, float(u)) for i, u in enumerate(costs[place][0])])
+    there = replace(problem, calibration=replace(problem.calibration, coordinates=likeliest))
+    freed, (effect,) = said_by_effects(there, [as_effect(problem.plant, known.values[place], 0.0)])
+    return _together(freed, (*found.effects, effect))
 
 
 def _together(problem: Problem, effects: Sequence[Effect]) -> tuple[Problem, Effect]:

@@ -169,6 +169,7 @@ def with_kept(problem: Problem, kept: Sequence[bool] | np.ndarray[tuple[int], np
 
 
 def moved(before: Problem, after: Problem) -> FloatArray:
+    """How far the coordinates of the declared values have moved, (k,)."""
     assert before.calibration is not None and after.calibration is not None
     return after.calibration.coordinates - before.calibration.coordinates
 
