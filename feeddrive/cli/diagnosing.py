@@ -22,6 +22,7 @@ from feeddrive.diagnosis.judging.result import Diagnosis
 from feeddrive.diagnosis.ledger.continued import Earlier, changed_since
 from feeddrive.diagnosis.ledger.ledger import FileUse, RunFiles, runs_of, write_ledger, written_earlier
 from feeddrive.diagnosis.likelihood.outputs import diagnosis_json, write_outputs
+from feeddrive.diagnosis.suspicion.quality import quality_lines
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError, printable
 from feeddrive.files import shipped_plants
@@ -190,6 +191,8 @@ def _print_summary(result: Diagnosis, report: Path) -> None:
     say(used_sentence(result))
     for effect in result.effects:
         say(f"{effect.name}: {effect.evidence} {effect.reading}")
+    for line in quality_lines(result.quality):
+        say(line)
     for line in calibrated_lines(result):
         say(line)
     for sentence in result.kept.since:

@@ -12,6 +12,7 @@ from feeddrive.diagnosis.calibration.plant_text import with_calibrated_values
 from feeddrive.diagnosis.diagnose import diagnose as find_what_lacks
 from feeddrive.diagnosis.judging.result import Diagnosis
 from feeddrive.diagnosis.likelihood.outputs import diagnosis_record, write_outputs
+from feeddrive.diagnosis.suspicion.quality import is_recorders
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 from feeddrive.interface.axis import Axis, axis_of_text
@@ -117,7 +118,8 @@ class Diagnosed(Shown):
     def plant(self) -> Axis:
         """The axis with its declared values as calibrated, and with what was found."""
         text = with_calibrated_values(self.axis.text, self.diagnosis.calibrated)
-        axis = axis_of_text(plant_text_with_effects(text, (*self.axis.added, *self.found)), self.axis.path)
+        own = [effect for effect in self.found if not is_recorders(effect)]
+        axis = axis_of_text(plant_text_with_effects(text, (*self.axis.added, *own)), self.axis.path)
         return axis.with_values(dict(self.axis.values)) if self.axis.values else axis
 
     def record(self) -> dict[str, Any]:

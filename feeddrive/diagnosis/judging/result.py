@@ -12,6 +12,7 @@ from feeddrive.diagnosis.certainty.certainty_result import Ambiguity, Correlatio
 from feeddrive.diagnosis.ledger.result import Kept
 from feeddrive.diagnosis.recordings.change_result import RecordingChanges
 from feeddrive.diagnosis.simulated.simulation_result import SimulationResult as SimulationResult
+from feeddrive.diagnosis.suspicion.quality import Quality
 from feeddrive.diagnosis.unexplained.result import Dependence as Dependence
 from feeddrive.diagnosis.unexplained.result import Unexplained as Unexplained
 from feeddrive.typing import FloatArray
@@ -176,6 +177,7 @@ class Diagnosis:
     changes: RecordingChanges = field(default_factory=RecordingChanges)
     kept: Kept = field(default_factory=Kept)
     calibrated: tuple[CalibratedResult, ...] = ()
+    quality: tuple[Quality, ...] = ()
 
     @property
     def nothing_missing(self) -> bool:
