@@ -12,9 +12,9 @@ for any effect (`cross_validation`), and two questions are asked of it:
     alone    with nothing found, is it worth as much as the best single effect was?
     beside   with all effects found, does it pay?
 
-Where either is so the recording is mended and searched again. The mend is kept where fewer things then say as much:
-names and faults together are fewer and the error is the same, or they are no more and the error is lower. A single
-effect that says as much as a fault stays, as nobody can tell.
+Where either is so the recording is mended and searched again. The mend is kept where fewer fitted values, that of the
+fault among them, then say as much, or where no more names leave less. An effect of one value that says as much as a
+fault stays, as nobody can tell.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ STEP = 1e-3
 """Change of the logarithm of a clock from which its column is taken."""
 
 SAME_ERROR = 1.05
-"""Ratio of squared errors per sample within which two explanations are as near (`round.TIE`)."""
+"""Ratio of squared errors per sample from which a fault leaves less than what was found without it (`round.TIE`)."""
 
 SURE = 3.0
 """Deviations from none: one of 400 by chance, two suspects asked twice."""
@@ -139,10 +139,9 @@ def again(problem: Problem, kind: str) -> Suspect | None:
 def is_better(mended: Search, found: Search) -> bool:
     """Whether a fault and what was found beside it say as much as what was found without it, or more with no more."""
     before, after = (one.fit.squared_error / max(len(one.fit.residual), 1) for one in (found, mended))
-    names, others = len(found.fit.effects), len(mended.fit.effects)
-    if others + 1 < names:
-        return after <= SAME_ERROR * before
-    return others <= names and after < before / SAME_ERROR
+    if len(mended.fit.coordinates) + 1 < len(found.fit.coordinates):
+        return after <= (1 + LEAST_GAIN) * before
+    return len(mended.fit.effects) <= len(found.fit.effects) and after < before / SAME_ERROR
 
 
 def _is_sure(one: Suspect) -> bool:
