@@ -249,7 +249,7 @@ def _without_fault(
             break
         fault = replace(fault, size=fault.size + left.size, deviation=left.deviation)
     again_settled = settle(other)
-    if not is_better(again_settled.searched.search, settled.searched.search):
+    if not is_better(fault, again_settled.searched.search, settled.searched.search):
         return begun, settled, files
     told = replace(other, quality=(*other.quality, fault.said(mended[0])))
     return told, again_settled, (mended[0], mended[1])

@@ -136,11 +136,14 @@ def again(problem: Problem, kind: str) -> Suspect | None:
     return next((one for one in _asked(problem, fit(problem, ())) if one.kind == kind), None)
 
 
-def is_better(mended: Search, found: Search) -> bool:
-    """Whether a fault and what was found beside it say as much as what was found without it, or more with no more."""
+def is_better(fault: Suspect, mended: Search, found: Search) -> bool:
+    """Whether a fault and what was found beside it say as much as what was found without it, or more with no more.
+
+    As much is what chance does for the values that are spared: less than is asked of any effect.
+    """
     before, after = (one.fit.squared_error / max(len(one.fit.residual), 1) for one in (found, mended))
     if len(mended.fit.coordinates) + 1 < len(found.fit.coordinates):
-        return after <= (1 + LEAST_GAIN) * before
+        return after <= (1 + fault.comparison.least) * before
     return len(mended.fit.effects) <= len(found.fit.effects) and after < before / SAME_ERROR
 
 
