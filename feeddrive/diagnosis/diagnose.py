@@ -11,6 +11,7 @@ from feeddrive.blas_threads import one_thread
 from feeddrive.diagnosis.calibration.calibrated_result import calibrated_results
 from feeddrive.diagnosis.certainty.ambiguity import Rival, ambiguous_sets, other_places, rivals_of
 from feeddrive.diagnosis.certainty.correlation import correlation
+from feeddrive.diagnosis.certainty.inclusion import odds_for, possible_effects
 from feeddrive.diagnosis.certainty.next_experiment import next_experiments
 from feeddrive.diagnosis.certainty.preferred import with_the_preferred
 from feeddrive.diagnosis.certainty.uncertainty import certainty, intervals
@@ -106,7 +107,8 @@ def diagnose(
         fit=_stamps(recordings),
         validate=_stamps(validation or recordings),
         channels=channel_results(found.problem, rest.judged),
-        effects=with_carrying(effect_results(found, shares, spans), compared),
+        effects=with_carrying(effect_results(found, shares, spans, odds_for(found, settled.rivals)), compared),
+        possible=possible_effects(found, settled.rivals),
         refused=refused_effects(found),
         ambiguous=tuple(one.names for one in alike),
         rehomed=settled.rehomed,

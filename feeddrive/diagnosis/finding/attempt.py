@@ -51,6 +51,7 @@ class Attempt:
         comparison: against the effects found before.
         problem: recordings with the samples that this candidate can predict.
         errors: residual on blocks left out of the fit, weighted, shape (m,).
+        starts: how many were tried.
     """
 
     name: str
@@ -58,6 +59,7 @@ class Attempt:
     comparison: Comparison
     problem: Problem
     errors: FloatArray
+    starts: int = 1
 
     def for_the_record(self) -> Attempt:
         """The attempt without series and slopes, which its round alone needs: those of all rounds fill gigabytes."""
@@ -98,7 +100,7 @@ def _best_start(scene: Scene, candidate: Candidate, starts: Sequence[Effect]) ->
     result = min(tried, key=lambda attempt: attempt.squared_error)
     if candidate.scanned:
         result = fit(problem, result.effects, free, SCANNED_ITERATIONS)
-    return _usable(scene, problem, candidate.name, result)
+    return replace(_usable(scene, problem, candidate.name, result), starts=len(starts))
 
 
 def refined(scene: Scene, attempt: Attempt) -> Attempt | None:
@@ -106,7 +108,7 @@ def refined(scene: Scene, attempt: Attempt) -> Attempt | None:
     free = [False] * len(scene.found) + [True]
     result = fit(attempt.problem, attempt.fit.effects, free, FIT_ITERATIONS)
     try:
-        return _usable(scene, attempt.problem, attempt.name, result)
+        return replace(_usable(scene, attempt.problem, attempt.name, result), starts=attempt.starts)
     except InputError:
         return None
 

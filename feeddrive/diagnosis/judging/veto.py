@@ -25,7 +25,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from feeddrive.diagnosis.certainty.uncertainty import certainty
-from feeddrive.diagnosis.finding.search import CLEARLY_NEEDED, Search
+from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging.judge import Judged, Share, error_series, judged_channels, share_beyond, share_of
 from feeddrive.diagnosis.likelihood.coordinates import (
     LEFT,
@@ -43,6 +43,9 @@ from feeddrive.effects.base import ChainEffect, Effect
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray, IntegerArray
 from feeddrive.units.quantity import format_quantity
+
+CLEARLY_NEEDED = 0.1
+"""Share of the squared error that an effect must bring, by one linear step, not to be refitted without it."""
 
 SCATTER = 2.0
 """Standard deviations by which a channel must be worse: one of forty by chance."""

@@ -62,6 +62,10 @@ def diagnosis_record(diagnosis: Diagnosis) -> dict[str, Any]:
         "channels": [_channel(channel) for channel in diagnosis.channels],
         "effects": [_effect(effect) for effect in diagnosis.effects],
         "calibrated": calibrated_record(diagnosis.calibrated),
+        "possible": [
+            {"name": one.name, "odds": one.odds, "instead_of": one.instead_of, "settles": one.settles}
+            for one in diagnosis.possible
+        ],
         "refused": [{"name": refused.name, "reason": refused.reason} for refused in diagnosis.refused],
         "ambiguous": [list(names) for names in diagnosis.ambiguous],
         "ambiguous_reasons": [
@@ -122,6 +126,7 @@ def _effect(effect: EffectResult) -> dict[str, Any]:
         "carries": bool(effect.carries),
         "evidence": effect.evidence,
         "reading": effect.reading,
+        "odds": effect.odds,
     }
 
 
