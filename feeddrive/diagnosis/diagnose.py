@@ -15,7 +15,7 @@ from feeddrive.diagnosis.certainty.inclusion import odds_for, possible_effects
 from feeddrive.diagnosis.certainty.next_experiment import next_experiments
 from feeddrive.diagnosis.certainty.preferred import with_the_preferred
 from feeddrive.diagnosis.certainty.uncertainty import certainty, intervals
-from feeddrive.diagnosis.finding.search import Search
+from feeddrive.diagnosis.finding.search import Search, search
 from feeddrive.diagnosis.judging.effect_results import effect_results, refused_effects
 from feeddrive.diagnosis.judging.judge import Judged, channel_results, judged_recordings, prepared_for_judging, share_of
 from feeddrive.diagnosis.judging.result import (
@@ -28,7 +28,7 @@ from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.diagnosis.preparation import prepared
 from feeddrive.diagnosis.recordings.compared import compared_recordings, last_state, machine_as_last, with_carrying
-from feeddrive.diagnosis.recordings.recordings import without_shifts
+from feeddrive.diagnosis.recordings.recordings import is_shift, without_shifts
 from feeddrive.diagnosis.recordings.rehoming import rehomed_plant
 from feeddrive.diagnosis.recordings.search import Searched, search_recordings
 from feeddrive.diagnosis.simulated.loop_evidence import refuse_unfit_loop
@@ -192,7 +192,13 @@ def _settled(
     def judge(other: Search) -> list[Judged]:
         return _judged(other, evidence)[0]
 
-    found, judged = without_denied(found, judged, judge)
+    kept, judged = without_denied(found, judged, judge)
+    if kept is not found and not any(is_shift(effect) for effect in kept.fit.effects):
+        said("searching again without the names that are denied")
+        again = search(kept.problem, said, kept)
+        if len(again.fit.effects) > len(kept.fit.effects):
+            kept, judged = without_denied(again, judge(again), judge)
+    found = kept
     preferred, rivals = with_the_preferred(found, rivals_of(found, judged))
     if preferred is not found:
         kept, judged = without_denied(preferred, judge(preferred), judge)

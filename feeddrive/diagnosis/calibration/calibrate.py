@@ -32,8 +32,8 @@ TOLERANCE = 2.0
 """Deviations of a coordinate that a tolerance is, by definition (`tolerances`)."""
 
 SURE = 3.0
-"""Deviations of what the recordings alone say by which a value must lie beyond its tolerance: one of 700 by chance, as
-a dozen values are asked, once or twice a search."""
+"""Deviations of what the recordings alone say by which a value must lie beyond its tolerance, and of the gain on blocks
+left out where the judged data cannot confirm a name: one of 700 by chance, as some dozen are asked a search."""
 
 UNSEEN = 0.1
 """Deviations by which a value within its tolerance moves all rows together, below which they do not see it: its

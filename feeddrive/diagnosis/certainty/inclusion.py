@@ -14,14 +14,14 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.special import logsumexp
 
-from feeddrive.diagnosis.certainty.ambiguity import Rival
+from feeddrive.diagnosis.certainty.ambiguity import AGAINST, Rival
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.finding.sets import odds_of_members
 from feeddrive.diagnosis.judging.result import PossibleEffect
 from feeddrive.diagnosis.recordings.recordings import without_shifts
 
-OPEN = math.log(20.0)
-"""Logarithm of the odds, either way, within which a name is possible: 95 % of probability, as intervals have."""
+OPEN = 0.5 * AGAINST
+"""Logarithm of the odds, either way, within which a name is possible: those that refuse a rival."""
 
 MOST = 1e6
 """Odds that are told at most: beyond, the model that they are odds under is what is in doubt."""

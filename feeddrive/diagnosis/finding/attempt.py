@@ -94,13 +94,26 @@ def _best_start(scene: Scene, candidate: Candidate, starts: Sequence[Effect]) ->
     problem = with_predictable(scene.problem, (*before, starts[0])) if _jumps(starts[0]) else scene.problem
     problem = with_short_blocks(problem) if candidate.brief else problem
     free = [False] * len(before) + [True]
-    tried = [fit(problem, (*before, start), free, 0, error_only=candidate.scanned) for start in starts]
-    if not candidate.scanned:
-        tried = [_one_linear_step(attempt) for attempt in tried]
-    result = min(tried, key=lambda attempt: attempt.squared_error)
+    start = starts[0]
+    if len(starts) > 1:
+        nothing = problem.residual(before)
+        start = min(starts, key=lambda one: _left_by(nothing, problem.residual((*before, one)), candidate.scanned))
     if candidate.scanned:
-        result = fit(problem, result.effects, free, SCANNED_ITERATIONS)
+        result = fit(problem, (*before, start), free, SCANNED_ITERATIONS)
+    else:
+        result = _one_linear_step(fit(problem, (*before, start), free, 0))
     return replace(_usable(scene, problem, candidate.name, result), starts=len(starts))
+
+
+def _left_by(nothing: FloatArray, start: FloatArray, as_it_is: bool) -> float:
+    """Squared error that a start leaves: as it is, or of the size that suits best, which its own series tells."""
+    if not np.all(np.isfinite(start)):
+        return np.inf
+    taken = nothing - start
+    square = float(taken @ taken)
+    if as_it_is or square == 0:
+        return float(start @ start)
+    return float(nothing @ nothing) - float(taken @ nothing) ** 2 / square
 
 
 def refined(scene: Scene, attempt: Attempt) -> Attempt | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
@@ -27,11 +27,11 @@ class Round:
     count: int
 
 
-def one_round(scene: Scene, found: Fit, impossible: dict[str, str]) -> Round:
-    """All candidates, each fitted as far as it promises; why others are impossible is noted."""
+def one_round(scene: Scene, found: Fit, impossible: dict[str, str], denied: Mapping[str, str]) -> Round:
+    """All candidates but those denied, each fitted as far as it promises; why others are impossible is noted."""
     ready = []
     for candidate in scene.problem.predictor.candidates:
-        if _already(candidate.name, found.effects):
+        if candidate.name in denied or _already(candidate.name, found.effects):
             continue
         reason = _calibrated(scene.problem, candidate.name) or candidate.needs(scene)
         if reason:

@@ -26,6 +26,10 @@ FITTED = 3
 """Sets of a round that are fitted: starts are near by design, so that slopes put the likeliest among the first."""
 
 
+SMALL = "the recordings show it, and it is too small to matter on this machine"
+"""Why an effect is not reported that the search met beside the others."""
+
+
 @dataclass(frozen=True)
 class Search:
     """What the search found, and everything that it tried.
@@ -66,27 +70,31 @@ class _Taken:
     odds: float
 
 
-def search(problem: Problem, said: Callable[[str], None] = lambda text: None) -> Search:
+def search(
+    problem: Problem, said: Callable[[str], None] = lambda text: None, start: Search | None = None
+) -> Search:  # fmt: skip
     """Find the effects that the declared plant lacks.
 
     Args:
         problem: declared plant and recordings.
         said: told what is going on, for a progress display.
+        start: a search to go on from, without the names that it says are impossible.
 
     Returns:
         The effects found, fitted together, and the ledger of the search.
     """
     said("fitting declared values within their tolerances")
     problem = calibrated(problem)
-    found = fit(problem, ())
-    trials: list[Trial] = []
-    rounds: list[tuple[Attempt, ...]] = []
-    impossible: dict[str, str] = {}
+    found = fit(problem, start.fit.effects if start is not None else ())
+    trials: list[Trial] = [*start.trials] if start is not None else []
+    rounds: list[tuple[Attempt, ...]] = [*start.rounds] if start is not None else []
+    denied = {**start.impossible} if start is not None else {}
+    impossible: dict[str, str] = {**denied}
     met: set[tuple[str, ...]] = set()
     near: tuple[Near, ...] = ()
     while len(rounds) < MOST_ROUNDS:
         said(f"round {len(rounds) + 1}: {len(found.effects)} effects so far")
-        now = one_round(problem.predictor.scene(problem, found.effects), found, impossible)
+        now = one_round(problem.predictor.scene(problem, found.effects), found, impossible, denied)
         taken, near = _likelier(problem, found, now)
         rounds.append(tuple(attempt.for_the_record() for attempt in now.attempts))
         names = taken.name.split(" with ") if taken is not None else []
@@ -106,6 +114,10 @@ def search(problem: Problem, said: Callable[[str], None] = lambda text: None) ->
             break
         met.add(members)
     problem, found = _refitted(problem, fit(problem, found.effects))
+    small = [one for one in found.effects if not problem.predictor.is_material(one, problem.plant)]
+    if small:
+        found = fit(problem, [one for one in found.effects if not any(one is other for other in small)])
+        impossible |= dict.fromkeys((one.name for one in small), SMALL)
     return Search(problem, found, tuple(trials), tuple(rounds), impossible, near)
 
 
@@ -116,9 +128,10 @@ def _likelier(problem: Problem, found: Fit, now: Round) -> tuple[_Taken | None, 
     tried = [_fitted(problem, found, one, here, now.count) for one in sets[:FITTED] if one.gain > 0]
     for attempt in now.attempts:
         if len(attempt.fit.residual) != len(found.residual):  # some samples tell nothing of it: compared on the others
-            away = neighbours(attempt.problem, fit(attempt.problem, found.effects, iterations=0), [attempt], now.count)
+            there = fit(attempt.problem, found.effects, iterations=0)
+            away = neighbours(attempt.problem, there, [attempt], now.count)
             tried += [
-                _fitted(attempt.problem, found, one, [attempt], now.count)
+                _fitted(attempt.problem, there, one, [attempt], now.count)
                 for one in away[:1]
                 if one.gain > 0 and one.added
             ]

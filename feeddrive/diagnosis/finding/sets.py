@@ -44,8 +44,7 @@ ITERATIONS = 6
 """Steps of a fit without one member."""
 
 SURE = 20.0
-"""Logarithm of the odds, as slopes tell them, from which a member is not asked again with the others refitted: what they
-bend is less."""
+"""Logarithm of the odds, as slopes tell them, from which a member is not asked again with the others refitted."""
 
 
 TINY = 1e-300
@@ -181,7 +180,9 @@ class _Columns:
         rows = [evidence.fit_rows for evidence in problem.evidence]
         self.scatter = score_covariance(problem.evidence, rows, found.residual, self.columns)
 
-    def _taken(self, dropped: Sequence[int], added: Sequence[int]) -> tuple[FloatArray, IntegerArray, tuple[Effect, ...], FloatArray]:
+    def _taken(
+        self, dropped: Sequence[int], added: Sequence[int]
+    ) -> tuple[FloatArray, IntegerArray, tuple[Effect, ...], FloatArray]:
         """What all columns of a set take from the residual, the free ones of them, its effects and coordinates."""
         kept = [place for place in range(len(self.found.effects)) if place not in dropped]
         free = [i for place in kept for i in range(self.member[place], self.member[place + 1])]

@@ -24,6 +24,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.stats import chi2
 
+from feeddrive.diagnosis.calibration.calibrate import SURE
 from feeddrive.diagnosis.certainty.uncertainty import certainty
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging.judge import Judged, Share, error_series, judged_channels, share_beyond, share_of
@@ -49,10 +50,6 @@ CLEARLY_NEEDED = 0.1
 
 SCATTER = 2.0
 """Standard deviations by which a channel must be worse: one of forty by chance."""
-
-SURE = 3.0
-"""Gain over its standard error, on blocks left out, of what the judged data cannot confirm: one of 700 by chance,
-as some hundred candidates and starts are tried."""
 
 
 @dataclass(frozen=True)

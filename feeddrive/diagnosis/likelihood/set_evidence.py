@@ -6,12 +6,12 @@
 
 | symbol | meaning | unit |
 |---|---|---|
-| r_S | residual over the noise with the set S, all its coordinates fitted; declared values taken out by their tolerances | 1 |
+| r_S | residual over the noise with the set S fitted, what declared values within tolerance may do taken out | 1 |
 | θ, W | coordinates, of size one; 1 is the scale of p | 1 |
 | p(θ) | Cauchy about the absent effect: a size of n costs 2 log n, an absurd one of any number is still a number | 1 |
 | H | J'J of the slopes of the prediction with θ | 1 |
 | d | difference of the residuals of two sets that are compared | 1 |
-| Γ | covariance of the residual of the one that leaves less: spectrum, level where d is large, and sums over blocks | 1 |
+| Γ | covariance of the residual that is less: its spectrum, its level where d is large, sums over blocks | 1 |
 | δ | `DISCREPANCY` | 1 |
 | K | candidates and starts that were tried for one further effect | 1 |
 
@@ -28,12 +28,15 @@ import numpy as np
 from scipy.special import betaln
 
 from feeddrive.diagnosis.certainty.uncertainty import score_variances
-from feeddrive.diagnosis.likelihood.coordinates import absent_coordinates
+from feeddrive.diagnosis.likelihood.coordinates import Linear, absent_coordinates, coordinates_of
 from feeddrive.diagnosis.likelihood.cross_validation import model_error_rows
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem
 from feeddrive.diagnosis.likelihood.predictor import Machine
 from feeddrive.effects.base import Effect
 from feeddrive.typing import FloatArray
+
+PLACES = frozenset({"zero", "centre"})
+"""Coordinates that are places on the axis: one some hundred strokes away is no place, and the law there is another."""
 
 DISCREPANCY = 2e-4
 """Share of the squared residual that a law other than ours leaves along any one direction (variance). The luckiest of
@@ -57,12 +60,23 @@ def log_volume(
         normal: H, (k, k).
         variance: c.
     """
-    absent, _ = absent_coordinates(effects, plant)
-    beyond = np.where(np.isnan(absent), 0.0, coordinates - absent)
-    sized = int(np.sum(~np.isnan(absent)))
+    middle = prior_middle(effects, plant)
+    beyond = np.where(np.isnan(middle), 0.0, coordinates - middle)
+    sized = int(np.sum(~np.isnan(middle)))
     _, volume = np.linalg.slogdet(normal / variance + np.eye(len(normal)))
     # a Cauchy density over a normal one of the same scale is sqrt(2 / pi) at the middle
     return float(0.5 * sized * np.log(2 / np.pi) - np.sum(np.log1p(beyond**2)) - 0.5 * volume)
+
+
+def prior_middle(effects: Sequence[Effect], plant: Machine) -> FloatArray:
+    """Middle of the prior of every coordinate, (k,): the absent effect, the zero of a place; NaN where any is as good.
+
+    An order, a velocity, a time constant are known by the start that they are near, which K counts.
+    """
+    absent, _ = absent_coordinates(effects, plant)
+    keys = [c for e in effects for one in coordinates_of(e, plant) for c in [one] * len(one.read(e))]
+    placed = [isinstance(one, Linear) and one.key in PLACES for one in keys]
+    return np.where(np.isnan(absent) & np.array(placed, dtype=bool), 0.0, absent)
 
 
 def log_odds(problem: Problem, first: Fit, second: Fit, count: int) -> float:
