@@ -7,7 +7,7 @@ all effects together, and the likeliest of them is taken if what it adds also lo
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 from feeddrive.diagnosis.calibration.calibrate import beyond_tolerance, calibrated, recalibrated
@@ -22,8 +22,9 @@ from feeddrive.errors import InputError
 MOST_ROUNDS = 12
 """Sets gone through at most; an axis that lacks more needs another declaration."""
 
-FITTED = 3
-"""Sets of a round that are fitted: starts are near by design, so that slopes put the likeliest among the first."""
+FITTED = 2
+"""Sets one move away that are fitted in a round, and one two moves away where slopes say that it is likelier: starts are
+near by design, so that slopes put the likeliest among the first."""
 
 
 SMALL = "the recordings show it, and it is too small to matter on this machine"
@@ -125,7 +126,9 @@ def _likelier(problem: Problem, found: Fit, now: Round) -> tuple[_Taken | None, 
     """The likeliest of the sets near one, fitted, None where none is likelier; and what comes near beside it."""
     here = [attempt for attempt in now.attempts if len(attempt.fit.residual) == len(found.residual)]
     sets = neighbours(problem, found, here, now.count)
-    tried = [_fitted(problem, found, one, here, now.count) for one in sets[:FITTED] if one.gain > 0]
+    able = [one for one in sets if one.gain > 0]
+    chosen = [one for one in able if one.is_next][:FITTED] + [one for one in able[:1] if not one.is_next]
+    tried = [_fitted(problem, found, one, here, now.count) for one in chosen]
     for attempt in now.attempts:
         if len(attempt.fit.residual) != len(found.residual):  # some samples tell nothing of it: compared on the others
             there = fit(attempt.problem, found.effects, iterations=0)
@@ -135,9 +138,22 @@ def _likelier(problem: Problem, found: Fit, now: Round) -> tuple[_Taken | None, 
                 for one in away[:1]
                 if one.gain > 0 and one.added
             ]
-    best = max((one for one in tried if one is not None and one.odds > 0), key=lambda one: one.odds, default=None)
+    best = _best((one for one in tried if one is not None and one.odds > 0), now.count)
     beside = [one for one in sets if not one.dropped and len(one.added) == 1 and one.speaks > 0]
     return best, tuple(Near(here[one.added[0]].name, one.gain, one.speaks) for one in beside)
+
+
+def _best(likelier: Iterable[_Taken], count: int) -> _Taken | None:
+    """The likeliest of sets, compared with each other: all may be far ahead of the set at hand."""
+    best: _Taken | None = None
+    for one in sorted(likelier, key=lambda one: len(one.fit.coordinates)):
+        if best is None:
+            best = one
+        elif len(one.fit.residual) != len(best.fit.residual):  # on other samples
+            best = max(best, one, key=lambda one: one.odds)
+        elif log_odds(one.problem, best.fit, one.fit, count) > 0:
+            best = one
+    return best
 
 
 def _fitted(problem: Problem, found: Fit, one: Neighbour, attempts: Sequence[Attempt], count: int) -> _Taken | None:

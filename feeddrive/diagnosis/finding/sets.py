@@ -69,6 +69,11 @@ class Neighbour:
     speaks: float = 0.0
     effects: tuple[Effect, ...] = ()
 
+    @property
+    def is_next(self) -> bool:
+        """Whether one move leads to it."""
+        return len(self.added) <= 1 and len(self.dropped) <= 1
+
 
 def neighbours(problem: Problem, found: Fit, attempts: Sequence[Attempt], count: int) -> list[Neighbour]:
     """The sets near the one found, the likeliest first.
@@ -82,7 +87,7 @@ def neighbours(problem: Problem, found: Fit, attempts: Sequence[Attempt], count:
     columns = _Columns(problem, found, attempts, count)
     nothing = Neighbour((), (), 0.0)
     known = {((), ()): nothing}
-    beam = [nothing]
+    beam, near = [nothing], [nothing]
     for _ in range(2):
         fresh = []
         for one in beam:
@@ -91,8 +96,8 @@ def neighbours(problem: Problem, found: Fit, attempts: Sequence[Attempt], count:
                     known[dropped, added] = columns.weighed(dropped, added)
                     fresh.append(known[dropped, added])
         beam = sorted(fresh, key=lambda one: -one.gain)[:BEAM]
-    best = sorted((one for one in known.values() if one is not nothing), key=lambda one: -one.gain)[:BEAM]
-    return sorted((columns.weighed_closely(one) for one in best), key=lambda one: -one.gain)
+        near += beam
+    return sorted((columns.weighed_closely(one) for one in near[1:]), key=lambda one: -one.gain)
 
 
 def _moves(
