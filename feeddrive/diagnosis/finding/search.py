@@ -23,8 +23,8 @@ MOST_ROUNDS = 12
 """Sets gone through at most; an axis that lacks more needs another declaration."""
 
 FITTED = 2
-"""Sets one move away that are fitted in a round, and one two moves away where slopes say that it is likelier: starts are
-near by design, so that slopes put the likeliest among the first."""
+"""Sets one move away that are fitted in a round, and one two moves away where slopes say that it is likelier: starts
+are near by design, so that slopes put the likeliest among the first."""
 
 
 SMALL = "the recordings show it, and it is too small to matter on this machine"
