@@ -50,7 +50,6 @@ class Attempt:
         fit: of all free effects.
         comparison: against the effects found before.
         problem: recordings with the samples that this candidate can predict.
-        errors: residual on blocks left out of the fit, weighted, shape (m,).
         starts: how many were tried.
     """
 
@@ -58,14 +57,13 @@ class Attempt:
     fit: Fit
     comparison: Comparison
     problem: Problem
-    errors: FloatArray
     starts: int = 1
 
     def for_the_record(self) -> Attempt:
         """The attempt without series and slopes, which its round alone needs: those of all rounds fill gigabytes."""
         none = np.zeros(0)
         slopes = np.zeros((0, self.fit.jacobian.shape[1]))
-        return replace(self, fit=replace(self.fit, residual=none, jacobian=slopes), errors=none)
+        return replace(self, fit=replace(self.fit, residual=none, jacobian=slopes))
 
 
 def started(scene: Scene, candidate: Candidate) -> list[Attempt]:
@@ -146,12 +144,6 @@ def _one_linear_step(fitted: Fit) -> Fit:
     return replace(fitted, residual=fitted.residual - fitted.jacobian @ step, coordinates=fitted.coordinates + step)
 
 
-def together(attempt: Attempt, found: Fit) -> Attempt:
-    """The candidate refitted together with what was found before."""
-    result = fit(attempt.problem, attempt.fit.effects, iterations=JOINT_ITERATIONS)
-    return compared(attempt.problem, attempt.name, result, found.effects)
-
-
 def compared(problem: Problem, name: str, result: Fit, before: Sequence[Effect]) -> Attempt:
     """Compare a fit with the effects before it, both on the same samples and both with their own effects free."""
     blocks = block_numbers(problem)
@@ -161,7 +153,7 @@ def compared(problem: Problem, name: str, result: Fit, before: Sequence[Effect])
     without = left_out_residual(problem, reference, blocks)
     errors = left_out_residual(problem, result, blocks)
     comparison = compare_left_out(without, errors, blocks, least_gain(problem, without, errors))
-    return Attempt(name, result, comparison, problem, errors)
+    return Attempt(name, result, comparison, problem)
 
 
 def _free(result: Fit, before: Sequence[Effect]) -> list[bool]:

@@ -60,8 +60,6 @@ class WarmPredictor(Predictor[WarmPlant, WarmEvidence]):
         model: reduced.
     """
 
-    retries: ClassVar[int] = 1
-    many: ClassVar[int] = 4  # as that of heat
     chance: ClassVar[float] = 18.0
 
     declared: ThermalPlant
