@@ -11,12 +11,14 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 from feeddrive.diagnosis.calibration.calibrate import beyond_tolerance, calibrated, recalibrated
-from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, Attempt, compared
+from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, Attempt, compared, started
 from feeddrive.diagnosis.finding.round import Round, one_round
 from feeddrive.diagnosis.finding.sets import Neighbour, neighbours
 from feeddrive.diagnosis.judging.result import Trial
+from feeddrive.diagnosis.likelihood.coordinates import write_coordinates
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
 from feeddrive.diagnosis.likelihood.set_evidence import log_odds
+from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 
 MOST_ROUNDS = 12
@@ -158,13 +160,16 @@ def _best(likelier: Iterable[_Taken], count: int) -> _Taken | None:
 
 def _fitted(problem: Problem, found: Fit, one: Neighbour, attempts: Sequence[Attempt], count: int) -> _Taken | None:
     """A set fitted; None where it cannot be simulated, or what it adds does not pay on blocks left out."""
-    starts = [effect for place, effect in enumerate(found.effects) if place not in one.dropped]
-    starts += [attempts[i].fit.effects[-1] for i in one.added]
+    kept = [effect for place, effect in enumerate(found.effects) if place not in one.dropped]
+    added = [attempts[i] for i in one.added]
     # what shows in a brief passage alone is judged in blocks as short
-    own = attempts[one.added[0]].problem if len(one.added) == 1 else problem
-    name = " with ".join(attempts[i].name for i in one.added)
+    own = added[0].problem if len(added) == 1 else problem
+    name = " with ".join(attempt.name for attempt in added)
+    starts = [[*kept, *(attempt.fit.effects[-1] for attempt in added)], [*one.effects]]
     try:
-        nearest = min((starts, one.effects), key=lambda effects: fit(own, effects, error_only=True).squared_error)
+        if len(added) == 2:
+            starts += [_restarted(problem, kept, *order) for order in (added, added[::-1])]
+        nearest = min((start for start in starts if start), key=lambda start: _error(own, start))
         result = fit(own, nearest, iterations=JOINT_ITERATIONS)
         before = found if own is problem else fit(own, found.effects, iterations=0)
         odds = log_odds(own, before, result, count)
@@ -173,6 +178,24 @@ def _fitted(problem: Problem, found: Fit, one: Neighbour, attempts: Sequence[Att
     except InputError:
         return None
     return _Taken(own, result, name, odds)
+
+
+def _restarted(problem: Problem, kept: Sequence[Effect], first: Attempt, second: Attempt) -> list[Effect]:
+    """One of two effects fitted, and the other started anew at what is left: alone each began at what both leave.
+
+    Empty where the second has no start there.
+    """
+    before = fit(problem, [*kept, first.fit.effects[-1]], iterations=JOINT_ITERATIONS)
+    (candidate,) = [one for one in problem.predictor.candidates if one.name == second.name]
+    anew = started(problem.predictor.scene(problem, before.effects), candidate)
+    if not anew:
+        return []
+    best = min(anew, key=lambda attempt: attempt.fit.squared_error).fit
+    return [*before.effects, *write_coordinates(best.effects[-1:], problem.plant, best.coordinates)]
+
+
+def _error(problem: Problem, effects: Sequence[Effect]) -> float:
+    return fit(problem, effects, error_only=True).squared_error
 
 
 def _refitted(problem: Problem, found: Fit) -> tuple[Problem, Fit]:

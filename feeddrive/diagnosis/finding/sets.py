@@ -86,7 +86,7 @@ def neighbours(problem: Problem, found: Fit, attempts: Sequence[Attempt], count:
     """
     columns = _Columns(problem, found, attempts, count)
     nothing = Neighbour((), (), 0.0)
-    known = {((), ()): nothing}
+    known: dict[tuple[tuple[int, ...], tuple[int, ...]], Neighbour] = {((), ()): nothing}
     beam, near = [nothing], [nothing]
     for _ in range(2):
         fresh = []
