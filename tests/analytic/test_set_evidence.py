@@ -15,6 +15,7 @@ from feeddrive.diagnosis.finding.sets import Neighbour, neighbours, odds_of_memb
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, linear_step
 from feeddrive.diagnosis.likelihood.set_evidence import log_odds, log_prior_of_size, log_volume
+from feeddrive.diagnosis.numbers.rows import MeasuredRows
 from feeddrive.effects.base import Effect
 from feeddrive.effects.chain.payload import Payload
 from feeddrive.effects.source.constant_force import ConstantForce
@@ -39,7 +40,7 @@ def problem(columns: dict[str, FloatArray], measured: FloatArray) -> Any:
     def residual(effects: Sequence[Effect]) -> FloatArray:
         return measured - sum((columns[e.name] * coordinate(e) for e in effects), np.zeros(ROWS))
 
-    return SimpleNamespace(evidence=(evidence,), plant=PLANT, residual=residual)
+    return SimpleNamespace(evidence=(evidence,), plant=PLANT, residual=residual, numbers=MeasuredRows())
 
 
 def coordinate(effect: Effect) -> float:

@@ -10,9 +10,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
-from feeddrive.diagnosis.calibration.calibrate import beyond_tolerance, calibrated, recalibrated
+from feeddrive.diagnosis.calibration.beyond import beyond_tolerance
+from feeddrive.diagnosis.calibration.calibrate import calibrated, recalibrated
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, Attempt, compared, started
+from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.finding.round import Round, one_round
+from feeddrive.diagnosis.finding.scene import scene_of
 from feeddrive.diagnosis.finding.sets import Neighbour, neighbours
 from feeddrive.diagnosis.judging.result import Trial
 from feeddrive.diagnosis.likelihood.coordinates import write_coordinates
@@ -97,7 +100,7 @@ def search(
     near: tuple[Near, ...] = ()
     while len(rounds) < MOST_ROUNDS:
         said(f"round {len(rounds) + 1}: {len(found.effects)} effects so far")
-        now = one_round(problem.predictor.scene(problem, found.effects), found, impossible, denied)
+        now = one_round(scene_of(problem, found.effects), found, impossible, denied)
         taken, near = _likelier(problem, found, now)
         rounds.append(tuple(attempt.for_the_record() for attempt in now.attempts))
         names = taken.name.split(" with ") if taken is not None else []
@@ -117,7 +120,7 @@ def search(
             break
         met.add(members)
     problem, found = _refitted(problem, fit(problem, found.effects))
-    small = [one for one in found.effects if not problem.predictor.is_material(one, problem.plant)]
+    small = [one for one in found.effects if not is_material(one, problem.plant)]
     if small:
         found = fit(problem, [one for one in found.effects if not any(one is other for other in small)])
         impossible |= dict.fromkeys((one.name for one in small), SMALL)
@@ -187,7 +190,7 @@ def _restarted(problem: Problem, kept: Sequence[Effect], first: Attempt, second:
     """
     before = fit(problem, [*kept, first.fit.effects[-1]], iterations=JOINT_ITERATIONS)
     (candidate,) = [one for one in problem.predictor.candidates if one.name == second.name]
-    anew = started(problem.predictor.scene(problem, before.effects), candidate)
+    anew = started(scene_of(problem, before.effects), candidate)
     if not anew:
         return []
     best = min(anew, key=lambda attempt: attempt.fit.squared_error).fit

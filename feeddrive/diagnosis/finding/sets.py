@@ -183,7 +183,9 @@ class _Columns:
         self.products = self.columns.T @ self.columns
         self.with_residual = self.columns.T @ found.residual
         rows = [evidence.fit_rows for evidence in problem.evidence]
+        measured = self.columns[len(self.columns) - len(problem.numbers) :]
         self.scatter = score_covariance(problem.evidence, rows, found.residual, self.columns)
+        self.scatter += problem.numbers.weight**2 * measured.T @ measured
 
     def _taken(
         self, dropped: Sequence[int], added: Sequence[int]

@@ -10,8 +10,10 @@ import numpy as np
 from feeddrive.diagnosis.calibration.calibrated_result import CalibratedResult
 from feeddrive.diagnosis.certainty.certainty_result import Ambiguity, Correlation, NextExperiment
 from feeddrive.diagnosis.ledger.result import Kept
+from feeddrive.diagnosis.numbers.rows import NumberResult
 from feeddrive.diagnosis.recordings.change_result import RecordingChanges
 from feeddrive.diagnosis.simulated.simulation_result import SimulationResult as SimulationResult
+from feeddrive.diagnosis.suspicion.quality import Quality
 from feeddrive.diagnosis.unexplained.result import Dependence as Dependence
 from feeddrive.diagnosis.unexplained.result import Unexplained as Unexplained
 from feeddrive.typing import FloatArray
@@ -196,6 +198,8 @@ class Diagnosis:
     kept: Kept = field(default_factory=Kept)
     calibrated: tuple[CalibratedResult, ...] = ()
     possible: tuple[PossibleEffect, ...] = ()
+    measured: tuple[NumberResult, ...] = ()
+    quality: tuple[Quality, ...] = ()
 
     @property
     def nothing_missing(self) -> bool:

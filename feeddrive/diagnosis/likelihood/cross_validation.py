@@ -24,8 +24,8 @@ from feeddrive.diagnosis.likelihood.coordinates import absent_coordinates
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.fit import DIFFERENCE, Fit, Problem, unit_columns
 from feeddrive.diagnosis.likelihood.folds import FOLDS
-from feeddrive.diagnosis.likelihood.predictor import Machine
 from feeddrive.effects.base import Effect
+from feeddrive.plant.plant import Plant
 from feeddrive.typing import BoolArray, FloatArray, IntegerArray
 
 
@@ -71,7 +71,7 @@ class Prior:
     width: FloatArray
 
 
-def prior_of(effects: Sequence[Effect], plant: Machine, coordinates: FloatArray) -> Prior:
+def prior_of(effects: Sequence[Effect], plant: Plant, coordinates: FloatArray) -> Prior:
     """The prior of effects whose coordinates are as given, shape (k,).
 
     Components and nodes that belong together share one width, the root of their mean square. A form is known to its
@@ -168,6 +168,7 @@ def least_gain(problem: Problem, before: FloatArray, after: FloatArray) -> float
         seconds = float(np.sum(evidence.fit_rows)) * evidence.recording.sample_time
         values += 2 * evidence.edge * seconds * len(evidence.channels)
     rows = model_error_rows(problem.evidence, [e.thinned(e.fit_rows) for e in problem.evidence])
+    rows = np.concatenate([rows, np.zeros(len(problem.numbers))])
     return max(LEAST_GAIN, problem.predictor.chance / values, gain_of_model_error(rows, before, after))
 
 

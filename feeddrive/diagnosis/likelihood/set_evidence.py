@@ -31,8 +31,8 @@ from feeddrive.diagnosis.certainty.uncertainty import score_variances
 from feeddrive.diagnosis.likelihood.coordinates import Linear, absent_coordinates, coordinates_of
 from feeddrive.diagnosis.likelihood.cross_validation import model_error_rows
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem
-from feeddrive.diagnosis.likelihood.predictor import Machine
 from feeddrive.effects.base import Effect
+from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray
 
 PLACES = frozenset({"zero", "centre"})
@@ -49,7 +49,7 @@ def log_prior_of_size(size: int, count: int) -> float:
 
 
 def log_volume(
-    effects: Sequence[Effect], plant: Machine, coordinates: FloatArray, normal: FloatArray, variance: float
+    effects: Sequence[Effect], plant: Plant, coordinates: FloatArray, normal: FloatArray, variance: float
 ) -> float:
     """Logarithm of what the data leave of the prior: Σ log p + k/2 log 2π - 1/2 log |H/c + W⁻²|.
 
@@ -68,7 +68,7 @@ def log_volume(
     return float(0.5 * sized * np.log(2 / np.pi) - np.sum(np.log1p(beyond**2)) - 0.5 * volume)
 
 
-def prior_middle(effects: Sequence[Effect], plant: Machine) -> FloatArray:
+def prior_middle(effects: Sequence[Effect], plant: Plant) -> FloatArray:
     """Middle of the prior of every coordinate, (k,): the absent effect, the zero of a place; NaN where any is as good.
 
     An order, a velocity, a time constant are known by the start that they are near, which K counts.
@@ -105,6 +105,7 @@ def variance_along(problem: Problem, left: Fit, first: Fit, second: Fit) -> floa
     difference = first.residual - second.residual
     square = float(difference @ difference)
     model = model_error_rows(problem.evidence, [e.thinned(e.fit_rows) for e in problem.evidence])
+    model = np.concatenate([model, np.zeros(len(problem.numbers))])
     if square <= 0:
         return 1.0
     noise = float(score_variances(problem, left.residual, difference[:, None])[0])

@@ -20,7 +20,6 @@ from feeddrive.diagnosis.likelihood.fit import Fit, Problem, linear_step
 from feeddrive.diagnosis.likelihood.folds import block_numbers
 from feeddrive.diagnosis.recordings.change_candidates import Movable
 from feeddrive.diagnosis.recordings.recordings import RecordingPredictor
-from feeddrive.thermal.plant import ThermalPlant
 from feeddrive.typing import FloatArray, IntegerArray
 
 Offer = tuple[Movable, Comparison]
@@ -62,6 +61,7 @@ def recording_of_rows(problem: Problem) -> IntegerArray:
     for evidence in problem.evidence:
         count = int(evidence.thinned(evidence.fit_rows).sum()) * len(evidence.channels)
         parts.append(np.full(count, predictor.numbers[evidence.recording]))
+    parts.append(np.full(len(problem.numbers), -1))  # measured numbers are of none
     return np.concatenate(parts).astype(np.int64)
 
 
@@ -76,7 +76,7 @@ def _left_out(problem: Problem, fitted: Fit, blocks: IntegerArray) -> FloatArray
 def _with_shifts(problem: Problem, current: Fit, one: Movable, rows: IntegerArray, recordings: Sequence[int]) -> Fit:
     """The fit with shifts of nothing yet."""
     columns = _columns(current, one, rows, recordings)
-    shifts = one.shifts(recordings, isinstance(problem.plant, ThermalPlant))
+    shifts = one.shifts(recordings)
     return replace(
         current,
         effects=(*current.effects, *shifts),
