@@ -47,6 +47,7 @@ class Search:
         rounds: the same as fitted, the best first.
         impossible: candidate to why the recordings cannot show it.
         near: effects that may come beside those found, the likeliest first.
+        begun: problem and fit that the search began with; None for one that is made of a fit.
     """
 
     problem: Problem
@@ -55,6 +56,7 @@ class Search:
     rounds: tuple[tuple[Attempt, ...], ...]
     impossible: dict[str, str]
     near: tuple[Near, ...] = ()
+    begun: tuple[Problem, Fit] | None = None
 
 
 @dataclass(frozen=True)
@@ -92,6 +94,7 @@ def search(
     said("fitting declared values within their tolerances")
     problem = calibrated(problem)
     found = fit(problem, start.fit.effects if start is not None else ())
+    begun = (problem, found)
     trials: list[Trial] = [*start.trials] if start is not None else []
     rounds: list[tuple[Attempt, ...]] = [*start.rounds] if start is not None else []
     denied = {**start.impossible} if start is not None else {}
@@ -124,7 +127,7 @@ def search(
     if small:
         found = fit(problem, [one for one in found.effects if not any(one is other for other in small)])
         impossible |= dict.fromkeys((one.name for one in small), SMALL)
-    return Search(problem, found, tuple(trials), tuple(rounds), impossible, near)
+    return Search(problem, found, tuple(trials), tuple(rounds), impossible, near, begun)
 
 
 def _likelier(problem: Problem, found: Fit, now: Round) -> tuple[_Taken | None, tuple[Near, ...]]:
