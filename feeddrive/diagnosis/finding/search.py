@@ -94,7 +94,7 @@ def search(
     said("fitting declared values within their tolerances")
     problem = calibrated(problem)
     found = fit(problem, start.fit.effects if start is not None else ())
-    begun = (problem, found)
+    begun = (problem, found) if start is None or start.begun is None else start.begun
     trials: list[Trial] = [*start.trials] if start is not None else []
     rounds: list[tuple[Attempt, ...]] = [*start.rounds] if start is not None else []
     denied = {**start.impossible} if start is not None else {}

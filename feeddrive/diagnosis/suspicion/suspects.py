@@ -142,11 +142,12 @@ def again(problem: Problem, kind: str) -> Suspect | None:
 def is_better(fault: Suspect, mended: Search, found: Search) -> bool:
     """Whether a fault and what was found beside it say as much as what was found without it, or more with no more.
 
-    As much is what chance does for the values that are spared: less than is asked of any effect.
+    As much is what chance does for the values that are spared: of each, less than is asked of any effect.
     """
     before, after = (one.fit.squared_error / max(len(one.fit.residual), 1) for one in (found, mended))
-    if len(mended.fit.coordinates) + 1 < len(found.fit.coordinates):
-        return after <= (1 + fault.comparison.least) * before
+    spared = len(found.fit.coordinates) - len(mended.fit.coordinates) - 1
+    if spared > 0:
+        return after <= (1 + spared * fault.comparison.least) * before
     return len(mended.fit.effects) <= len(found.fit.effects) and after < before / SAME_ERROR
 
 
