@@ -22,7 +22,6 @@ from feeddrive.parts.bearings.bearing import SupportBearing
 from feeddrive.parts.bearings.supports import ScrewSupports, Support
 from feeddrive.parts.combined_stiffness import combined_stiffness, natural_frequency
 from feeddrive.parts.coupling import Coupling
-from feeddrive.parts.effective_mass import added_mass
 from feeddrive.parts.material import ShaftMaterial
 from feeddrive.parts.motor import Motor
 from feeddrive.parts.screw.ball_screw import ScrewShaft
@@ -32,6 +31,7 @@ from feeddrive.plant.analysis.held_frequency import held_frequency
 from feeddrive.report.figures.drawing import render
 from feeddrive.report.figures.figure_stiffness_gap import stiffness_gap_figure
 from feeddrive.units.quantity import format_quantity
+from tests.analytic.rayleigh import added_mass
 
 STIFFNESS, FREQUENCY = 191e6, 185.0  # measured [N/m, Hz]
 NUT = 0.564  # from the fixed bearing [m]

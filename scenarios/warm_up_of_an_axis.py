@@ -12,14 +12,12 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from feeddrive.files import find_plant, find_scenario_file, write_bytes_atomically
+from feeddrive.files import find_scenario_file, write_bytes_atomically
 from feeddrive.report.figures.drawing import render
 from feeddrive.report.figures.figure_warm_axis import warm_axis_figure
 from feeddrive.simulate.scenario.scenario_file import read_scenario
 from feeddrive.simulate.warm.warm_up_result import WarmUpRun
 from feeddrive.simulate.warm.warm_up_run import MacroSteps, run_warm_up
-from feeddrive.thermal.file.coupling_section import read_coupling
-from feeddrive.thermal.file.files import read_thermal_plant
 from feeddrive.thermal.full.full_model import NUT, SHAFT
 
 HOURS = 4.0
@@ -54,10 +52,8 @@ def print_energy(run: WarmUpRun) -> None:
 
 def main(folder: Path | None, hours: float) -> None:
     """Run, print, and write the figure into a folder, where one is given."""
-    plant = find_plant("warm_axis")
     scenario = read_scenario(find_scenario_file("warm_up_cycle.toml"))
-    thermal, coupling = read_thermal_plant(plant), read_coupling(plant)
-    run = run_warm_up(scenario, thermal, coupling, hours * 3600.0, MacroSteps(TOLERANCE))
+    run = run_warm_up(scenario, hours * 3600.0, MacroSteps(TOLERANCE))
     repeated = f"{run.time[-1] / run.cycle_duration:.0f} cycles of {run.cycle_duration:.3g} s"
     print(f"{scenario.plant.name}: {repeated}, {run.cycles} of them simulated")
     print_course(run)

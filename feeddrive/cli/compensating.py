@@ -13,7 +13,7 @@ from feeddrive.cli.output import escaped, table, tell_written, warnings_as_lines
 from feeddrive.errors import InputError, printable
 from feeddrive.files import write_bytes_atomically
 from feeddrive.interface.compensating import Compensation, compensate
-from feeddrive.interface.reading import read
+from feeddrive.interface.measured.reading import read
 from feeddrive.recording.recording import Recording
 
 

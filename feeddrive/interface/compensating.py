@@ -19,9 +19,9 @@ from feeddrive.compensation.temperature import HeatTable, heat_table, recorded_h
 from feeddrive.errors import InputError
 from feeddrive.files import shipped_plants, write_text_atomically
 from feeddrive.interface.axis import Axis, load
-from feeddrive.interface.diagnosed import Diagnosed
+from feeddrive.interface.measured.diagnosed import Diagnosed
+from feeddrive.interface.measured.reading import as_recording
 from feeddrive.interface.quantities import Quantity, quantities, si
-from feeddrive.interface.reading import as_recording
 from feeddrive.interface.servo import Servo, cascade_for
 from feeddrive.interface.shown import Listing, Shown
 from feeddrive.plant.file.entries import nearest

@@ -10,6 +10,7 @@ from feeddrive.schema.section import Section, keyed
 
 _RECORDED = (
     "setpoint", "motor_torque", "motor_angle", "motor_speed", "table_position", "table_velocity", "cutting_force",
+    "injected_torque", "injected_speed",
 )  # fmt: skip
 _EVALUATED = (*_RECORDED, "speed_command")
 

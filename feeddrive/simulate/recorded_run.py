@@ -58,4 +58,4 @@ def with_values(plant: Plant, values: Mapping[str, float]) -> Plant:
         else:
             raise InputError(f"unknown parameter {name!r}", plant.name, "name a value of the plant")
     changed = tuple(effects[effect.label] for effect in plant.effects)
-    return replace(plant, chain=replace(plant.chain, values=chain), effects=changed)
+    return replace(plant.with_chain_values(chain), effects=changed)

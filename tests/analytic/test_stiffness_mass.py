@@ -13,10 +13,10 @@ from feeddrive.diagnosis.stiffness.candidates import DriveAt
 from feeddrive.diagnosis.stiffness.gap import explain_both, explain_frequency, explain_stiffness, frequency_of
 from feeddrive.errors import InputError
 from feeddrive.parts.combined_stiffness import combined_stiffness, natural_frequency
-from feeddrive.parts.effective_mass import added_mass, rayleigh_frequency
 from feeddrive.parts.motor import HoldingBrake
 from feeddrive.parts.screw.screw_drive import BallScrewDrive
 from feeddrive.parts.screw.transmission import Transmission
+from tests.analytic.rayleigh import added_mass, rayleigh_frequency
 from tests.analytic.screw_fem import ScrewDrive, frequencies
 from tests.analytic.stiffness_cases import AT_NUT, drives, paper_drive
 

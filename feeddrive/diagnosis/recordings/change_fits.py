@@ -16,7 +16,6 @@ from feeddrive.diagnosis.likelihood.folds import block_numbers
 from feeddrive.diagnosis.recordings.change_candidates import Movable
 from feeddrive.diagnosis.recordings.recordings import RecordingShift, Target, is_shift
 from feeddrive.effects.base import Effect
-from feeddrive.thermal.plant import ThermalPlant
 
 REFERENCE_STEPS, JOINT_STEPS = 8, 10
 """Steps of the fit with everything in common, and of the fit with what differs."""
@@ -46,8 +45,7 @@ def set_free(
     if effect not in current.effects:
         problem, effects = said_by_effects(problem, [*current.effects, effect])
         shared = fit(problem, effects, iterations=JOINT_STEPS)
-    thermal = isinstance(problem.plant, ThermalPlant)
-    shifts = [shift for one in group for shift in one.shifts(recordings, thermal)]
+    shifts = [shift for one in group for shift in one.shifts(recordings)]
     wider = fit(problem, [*shared.effects, *shifts], iterations=JOINT_STEPS)
     return problem, wider, compared_fits(problem, shared, wider)
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from feeddrive.diagnosis.calibration.beyond import is_within_tolerance
+from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.diagnosis.recordings.change_result import CommonTrial, Measure, ParameterChange, PerRecording
 from feeddrive.diagnosis.recordings.change_values import Compared, compared_values, keys_of, material_difference
@@ -13,7 +14,6 @@ from feeddrive.diagnosis.recordings.change_words import Moved, change_reading, c
 from feeddrive.diagnosis.recordings.changes import Changes
 from feeddrive.diagnosis.recordings.recordings import Target, in_recording, without_shifts
 from feeddrive.effects.base import Effect
-from feeddrive.plant.plant import Plant
 
 
 @dataclass(frozen=True)
@@ -110,7 +110,7 @@ def neutral_somewhere(problem: Problem, effects: Sequence[Effect], effect: Effec
         here = in_recording(effects, problem.plant, number)
         same = [e for e in here if (e.name, e.port, e.place) == (effect.name, effect.port, effect.place)]
         if same:
-            within = is_within_tolerance(same[-1], problem.plant) if isinstance(problem.plant, Plant) else None
-            if within or not problem.predictor.is_material(same[-1], problem.plant):
+            within = is_within_tolerance(same[-1], problem.plant)
+            if within or not is_material(same[-1], problem.plant):
                 return True
     return False

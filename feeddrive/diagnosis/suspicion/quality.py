@@ -100,9 +100,9 @@ def flawed(recordings: Sequence[Recording]) -> tuple[Quality, ...]:
     return tuple(result)
 
 
-def read_otherwise(effects: Sequence[Effect], plant: object) -> tuple[Quality, ...]:
+def read_otherwise(effects: Sequence[Effect], plant: Plant) -> tuple[Quality, ...]:
     """What the recorder may have done instead of, or as, an effect that was found."""
-    if not isinstance(plant, Plant):
+    if not plant.has_motion:
         return ()
     hangs = any(isinstance(effect, ConstantForce) for effect in plant.effects)
     found = []

@@ -27,6 +27,7 @@ import numpy as np
 
 from feeddrive.diagnosis.calibration.beyond import SURE as BEYOND_SURELY
 from feeddrive.diagnosis.calibration.calibrate import calibrated_list
+from feeddrive.diagnosis.calibration.known import known_values
 from feeddrive.diagnosis.certainty.noise_colour import score_covariance
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.likelihood.cross_validation import (
@@ -45,7 +46,6 @@ from feeddrive.diagnosis.likelihood.folds import block_numbers
 from feeddrive.diagnosis.recordings.recordings import is_shift
 from feeddrive.diagnosis.suspicion.quality import Quality
 from feeddrive.errors import InputError
-from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 from feeddrive.typing import FloatArray
 
@@ -114,11 +114,15 @@ def scaled(factor: float, ci95: tuple[float, float]) -> Quality:
 
 def beyond_its_constant(problem: Problem, found: Fit) -> tuple[Quality, ...]:
     """A torque of another scale than the tolerance of its constant allows; it was fitted and is judged so."""
-    for one in calibrated_list(problem, found):
-        if one.value.key == "torque_constant" and one.beyond > BEYOND_SURELY:
-            declared = one.value.declared
-            return (scaled(declared / one.number, (declared / one.ci95[1], declared / one.ci95[0])),)
-    return ()
+    known = known_values(problem, found)
+    constant = (
+        [i for i, value in enumerate(known.values) if value.key == "torque_constant"] if known is not None else []
+    )
+    if known is None or not constant or known.least() - known.least(constant[0]) < BEYOND_SURELY**2:
+        return ()
+    one = calibrated_list(problem, found)[constant[0]]
+    declared = one.value.declared
+    return (scaled(declared / one.number, (declared / one.ci95[1], declared / one.ci95[0])),)
 
 
 def suspected(found: Search) -> Suspect | None:
@@ -153,7 +157,7 @@ def _is_sure(one: Suspect) -> bool:
 
 def _asked(problem: Problem, found: Fit) -> list[Suspect]:
     """Every suspect beside a fitted set."""
-    if not isinstance(problem.plant, Plant) or not all(isinstance(e, AxisEvidence) for e in problem.evidence):
+    if not all(isinstance(e, AxisEvidence) for e in problem.evidence):
         return []
     if any(map(is_shift, (*problem.plant.effects, *found.effects))):
         return []  # recordings that differ are compared with each other, not with a clock
@@ -196,7 +200,6 @@ def _gain_column(problem: Problem, found: Fit) -> FloatArray:
 def _clock_column(problem: Problem, found: Fit) -> FloatArray | None:
     """What the residual loses per logarithm of a clock, whitened, (m,); None where no other clock can be tried."""
     plant, parts = problem.machine(found.effects), []
-    assert isinstance(problem.plant, Plant)
     for e in problem.evidence:
         assert isinstance(e, AxisEvidence)
         try:

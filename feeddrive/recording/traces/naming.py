@@ -167,7 +167,10 @@ def candidate(signal: Signal) -> Candidate | None:
 
 def known_unit(text: str) -> str:
     """Return a unit of a file as feeddrive writes it; empty where the file gives none, or one that is not known."""
-    unit = _SPELLINGS.get(text.strip().lower(), text.strip())
+    plain = text.strip()
+    if plain[:1] + plain[-1:] in ("[]", "()", "{}"):
+        plain = plain[1:-1].strip()
+    unit = _SPELLINGS.get(plain.lower(), plain)
     if not unit or unit in ("-", "1", "%"):
         return unit if unit == "%" else ""
     for channel in ("m", "rad", "m/s", "rad/s", "N m", "A", "degC", "N", "s"):

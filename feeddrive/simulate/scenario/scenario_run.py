@@ -111,7 +111,7 @@ def _start(scenario: Scenario) -> _Done:
     controller, loop = cascade_controller(scenario.cascade), _torque_loop(scenario)
     position = float(scenario.trajectory.at(np.zeros(1)).position[0])
     state = resting_state(scenario.plant, controller, loop, position)
-    return _Done(state, ActingTorque.at_rest(scenario.cascade), ())
+    return _Done(state, ActingTorque.at_rest(loop, scenario.cascade.sample_time), ())
 
 
 def _torque_loop(scenario: Scenario) -> TorqueLoop:
@@ -127,8 +127,9 @@ def _further(scenario: Scenario, done: _Done, count: int) -> _Done:
     reference = np.column_stack([motion.position, motion.velocity, motion.acceleration, speed, torque])
     load = held(scenario.force, first, count, tick)
     controller = cascade_controller(scenario.cascade)
-    run = simulate_controlled(scenario.plant, controller, reference, load, _torque_loop(scenario), done.state)
-    means, under_way = done.torque.means(scenario.cascade, run.command)
+    loop = _torque_loop(scenario)
+    run = simulate_controlled(scenario.plant, controller, reference, load, loop, done.state)
+    means, under_way = done.torque.means(loop, tick, run.command)
     readings = {
         "motor_torque": means, "motor_angle": run.motor_angle, "motor_speed": run.motor_speed,
         "table_position": run.table_position, "table_velocity": run.table_velocity,
@@ -136,6 +137,7 @@ def _further(scenario: Scenario, done: _Done, count: int) -> _Done:
     at_start = {name: float(values[0]) for name, values in readings.items()}
     late, held_on = (done.late or LateChannels.at_rest(scenario.plant, tick, at_start)).read(readings)
     series = {**readings, "setpoint": motion.position, "cutting_force": load}
+    series |= {"injected_speed": speed, "injected_torque": torque}
     series["speed_command"] = run.signals["speed_command"]
     rows = _rows(scenario, series, late)
     return _Done(run.end, under_way, (*done.rows, rows), held_on)
