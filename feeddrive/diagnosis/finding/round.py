@@ -15,6 +15,9 @@ FAIR_PART = 0.3
 """Gain over that of the best fitted candidate, from which a candidate is fitted too: starts are near by design (orders
 from a periodogram, velocities and stiffnesses scanned), so that one linear step shows most of an effect's worth."""
 
+AT_ONCE = 2
+"""Candidates fitted before the best of them is asked which others are worth it; the same for any number of workers."""
+
 WORKERS = 2
 """Candidates tried at the same time; the loop over samples runs outside Python's lock."""
 
@@ -63,7 +66,7 @@ def _promising_refined(scene: Scene, attempts: list[Attempt], pool: ThreadPoolEx
         best = max((attempt.comparison.gain for attempt in done), default=0.0)
         if waiting[0].comparison.gain <= max(PROMISE, FAIR_PART * best):
             break
-        now, waiting = waiting[:WORKERS], waiting[WORKERS:]
+        now, waiting = waiting[:AT_ONCE], waiting[AT_ONCE:]
         done += [attempt for attempt in pool.map(lambda one: refined(scene, one), now) if attempt is not None]
     return sorted([*done, *waiting], key=lambda attempt: -attempt.comparison.gain)
 

@@ -102,6 +102,8 @@ def flawed(recordings: Sequence[Recording]) -> tuple[Quality, ...]:
 
 def read_otherwise(effects: Sequence[Effect], plant: Plant) -> tuple[Quality, ...]:
     """What the recorder may have done instead of, or as, an effect that was found."""
+    if not plant.has_motion:
+        return ()
     hangs = any(isinstance(effect, ConstantForce) for effect in plant.effects)
     found = []
     for effect in effects:

@@ -115,13 +115,14 @@ def scaled(factor: float, ci95: tuple[float, float]) -> Quality:
 def beyond_its_constant(problem: Problem, found: Fit) -> tuple[Quality, ...]:
     """A torque of another scale than the tolerance of its constant allows; it was fitted and is judged so."""
     known = known_values(problem, found)
-    if known is None:
+    constant = (
+        [i for i, value in enumerate(known.values) if value.key == "torque_constant"] if known is not None else []
+    )
+    if known is None or not constant or known.least() - known.least(constant[0]) < BEYOND_SURELY**2:
         return ()
-    for place, one in enumerate(calibrated_list(problem, found)):
-        if one.value.key == "torque_constant" and known.least() - known.least(place) > BEYOND_SURELY**2:
-            declared = one.value.declared
-            return (scaled(declared / one.number, (declared / one.ci95[1], declared / one.ci95[0])),)
-    return ()
+    one = calibrated_list(problem, found)[constant[0]]
+    declared = one.value.declared
+    return (scaled(declared / one.number, (declared / one.ci95[1], declared / one.ci95[0])),)
 
 
 def suspected(found: Search) -> Suspect | None:
