@@ -25,6 +25,8 @@ from feeddrive.diagnosis.judging.veto import without_denied
 from feeddrive.diagnosis.ledger.entry import kept_of
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.fit import Problem
+from feeddrive.diagnosis.numbers.measured_file import MeasuredNumber
+from feeddrive.diagnosis.numbers.rows import MeasuredRows, NumberResult, number_results, refuse_ungiven
 from feeddrive.diagnosis.preparation import Shown, informative, prepared, shown
 from feeddrive.diagnosis.recordings.compared import compared_recordings, last_state, machine_as_last, with_carrying
 from feeddrive.diagnosis.recordings.recordings import without_shifts
@@ -56,6 +58,7 @@ def diagnose(
     simulate: bool = False,
     said: Said = lambda text: None,
     start: Sequence[Effect] = (),
+    measured: Sequence[MeasuredNumber] = (),
 ) -> tuple[Diagnosis, tuple[Effect, ...]]:
     """Find what the plant lacks.
 
@@ -67,6 +70,7 @@ def diagnose(
         simulate: simulate the closed loop and refine what was found in it, where the controller is declared.
         said: told what is going on.
         start: effects found earlier, asked again before others are searched.
+        measured: numbers (a stiffness, a frequency, a drag torque, a lost motion) beside recordings of motion.
 
     Returns:
         The diagnosis, and the effects to add to the plant: the named ones, then tables of what no name explains.
@@ -83,12 +87,15 @@ def diagnose(
     if in_the_loop:
         refuse_unfit_loop(plant, every)
     declared = declared_hold(plant, every) if in_motion else None
-    begun = _begun(plant, recordings, validation, split, declared, declared_sentence)
+    if measured and not in_motion:
+        mend = "diagnose the numbers alone, or beside a recording of motion and torque"
+        raise InputError("measured numbers beside recordings of heat", plant.name, mend)
+    begun = _begun(plant, recordings, validation, split, declared, declared_sentence, measured)
     settled = _settled(begun.problem, begun.judged, in_the_loop, said, start)
     hold = _logged_hold(settled.searched.search, every) if declared is None else declared
     if hold is not None and declared is None:
         said("the torque is logged more slowly than the drive holds it: again")
-        begun = _begun(plant, recordings, validation, split, hold, held_for)
+        begun = _begun(plant, recordings, validation, split, hold, held_for, measured)
         settled = _settled(begun.problem, begun.judged, in_the_loop, said, start)
     searched, judged, refinement = settled.searched, settled.judged, settled.refinement
     found = searched.search
@@ -116,6 +123,7 @@ def diagnose(
         simulation=refinement.reported(rest.judged if rest.effects else judged),
         changes=compared.changes,
         calibrated=calibrated_results(found.problem, found.fit),
+        measured=_numbers_met(found),
         kept=kept_of(found, known),
         alike=alike,
         next_experiments=next_experiments(found, settled.rivals, spans),
@@ -131,6 +139,14 @@ def diagnose(
         ),
     )
     return result, (*effects, *rest.effects)
+
+
+def _numbers_met(found: Search) -> tuple[NumberResult, ...]:
+    """The measured numbers beside what the declared plant gives, and the plant with what was found."""
+    problem = found.problem.settled(found.fit.effects)
+    if not len(problem.numbers):
+        return ()
+    return number_results(problem.numbers, problem.plant, problem.machine(found.fit.effects))
 
 
 def _logged_hold(found: Search, recordings: Sequence[Recording]) -> float | None:
@@ -151,9 +167,11 @@ class _Begun:
 
 def _begun(
     plant: Plant, recordings: Sequence[Recording], validation: Sequence[Recording],
-    split: float, hold: float | None, sentence: Callable[[float, float], str],
+    split: float, hold: float | None, sentence: Callable[[float, float], str], measured: Sequence[MeasuredNumber],
 ) -> _Begun:  # fmt: skip
     problem, judged, told = prepared(plant, recordings, validation, split, hold)
+    problem = replace(problem, numbers=MeasuredRows(tuple(measured)))
+    refuse_ungiven(problem.numbers, plant)
     refuse_faulty(problem, (*problem.evidence, *judged))
     also = () if hold is None else (sentence(hold, recordings[0].sample_time),)
     return _Begun(problem, judged, (*told, *also))

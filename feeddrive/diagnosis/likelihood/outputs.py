@@ -15,6 +15,7 @@ from feeddrive import __version__
 from feeddrive.diagnosis.calibration.calibrated_result import calibrated_record
 from feeddrive.diagnosis.calibration.plant_text import with_calibrated_values
 from feeddrive.diagnosis.judging.result import ChannelResult, Diagnosis, EffectResult, ErrorFigures, ParameterResult
+from feeddrive.diagnosis.numbers.rows import numbers_beside
 from feeddrive.diagnosis.recordings.change_outputs import changes_record
 from feeddrive.diagnosis.simulated.simulation_record import simulation_record
 from feeddrive.diagnosis.unexplained.outputs import carried_remarks, unexplained_record
@@ -62,6 +63,7 @@ def diagnosis_record(diagnosis: Diagnosis) -> dict[str, Any]:
         "channels": [_channel(channel) for channel in diagnosis.channels],
         "effects": [_effect(effect) for effect in diagnosis.effects],
         "calibrated": calibrated_record(diagnosis.calibrated),
+        "measured": numbers_beside(diagnosis.measured),
         "refused": [{"name": refused.name, "reason": refused.reason} for refused in diagnosis.refused],
         "ambiguous": [list(names) for names in diagnosis.ambiguous],
         "ambiguous_reasons": [
