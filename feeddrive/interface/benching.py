@@ -16,6 +16,7 @@ from feeddrive.interface.axis import Axis, load
 from feeddrive.interface.measured.diagnosed import Diagnosed
 from feeddrive.interface.quantities import Quantity, si
 from feeddrive.interface.servo import Servo, cascade_for, tune
+from feeddrive.plant.plant import Plant
 from feeddrive.servo.frequency_response import Case
 from feeddrive.servo.loop_response import refuse_unstable_case
 
@@ -81,7 +82,7 @@ def bench(
     return Bench(BenchPage(plant, cascade, heaviest, found))
 
 
-def bench_of_diagnosis(after: object, diagnosis: Diagnosis) -> str:
+def bench_of_diagnosis(after: Plant, diagnosis: Diagnosis) -> str:
     """The page for the tab of a report: the machine as diagnosed, at its declared or a recommended cascade.
 
     Args:

@@ -210,8 +210,7 @@ class Diagnosed(Shown):
         """The page for the tab of the report."""
         from feeddrive.interface.benching import bench_of_diagnosis  # which takes a diagnosis
 
-        plant = self.plant
-        return bench_of_diagnosis(plant.plant if plant.has_motion else None, self.diagnosis)
+        return bench_of_diagnosis(self.plant.plant, self.diagnosis)
 
     def listing(self) -> Listing:
         """The effects, or where there are none the errors."""
