@@ -182,7 +182,7 @@ def with_kept(problem: Problem, kept: Sequence[bool] | np.ndarray[tuple[int], np
             values=tuple(known.values[i] for i in places),
             coordinates=known.coordinates[places],
             slopes={of: {name: k[:, places] for name, k in one.items()} for of, one in known.slopes.items()},
-            number_slopes=known.number_slopes[:, places],
+            number_slopes=known.number_slopes[:, places] if known.number_slopes.size else known.number_slopes,
         ),
     )
 

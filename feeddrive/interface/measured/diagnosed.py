@@ -13,6 +13,7 @@ from feeddrive.diagnosis.diagnose import diagnose as find_what_lacks
 from feeddrive.diagnosis.judging.result import Diagnosis
 from feeddrive.diagnosis.likelihood.outputs import diagnosis_json, diagnosis_record, write_outputs
 from feeddrive.diagnosis.numbers.measured_file import read_measured_numbers
+from feeddrive.diagnosis.suspicion.quality import is_recorders, quality_lines
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 from feeddrive.interface.axis import Axis, axis_of_text
@@ -140,7 +141,7 @@ class Diagnosed(Shown):
         found = self.diagnosis
         lines = [used_sentence(found)]
         lines += [f"{one.name}: {one.evidence} {one.reading}" for one in found.effects]
-        lines += [*calibrated_lines(found), *measured_lines(found)]
+        lines += [*quality_lines(found.quality), *calibrated_lines(found), *measured_lines(found)]
         lines += [f"since the earlier diagnosis: {sentence}" for sentence in found.kept.since]
         lines += [
             f"cannot be told apart by these recordings: {', '.join(one.names)}: {one.reason}" for one in found.alike
@@ -164,7 +165,8 @@ class Diagnosed(Shown):
     def plant(self) -> Axis:
         """The axis with its declared values as calibrated, and with what was found."""
         text = with_calibrated_values(self.axis.text, self.diagnosis.calibrated)
-        axis = axis_of_text(plant_text_with_effects(text, (*self.axis.added, *self.found)), self.axis.path)
+        own = [effect for effect in self.found if not is_recorders(effect)]
+        axis = axis_of_text(plant_text_with_effects(text, (*self.axis.added, *own)), self.axis.path)
         return axis.with_values(dict(self.axis.values)) if self.axis.values else axis
 
     def record(self) -> dict[str, Any]:
