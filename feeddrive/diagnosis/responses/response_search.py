@@ -156,12 +156,6 @@ def search_response(problem: ResponseProblem, said: Callable[[str], None] = lamb
     return ResponseSearch(problem, declared, base, found, gains_of, rivals, tuple(steps))
 
 
-def member_names(problem: ResponseProblem, fit: ResponseFit) -> list[str]:
-    """Names of the members of a set: keys of values, `drive_delay`, `structural_mode`."""
-    names = [problem.values[place].key for place in fit.beyond]
-    return names + ["drive_delay"] * int(fit.lines.delay) + ["structural_mode"] * len(fit.lines.modes)
-
-
 def _of_seen_values(problem: ResponseProblem, declared: FloatArray) -> ResponseProblem:
     """The problem without values that the response does not depend on.
 
