@@ -20,7 +20,7 @@ EFFECTS = "plant.effect."
 GROUPS = {
     "An axis": ("load", "Axis", "effect", "Effect", "list_plants", "list_effects", "list_scenarios"),
     "Under its controller": ("tune", "Servo", "run", "Run", "sweep", "Sweep"),
-    "Recordings": ("read", "Recording", "diagnose", "Diagnosed", "explain", "Explained", "ExplainedResponse"),
+    "Recordings": ("read", "Recording", "diagnose", "Diagnosed", "explain", "Explained"),
     "Answers of an axis": ("Modes", "Stiffness", "Check", "Life", "Bode"),
     "Heat": ("warm_up", "WarmUp"),
     "Units and errors": ("si", "InputError", "ValidityWarning"),

@@ -15,7 +15,7 @@ from feeddrive.diagnosis.numbers.measurable import MEASURABLE, Setting
 from feeddrive.diagnosis.numbers.measured_file import read_measured_numbers
 from feeddrive.diagnosis.numbers.next_number import mixed, next_numbers
 from feeddrive.diagnosis.numbers.numbers_result import diagnose_numbers
-from feeddrive.diagnosis.numbers.plant_text import with_written_values
+from feeddrive.diagnosis.plant_text import with_written_values
 
 HEAD = 'format = "feeddrive-measured/1"\n'
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -26,7 +25,7 @@ from feeddrive.diagnosis.numbers.explanations import (
 )
 from feeddrive.diagnosis.numbers.measured_file import MeasuredNumber
 from feeddrive.diagnosis.numbers.next_number import NextNumber, mixed, next_numbers
-from feeddrive.diagnosis.numbers.plant_text import with_written_values
+from feeddrive.diagnosis.plant_text import with_written_values
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray
 from feeddrive.units.quantity import format_quantity
@@ -237,11 +236,6 @@ def numbers_record(result: NumbersResult) -> dict[str, Any]:
         "notes": [f"{one.name}: {one.source}" for one in problem.measured if one.source],
         "plant_after": "plant_after.toml",
     }  # fmt: skip
-
-
-def numbers_json(result: NumbersResult) -> str:
-    """The text of `diagnosis.json`."""
-    return json.dumps(numbers_record(result), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 
 def _channel(number: MeasuredNumber, declared: float, after: float) -> dict[str, Any]:

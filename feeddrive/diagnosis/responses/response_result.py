@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -13,7 +12,7 @@ import numpy as np
 
 from feeddrive import __version__
 from feeddrive.diagnosis.likelihood.tolerances import ASSERTED
-from feeddrive.diagnosis.numbers.plant_text import with_written_values
+from feeddrive.diagnosis.plant_text import with_written_values
 from feeddrive.diagnosis.responses.response_problem import (
     DELAY_SIZE,
     MODE_DAMPING,
@@ -261,11 +260,6 @@ def response_record(result: ResponseResult) -> dict[str, Any]:
         "notes": list(response.notes),
         "plant_after": "plant_after.toml",
     }  # fmt: skip
-
-
-def response_json(result: ResponseResult) -> str:
-    """The text of `diagnosis.json`."""
-    return json.dumps(response_record(result), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 
 def _label(one: Found) -> str:

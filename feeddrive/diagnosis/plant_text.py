@@ -1,15 +1,44 @@
-"""Values written into the text of a plant file, comments and order kept; checked by reading the text again."""
+"""Values put into the text of a plant file, each with what is known of it and where that is from.
+
+Comments and order are kept; the text is read again to check it.
+"""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
+from feeddrive.diagnosis.calibration.calibrated_result import CalibratedResult
 from feeddrive.errors import InputError
 from feeddrive.plant.file.entries import parse_toml
+from feeddrive.units.quantity import format_quantity
 
 _HEADER = re.compile(r"^\s*\[([^\[\]]+)\]\s*(#.*)?$")
 _LIST_HEADER = re.compile(r"^\s*\[\[([^\[\]]+)\]\]\s*(#.*)?$")
+SOURCE = "calibrated by recordings"
+
+
+def with_calibrated_values(text: str, results: Sequence[CalibratedResult]) -> str:
+    """The text with the calibrated values in place of the declared ones.
+
+    Values are written in full: what is known of a sum of two inertias is more than what is known of either, and
+    rounding one would lose it. The tolerance is that of the value alone, half its 95 % interval.
+
+    Args:
+        text: of the declared plant's file.
+        results: what was calibrated.
+
+    Raises:
+        InputError: a text in which a value cannot be placed.
+    """
+    changed = {}
+    for one in results:
+        factor, half = one.value / one.declared, 0.5 * (one.ci95[1] - one.ci95[0]) / one.value
+        for key, unit, declared in one.written:
+            number = f"{factor * declared!r} {unit}".removesuffix(" 1")
+            was = format_quantity(declared, unit)
+            changed[key] = (number, f"{100 * half:.2g} %", f"{SOURCE}, declared {was} within {one.tolerance:.0%}")
+    return with_written_values(text, changed) if changed else text
 
 
 def with_written_values(text: str, changed: Mapping[str, tuple[str, str, str]]) -> str:
