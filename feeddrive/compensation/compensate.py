@@ -15,15 +15,16 @@ from feeddrive.compensation.forms.control import Control
 from feeddrive.compensation.friction_values import FrictionValues, friction_values
 from feeddrive.compensation.lost_motion import LostMotion, lost_motion, refuse_wind_up, resting_words, without_play
 from feeddrive.compensation.plant_deviations import PlantDeviations, plant_deviations
-from feeddrive.compensation.prediction import Applied, Figures, figures, motions, sticking
+from feeddrive.compensation.prediction import Applied, Figures, best_reversal, figures, motions, sticking
 from feeddrive.compensation.recorded_deviations import RecordedDeviations
 from feeddrive.compensation.repair import repaired
-from feeddrive.compensation.table import CompensationTable, Deviations, fitted, grid
+from feeddrive.compensation.table import CompensationTable, Deviations, fitted, grid, stepped
 from feeddrive.errors import InputError
 from feeddrive.plant.file.entries import Origins, Table
 from feeddrive.plant.plant import DeclaredCascade, Plant
 from feeddrive.servo.cascade import Cascade, Feedback
 from feeddrive.simulate.scenario.scenario_controller import read_cascade
+from feeddrive.simulate.setpoints.trajectories import Circle
 from feeddrive.tuning.bare_drive import bare_drive
 from feeddrive.tuning.demand import Demand, cases_of
 from feeddrive.tuning.recommendation import recommend
@@ -32,7 +33,7 @@ from feeddrive.units.quantity import format_quantity
 POINTS_PER_PERIOD = 16
 """Wished for per period of a lead error: straight pieces of least squares then leave 0.8 % of a sine, 8 leave 3 %."""
 
-_NICE = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)
+_NICE = (1.0, 1.2, 1.5, 1.6, 2.0, 2.5, 3.0, 3.2, 4.0, 5.0, 6.0, 8.0)
 _USUAL_RATE, _POSITION_RATE, _BANDWIDTH, _DEAD_TIME = 8000.0, 2000.0, 1000.0, 125e-6
 """Of a drive that nobody has declared: those of `feeddrive tune`."""
 
@@ -60,11 +61,18 @@ class Wishes:
 
 @dataclass(frozen=True, eq=False)
 class Prediction:
-    """Figures of the machine as it is, after repair (None where nothing is worn), and with the table."""
+    """Figures of the machine as it is, after repair (None where nothing is worn), and with the table.
+
+    Attributes:
+        circle: that was driven; None where it is not known.
+        usual_contour: with the table at the usual reversal of the control, where another one was found better [m].
+    """
 
     before: Figures
     repaired: Figures | None
     after: Figures
+    circle: Circle | None = None
+    usual_contour: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,7 +114,7 @@ class Compensated:
         inside = (self.known.positions >= self.table.positions[0]) & (self.known.positions <= self.table.positions[-1])
         places = self.known.positions[inside]
         rest = [
-            one[inside] - self.table.at(places, reverse)
+            one[inside] - self.table.at(places, reverse, self.control.stepwise)
             for one, reverse in ((self.known.forward, False), (self.known.reverse, True))
         ]
         return float(max(np.max(np.abs(one)) for one in rest))
@@ -169,19 +177,21 @@ def compensate_plant(
         InputError: as `plant_table`; no controller that keeps the usual margins.
     """
     made = plant_table(plant, wishes, cascade, unsure_of_play, where)
-    assert made.lost is not None
+    lost = made.lost
+    assert lost is not None
     loop = cascade_of(plant, cascade)
-    test = motions(_stroke(plant, wishes, where), made.lost)
-    applied = Applied(made.control, made.table, _limits(plant))
-    moved = sticking(plant, made.lost)
+    test = motions(_stroke(plant, wishes, where), lost)
+    moved = sticking(plant, lost)
     renewed = repaired(moved)
+    applied, usual = best_reversal(moved, loop, test, Applied(made.control, made.table, _limits(plant)))
+    made = replace(made, control=applied.control)
     prediction = Prediction(
         figures(moved, loop, test), None if renewed is None else figures(renewed, loop, test),
-        figures(moved, loop, test, applied),
+        figures(moved, loop, test, applied), test.circle, usual,
     )  # fmt: skip
     if not beside:
         return replace(made, prediction=prediction)
-    friction = friction_values(moved, loop, test.circle, made.lost, applied) if made.lost.torque > 0 else None
+    friction = friction_values(moved, loop, test.circle, lost, applied) if lost.torque > 0 else None
     return replace(made, prediction=prediction, friction=friction, cogging=cogging_map(plant, loop))
 
 
@@ -280,7 +290,7 @@ def _table(
     step = every if every is not None else _step(wanted, width, found.shortest)
     points = grid(stroke, step, reference)
     _refuse_too_many(wanted, points, width)
-    return as_held(wanted, fitted(known, points, reference, step))
+    return as_held(wanted, (stepped if wanted.stepwise else fitted)(known, points, reference, step))
 
 
 def _refuse_too_many(wanted: Control, points: Sequence[float] | np.ndarray, width: float) -> None:

@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feeddrive.blas_threads import one_thread
-from feeddrive.diagnosis.calibration.calibrated_result import calibrated_results
+from feeddrive.diagnosis.calibration.calibrate import calibrated
+from feeddrive.diagnosis.calibration.calibrated_result import calibrated_results, known_together
 from feeddrive.diagnosis.certainty.ambiguity import Rival, ambiguous_sets, other_places, rivals_of
 from feeddrive.diagnosis.certainty.correlation import correlation
 from feeddrive.diagnosis.certainty.next_experiment import next_experiments
@@ -27,7 +28,7 @@ from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.diagnosis.numbers.measured_file import MeasuredNumber
 from feeddrive.diagnosis.numbers.rows import MeasuredRows, NumberResult, number_results, refuse_ungiven
-from feeddrive.diagnosis.preparation import Shown, prepared, shown
+from feeddrive.diagnosis.preparation import Shown, informative, prepared, shown
 from feeddrive.diagnosis.recordings.compared import compared_recordings, last_state, machine_as_last, with_carrying
 from feeddrive.diagnosis.recordings.recordings import without_shifts
 from feeddrive.diagnosis.recordings.rehoming import rehomed_plant
@@ -37,7 +38,10 @@ from feeddrive.diagnosis.simulated.refinement import Refinement, refined
 from feeddrive.diagnosis.starts.needs import WITHOUT_TORQUE
 from feeddrive.diagnosis.suspicion.logged import declared_hold, declared_sentence, hold_of, may_be_logged, open_lag
 from feeddrive.diagnosis.suspicion.logged import sentence as held_for
+from feeddrive.diagnosis.suspicion.logged_rows import with_recorder_that_holds
+from feeddrive.diagnosis.suspicion.quality import Quality, flawed, read_otherwise
 from feeddrive.diagnosis.suspicion.recording_faults import refuse_faulty
+from feeddrive.diagnosis.suspicion.suspects import Suspect, again, beyond_its_constant, is_better, suspected
 from feeddrive.diagnosis.suspicion.torque_channel import without_torque_sentence
 from feeddrive.diagnosis.unexplained.instead import without_stand_ins
 from feeddrive.diagnosis.unexplained.unexplained import explain_rest
@@ -80,6 +84,7 @@ def diagnose(
     """
     if not 0.2 <= split <= 0.95:
         raise InputError(f"--split is {split:g}", "", "use a share between 0.2 and 0.95, such as 0.75")
+    recordings, validation = informative(plant, recordings), informative(plant, validation)
     every = (*recordings, *validation)
     in_motion = shown(plant, recordings) is Shown.MOTION
     in_the_loop = simulate and in_motion
@@ -96,6 +101,16 @@ def diagnose(
         said("the torque is logged more slowly than the drive holds it: again")
         begun = _begun(plant, recordings, validation, split, hold, held_for, measured)
         settled = _settled(begun.problem, begun.judged, in_the_loop, said, start)
+    said("asking whether it is the recorder")
+    begun, settled, (recordings, validation) = _without_fault(
+        begun,
+        settled,
+        (recordings, validation),
+        lambda files: _begun(
+            plant, *files, split, hold, declared_sentence if declared is not None else held_for, measured
+        ),
+        lambda one: _settled(one.problem, one.judged, in_the_loop, said, start),
+    )
     searched, judged, refinement = settled.searched, settled.judged, settled.refinement
     found = searched.search
     said("looking at what is left")
@@ -121,6 +136,12 @@ def diagnose(
         recordings=judged_recordings(found.problem, rest.judged),
         simulation=refinement.reported(rest.judged if rest.effects else judged),
         changes=compared.changes,
+        quality=(
+            *begun.quality,
+            *beyond_its_constant(found.problem, found.fit),
+            *read_otherwise(effects, plant),
+            *flawed((*recordings, *validation)),
+        ),
         calibrated=calibrated_results(found.problem, found.fit),
         measured=_numbers_met(found),
         kept=kept_of(found, known),
@@ -131,6 +152,7 @@ def diagnose(
             *begun.told,
             *(open_lag(found.fit.effects, every) if hold is None else ()),
             *other_places(found, judged),
+            *known_together(found.problem, found.fit),
             *last_state(searched),
             *_notes(begun.problem.evidence, begun.judged, found),
             *refinement.notes,
@@ -156,11 +178,12 @@ def _logged_hold(found: Search, recordings: Sequence[Recording]) -> float | None
 
 @dataclass(frozen=True)
 class _Begun:
-    """The problem, the recordings judged on, and what is to be said of them."""
+    """The problem, the recordings judged on, what is to be said of them, and what was mended of them."""
 
     problem: Problem
     judged: list[Evidence]
     told: tuple[str, ...]
+    quality: tuple[Quality, ...]
 
 
 def _begun(
@@ -172,7 +195,8 @@ def _begun(
     refuse_ungiven(problem.numbers, plant)
     refuse_faulty(problem, (*problem.evidence, *judged))
     also = () if hold is None else (sentence(hold, recordings[0].sample_time),)
-    return _Begun(problem, judged, (*told, *also))
+    problem, judged, quality = with_recorder_that_holds(problem, judged)
+    return _Begun(problem, judged, (*told, *also), quality)
 
 
 @dataclass(frozen=True)
@@ -220,6 +244,36 @@ def _settled(
         refinement = refined(found, refinement.outcome, lambda other: _judged(other, evidence))
         found, (judged, rehomed) = refinement.found, refinement.outcome
     return _Settled(replace(searched, search=found), rivals, judged, rehomed, refinement)
+
+
+Files = tuple[Sequence[Recording], Sequence[Recording]]
+"""Recordings to fit and to judge on."""
+
+
+def _without_fault(
+    begun: _Begun, settled: _Settled, files: Files,
+    begin: Callable[[Files], _Begun], settle: Callable[[_Begun], _Settled],
+) -> tuple[_Begun, _Settled, Files]:  # fmt: skip
+    """What was found, in the recordings as mended where a fault of the recorder says more than what was found in them.
+
+    A fault is read from slopes, so that what is left of it in the mended recordings is mended as well.
+    """
+    fault = suspected(settled.searched.search)
+    if fault is None:
+        return begun, settled, files
+    left: Suspect | None = fault
+    for _ in range(2):
+        mended = tuple([fault.mended(recording) for recording in part] for part in files)
+        other = begin((mended[0], mended[1]))
+        left = again(calibrated(other.problem), fault.kind)
+        if left is None or abs(left.size) < left.deviation:
+            break
+        fault = replace(fault, size=fault.size + left.size, deviation=left.deviation)
+    again_settled = settle(other)
+    if not is_better(fault, again_settled.searched.search, settled.searched.search):
+        return begun, settled, files
+    told = replace(other, quality=(*other.quality, fault.said(mended[0])))
+    return told, again_settled, (mended[0], mended[1])
 
 
 def _judged(found: Search, evidence: Sequence[Evidence]) -> tuple[list[Judged], tuple[str, ...]]:

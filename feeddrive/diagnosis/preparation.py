@@ -21,6 +21,7 @@ from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording, check_against_lead, without_unfollowed_setpoint
 from feeddrive.recording.checks.copies import refuse_copied_setpoint
+from feeddrive.recording.long.joined import shortened
 
 
 class Shown(Enum):
@@ -45,6 +46,13 @@ def shown(plant: Plant, recordings: Sequence[Recording]) -> Shown:
 
 Prepared = tuple[Problem, list[Evidence], tuple[str, ...]]
 """The problem, what is judged, and what is to be said."""
+
+
+def informative(plant: Plant, recordings: Sequence[Recording]) -> tuple[Recording, ...]:
+    """The recordings; of long ones of motion what is informative, with what they say as a whole as notes."""
+    if shown(plant, recordings) is not Shown.MOTION:
+        return tuple(recordings)
+    return tuple(shortened(one, plant.chain.motor_radius) for one in recordings)
 
 
 def prepared(

@@ -14,12 +14,16 @@ import numpy as np
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant, write_text_atomically
-from feeddrive.interface.machine_tables import Check, Life, Modes, Stiffness
-from feeddrive.interface.quantities import Quantity, quantities, si, span
+from feeddrive.interface.machine.check import Check
+from feeddrive.interface.machine.modes import Modes
+from feeddrive.interface.machine.summary import Life, Stiffness, Summary
+from feeddrive.interface.quantities import Quantity, quantities, si
+from feeddrive.plant.analysis.lumping import lump
 from feeddrive.plant.analysis.mode_map import mode_map
 from feeddrive.plant.analysis.plausibility import check_plant
 from feeddrive.plant.analysis.rated_life import rated_life
 from feeddrive.plant.analysis.stiffness_budget import stiffness_budget
+from feeddrive.plant.analysis.summary import summarise
 from feeddrive.plant.chain.moving_inertia import inertia_at_motor
 from feeddrive.plant.file.declared_check import check_declared
 from feeddrive.plant.file.effect_text import plant_text_with_effects
@@ -33,8 +37,12 @@ if TYPE_CHECKING:
     import casadi
     import control
 
-    from feeddrive.interface.bode import Bode
+    from feeddrive.interface.machine.bode import Bode
+    from feeddrive.interface.machine.heat_summary import HeatSummary
+    from feeddrive.interface.machine.lumped import Lumped
     from feeddrive.interface.servo import Servo
+    from feeddrive.recording.frequency_response import FrequencyResponse
+    from feeddrive.recording.recording import Recording
 
 
 def load(name: str | Path) -> Axis:
@@ -206,6 +214,45 @@ class Axis:
         write_text_atomically(target, plant_text_with_effects(self.text, self.added))
         return target
 
+    def summary(self, at: Quantity | None = None) -> Summary | HeatSummary:
+        """Values with their sources, inertias, stiffness budget, friction, modes and life; of heat alone its own.
+
+        Args:
+            at: table position for stiffness and modes; the middle of the stroke if left out.
+
+        Raises:
+            InputError: a position off the screw.
+
+        >>> import feeddrive as fd
+        >>> [one.title for one in fd.load("bench_axis").summary().tables()][2]
+        'Inertia'
+        """
+        from feeddrive.interface.machine.heat_summary import HeatSummary
+
+        if not self.has_motion:
+            return HeatSummary(self.heat)
+        found = summarise(self.plant, None if at is None else si(at, "m", "at"))
+        return Summary(self.plant, found, rated_life(self.plant))
+
+    def lumped(self, at: Quantity | None = None) -> Lumped:
+        """The three inertias that are nearest to a machine of parts, and how near they are.
+
+        Args:
+            at: table position; the middle of the stroke if left out.
+
+        Raises:
+            InputError: a machine that is not described by parts, or a position off the screw.
+
+        >>> import feeddrive as fd
+        >>> fd.load("kimm_testbed").lumped(at="600 mm").text.startswith("#")
+        True
+        """
+        from feeddrive.interface.machine.lumped import Lumped
+
+        further = ("the [thermal] sections; temperatures are predicted with the file of the parts",)
+        place = self.plant.middle if at is None else si(at, "m", "at")
+        return Lumped(self.name, lump(self.plant, place, further if self.has_heat else ()))
+
     def modes(self, at: Quantity | Sequence[Quantity] | None = None) -> Modes:
         """Natural frequencies, motor held and free.
 
@@ -285,27 +332,30 @@ class Axis:
 
     def bode(
         self,
-        given: str = "motor_torque",
-        output: str = "motor_speed",
+        given: str = "",
+        output: str = "",
         *,
         at: str = "",
         positions: Quantity | Sequence[Quantity] | None = None,
         payload: Quantity | Sequence[Quantity] | None = None,
         controller: Servo | str | Path | None = None,
-        loop: str = "open",
+        loop: str = "",
         frequencies: Sequence[Quantity] = ("1 Hz", "2 kHz"),
+        measured: Recording | FrequencyResponse | None = None,
     ) -> Bode:
-        """Frequency responses: of the mechanics, or with a controller of its velocity loop.
+        """Frequency responses: of the mechanics, or with a controller of its loops.
 
         Args:
-            given: input, such as "motor_torque"; of the mechanics.
-            output: such as "motor_speed" or "table_position"; of the mechanics.
+            given: input, "motor_torque" if left out; of a closed loop also a set-point.
+            output: such as "table_position"; "motor_speed" if left out.
             at: operating point, "x=200 mm, v=3 m/min".
             positions: of the table, one curve each; that of `at` if left out.
             payload: masses on the table beyond the declared one, one curve each.
             controller: of `tune`, or a controller or scenario file; its loops are shown then.
-            loop: "velocity" or "position", with a controller: that open loop with its margins.
+            loop: "open" (all open loops with their margins, as if left out), "closed", "velocity" or "position" (that
+                open loop alone).
             frequencies: lowest and highest.
+            measured: recording, or frequency response of a file, that is laid over the mechanics.
 
         Raises:
             InputError: an unknown signal or loop, a point off the stroke, an unstable loop.
@@ -315,26 +365,20 @@ class Axis:
         >>> len(bode.curves)
         2
         """
-        from feeddrive.export.point import export_point
-        from feeddrive.interface.bode import Bode
-        from feeddrive.interface.servo import cascade_for
-        from feeddrive.plant.file.entries import nearest
-        from feeddrive.servo.loop_response import loops_of
-        from feeddrive.servo.response_family import mechanics_family, open_family
-        from feeddrive.tuning.demand import cases_of
+        from feeddrive.interface.machine.bode import bode
 
-        point = export_point(self.plant, at, "at")
-        places = quantities(positions, "m", "positions") or (point.position,)
-        cases = cases_of(self.plant, places, quantities(payload, "kg", "payload"), point.linearised_at)
-        low, high = span(frequencies, "Hz", "frequencies")
-        if controller is None:
-            return Bode(self.name, mechanics_family(self.plant, given, output, cases, low, high))
-        cascade = cascade_for(self.plant, controller)
-        wanted = "velocity" if loop == "open" else loop
-        known = {str(one): one for one in loops_of(cascade)}
-        if wanted not in known:
-            raise InputError(f'no loop "{loop}"', "loop", nearest(loop, known))
-        return Bode(self.name, open_family(self.plant, cascade, known[wanted], cases, low, high))
+        return bode(
+            self.plant,
+            given,
+            output,
+            at=at,
+            positions=positions,
+            payload=payload,
+            controller=controller,
+            loop=loop,
+            frequencies=frequencies,
+            measured=measured,
+        )
 
     def export(self, form: str, folder: str | Path, at: str = "", heat: bool = False) -> tuple[Path, ...]:
         """Write the axis in the form of another tool.

@@ -33,10 +33,10 @@ from feeddrive.plant.motor_torque import acting_torques, asked_torques
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 from feeddrive.servo.sampled import SampledController
-from feeddrive.simulate import scenario_run
 from feeddrive.simulate.controlled.controlled import TorqueLoop, simulate_controlled
 from feeddrive.simulate.controlled.sensitivity import simulate_sensitivity
 from feeddrive.simulate.held_torque import simulate_torque
+from feeddrive.simulate.scenario import scenario_run
 from feeddrive.simulate.scenario.scenario import Scenario
 from feeddrive.simulate.scenario.scenario_file import read_scenario
 from feeddrive.simulate.scenario.scenario_run import run_scenario

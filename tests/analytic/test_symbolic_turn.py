@@ -36,7 +36,7 @@ from feeddrive.servo.sampled import SampledController
 from feeddrive.servo.sampled_plant import sampled_plant
 from feeddrive.servo.scheduled import scheduled
 from feeddrive.servo.state_feedback import state_feedback
-from feeddrive.simulate import controlled_machine, position_velocity
+from feeddrive.simulate.controlled import controlled_machine, position_velocity
 from feeddrive.simulate.controlled.controlled import TorqueLoop, simulate_controlled
 from feeddrive.simulate.controlled.position_velocity import position_velocity_controller
 from feeddrive.simulate.controlled.sensitivity import simulate_sensitivity

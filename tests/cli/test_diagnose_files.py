@@ -15,9 +15,9 @@ from pathlib import Path
 import pytest
 
 import feeddrive
-from feeddrive.cli import diagnosing
 from feeddrive.cli.main import main
 from feeddrive.files import find_plant, find_scenario_file
+from feeddrive.interface.measured import diagnosis_run as diagnosing
 from feeddrive.report.figures.drawing import RenderedFigure
 from tests.analytic import report_examples as examples
 
@@ -27,7 +27,7 @@ FILES = {"diagnosis.json", "ledger.json", "plant_after.toml", "prediction.csv", 
 
 PROGRAM = """
 import pathlib, sys, time
-from feeddrive.cli import diagnosing
+from feeddrive.interface.measured import diagnosis_run as diagnosing
 from feeddrive.cli.main import main
 from feeddrive.report.figures.drawing import RenderedFigure
 from tests.analytic import report_examples as examples

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import feeddrive as fd
-from feeddrive.interface.diagnosed import Diagnosed
+from feeddrive.interface.measured.diagnosed import Diagnosed
 from tests.generator.thermal_effects import Planted
 from tests.generator.warm_axis import Truth, simulate, write_csv
 

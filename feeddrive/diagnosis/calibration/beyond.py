@@ -4,32 +4,63 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
-from feeddrive.diagnosis.calibration.calibrate import TOLERANCE, calibrated_list, with_kept
+import numpy as np
+
+from feeddrive.diagnosis.calibration.calibrate import ENOUGH, PASSES, moved, recalibrated, with_kept
 from feeddrive.diagnosis.calibration.declared import CalibratedValue, as_effect, calibrated_values
-from feeddrive.diagnosis.likelihood.fit import Fit, Problem
+from feeddrive.diagnosis.calibration.known import TOLERANCE, known_values
+from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
+from feeddrive.diagnosis.likelihood.tolerances import BEYOND
 from feeddrive.effects.base import Effect, Value, number
 from feeddrive.effects.chain.inertia_deviation import declared_inertia
 from feeddrive.effects.friction.friction_deviation import FrictionDeviation
 from feeddrive.plant.plant import Plant
 
 SURE = 3.0
-"""Deviations of what the recordings alone say by which a value must lie beyond its tolerance: one of 700 by chance, as
-a dozen values are asked, once or twice a search."""
+"""Deviations by which no values within their tolerances may explain the recordings, and one beyond its does: one of 700
+by chance for each of a dozen values, where the truth is at the very end of a tolerance."""
+
+AGAINST = 2 * math.log(20.0)
+"""Twice the logarithm of the odds from which a value is refused that is not the likeliest (as `ambiguity`)."""
 
 
 def beyond_tolerance(problem: Problem, found: Fit) -> tuple[Problem, Effect] | None:
     """The declared value that is surest to be beyond its tolerance, as an effect; None where none is asserted.
 
+    One is beyond its tolerance where no values within theirs explain the recordings, and some do that are all but it
+    within theirs. Of values that are alike to the recordings the likeliest is taken; `other_places` says the others.
+
     Returns:
-        The problem without it among the values that are fitted, and the effect.
+        The problem without it among the values that are fitted, and the effect, from its likeliest value.
     """
-    able = [one for one in calibrated_list(problem, found) if one.value.name and one.beyond > SURE]
-    if not able or problem.calibration is None:
+    known = known_values(problem, found)
+    if known is None or problem.calibration is None:
         return None
-    best = max(able, key=lambda one: one.beyond).value
-    problem, (effect,) = said_by_effects(problem, [as_effect(problem.plant, best, 0.0)])
-    return problem, effect
+    least, able = known.least(), [i for i, value in enumerate(known.values) if value.name]
+    gained = {i: least - known.least(i) for i in able}
+    most = max(gained.values(), default=0.0)
+    if most < SURE**2:
+        return None
+    alike = [i for i in able if gained[i] > most - AGAINST]
+    costs = {i: known.likeliest(i, BEYOND / known.values[i].deviation) for i in alike}
+    place = min(alike, key=lambda i: costs[i][1])
+    likeliest = np.array([known.c(i, float(u)) for i, u in enumerate(costs[place][0])])
+    there = replace(problem, calibration=replace(problem.calibration, coordinates=likeliest))
+    freed, (effect,) = said_by_effects(there, [as_effect(problem.plant, known.values[place], 0.0)])
+    return _together(freed, (*found.effects, effect))
+
+
+def _together(problem: Problem, effects: Sequence[Effect]) -> tuple[Problem, Effect]:
+    """Effects and declared values fitted in turn until neither moves: alike, each bends what the other is told by."""
+    for _ in range(PASSES):
+        before = problem = recalibrated(problem, effects)
+        effects = fit(problem, effects).effects
+        problem = problem.settled(effects)
+        if np.max(np.abs(moved(before, problem)), initial=0.0) < ENOUGH:
+            break
+    return problem, effects[-1]
 
 
 def said_by_effects(problem: Problem, effects: Sequence[Effect]) -> tuple[Problem, tuple[Effect, ...]]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -10,9 +9,10 @@ import numpy as np
 
 from feeddrive.diagnosis.calibration.calibration import Calibration
 from feeddrive.diagnosis.calibration.declared import CalibratedValue, calibrated_values
+from feeddrive.diagnosis.calibration.known import known_values
 from feeddrive.diagnosis.certainty.noise_colour import score_covariance
 from feeddrive.diagnosis.likelihood.evidence import Evidence
-from feeddrive.diagnosis.likelihood.fit import Fit, Problem, linear_step
+from feeddrive.diagnosis.likelihood.fit import Fit, Problem
 from feeddrive.effects.base import Effect
 from feeddrive.recording import Recording
 from feeddrive.typing import FloatArray
@@ -20,14 +20,14 @@ from feeddrive.typing import FloatArray
 STEP = 1e-3
 """Change of the logarithm of a value from which its slope is taken; ten times that of a coordinate of size one."""
 
+LONG = 30 * STEP
+"""The same where a prediction goes from cell to cell (`fit.COARSE`)."""
+
 ENOUGH = 0.1
 """Move of a value over its deviation that needs no new slopes: it moves the evidence by a two-hundredth."""
 
-PASSES = 4
-"""New slopes at most, before anything is found."""
-
-TOLERANCE = 2.0
-"""Deviations of a coordinate that a tolerance is, by definition (`tolerances`)."""
+PASSES = 8
+"""New slopes at most, before anything is found and beside a value that is beyond its tolerance."""
 
 UNSEEN = 0.1
 """Deviations by which a value within its tolerance moves all rows together, below which they do not see it: its
@@ -42,20 +42,26 @@ def calibrated(problem: Problem) -> Problem:
     if not values:
         return problem
     start = replace(problem, calibration=Calibration(values, np.zeros(len(values)), {}, 1.0))
-    start = _without_unseen(recalibrated(start, ()))
-    for _ in range(PASSES - 1):
-        before, start = start, recalibrated(start, ())
-        if np.max(np.abs(_moved(before, start)), initial=0.0) < ENOUGH:
+    start = _without_unseen(recalibrated(start, (), rough=True))
+    for turn in range(PASSES):
+        before, start = start, recalibrated(start, (), rough=turn == 0)
+        if turn > 0 and np.max(np.abs(moved(before, start)), initial=0.0) < ENOUGH:
             break
     return recalibrated(start.levelled(), ())
 
 
-def recalibrated(problem: Problem, effects: Sequence[Effect]) -> Problem:
-    """The problem with new slopes, and its declared values as they are most likely beside these effects."""
+def recalibrated(problem: Problem, effects: Sequence[Effect], rough: bool = False) -> Problem:
+    """The problem with new slopes, and its declared values as they are most likely beside these effects.
+
+    Args:
+        problem: with the values to begin from.
+        effects: beside them.
+        rough: slopes from one side only, where the values are far away still.
+    """
     known = problem.calibration
     if known is None or not known.values:
         return problem
-    sloped = with_new_slopes(problem, effects)
+    sloped = with_new_slopes(problem, effects, rough)
     assert sloped.calibration is not None and sloped.whitener is not None
     if not np.all(np.isfinite(sloped.whitener.columns)):
         return problem
@@ -68,11 +74,11 @@ def recalibrated(problem: Problem, effects: Sequence[Effect]) -> Problem:
     return _stepped(sloped, effects, sloped.unwhitened(effects) if len(numbers) else residual)
 
 
-def with_new_slopes(problem: Problem, effects: Sequence[Effect]) -> Problem:
+def with_new_slopes(problem: Problem, effects: Sequence[Effect], rough: bool = False) -> Problem:
     """The problem with the slopes of its declared values beside these effects, the values as they are."""
     if problem.calibration is None or not problem.calibration.values:
         return problem
-    slopes = {e.recording: slopes_of(problem, effects, e) for e in problem.evidence}
+    slopes = {e.recording: slopes_of(problem, effects, e, rough) for e in problem.evidence}
     more = _number_slopes(problem, effects)
     return replace(problem, calibration=replace(problem.calibration, slopes=slopes, number_slopes=more))
 
@@ -93,21 +99,32 @@ def _number_slopes(problem: Problem, effects: Sequence[Effect]) -> FloatArray:
     return np.column_stack(columns)
 
 
-def slopes_of(problem: Problem, effects: Sequence[Effect], evidence: Evidence) -> dict[str, FloatArray]:
-    """Channel to its slope with the coordinates of the declared values, (n, k), SI."""
+def slopes_of(
+    problem: Problem, effects: Sequence[Effect], evidence: Evidence, rough: bool = False
+) -> dict[str, FloatArray]:
+    """Channel to its slope with the coordinates of the declared values, (n, k), SI.
+
+    From both sides where the step must be long (`LONG`): one side's slope would be that of half a step away, and where
+    two values are alike, fits along it end where the slopes are wrong, not where the values are right.
+    """
     known = problem.calibration
     assert known is not None
-    base = problem.predictor.predict(problem.machine(effects), evidence)
-    slopes = {name: np.empty((len(base[name]), len(known.values))) for name in evidence.channels}
-    length = STEP if problem.predictor.smooth(problem.plant) else 30 * STEP
-    for i, value in enumerate(known.values):
-        step = length / value.deviation
+
+    def at(place: int, step: float) -> dict[str, FloatArray]:
         coordinates = known.coordinates.copy()
-        coordinates[i] += step
+        coordinates[place] += step
         there = replace(problem, calibration=replace(known, coordinates=coordinates)).machine(effects)
-        predicted = problem.predictor.predict(there, evidence)
+        return problem.predictor.predict(there, evidence)
+
+    smooth, base = problem.predictor.smooth(problem.plant), at(0, 0.0)
+    slopes = {name: np.empty((len(base[name]), len(known.values))) for name in evidence.channels}
+    for i, value in enumerate(known.values):
+        step = (STEP if smooth else LONG) / value.deviation
+        after, before, apart = at(i, step), base, step
+        if not smooth and not rough:
+            before, apart = at(i, -step), 2 * step
         for name in evidence.channels:
-            slopes[name][:, i] = (predicted[name] - base[name]) / step
+            slopes[name][:, i] = (after[name] - before[name]) / apart
     return slopes
 
 
@@ -165,12 +182,13 @@ def with_kept(problem: Problem, kept: Sequence[bool] | np.ndarray[tuple[int], np
             values=tuple(known.values[i] for i in places),
             coordinates=known.coordinates[places],
             slopes={of: {name: k[:, places] for name, k in one.items()} for of, one in known.slopes.items()},
-            number_slopes=known.number_slopes[:, places],
+            number_slopes=known.number_slopes[:, places] if known.number_slopes.size else known.number_slopes,
         ),
     )
 
 
-def _moved(before: Problem, after: Problem) -> FloatArray:
+def moved(before: Problem, after: Problem) -> FloatArray:
+    """How far the coordinates of the declared values have moved, (k,)."""
     assert before.calibration is not None and after.calibration is not None
     return after.calibration.coordinates - before.calibration.coordinates
 
@@ -182,14 +200,14 @@ class Calibrated:
     Attributes:
         value: which.
         coordinate: most likely, as the plant has it.
-        deviation: of the coordinate, given the recordings.
-        beyond: by how many of its own deviations the recordings alone put the coordinate beyond its tolerance.
+        deviation: of the coordinate, given the recordings and the tolerances of all as deviations.
+        ends: of its 95 % interval as coordinates, all others within their tolerances (`known`).
     """
 
     value: CalibratedValue
     coordinate: float
     deviation: float
-    beyond: float
+    ends: tuple[float, float]
 
     @property
     def number(self) -> float:
@@ -199,48 +217,20 @@ class Calibrated:
     @property
     def ci95(self) -> tuple[float, float]:
         """Interval of 95 % [SI]."""
-        half = 1.96 * self.deviation
-        low, high = (self.value.declared * self.value.factor(self.coordinate + way * half) for way in (-1, 1))
+        low, high = (self.value.declared * self.value.factor(end) for end in self.ends)
         return low, high
 
 
 def calibrated_list(problem: Problem, found: Fit) -> tuple[Calibrated, ...]:
-    """What is known of the declared values beside a fitted set.
-
-    The information of the recordings is H S⁻¹ H, with H = K'K of the slopes less what the effects' own slopes explain
-    and S the covariance of K'r by the colour of the residual; the prior's is one.
-    """
-    known, whitened = problem.calibration, problem.whitener
-    if known is None or whitened is None:
+    """What is known of the declared values beside a fitted set."""
+    known, calibration, whitened = known_values(problem, found), problem.calibration, problem.whitener
+    if known is None or calibration is None or whitened is None:
         return ()
-    columns, rows = whitened.columns, [e.fit_rows for e in problem.evidence]
-    residual = problem.unwhitened(found.effects)
-    own = _own_slopes(problem, found)
-    columns = (
-        columns - own @ np.column_stack([linear_step(own, column) for column in columns.T]) if own.size else columns
-    )
-    left = residual - whitened.columns @ (whitened.most_likely(residual) - known.coordinates)
-    score = score_covariance(problem.evidence, rows, left, columns)
-    normal = columns.T @ columns
-    weight = normal @ np.linalg.pinv(score, rcond=1e-10, hermitian=True)
-    precision = weight @ normal + np.eye(len(normal))
-    covariance = np.linalg.inv(0.5 * (precision + precision.T))
-    mean = covariance @ (weight @ (columns.T @ (residual + whitened.offset)))
-    settled = whitened.most_likely(residual)
+    settled = whitened.most_likely(problem.unwhitened(found.effects))
+    deviations = np.sqrt(np.diag(known.covariance))
     result = []
     for i, value in enumerate(known.values):
-        known_to, told = float(covariance[i, i]), max(1 - float(covariance[i, i]), 1e-9)
-        beyond, spread = (
-            abs(float(mean[i])) / told - TOLERANCE,
-            math.sqrt(known_to / told),
-        )  # without the prior of this value
-        result.append(Calibrated(value, float(settled[i]), math.sqrt(known_to), beyond / spread))
+        coordinate, (low, high) = float(settled[i]), known.interval(i)
+        ends = min(low, coordinate), max(high, coordinate)
+        result.append(Calibrated(value, coordinate, float(deviations[i]), ends))
     return tuple(result)
-
-
-def _own_slopes(problem: Problem, found: Fit) -> FloatArray:
-    """Slopes of the effects that were found, not whitened, (m, k)."""
-    if not found.effects:
-        return np.zeros((0, 0))
-    bare = replace(problem, plant=problem.machine(), calibration=None)
-    return bare.jacobian(found.effects, [True] * len(found.effects), bare.predicted(found.effects))

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from feeddrive.diagnosis.certainty.ambiguity import AGAINST, Rival, at_its_limit
+from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.likelihood.coordinates import read_coordinates
 from feeddrive.diagnosis.likelihood.fit import Problem, fit
@@ -39,7 +40,7 @@ def with_the_preferred(found: Search, rivals: Sequence[list[Rival]]) -> tuple[Se
 
 def _preferred(problem: Problem, effect: Effect, alike: Sequence[Rival]) -> Rival | None:
     """The rival for which the data speak by as much as refuses one, else the simplest that is simpler."""
-    material = [rival for rival in alike if problem.predictor.is_material(rival.effect, problem.plant)]
+    material = [rival for rival in alike if is_material(rival.effect, problem.plant)]
     likeliest = min(material, key=lambda rival: rival.odds, default=None)
     if likeliest is not None and likeliest.odds < -AGAINST:
         return likeliest

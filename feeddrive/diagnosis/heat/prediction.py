@@ -8,14 +8,11 @@ from typing import ClassVar
 
 import numpy as np
 
-from feeddrive.diagnosis.finding.remembered import Remembered
-from feeddrive.diagnosis.finding.scene import Candidate, Scene
+from feeddrive.diagnosis.finding.remembered import Remembered, effects_key
+from feeddrive.diagnosis.finding.scene import Candidate
 from feeddrive.diagnosis.heat.candidates import HEAT_CANDIDATES
 from feeddrive.diagnosis.heat.evidence import HeatEvidence
-from feeddrive.diagnosis.heat.materiality import is_material_heat
-from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.diagnosis.likelihood.predictor import Predictor
-from feeddrive.effects.base import Effect
 from feeddrive.plant.plant import Plant
 from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.reduced.model import HeatModel, Path
@@ -57,8 +54,8 @@ class HeatPredictor(Predictor[HeatEvidence]):
 
     def predict(self, plant: Plant, evidence: HeatEvidence) -> dict[str, FloatArray]:
         """Channel to its prediction, (n,) [degC, m]."""
-        values = tuple((e.name, e.place, tuple(e.values.items())) for e in plant.heat.effects)
-        return self._known.found(evidence.recording, values, lambda: self._simulated(plant, evidence))
+        key = effects_key(plant.heat.effects)
+        return self._known.found(evidence.recording, key, lambda: self._simulated(plant, evidence))
 
     def slopes(self, plant: Plant, evidence: HeatEvidence, numbers: Sequence[str]) -> dict[str, FloatArray] | None:
         """Exact slopes, carried along with the run."""
@@ -66,15 +63,6 @@ class HeatPredictor(Predictor[HeatEvidence]):
         run = simulate_with_slopes(plant.heat, self._model(plant), step, evidence.speed, evidence.ambient, numbers)
         none = np.zeros((evidence.start_rows, len(numbers)))
         return {name: np.vstack([none, run[name][1]]) for name in evidence.channels}
-
-    def scene(self, problem: Problem, found: Sequence[Effect]) -> Scene:
-        """Residuals with the effects found so far."""
-        plant = problem.plant.with_effects(*found)
-        residuals = []
-        for evidence in problem.evidence:
-            predicted = problem.predictor.predict(plant, evidence)
-            residuals.append({name: evidence.measured[name] - predicted[name] for name in evidence.channels})
-        return Scene(problem, tuple(found), tuple(residuals))
 
     def variables(self, plant: Plant, evidence: HeatEvidence) -> dict[str, FloatArray]:
         """Speed, surroundings, time, and the predicted rise of the nut."""
@@ -92,10 +80,6 @@ class HeatPredictor(Predictor[HeatEvidence]):
         """The measured channel itself, a temperature in degC."""
         measured: FloatArray = evidence.measured[name][evidence.judged_rows]
         return measured
-
-    def is_material(self, effect: Effect, plant: Plant) -> bool:
-        """The physical minimum of heats, factors and times."""
-        return is_material_heat(effect, plant.heat)
 
     def _all_channels(self, plant: Plant, evidence: HeatEvidence) -> dict[str, FloatArray]:
         step = evidence.recording.sample_time

@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import ClassVar
 
 import numpy as np
 
 from feeddrive.diagnosis.finding.candidates import CANDIDATES
-from feeddrive.diagnosis.finding.materiality import is_material
-from feeddrive.diagnosis.finding.remembered import Remembered
-from feeddrive.diagnosis.finding.scene import AxisScene, Candidate
+from feeddrive.diagnosis.finding.remembered import Remembered, effects_key
+from feeddrive.diagnosis.finding.scene import Candidate
 from feeddrive.diagnosis.heat.candidates import HEAT_CANDIDATES
-from feeddrive.diagnosis.heat.materiality import is_material_heat
 from feeddrive.diagnosis.heat.prediction import wide_model, with_bodies_of
 from feeddrive.diagnosis.heat.warm_evidence import WarmEvidence
-from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.diagnosis.likelihood.predictor import Predictor
-from feeddrive.effects.base import Effect, Kind
 from feeddrive.engine.program import StepReport
 from feeddrive.plant.plant import Plant
 from feeddrive.simulate.driven import LoadMotion
@@ -64,25 +59,15 @@ class WarmPredictor(Predictor[WarmEvidence]):
     def run(self, plant: Plant, evidence: WarmEvidence) -> WarmRun:
         """What the plant does in the log."""
         log = evidence.log
-        powers = self._powers.found(log, _values(plant.motion_effects), lambda: friction_powers(plant, log))
+        powers = self._powers.found(log, effects_key(plant.motion_effects), lambda: friction_powers(plant, log))
         return self._known.found(
-            log, _values(plant.effects), lambda: simulate_log(plant, self._model(plant), log, powers)
+            log, effects_key(plant.effects), lambda: simulate_log(plant, self._model(plant), log, powers)
         )
 
     def predict(self, plant: Plant, evidence: WarmEvidence) -> dict[str, FloatArray]:
         """Channel to its prediction, (n,) [N m, m, degC]."""
         channels = self.run(plant, evidence).channels
         return {name: channels[name] for name in evidence.channels}
-
-    def scene(self, problem: Problem, found: Sequence[Effect]) -> AxisScene:
-        """Residuals and motion with the effects found so far."""
-        plant = problem.plant.with_effects(*found)
-        residuals, runs = [], []
-        for evidence in problem.evidence:
-            predicted = problem.predictor.predict(plant, evidence)
-            residuals.append({name: evidence.measured[name] - predicted[name] for name in evidence.channels})
-            runs.append(self._motion(plant, evidence))  # type: ignore[arg-type]
-        return AxisScene(problem, tuple(found), tuple(residuals), tuple(runs))
 
     def variables(self, plant: Plant, evidence: WarmEvidence) -> dict[str, FloatArray]:
         """Speed, position, time, and the predicted rise of the nut."""
@@ -102,16 +87,10 @@ class WarmPredictor(Predictor[WarmEvidence]):
         beyond = evidence.measured[name] - plant.chain.motor_radius * evidence.log.angle
         return np.asarray(beyond[rows] - np.mean(beyond[rows]))
 
-    def is_material(self, effect: Effect, plant: Plant) -> bool:
-        """The physical minimum of either kind."""
-        if effect.kind is Kind.HEAT:
-            return is_material_heat(effect, plant.heat)
-        return is_material(effect, plant)
-
     def _model(self, plant: Plant) -> HeatModel:
         return with_bodies_of(plant.heat, self.declared, self.model)
 
-    def _motion(self, plant: Plant, evidence: WarmEvidence) -> LoadMotion:
+    def load_motion(self, plant: Plant, evidence: WarmEvidence) -> LoadMotion:
         """The motion as starts of candidates read it, (n,); its forces at uniform rows alone."""
         log, found = evidence.log, self.run(plant, evidence).motion
         radius = plant.chain.motor_radius
@@ -122,10 +101,6 @@ class WarmPredictor(Predictor[WarmEvidence]):
             table_position=radius * log.angle, table_velocity=radius * log.speed, torque=torque,
             force=np.zeros(len(log.time)), report=StepReport(0, 0, 0, 0, 0, 0.0, 0, 0.0, 0.0),
         )  # fmt: skip
-
-
-def _values(effects: Sequence[Effect]) -> tuple[object, ...]:
-    return tuple((e.name, str(e.port), e.place, tuple(e.values.items())) for e in effects)
 
 
 def _size_of_powers(powers: dict[str, FloatArray]) -> int:

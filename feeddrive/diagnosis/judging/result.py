@@ -13,6 +13,7 @@ from feeddrive.diagnosis.ledger.result import Kept
 from feeddrive.diagnosis.numbers.rows import NumberResult
 from feeddrive.diagnosis.recordings.change_result import RecordingChanges
 from feeddrive.diagnosis.simulated.simulation_result import SimulationResult as SimulationResult
+from feeddrive.diagnosis.suspicion.quality import Quality
 from feeddrive.diagnosis.unexplained.result import Dependence as Dependence
 from feeddrive.diagnosis.unexplained.result import Unexplained as Unexplained
 from feeddrive.typing import FloatArray
@@ -178,6 +179,7 @@ class Diagnosis:
     kept: Kept = field(default_factory=Kept)
     calibrated: tuple[CalibratedResult, ...] = ()
     measured: tuple[NumberResult, ...] = ()
+    quality: tuple[Quality, ...] = ()
 
     @property
     def nothing_missing(self) -> bool:

@@ -202,6 +202,20 @@ def read_coordinates(effects: Sequence[Effect], plant: Plant) -> FloatArray:
     return np.array(values, dtype=float)
 
 
+def longest_steps(effects: Sequence[Effect], plant: Plant) -> FloatArray:
+    """The longest difference over which the prediction bends by no more than a tenth, of every coordinate; (k,).
+
+    Half of the smallest size of interest, a tenth of a value that is known to a factor.
+    """
+    lengths = [
+        0.1 if isinstance(coordinate, Logarithmic) else 0.5
+        for effect in effects
+        for coordinate in coordinates_of(effect, plant)
+        for _ in coordinate.read(effect)
+    ]
+    return np.array(lengths, dtype=float)
+
+
 def absent_coordinates(effects: Sequence[Effect], plant: Plant) -> tuple[FloatArray, IntegerArray]:
     """Coordinates at which the effects are absent, and which belong together.
 

@@ -22,6 +22,7 @@ from feeddrive.diagnosis.calibration.calibration import Calibration, Whitener, w
 from feeddrive.diagnosis.calibration.declared import with_values
 from feeddrive.diagnosis.likelihood.coordinates import (
     coordinate_ends,
+    longest_steps,
     numbers,
     read_coordinates,
     value_slopes,
@@ -44,6 +45,11 @@ one step earlier or later. What has the size one moves the table by nanometres, 
 
 ENOUGH = 1e-4
 """A step that lowers the squared error by less than this share ends the fit."""
+
+SEEN = 0.5
+"""Move of all rows together, in deviations, from which a difference is believed where a prediction goes from cell to
+cell: the cells leave some hundredths. What declared values do as well is whitened away, and the step that is long
+enough for a prediction shows nothing but cells in what is left of it."""
 
 STRAIGHT = 0.03
 """Bend of the prediction over a step, as a share of the step, below which the slope before it still holds after it."""
@@ -216,13 +222,25 @@ class Problem:
         if moved and (exact := self._exact_jacobian(effects, moved, vector)) is not None:
             return exact
         _, high = coordinate_ends(moved, self.plant)
+        coarse, longest = not self.predictor.smooth(self.plant), longest_steps(moved, self.plant)
         columns = []
         for i in range(len(vector)):
             step = np.zeros(len(vector))
             step[i] = self.difference if vector[i] + self.difference <= high[i] else -self.difference
-            changed = _placed(effects, free, write_coordinates(moved, self.plant, vector + step))
-            columns.append((self.predicted(changed) - base) / step[i])
+            moves = self._moves(effects, free, moved, vector + step, base)
+            size = float(np.linalg.norm(moves))
+            if coarse and size < SEEN:
+                far = min(longest[i], self.difference * SEEN / max(size, 1e-3 * SEEN))
+                step[i] = far if vector[i] + far <= high[i] else -far
+                moves = self._moves(effects, free, moved, vector + step, base)
+            columns.append(moves / step[i])
         return np.column_stack(columns) if columns else np.zeros((len(base), 0))
+
+    def _moves(
+        self, effects: Sequence[Effect], free: Sequence[bool], moved: Sequence[Effect], to: FloatArray, base: FloatArray
+    ) -> FloatArray:
+        """What the prediction changes by when the free effects go to other coordinates."""
+        return self.predicted(_placed(effects, free, write_coordinates(moved, self.plant, to))) - base
 
     def _exact_jacobian(
         self, effects: Sequence[Effect], moved: Sequence[Effect], vector: FloatArray

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
@@ -10,14 +9,12 @@ import numpy as np
 
 from feeddrive.diagnosis.calibration.declared import torque_gain
 from feeddrive.diagnosis.finding.candidates import CANDIDATES
-from feeddrive.diagnosis.finding.materiality import is_material
-from feeddrive.diagnosis.finding.remembered import Remembered
-from feeddrive.diagnosis.finding.scene import AxisScene, Candidate
+from feeddrive.diagnosis.finding.remembered import Remembered, effects_key
+from feeddrive.diagnosis.finding.scene import Candidate
 from feeddrive.diagnosis.likelihood.evidence import AxisEvidence
-from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.diagnosis.likelihood.predictability import predictable_samples, samples_to_fit
 from feeddrive.diagnosis.likelihood.predictor import Predictor
-from feeddrive.diagnosis.suspicion.timing import lag_of, lagging
+from feeddrive.diagnosis.suspicion.timing import lag_of, lagging, repeated
 from feeddrive.diagnosis.suspicion.torque_channel import scale_of, scale_sentence
 from feeddrive.effects.base import ChainEffect, DriveEffect, Effect, Kind, Motion, Port, SourceEffect
 from feeddrive.engine.step.step_constants import SimulationError
@@ -54,8 +51,10 @@ class AxisPredictor(Predictor[AxisEvidence]):
         """Channel to predicted series in the band, shape (n,), SI."""
         run = self.load_motion(plant, evidence)
         torque = torque_gain(plant) * asked_torques(plant, run.torque + motor_sources(plant, run))
-        raw = {"motor_torque": torque, "table_position": run.table_position}
         step = evidence.recording.sample_time
+        if evidence.torque_rows is not None:  # the drive's own row begins half a row before what it acts about
+            torque = repeated(lagging(torque, -0.5 * step, step), evidence.torque_rows)
+        raw = {"motor_torque": torque, "table_position": run.table_position}
         series = {name: evidence.band.filter(raw[name]) for name in evidence.channels}
         if evidence.scaled_from:
             series["motor_torque"] *= self.scale(plant)
@@ -92,17 +91,6 @@ class AxisPredictor(Predictor[AxisEvidence]):
         """Effects on motion and torque."""
         return CANDIDATES
 
-    def scene(self, problem: Problem, found: Sequence[Effect]) -> AxisScene:
-        """Residuals and motion of the load side with the effects found so far."""
-        plant = problem.machine(found)
-        residuals, runs = [], []
-        for evidence in problem.evidence:
-            assert isinstance(evidence, AxisEvidence)
-            predicted = self.predict(plant, evidence)
-            residuals.append({name: evidence.measured[name] - predicted[name] for name in evidence.channels})
-            runs.append(self.load_motion(plant, evidence))
-        return AxisScene(problem, tuple(found), tuple(residuals), tuple(runs))
-
     def smooth(self, plant: Plant) -> bool:
         """A chain that varies with the table's position is simulated from cell to cell."""
         return not plant.chain.varies
@@ -134,10 +122,6 @@ class AxisPredictor(Predictor[AxisEvidence]):
         beyond = (evidence.measured[name] - geared)[rows]
         about_mean: FloatArray = beyond - beyond.mean()
         return about_mean
-
-    def is_material(self, effect: Effect, plant: Plant) -> bool:
-        """The physical minimum of friction, forces and masses."""
-        return is_material(effect, plant)
 
 
 def motor_sources(plant: Plant, run: LoadMotion) -> FloatArray:
@@ -179,5 +163,4 @@ def _at_motor_alone(effect: Effect) -> bool:
 
 
 def _values_key(plant: Plant) -> object:
-    effects = tuple((e.name, str(e.port), e.place, tuple(e.values.items())) for e in plant.effects)
-    return (tuple(plant.chain.values.items()), effects)
+    return (tuple(plant.chain.values.items()), effects_key(plant.effects))

@@ -11,13 +11,12 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, ClassVar, Generic, TypeVar
 
 from feeddrive.diagnosis.likelihood.evidence import Evidence
-from feeddrive.effects.base import Effect
 from feeddrive.plant.plant import Plant
+from feeddrive.simulate.driven import LoadMotion
 from feeddrive.typing import BoolArray, FloatArray
 
 if TYPE_CHECKING:
-    from feeddrive.diagnosis.finding.scene import Candidate, Scene
-    from feeddrive.diagnosis.likelihood.fit import Problem
+    from feeddrive.diagnosis.finding.scene import Candidate
 
 CHANCE = 30.0
 """Degrees of freedom of the noise that the luckiest wrong candidate takes away: 2 ln K for the best of K = 10^4 trials
@@ -64,9 +63,9 @@ class Predictor(ABC, Generic[E]):
         """
         return None
 
-    @abstractmethod
-    def scene(self, problem: Problem, found: Sequence[Effect]) -> Scene:
-        """What starts of candidates are read from, after the effects found so far."""
+    def load_motion(self, plant: Plant, evidence: E) -> LoadMotion | None:
+        """Motion of the load side, where one is predicted."""
+        return None
 
     @abstractmethod
     def variables(self, plant: Plant, evidence: E) -> dict[str, FloatArray]:
@@ -75,10 +74,6 @@ class Predictor(ABC, Generic[E]):
     @abstractmethod
     def reference(self, name: str, plant: Plant, evidence: E) -> FloatArray:
         """Series of a channel whose rms a relative error refers to, over the judged samples."""
-
-    @abstractmethod
-    def is_material(self, effect: Effect, plant: Plant) -> bool:
-        """Whether an effect is of a size that matters on this machine."""
 
     def told(self, before: Plant, after: Plant) -> tuple[str, ...]:
         """What is to be said of this way to predict, with the declared plant and with what was found."""

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from feeddrive.diagnosis.calibration.beyond import is_within_tolerance
+from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.diagnosis.recordings.change_result import CommonTrial, Measure, ParameterChange, PerRecording
 from feeddrive.diagnosis.recordings.change_values import Compared, compared_values, keys_of, material_difference
@@ -110,6 +111,6 @@ def neutral_somewhere(problem: Problem, effects: Sequence[Effect], effect: Effec
         same = [e for e in here if (e.name, e.port, e.place) == (effect.name, effect.port, effect.place)]
         if same:
             within = is_within_tolerance(same[-1], problem.plant)
-            if within or not problem.predictor.is_material(same[-1], problem.plant):
+            if within or not is_material(same[-1], problem.plant):
                 return True
     return False

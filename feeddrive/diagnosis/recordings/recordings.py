@@ -11,15 +11,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from feeddrive.diagnosis.finding.scene import AxisScene, Candidate, Scene
+from feeddrive.diagnosis.finding.scene import Candidate
 from feeddrive.diagnosis.likelihood.coordinates import coordinates_of, read_coordinates, write_coordinates
 from feeddrive.diagnosis.likelihood.evidence import Evidence
-from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.diagnosis.likelihood.predictor import Predictor
 from feeddrive.effects.base import Effect, Kind, Parameter, Port, Signature
 from feeddrive.effects.heat.base import ThermalEffect
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
+from feeddrive.simulate.driven import LoadMotion
 from feeddrive.typing import BoolArray, FloatArray
 
 SAME_ORDER = 0.02
@@ -158,20 +158,9 @@ class RecordingPredictor(Predictor[Any]):
         """Channel to its prediction, (n,), SI."""
         return self.inner.predict(self.machine(plant, evidence), evidence)
 
-    def scene(self, problem: Problem, found: Sequence[Effect]) -> Scene:
-        """What starts are read from, every recording with its own machine."""
-        parts = []
-        for evidence in problem.evidence:
-            own = self.machine(problem.machine(found), evidence)
-            count = len(own.effects) - len(without_shifts(found))
-            declared = replace(own, effects=own.effects[:count])
-            parts.append(self.inner.scene(Problem(declared, (evidence,), self.inner), own.effects[count:]))
-        residuals = tuple(residual for part in parts for residual in part.residuals)
-        whole = replace(parts[0], problem=problem, found=tuple(found), residuals=residuals)
-        if isinstance(whole, AxisScene):
-            runs = tuple(run for part in parts if isinstance(part, AxisScene) for run in part.runs)
-            return replace(whole, runs=runs)
-        return whole
+    def load_motion(self, plant: Plant, evidence: Any) -> LoadMotion | None:
+        """Motion of the load side."""
+        return self.inner.load_motion(self.machine(plant, evidence), evidence)
 
     def variables(self, plant: Plant, evidence: Any) -> dict[str, FloatArray]:
         """Variables that a residual may depend on."""
@@ -180,10 +169,6 @@ class RecordingPredictor(Predictor[Any]):
     def reference(self, name: str, plant: Plant, evidence: Any) -> FloatArray:
         """Series that a relative error refers to."""
         return self.inner.reference(name, plant, evidence)
-
-    def is_material(self, effect: Effect, plant: Plant) -> bool:
-        """Whether an effect is of a size that matters."""
-        return self.inner.is_material(effect, plant)
 
     def told(self, before: Plant, after: Plant) -> tuple[str, ...]:
         """What is to be said of the way to predict, recordings without shifts."""

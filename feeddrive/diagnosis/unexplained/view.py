@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feeddrive.diagnosis.likelihood.evidence import AxisEvidence, Evidence
+from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.diagnosis.likelihood.folds import FOLDS, block_of_rows, dealt_blocks
 from feeddrive.diagnosis.unexplained.floor import Floor, noise_floor
@@ -59,9 +59,7 @@ class View:
         return np.hstack(parts)
 
     def _filtered(self, raw: FloatArray) -> FloatArray:
-        if not isinstance(self.evidence, AxisEvidence):
-            return raw[self.rows]
-        return self.evidence.band.filter(raw)[self.rows]
+        return self.evidence.in_band(raw)[self.rows]
 
     @property
     def blocks(self) -> IntegerArray:
