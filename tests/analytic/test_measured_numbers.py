@@ -121,6 +121,8 @@ def test_the_paper_is_explained_within_tolerances() -> None:
     assert not any(one.meets for one in result.singles)
     assert "nothing has to be other than declared" in found.verdict
     assert result.further[0].information > 2.0
+    after = [one.kind.of(found.plant.plant, one.setting) for one in result.problem.measured]
+    assert after == pytest.approx(list(result.after), rel=1e-9)  # the plant that is written is the one that was told
 
 
 def test_further_number_narrows_what_is_open(tmp_path: Path) -> None:
