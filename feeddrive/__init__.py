@@ -45,6 +45,7 @@ _HOMES = {
     "Stiffness": "interface.machine.summary",
     "Summary": "interface.machine.summary",
     "Sweep": "interface.runs.sweep",
+    "UsedLife": "interface.machine.summary",
     "ValidityWarning": "errors",
     "WarmUp": "interface.runs.warm_up",
     "Watched": "interface.measured.watching",
