@@ -126,7 +126,7 @@ def beyond_its_constant(problem: Problem, found: Fit) -> tuple[Quality, ...]:
 
 def suspected(found: Search) -> Suspect | None:
     """The fault of the recorder that is worth a search of the mended recordings; None where none is."""
-    asked = [*_asked(*found.before[0]), *_asked(found.problem, found.fit)] if found.before else []
+    asked = [*_asked(*found.begun), *_asked(found.problem, found.fit)] if found.begun is not None else []
     first = max((trial.gain for trial in found.trials if trial.round == 1), default=0.0)
     alone, beside = asked[: len(asked) // 2], asked[len(asked) // 2 :]
     able = [one for one in alone if one.comparison.gain > first - max(LEAST_GAIN, 2 * one.comparison.standard_error)]
