@@ -16,7 +16,7 @@ from feeddrive.errors import InputError
 from feeddrive.files import find_plant, write_text_atomically
 from feeddrive.interface.machine.check import Check
 from feeddrive.interface.machine.modes import Modes
-from feeddrive.interface.machine.summary import Life, Stiffness, Summary
+from feeddrive.interface.machine.summary import Life, Stiffness, Summary, UsedLife
 from feeddrive.interface.quantities import Quantity, quantities, si
 from feeddrive.plant.analysis.lumping import lump
 from feeddrive.plant.analysis.mode_map import mode_map
@@ -302,6 +302,26 @@ class Axis:
     def life(self) -> Life:
         """Rated life of the ball screw, survived by 90 %."""
         return Life(self.name, rated_life(self.plant))
+
+    def used_life(self, recording: Recording | str | Path) -> UsedLife:
+        """What a recorded motion has taken of the life of each nut of the ball screw.
+
+        Args:
+            recording: with the motor angle; a cutting force counts where it was recorded.
+
+        Raises:
+            InputError: a recording without motor angle.
+        """
+        from feeddrive.diagnosis.likelihood.band import comparison_band
+        from feeddrive.interface.measured.reading import as_recording
+        from feeddrive.simulate.used_life import used_life
+
+        rec = as_recording(recording, "recording")
+        if "motor_angle" not in rec:
+            raise InputError("no channel motor_angle", rec.name, "record it: its revolutions are what wears the nuts")
+        angle = comparison_band(self.plant, 1 / rec.sample_time).filter(rec["motor_angle"])
+        force = rec.channels.get("cutting_force")
+        return UsedLife(rec.name, used_life(self.plant, rec.time, angle, force))
 
     def linear(self, at: str = "") -> control.StateSpace:
         """The axis linearised exactly about a steady motion, states, inputs and outputs named, SI.

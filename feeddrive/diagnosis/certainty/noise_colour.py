@@ -100,7 +100,8 @@ def score_covariance(
     if len(alone):
         # a measured number scatters as one independent value of the recordings does
         squares = np.sum(columns[:last] ** 2, axis=0)
-        total += alone.T @ alone * float(np.median(np.diag(total)[squares > 0] / squares[squares > 0]))
+        seen = squares > 0
+        total += alone.T @ alone * (float(np.median(np.diag(total)[seen] / squares[seen])) if seen.any() else 1.0)
     return 0.5 * (total + total.T)
 
 

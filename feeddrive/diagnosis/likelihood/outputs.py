@@ -13,9 +13,9 @@ import numpy as np
 
 from feeddrive import __version__
 from feeddrive.diagnosis.calibration.calibrated_result import calibrated_record
-from feeddrive.diagnosis.calibration.plant_text import with_calibrated_values
 from feeddrive.diagnosis.judging.result import ChannelResult, Diagnosis, EffectResult, ErrorFigures, ParameterResult
 from feeddrive.diagnosis.numbers.rows import numbers_beside
+from feeddrive.diagnosis.plant_text import with_calibrated_values
 from feeddrive.diagnosis.recordings.change_outputs import changes_record
 from feeddrive.diagnosis.simulated.simulation_record import simulation_record
 from feeddrive.diagnosis.suspicion.quality import is_recorders, quality_record

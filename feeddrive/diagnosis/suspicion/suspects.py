@@ -217,4 +217,5 @@ def _clock_column(problem: Problem, found: Fit) -> FloatArray | None:
 
 
 def _whitened(problem: Problem, column: FloatArray) -> FloatArray:
+    column = np.concatenate([column, np.zeros(len(problem.numbers))])  # measured beside the recordings, by others
     return column if problem.whitener is None else problem.whitener.applied(column)
