@@ -2,22 +2,209 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from feeddrive.diagnosis.numbers.measured_file import read_measured_numbers
-from feeddrive.diagnosis.numbers.numbers_result import diagnose_numbers
-from feeddrive.diagnosis.responses.response_result import diagnose_response
+from feeddrive.diagnosis.numbers.numbers_result import (
+    NumbersResult,
+    diagnose_numbers,
+    numbers_json,
+    numbers_record,
+    plant_text_after,
+)
+from feeddrive.diagnosis.responses.response_result import (
+    ResponseResult,
+    diagnose_response,
+    response_json,
+    response_plant_text,
+    response_record,
+)
 from feeddrive.errors import InputError
 from feeddrive.export.point import export_point
-from feeddrive.interface.axis import Axis
-from feeddrive.interface.measured.numbers import Explained
+from feeddrive.files import write_bytes_atomically, write_text_atomically
+from feeddrive.interface.axis import Axis, axis_of_text
 from feeddrive.interface.measured.reading import read_response_file
-from feeddrive.interface.measured.responses import ExplainedResponse
 from feeddrive.interface.servo import Servo, cascade_for
+from feeddrive.interface.shown import Listing, Shown
 from feeddrive.plant.file.named_parts import with_named_parts
 from feeddrive.recording.frequency_response import FrequencyResponse
+from feeddrive.report.words.numbers_words import numbers_verdict, value_text
+from feeddrive.report.words.response_words import response_verdict
 from feeddrive.servo.frequency_response import Case
+from feeddrive.units.quantity import format_quantity
+
+if TYPE_CHECKING:
+    from feeddrive.report.figures.drawing import RenderedFigure, ReportFigure
+
+
+class _Measured(Shown):
+    """What a measurement says of an axis: a verdict, the axis afterwards, and the files."""
+
+    axis: Axis
+
+    @property
+    def verdict(self) -> str:
+        """Which values are other than declared, or that none has to be; what would be measured next."""
+        raise NotImplementedError
+
+    def __repr__(self) -> str:
+        """The verdict."""
+        return self.verdict
+
+    @property
+    def plant(self) -> Axis:
+        """The axis with what is asserted."""
+        return axis_of_text(self._text(), self.axis.path)
+
+    def save(self, folder: str | Path) -> Path:
+        """Write `diagnosis.json`, `plant_after.toml`, `report.html` and the figure.
+
+        Raises:
+            InputError: the folder cannot be written.
+        """
+        from feeddrive.report.figures.drawing import render
+
+        place, picture = Path(folder), render(self._figures()[0])
+        write_text_atomically(place / "plant_after.toml", self._text())
+        write_bytes_atomically(place / f"{picture.stem}.png", picture.png)
+        self._write_page(picture, place / "report.html")
+        write_text_atomically(place / "diagnosis.json", self._json())
+        return place
+
+    def _text(self) -> str:
+        """The plant file afterwards."""
+        raise NotImplementedError
+
+    def _json(self) -> str:
+        """The text of `diagnosis.json`."""
+        raise NotImplementedError
+
+    def _write_page(self, picture: RenderedFigure, path: Path) -> None:
+        """Write the report."""
+        raise NotImplementedError
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Explained(_Measured):
+    """What measured numbers say of an axis: a stiffness, a natural frequency, a drag torque, a lost motion.
+
+    Attributes:
+        axis: as it was declared.
+        result: everything, plain values, SI.
+    """
+
+    axis: Axis
+    result: NumbersResult
+
+    @property
+    def verdict(self) -> str:
+        """Which values are other than declared, or that none has to be; what would be measured next."""
+        return " ".join(numbers_verdict(self.result))
+
+    def record(self) -> dict[str, Any]:
+        """The content of `diagnosis.json`."""
+        return numbers_record(self.result)
+
+    def listing(self) -> Listing:
+        """Each value alone made to meet the numbers."""
+        singles = self.result.singles
+        records = [
+            {
+                "key": one.value.key,
+                "value": one.value.number(one.coordinate),
+                "unit": one.value.unit,
+                "meets": one.meets,
+            }
+            for one in singles
+        ]
+        rows = [
+            [
+                one.value.words,
+                "rigid" if one.value.missing else format_quantity(one.value.value, one.value.unit),
+                value_text(one.value, one.value.number(one.coordinate)),
+                "yes" if one.meets else "no",
+            ]
+            for one in singles
+        ]
+        title = f"{self.axis.name}: each value alone made to meet the numbers"
+        return Listing(title, ("value", "declared", "would be", "meets all numbers"), rows, records)
+
+    def _text(self) -> str:
+        return plant_text_after(self.axis.text, self.result)
+
+    def _json(self) -> str:
+        return numbers_json(self.result)
+
+    def _write_page(self, picture: RenderedFigure, path: Path) -> None:
+        from feeddrive.report.pages.numbers_page import write_numbers_page
+
+        write_numbers_page(self.result, picture, path)
+
+    def _figures(self) -> Sequence[ReportFigure]:
+        from feeddrive.report.figures.figure_numbers import numbers_figure
+
+        return (numbers_figure(self.result),)
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class ExplainedResponse(_Measured):
+    """What a measured frequency response says of an axis.
+
+    Attributes:
+        axis: as it was declared.
+        result: everything, plain values, SI.
+    """
+
+    axis: Axis
+    result: ResponseResult
+
+    @property
+    def verdict(self) -> str:
+        """What is other than declared, what is possible, and the error before and after."""
+        return " ".join(response_verdict(self.result))
+
+    def record(self) -> dict[str, Any]:
+        """The content of `diagnosis.json`."""
+        return response_record(self.result)
+
+    def listing(self) -> Listing:
+        """One row per value that was found."""
+        rows, records = [], []
+        for one in self.result.found:
+            for number in one.parameters:
+                shown = [format_quantity(value, number.unit) for value in (number.value, *number.interval)]
+                rows.append([one.words, number.key, shown[0], f"[{shown[1]}, {shown[2]}]", f"{one.log_odds:.1f}"])
+                records.append(
+                    {
+                        "name": one.name,
+                        "key": number.key,
+                        "value": number.value,
+                        "unit": number.unit,
+                        "ci95": number.interval,
+                        "log_odds": one.log_odds,
+                    }
+                )
+        title = f"{self.axis.name}: other than declared" if rows else f"{self.axis.name}: nothing other than declared"
+        return Listing(title, ("found", "key", "value", "95 % interval", "log odds"), rows, records)
+
+    def _text(self) -> str:
+        return response_plant_text(self.axis.text, self.result)
+
+    def _json(self) -> str:
+        return response_json(self.result)
+
+    def _write_page(self, picture: RenderedFigure, path: Path) -> None:
+        from feeddrive.report.pages.response_page import write_response_page
+
+        write_response_page(self.result, picture, path)
+
+    def _figures(self) -> Sequence[ReportFigure]:
+        from feeddrive.report.figures.figure_response_fit import response_fit_figure
+
+        return (response_fit_figure(self.result),)
 
 
 def explain(
@@ -48,10 +235,10 @@ def explain(
     entries = with_named_parts(axis.entries, str(axis.path))
     if axis.values or axis.added:
         raise InputError("the axis was changed after it was loaded", axis.name, "save it, and load the file")
-    said = progress or (lambda _: None)
+    tell = progress or (lambda _: None)
     if not isinstance(measured, FrequencyResponse) and Path(measured).suffix.lower() == ".toml":
         numbers = read_measured_numbers(Path(measured), axis.plant)
-        return Explained(axis, diagnose_numbers(entries, axis.path, axis.plant, numbers, said))
+        return Explained(axis, diagnose_numbers(entries, axis.path, axis.plant, numbers, tell))
     response = measured if isinstance(measured, FrequencyResponse) else read_response_file(Path(measured))
     if response is None:
         what = "is neither measured numbers nor a frequency response"
@@ -59,5 +246,5 @@ def explain(
     point = export_point(axis.plant, at, "at")
     case = Case(point.position, point.linearised_at)
     cascade = None if controller is None else cascade_for(axis.plant, controller)
-    found = diagnose_response(entries, axis.path, axis.plant, response, case, said, cascade)
+    found = diagnose_response(entries, axis.path, axis.plant, response, case, tell, cascade)
     return ExplainedResponse(axis, found)
