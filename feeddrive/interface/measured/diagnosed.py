@@ -28,6 +28,7 @@ from feeddrive.report.words.people import error_text, share_text
 from feeddrive.report.words.verdict import verdict_sentences
 
 if TYPE_CHECKING:
+    from feeddrive.interface.compensating import Compensation
     from feeddrive.report.figures.drawing import ReportFigure
 
 Given = Recording | str | Path
@@ -183,6 +184,20 @@ class Diagnosed(Shown):
 
         write_report(self.diagnosis, Path(path), todo=self._actions())
         return Path(path)
+
+    def compensation(self, form: str = "csv", **options: Any) -> Compensation:
+        """What was found as a table that a control reads.
+
+        Args:
+            form: of the control, see `compensate`.
+            **options: as of `compensate`, such as every="10 mm".
+
+        Raises:
+            InputError: nothing that a table may hold, or as `compensate`.
+        """
+        from feeddrive.interface.compensating import compensate
+
+        return compensate(self, form, **options)
 
     def save(self, folder: str | Path) -> Path:
         """Write `diagnosis.json`, `prediction.csv`, `plant_after.toml`, `report.html` and the figures.
