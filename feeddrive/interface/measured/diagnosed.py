@@ -138,7 +138,7 @@ class Diagnosed(Shown):
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """What goes with the errors: data used, each effect in words, what is alike, what to record next."""
+        """Sentences on the data used, each effect, what is alike, and what to record next."""
         found = self.diagnosis
         lines = [used_sentence(found)]
         lines += [f"{one.name}: {one.evidence} {one.reading}" for one in found.effects]
