@@ -12,10 +12,11 @@ from feeddrive.diagnosis.calibration.calibrate import calibrated
 from feeddrive.diagnosis.calibration.calibrated_result import calibrated_results, known_together
 from feeddrive.diagnosis.certainty.ambiguity import Rival, ambiguous_sets, other_places, rivals_of
 from feeddrive.diagnosis.certainty.correlation import correlation
+from feeddrive.diagnosis.certainty.inclusion import odds_for, possible_effects
 from feeddrive.diagnosis.certainty.next_experiment import next_experiments
 from feeddrive.diagnosis.certainty.preferred import with_the_preferred
 from feeddrive.diagnosis.certainty.uncertainty import certainty, intervals
-from feeddrive.diagnosis.finding.search import Search
+from feeddrive.diagnosis.finding.search import Search, search
 from feeddrive.diagnosis.judging.effect_results import effect_results, refused_effects
 from feeddrive.diagnosis.judging.judge import Judged, channel_results, judged_recordings, prepared_for_judging, share_of
 from feeddrive.diagnosis.judging.result import (
@@ -30,7 +31,7 @@ from feeddrive.diagnosis.numbers.measured_file import MeasuredNumber
 from feeddrive.diagnosis.numbers.rows import MeasuredRows, NumberResult, number_results, refuse_ungiven
 from feeddrive.diagnosis.preparation import Shown, informative, prepared, shown
 from feeddrive.diagnosis.recordings.compared import compared_recordings, last_state, machine_as_last, with_carrying
-from feeddrive.diagnosis.recordings.recordings import without_shifts
+from feeddrive.diagnosis.recordings.recordings import is_shift, without_shifts
 from feeddrive.diagnosis.recordings.rehoming import rehomed_plant
 from feeddrive.diagnosis.recordings.search import Searched, search_recordings
 from feeddrive.diagnosis.simulated.loop_evidence import refuse_unfit_loop
@@ -127,7 +128,8 @@ def diagnose(
         fit=_stamps(recordings),
         validate=_stamps(validation or recordings),
         channels=channel_results(found.problem, rest.judged),
-        effects=with_carrying(effect_results(found, shares, spans), compared),
+        effects=with_carrying(effect_results(found, shares, spans, odds_for(found, settled.rivals)), compared),
+        possible=possible_effects(found, settled.rivals),
         refused=refused_effects(found),
         ambiguous=tuple(one.names for one in alike),
         rehomed=settled.rehomed,
@@ -231,7 +233,13 @@ def _settled(
     def judge(other: Search) -> list[Judged]:
         return _judged(other, evidence)[0]
 
-    found, judged = without_denied(found, judged, judge)
+    kept, judged = without_denied(found, judged, judge)
+    if kept is not found and not any(is_shift(effect) for effect in kept.fit.effects):
+        said("searching again without the names that are denied")
+        again = search(kept.problem, said, kept)
+        if len(again.fit.effects) > len(kept.fit.effects):
+            kept, judged = without_denied(again, judge(again), judge)
+    found = kept
     preferred, rivals = with_the_preferred(found, rivals_of(found, judged))
     if preferred is not found:
         kept, judged = without_denied(preferred, judge(preferred), judge)

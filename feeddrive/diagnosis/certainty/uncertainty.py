@@ -86,6 +86,24 @@ def certainty(problem: Problem, fitted: Fit) -> Certainty:
     return Certainty(covariance, reach)
 
 
+def score_variances(problem: Problem, residual: FloatArray, columns: FloatArray) -> FloatArray:
+    """Variance of each of the columns' products with the residual, (k,): by its spectrum, widened as intervals are.
+
+    Args:
+        problem: recordings.
+        residual: weighted, (m,).
+        columns: (m, k).
+    """
+    rows = [evidence.fit_rows for evidence in problem.evidence]
+    variance: FloatArray = np.diag(score_covariance(problem.evidence, rows, residual, columns)).copy()
+    variance *= _where_it_matters(problem, residual, columns)
+    measured = columns[len(columns) - len(problem.numbers) :]  # known to their own deviations
+    variance += problem.numbers.weight**2 * np.sum(measured**2, axis=0)
+    blocks, freedom = _by_blocks(residual, columns, blocks_in_time(problem))
+    believed = blocks > variance * chi2.ppf(BEYOND_CHANCE, freedom) / freedom
+    return np.where(believed, blocks, variance)
+
+
 def slopes(problem: Problem, fitted: Fit) -> FloatArray:
     """The fit's Jacobian; a coordinate that stands at the upper end of its range is moved downwards. Shape (m, k)."""
     still = np.flatnonzero(~fitted.jacobian.any(axis=0))

@@ -66,6 +66,10 @@ def diagnosis_record(diagnosis: Diagnosis) -> dict[str, Any]:
         "channels": [_channel(channel) for channel in diagnosis.channels],
         "effects": [_effect(effect) for effect in diagnosis.effects],
         "calibrated": calibrated_record(diagnosis.calibrated),
+        "possible": [
+            {"name": one.name, "odds": one.odds, "instead_of": one.instead_of, "settles": one.settles}
+            for one in diagnosis.possible
+        ],
         "measured": numbers_beside(diagnosis.measured),
         "quality": quality_record(diagnosis.quality),
         "refused": [{"name": refused.name, "reason": refused.reason} for refused in diagnosis.refused],
@@ -128,6 +132,7 @@ def _effect(effect: EffectResult) -> dict[str, Any]:
         "carries": bool(effect.carries),
         "evidence": effect.evidence,
         "reading": effect.reading,
+        "odds": effect.odds,
     }
 
 

@@ -126,7 +126,7 @@ def beyond_its_constant(problem: Problem, found: Fit) -> tuple[Quality, ...]:
 
 def suspected(found: Search) -> Suspect | None:
     """The fault of the recorder that is worth a search of the mended recordings; None where none is."""
-    asked = [*_asked(*found.before[0]), *_asked(found.problem, found.fit)] if found.before else []
+    asked = [*_asked(*found.begun), *_asked(found.problem, found.fit)] if found.begun is not None else []
     first = max((trial.gain for trial in found.trials if trial.round == 1), default=0.0)
     alone, beside = asked[: len(asked) // 2], asked[len(asked) // 2 :]
     able = [one for one in alone if one.comparison.gain > first - max(LEAST_GAIN, 2 * one.comparison.standard_error)]
@@ -142,11 +142,12 @@ def again(problem: Problem, kind: str) -> Suspect | None:
 def is_better(fault: Suspect, mended: Search, found: Search) -> bool:
     """Whether a fault and what was found beside it say as much as what was found without it, or more with no more.
 
-    As much is what chance does for the values that are spared: less than is asked of any effect.
+    As much is what chance does for the values that are spared: of each, less than is asked of any effect.
     """
     before, after = (one.fit.squared_error / max(len(one.fit.residual), 1) for one in (found, mended))
-    if len(mended.fit.coordinates) + 1 < len(found.fit.coordinates):
-        return after <= (1 + fault.comparison.least) * before
+    spared = len(found.fit.coordinates) - len(mended.fit.coordinates) - 1
+    if spared > 0:
+        return after <= (1 + spared * fault.comparison.least) * before
     return len(mended.fit.effects) <= len(found.fit.effects) and after < before / SAME_ERROR
 
 
