@@ -119,7 +119,7 @@ class Axis:
 
     @cached_property
     def plant(self) -> Plant:
-        """The machine: chain, effects and drive, and its heat where it is declared."""
+        """The machine with chain, effects and drive, and its heat where it is declared."""
         return plant_from_entries(self.entries, self.path).with_effects(*self.added)
 
     @property
@@ -153,7 +153,7 @@ class Axis:
 
     @property
     def travel_per_turn(self) -> float:
-        """Table travel per turn of the motor: the lead, behind its transmission [m]."""
+        """Table travel per turn of the motor, which is the lead behind its transmission [m]."""
         return 2 * math.pi * self.plant.chain.motor_radius
 
     def refuse_unusable(self) -> None:

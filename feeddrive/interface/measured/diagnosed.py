@@ -31,6 +31,7 @@ from feeddrive.report.words.people import error_text, share_text
 from feeddrive.report.words.verdict import verdict_sentences
 
 if TYPE_CHECKING:
+    from feeddrive.interface.compensating import Compensation
     from feeddrive.report.figures.drawing import ReportFigure
 
 Given = Recording | str | Path
@@ -137,7 +138,7 @@ class Diagnosed(Shown):
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """What goes with the errors: data used, each effect in words, what is alike, what to record next."""
+        """Sentences on the data used, each effect, what is alike, and what to record next."""
         found = self.diagnosis
         lines = [used_sentence(found)]
         lines += [f"{one.name}: {one.evidence} {one.reading}" for one in found.effects]
@@ -187,6 +188,20 @@ class Diagnosed(Shown):
 
         write_report(self.diagnosis, Path(path), todo=self._actions(), bench=self._bench())
         return Path(path)
+
+    def compensation(self, form: str = "csv", **options: Any) -> Compensation:
+        """What was found as a table that a control reads.
+
+        Args:
+            form: of the control, see `compensate`.
+            **options: as of `compensate`, such as every="10 mm".
+
+        Raises:
+            InputError: nothing that a table may hold, or as `compensate`.
+        """
+        from feeddrive.interface.compensating import compensate
+
+        return compensate(self, form, **options)
 
     def save(self, folder: str | Path) -> Path:
         """Write `diagnosis.json`, `prediction.csv`, `plant_after.toml`, `report.html` and the figures.

@@ -47,6 +47,11 @@ figcaption { margin-top: 6px; }
 .pane-bench { position: relative; left: 50%; width: min(1400px, 100vw - 24px); transform: translateX(-50%); }
 .pane-bench iframe { display: block; width: 100%; height: max(900px, 100vh - 120px); border: 1px solid #d9d9d9; }
 @media (max-width: 600px) {
+  thead { display: none; }
+  tr { display: block; border-bottom: 1px solid #c8c8c8; padding: 4px 0; }
+  td, td.number { display: flex; gap: 1em; border: 0; padding: 2px 0; text-align: left; white-space: normal; }
+  td::before { content: attr(data-label); flex: 0 0 38%; color: #6b6b6b; }
+  td:not([data-label])::before, td:empty { display: none; }
   body { padding: 16px 12px 40px; } h1 { font-size: 21px; } .main { font-size: 16px; }
   .verdict { padding: 8px 12px; } dd { margin-left: 10px; }
 }
