@@ -15,11 +15,11 @@ from pathlib import Path
 import numpy as np
 
 from feeddrive.plant.file.files import read_plant
-from feeddrive.reproduce.heat.explicit import ExplicitRun, run_explicitly
-from feeddrive.reproduce.heat.moving import moving_system, ripple_number
-from feeddrive.reproduce.heat.moving_family import moving_family
+from feeddrive.thermal.full.explicit import ExplicitRun, run_explicitly
 from feeddrive.thermal.full.full_model import discretise, full_model, model_of
 from feeddrive.thermal.full.grid import Cells
+from feeddrive.thermal.full.moving import moving_system, ripple_number
+from feeddrive.thermal.full.moving_family import moving_family
 from feeddrive.thermal.reduced.network import network
 from feeddrive.thermal.reduced.reduction import Sizes, compressed_basis, reduce_model, reduced_system
 from feeddrive.thermal.reduced.reduction_error import reduction_error

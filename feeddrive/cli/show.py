@@ -21,7 +21,7 @@ def command(
         Path | None, typer.Option(help="Folder for show.json and figures, or a file such as axis.json or axis.txt.")
     ] = None,
 ) -> None:
-    """Show a machine: values with their sources, stiffness budget, inertias, friction, modes, rated life."""
+    """Show a machine: values with their sources, stiffness budget, inertias, friction, modes, rated life, heat."""
     with warnings_as_lines():
         found = load(plant).summary(at or None)
         tables = tables_of(found.tables())

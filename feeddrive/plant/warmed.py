@@ -8,7 +8,6 @@ from feeddrive.effects.base import Effect, number
 from feeddrive.effects.friction.nut_friction import NutFriction
 from feeddrive.effects.friction.shaft_drag import BearingDrag, NutDrag
 from feeddrive.effects.travel.lead_error_cumulative import LeadErrorCumulative
-from feeddrive.plant.chain.linear_chain import Chain
 from feeddrive.plant.equations import parameter_names
 from feeddrive.plant.plant import Plant
 from feeddrive.thermal.coupling import Changes
@@ -59,15 +58,5 @@ def warmed(plant: Plant, changes: Changes, slope: float, nut_stiffness: float) -
         else effect
         for effect in effects
     )
-    return replace(plant, effects=grown, mechanics=_stiffened(plant.chain, changes.nut_stiffness, nut_stiffness))
-
-
-def _stiffened(chain: Chain, share: float, nut_stiffness: float) -> Chain:
-    """The chain with the nut's stiffness times a share, in series with the rest where only the sum is known."""
-    values = dict(chain.values)
-    if "nut_stiffness" in values:
-        values["nut_stiffness"] *= share
-    elif "axial_stiffness" in values:
-        added = (1 / share - 1) / nut_stiffness
-        values["axial_stiffness"] = 1 / (1 / values["axial_stiffness"] + added)
-    return replace(chain, values=values)
+    softened = plant.chain.nut_softened(changes.nut_stiffness, nut_stiffness)
+    return replace(plant.with_chain_values(softened), effects=grown)

@@ -9,9 +9,9 @@ import numpy as np
 from feeddrive.parts.contact import PointContact
 from feeddrive.parts.life.life import survival
 from feeddrive.parts.life.life_exponents import BALL_SCREW, load_exponent
+from feeddrive.parts.life.rating import double_nut_share
+from feeddrive.parts.life.stress_cycles import ball_travel_share
 from feeddrive.parts.screw.screw_contact import BallTrack, nut_contact, screw_contact
-from feeddrive.reproduce.life.rating import double_nut_share
-from feeddrive.reproduce.life.stress_cycles import ball_travel_share
 from feeddrive.reproduce.row import Paper, Row, claim, not_possible
 from feeddrive.reproduce.specimen_001 import CIRCLE, specimen_track
 from feeddrive.typing import FloatArray

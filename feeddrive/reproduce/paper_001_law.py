@@ -14,10 +14,10 @@ from feeddrive.parts.life.life_exponents import (
     diameter_exponent,
     load_exponent,
 )
+from feeddrive.parts.life.rating import combined_rating, double_nut_share, groove_factor
+from feeddrive.parts.life.stress_cycles import nut_cycles, screw_cycles, stressed_nut_groove, stressed_screw_groove
+from feeddrive.parts.life.subsurface_shear import greatest_shear_on_axis, greatest_shear_under_line
 from feeddrive.parts.screw.screw_contact import nut_contact, screw_contact
-from feeddrive.reproduce.life.rating import combined_rating, double_nut_share, groove_factor
-from feeddrive.reproduce.life.stress_cycles import nut_cycles, screw_cycles, stressed_nut_groove, stressed_screw_groove
-from feeddrive.reproduce.life.subsurface_shear import greatest_shear_on_axis, greatest_shear_under_line
 from feeddrive.reproduce.row import Paper, Row, claim, not_possible, number, span
 from feeddrive.reproduce.specimen_001 import CIRCLE, STROKE, specimen_track
 

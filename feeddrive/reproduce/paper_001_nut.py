@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import brentq
 
+from feeddrive.parts.life.rating import Rating, rating, rating_along_screw
+from feeddrive.parts.life.stress_cycles import nut_cycles, screw_cycles, stressed_nut_groove, stressed_screw_groove
 from feeddrive.parts.screw.load_distribution import load_distribution
-from feeddrive.reproduce.life.rating import Rating, rating, rating_along_screw
-from feeddrive.reproduce.life.stress_cycles import nut_cycles, screw_cycles, stressed_nut_groove, stressed_screw_groove
 from feeddrive.reproduce.row import Paper, Row, claim, not_possible, number
 from feeddrive.reproduce.specimen_001 import (
     CIRCLE,

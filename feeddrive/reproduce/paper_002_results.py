@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from itertools import pairwise
 
-from feeddrive.reproduce.heat.moving import moving_system
 from feeddrive.reproduce.paper_002_sets import PRELOADS, SPEEDS, Assumptions, WarmUp, nut_friction, torque, warm_up
 from feeddrive.reproduce.row import Paper, Row, claim, number
+from feeddrive.thermal.full.moving import moving_system
 from feeddrive.thermal.laws.friction import nut_load_torque
 
 _HEAT = Paper.HEAT

@@ -17,9 +17,9 @@ from enum import Enum
 
 import numpy as np
 
-from feeddrive.reproduce.heat.moving import moving_system
 from feeddrive.thermal.full.full_model import NUT, discretise, model_of
 from feeddrive.thermal.full.grid import Cells
+from feeddrive.thermal.full.moving import moving_system
 from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.laws.films import Films
 from feeddrive.thermal.laws.friction import Friction, nut_load_torque

@@ -12,9 +12,9 @@ import math
 from functools import cache
 
 from feeddrive.parts.life.life import rating_of_test
+from feeddrive.parts.life.rating import double_nut_share, material_constant_of_test
 from feeddrive.parts.screw.load_distribution import LoadDistribution, NutBody, load_distribution, nut_body
 from feeddrive.parts.screw.screw_contact import BallTrack
-from feeddrive.reproduce.life.rating import double_nut_share, material_constant_of_test
 
 PRELOAD = 13.5e3
 """Of the test [N]."""

@@ -39,7 +39,7 @@ from feeddrive.parts.screw.slip_angle import (
     slip_angles_screw_drives,
     thread_angle,
 )
-from feeddrive.reproduce.screw.slip_forces import axial_force, screw_moment
+from feeddrive.parts.screw.slip_forces import axial_force, screw_moment
 
 LEAD_ANGLES = st.floats(math.radians(0.5), math.radians(44))
 CONTACT_ANGLES = st.floats(math.radians(5), math.radians(89))

@@ -15,7 +15,7 @@ from feeddrive.parts.motor import HoldingBrake, Motor
 from feeddrive.parts.screw.ball_screw import ScrewShaft
 from feeddrive.parts.screw.nut import Nut, stiffness_at_preload
 from feeddrive.parts.screw.transmission import Transmission
-from feeddrive.reproduce.screw.wedge import (
+from feeddrive.parts.screw.wedge import (
     self_locking,
     self_locking_lead,
     wedge_back_driving_efficiency,

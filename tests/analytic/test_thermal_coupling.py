@@ -12,7 +12,7 @@ from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant
 from feeddrive.parts.bearings.bearing_friction import viscous_torque
-from feeddrive.parts.lubricant import mineral_oil
+from feeddrive.parts.lubricant import Lubricant
 from feeddrive.plant.file.files import read_plant
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.warmed import warmed
@@ -40,7 +40,7 @@ def test_equal_temperatures_change_nothing_but_oil() -> None:
 
 
 def test_viscous_share_is_that_of_palmgrens_torque() -> None:
-    oil = mineral_oil(100)
+    oil = Lubricant(100e-6, 11.2e-6)
     torques = [viscous_torque(10.0, oil.viscosity(at), 200.0, PITCH) for at in (20.0, 45.0)]
     assert viscous_share(oil, 45.0, 20.0) == pytest.approx(torques[1] / torques[0], rel=1e-12)
 

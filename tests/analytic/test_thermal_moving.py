@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from feeddrive.errors import InputError, ValidityWarning
-from feeddrive.reproduce.heat.explicit import ExplicitRun, run_explicitly
-from feeddrive.reproduce.heat.moving import moving_system, ripple_number
-from feeddrive.reproduce.heat.moving_family import moving_family
+from feeddrive.thermal.full.explicit import ExplicitRun, run_explicitly
 from feeddrive.thermal.full.full_model import discretise, model_of
 from feeddrive.thermal.full.grid import Cells
+from feeddrive.thermal.full.moving import moving_system, ripple_number
+from feeddrive.thermal.full.moving_family import moving_family
 from feeddrive.thermal.reduced.model import Path
 from feeddrive.thermal.reduced.reduction import Sizes, compressed_basis, reduced_system
 from feeddrive.thermal.reduced.system import HeatSystem

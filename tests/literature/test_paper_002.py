@@ -10,10 +10,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from feeddrive.reproduce.heat.explicit import run_explicitly
 from feeddrive.reproduce.paper_002 import rows
 from feeddrive.reproduce.paper_002_sets import GRID, PRELOADS, SPEEDS, Assumptions, plant, warm_up
 from feeddrive.reproduce.row import Row, Status
+from feeddrive.thermal.full.explicit import run_explicitly
 from feeddrive.thermal.full.full_model import discretise
 from feeddrive.thermal.full.grid import Cells
 

@@ -126,7 +126,7 @@ def stroke(scene: Scene) -> str:
     """What depends on the position needs a stroke."""
     runs = zip(scene.runs, scene.problem.evidence, strict=True)
     longest = max(float(np.ptp(run.table_position[e.fit_rows])) for run, e in runs)
-    least = LEAST_STROKE_TURNS * scene.plant.chain.values["lead"]
+    least = LEAST_STROKE_TURNS * 2 * np.pi * scene.plant.chain.radius
     return "" if longest >= least else f"the stroke is {longest * 1e3:.2g} mm; it needs {least * 1e3:.3g} mm"
 
 

@@ -1,4 +1,4 @@
-"""Summary of a machine that declares heat alone: geometry, films, heats, time constants, sensors."""
+"""Summary of the heat of a machine: geometry, films, heats, time constants, sensors."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class HeatSummary(Shown):
         values = [[key, format_quantity(value, unit), source] for key, value, unit, source in self._values()]
         records = [{"value": key, "quantity": v, "unit": unit, "source": s} for key, v, unit, s in self._values()]
         tables = (
-            Listing(f"{plant.name}, heat alone", ("value", "quantity", "source"), values, records),
+            Listing(f"{plant.name}, heat", ("value", "quantity", "source"), values, records),
             Listing(
                 "Films, contact and heats, effects not counted",
                 ("speed", "film of screw", "of nut", "contact", "heat of nut", "front bearing", "rear"),
@@ -49,12 +49,14 @@ class HeatSummary(Shown):
         return tuple(one for one in tables if one.rows)
 
     def record(self) -> dict[str, Any]:
-        """Everything as plain values, SI."""
+        """Everything as plain values, SI, of a machine that declares heat alone."""
+        named = {"format": "feeddrive-show/1", "name": self.plant.name, "structure": "heat alone"}
+        return {**named, **self.declared()}
+
+    def declared(self) -> dict[str, Any]:
+        """The heat as plain values, SI."""
         plant = self.plant
         return {
-            "format": "feeddrive-show/1",
-            "name": plant.name,
-            "structure": "heat alone",
             "values": {key: {"value": v, "unit": unit, "source": source} for key, v, unit, source in self._values()},
             "speeds": [asdict(row) for row in heat_rows(plant)],
             "bodies": [asdict(body) for body in plant.bodies],

@@ -8,6 +8,7 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from feeddrive.interface.machine.heat_summary import HeatSummary
 from feeddrive.interface.shown import Listing, Shown, finite, write_figures, write_json
 from feeddrive.plant.analysis.modes import Modes
 from feeddrive.plant.analysis.rated_life import LifeRow
@@ -122,7 +123,7 @@ class Life(Shown):
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Summary(Shown):
-    """Values with their sources, inertias, stiffness budget, friction, modes and rated life of a machine.
+    """Values with their sources, inertias, stiffness budget, friction, modes and rated life of a machine, and its heat.
 
     Attributes:
         plant: the machine.
@@ -163,10 +164,11 @@ class Summary(Shown):
         if found.stiffness is not None:
             stiffness = Stiffness(plant.name, found.position, found.stiffness, plant).listing()
             tables.insert(3, replace(stiffness, title=f"Stiffness, motor held{at}"))
-        return tuple(one for one in tables if one.rows)
+        heat = HeatSummary(plant.heat).tables() if plant.has_heat else ()
+        return (*(one for one in tables if one.rows), *heat)
 
     def record(self) -> dict[str, Any]:
-        """Everything as plain values, SI."""
+        """Everything as plain values, SI; what is declared about heat under `heat`."""
         plant, found = self.plant, self.figures
         return {
             "format": "feeddrive-show/1",
@@ -192,6 +194,7 @@ class Summary(Shown):
                 "free": _modes_record(found.modes.free),
                 "chain_valid_to": finite(found.modes.chain_valid_to),
             },
+            **({"heat": HeatSummary(plant.heat).declared()} if plant.has_heat else {}),
         }
 
     def save(self, folder: str | Path) -> Path:
@@ -224,7 +227,7 @@ class Summary(Shown):
         ]
         if math.isfinite(plant.torque_limit):
             rows.append(("motor.torque_limit", plant.torque_limit, "N m", self._source("torque_limit")))
-        for effect in plant.effects:
+        for effect in plant.motion_effects:
             for parameter in (one for one in effect.parameters if one.key in effect.values):
                 key = f"{effect.label}.{parameter.key}"
                 rows.append((key, effect.values[parameter.key], parameter.unit, self._source(key)))

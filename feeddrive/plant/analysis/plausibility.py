@@ -243,7 +243,7 @@ def _nut_places(plant: Plant) -> tuple[float, float]:
     """Nut from the near bearing at either end of the stroke [m]; the whole screw where no stroke is declared."""
     if plant.stroke is None or not plant.chain.varies:
         return 0.0, plant.drive.screw.length if plant.drive is not None else 0.0
-    first = float(plant.chain.values["first_nut_position"])
+    first = plant.chain.nut_at_zero
     return first + plant.stroke[0], first + plant.stroke[1]
 
 

@@ -129,7 +129,7 @@ def _of_parts(plant: Plant, position: float) -> list[tuple[str, str, float]]:
     """The same part by part; none where there are no parts, or the chain differs from them."""
     if plant.drive is None or not plant.chain.varies:
         return []
-    place = float(plant.chain.values["first_nut_position"]) + position
+    place = plant.chain.nut_at_zero + position
     held = combined_stiffness(without_brake(plant.drive), place)
     if abs(held.total * static_shape(plant, position)[-1] - 1) > _SAME:
         return []

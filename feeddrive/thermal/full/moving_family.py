@@ -15,9 +15,9 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from feeddrive.errors import ValidityWarning
-from feeddrive.reproduce.heat.moving import lowered, ripple_loss
 from feeddrive.thermal.full.full_model import discretise, model_of
 from feeddrive.thermal.full.grid import Cells
+from feeddrive.thermal.full.moving import lowered, ripple_loss
 from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.reduced.model import HeatModel, Path
 from feeddrive.thermal.reduced.reduction import DEFAULT_ORDER, common_basis

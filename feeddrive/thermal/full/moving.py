@@ -30,7 +30,7 @@ import numpy as np
 import scipy.sparse as sparse
 
 from feeddrive.errors import InputError, ValidityWarning
-from feeddrive.reproduce.heat.explicit import places_of
+from feeddrive.thermal.full.explicit import places_of
 from feeddrive.thermal.full.full_model import NUT, Discretisation, contact_way, model_of
 from feeddrive.thermal.reduced.model import AMBIENT, Path
 from feeddrive.thermal.reduced.system import HeatSystem

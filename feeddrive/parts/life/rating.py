@@ -33,17 +33,17 @@ import numpy as np
 from feeddrive.errors import InputError
 from feeddrive.parts.contact import PointContact
 from feeddrive.parts.life.life_exponents import BALL_SCREW, LifeExponents
-from feeddrive.parts.screw.load_distribution import LoadDistribution
-from feeddrive.parts.screw.screw_contact import BallTrack, nut_contact, screw_contact
-from feeddrive.parts.values import PartValue, check_values
-from feeddrive.reproduce.life.stress_cycles import (
+from feeddrive.parts.life.stress_cycles import (
     effective_screw_groove,
     nut_cycles,
     screw_cycles,
     stressed_nut_groove,
     stressed_screw_groove,
 )
-from feeddrive.reproduce.life.subsurface_shear import greatest_shear_on_axis
+from feeddrive.parts.life.subsurface_shear import greatest_shear_on_axis
+from feeddrive.parts.screw.load_distribution import LoadDistribution
+from feeddrive.parts.screw.screw_contact import BallTrack, nut_contact, screw_contact
+from feeddrive.parts.values import PartValue, check_values
 
 _CONSTANT = (PartValue("material_constant", "1", 0.0, 1e9),)
 _TESTED = (PartValue("tested", "N", 0.0, 1e9),)
