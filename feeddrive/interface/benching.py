@@ -13,7 +13,7 @@ from feeddrive.diagnosis.judging.result import Diagnosis
 from feeddrive.errors import InputError
 from feeddrive.files import DIAGNOSED, write_text_atomically
 from feeddrive.interface.axis import Axis, load
-from feeddrive.interface.diagnosed import Diagnosed
+from feeddrive.interface.measured.diagnosed import Diagnosed
 from feeddrive.interface.quantities import Quantity, si
 from feeddrive.interface.servo import Servo, cascade_for, tune
 from feeddrive.plant.plant import Plant
@@ -82,7 +82,7 @@ def bench(
     return Bench(BenchPage(plant, cascade, heaviest, found))
 
 
-def bench_of_diagnosis(after: object, diagnosis: Diagnosis) -> str:
+def bench_of_diagnosis(after: Plant, diagnosis: Diagnosis) -> str:
     """The page for the tab of a report: the machine as diagnosed, at its declared or a recommended cascade.
 
     Args:
@@ -93,7 +93,7 @@ def bench_of_diagnosis(after: object, diagnosis: Diagnosis) -> str:
         The page; empty where there is nothing to play on: no effect was found, a machine without elastic chain or that
         declares heat alone, or one whose loop cannot be made or shown.
     """
-    if not isinstance(after, Plant) or not after.chain.elastic or not diagnosis.effects:
+    if not after.has_motion or not after.chain.elastic or not diagnosis.effects:
         return ""
     try:
         cascade = cascade_of(after, None)

@@ -191,7 +191,7 @@ def refuse_no_range(low: float, high: float) -> None:
     """
     if not 0 < low < high < math.inf:
         what = f"{low:g} Hz to {high:g} Hz is no range of frequencies"
-        raise InputError(what, "--range", 'write e.g. --range "1 Hz,2 kHz"')
+        raise InputError(what, "frequencies", 'write e.g. "1 Hz,2 kHz"')
 
 
 def grid(low: float, high: float, roots: tuple[Resonance, ...] = ()) -> FloatArray:

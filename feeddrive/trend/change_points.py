@@ -54,6 +54,7 @@ class Found:
         posterior: dates that are possible, and log of the probability of each, (d,) each.
         size, deviation: of the course and its standard deviation: the height of a jump, the mean rate of a slope.
         time_constants: interval with 95 %, of a course that settles.
+        settles: log odds of a course that settles against a slope, wherever either begins; 0 of a sudden one.
     """
 
     atom: Atom
@@ -63,6 +64,7 @@ class Found:
     size: float
     deviation: float
     time_constants: tuple[float, float] = (0.0, 0.0)
+    settles: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -103,10 +105,10 @@ def course_of(series: Series, quantities: int) -> Course:
     band = np.sqrt(np.clip(np.einsum("ij,jk,ik->i", columns, spread, columns), 0, None))
     found = []
     for i, atom in enumerate(atoms):
-        posterior = search.dates(atoms, i)
+        posterior, settles = search.dates(atoms, i)
         size, deviation = float(mean[1 + i]), float(np.sqrt(spread[1 + i, 1 + i]))
         found.append(Found(atom, search.odds_of(atoms, i), most_likely(*posterior), posterior, size, deviation,
-                           search.time_constants(atoms, i)))  # fmt: skip
+                           search.time_constants(atoms, i), settles))  # fmt: skip
     return Course((float(mean[0]), float(np.sqrt(spread[0, 0]))), scatter, tuple(found), columns @ mean, band)
 
 
@@ -210,21 +212,27 @@ class _Search:
         refined = self.series.summed(atoms) + self._prior_of(atoms[place])
         return float(np.exp(min(float(logsumexp([*more, refined])) - alone, 690.0)))
 
-    def dates(self, atoms: Sequence[Atom], place: int) -> tuple[FloatArray, FloatArray]:
-        """Possible dates of a course among those of its kind, and the log of the probability of each, (d,) each."""
-        atom, time = atoms[place], self.series.line.time
+    def dates(self, atoms: Sequence[Atom], place: int) -> tuple[tuple[FloatArray, FloatArray], float]:
+        """Possible dates of a course and the log of the probability of each, (d,) each; log odds of settling.
+
+        A slow course is dated by what settles and by slopes together: which of the two it is, is not known either.
+        """
+        atom, tried, time = atoms[place], self.series.line.tried, self.series.line.time
         others = [one for i, one in enumerate(atoms) if i != place]
-        if atom.kind == SETTLING:
-            near = [replace(atom, date=float(date)) for date in time[: len(time) - 2]]
-            logs = np.array([self.series.summed([*others, one]) for one in _around(near, atom)])
-            dates = np.array([one.date for one in _around(near, atom)])
-        else:
-            chosen = [i for i, one in enumerate(self.series.line.tried) if one.kind == atom.kind]
-            logs = self.series.with_one_more(others)[chosen]
-            dates = np.array([self.series.line.tried[i].date for i in chosen])
+        more = self.series.with_one_more(others) + self.log_prior
+        by_kind = {kind: [i for i, one in enumerate(tried) if one.kind == kind] for kind in KINDS}
+        chosen = by_kind[SLOPE if atom.kind == SETTLING else atom.kind]
+        dates, logs = np.array([tried[i].date for i in chosen]), more[chosen]
+        settling = more[by_kind[SETTLING]]
+        if atom.kind == SETTLING:  # few dates are tried of these: now all that are near
+            near = _around([replace(atom, date=float(date)) for date in time[: len(time) - 2]], atom)
+            settling = np.array([self.series.summed([*others, one]) for one in near]) + self._prior_of(atom)
+            dates, logs = np.concatenate([dates, [one.date for one in near]]), np.concatenate([logs, settling])
         possible = np.unique(dates)
         together = np.array([float(logsumexp(logs[dates == date])) for date in possible])
-        return possible, together - logsumexp(together)
+        slow = atom.kind in (SLOPE, SETTLING) and settling.size > 0
+        odds = float(logsumexp(settling) - logsumexp(more[by_kind[SLOPE]])) if slow else 0.0
+        return (possible, together - logsumexp(together)), odds
 
     def time_constants(self, atoms: Sequence[Atom], place: int) -> tuple[float, float]:
         """Interval with 95 % of a time constant."""

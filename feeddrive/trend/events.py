@@ -68,8 +68,10 @@ def _together(one: Found, other: Found) -> bool:
 
 def _event(group: list[Change]) -> Event:
     ordered = tuple(sorted(group, key=lambda change: -change.found.odds))
-    kind = group[0].found.atom.kind
-    dates, logs = _together_dated([change.found for change in group if change.found.atom.kind == kind])
+    kind = JUMP
+    if group[0].found.atom.kind != JUMP:  # one kind of wear or warming moves all of these quantities
+        kind = SETTLING if sum(change.found.settles for change in group) > 0 else SLOPE
+    dates, logs = _together_dated([change.found for change in group])
     return Event(
         kind,
         ordered,

@@ -5,6 +5,7 @@
 With the triangle [R11 R12 z1; 0 R22 z2] of recording i the maps see R22, z2 alone, and theta_i follows from R11
 theta_i = z1 - R12 beta: hundreds of recordings are one small least-squares problem. A level or slope that a map
 could hold as well as a term is the term's (maps have mean zero over their places, that of the lead slope zero too).
+A tight place drags more where all drags more: the friction map of each recording is that of all times a free factor.
 The last sum is a weak prior of width w, so that a recording that does not show a term says nothing of it and not
 anything.
 """
@@ -25,6 +26,10 @@ stroke. Sets how a prior weighs against rows, no result."""
 
 SHOWN = 0.5
 """Share of the prior's width below which a term is told by a recording: its rows say more than the prior does."""
+
+SCALES = 1.0
+"""Width of the prior of the share by which a recording's friction map is another one than the usual: from none to
+twice."""
 
 STIFF = 1e6
 """Weight of the maps' freedom from level and slope against the rows."""
@@ -75,10 +80,11 @@ def pool(passes: Sequence[Pass], grid: Grid, widths: Mapping[str, float]) -> Poo
     values, variance = np.empty((len(passes), count)), np.empty((len(passes), count))
     wide = np.array([widths[name] for name in names])
     for i, one in enumerate(passes):
-        r, z = one.triangle[:count, :count], _seen(one, beta, count, low, hats)
-        stacked = np.vstack([r, prior])
-        values[i] = np.linalg.lstsq(stacked, np.concatenate([z, np.zeros(count)]), rcond=None)[0]
-        inverse = np.linalg.inv(stacked.T @ stacked)
+        rows, right = _own_rows(one, beta, count, low, hats)
+        stacked = np.vstack([rows, np.column_stack([prior, np.zeros(count)]), [*np.zeros(count), usual / SCALES]])
+        solved = np.linalg.lstsq(stacked, np.concatenate([right, np.zeros(count + 1)]), rcond=None)[0]
+        values[i] = solved[:count]
+        inverse = np.linalg.pinv(stacked.T @ stacked)[:count, :count]
         spread = usual * np.sqrt(np.diag(inverse))
         variance[i] = np.diag(inverse)
         values[i, spread > SHOWN * wide] = np.nan
@@ -122,11 +128,14 @@ def _maps(passes: Sequence[Pass], count: int, low: int, hats: int, places: Float
     return found
 
 
-def _seen(one: Pass, beta: FloatArray, count: int, low: int, hats: int) -> FloatArray:
-    """What the terms of a recording have to meet once the maps are taken out, (p,)."""
+def _own_rows(one: Pass, beta: FloatArray, count: int, low: int, hats: int) -> tuple[FloatArray, FloatArray]:
+    """What the terms of a recording, (count,), and the scale of its friction map have to meet, the maps taken out."""
     own = beta[_placed(one, low, hats)]
-    found: FloatArray = one.triangle[:count, -1] - one.triangle[:count, count:-1] @ own
-    return found
+    friction = np.where(np.arange(len(own)) < one.hats, 0.0, own if one.channel == "motor_torque" else 0.0)
+    maps = one.triangle[:, count:-1]
+    rows = np.column_stack([one.triangle[:, :count], maps @ friction])
+    found: FloatArray = one.triangle[:, -1] - maps @ own
+    return rows, found
 
 
 def _rest(one: Pass, beta: FloatArray, count: int, low: int, hats: int) -> float:

@@ -31,6 +31,7 @@ from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
+from feeddrive.recording.long.joined import shortened
 from feeddrive.simulate.driven import LoadMotion
 from feeddrive.typing import BoolArray, FloatArray
 
@@ -103,6 +104,7 @@ def linear_pass(recording: Recording, plant: Plant, grid: Grid) -> tuple[Pass, .
     Raises:
         InputError: a recording that cannot be used with this plant.
     """
+    recording = shortened(recording, plant.chain.motor_radius)
     evidence = prepare(recording, plant, 1.0)
     predictor = AxisPredictor()
     run = predictor.load_motion(plant, evidence)

@@ -57,6 +57,9 @@ torque, whose peak is some ten times its usual size."""
 MOST_GIVE = 1e-4
 """Windup of a stiff axis under its peak thrust [m]: 10 kN over 100 N/µm."""
 
+IN_PARTS = 1_000_000
+"""Rows that are looked at together, so that long recordings do not take many times their memory."""
+
 SPIKY = ("motor_torque", "motor_current", "motor_torque_share", "cutting_force")
 """Channels that step with the motion, or make it."""
 
@@ -125,10 +128,8 @@ def odd_steps(samples: FloatArray, resolution: float) -> IndexArray:
     size = size[places]
     reach = np.array([-13, -9, -6, -4, 4, 6, 9, 13])
     found = []
-    for first in range(
-        0, size.size, 1_000_000
-    ):  # in parts, so that long recordings do not take many times their memory
-        index = np.arange(first, min(first + 1_000_000, size.size))
+    for first in range(0, size.size, IN_PARTS):
+        index = np.arange(first, min(first + IN_PARTS, size.size))
         beside = np.median([size[np.clip(index + r, 0, size.size - 1)] for r in reach], axis=0)
         found.append(index[size[index] > FAR * beside + 4.0 * resolution])
     likely = np.concatenate(found) if found else np.zeros(0, dtype=np.int64)
@@ -223,9 +224,11 @@ def _alone(samples: FloatArray, resolution: float, motion: FloatArray | None, sl
     Between slow rows a drive may accelerate and stop again: there a cell must be `FRICTION` times all others.
     """
     away = np.zeros(samples.size)  # at the ends, which are left out anyway, a step is not told from a cell
-    beside = np.stack([samples[:-4], samples[1:-3], samples[3:-1], samples[4:]])
-    middle = 0.5 * (beside.sum(axis=0) - beside.max(axis=0) - beside.min(axis=0))
-    away[2:-2] = np.abs(samples[2:-2] - middle)
+    for first in range(2, samples.size - 2, IN_PARTS):
+        last = min(first + IN_PARTS, samples.size - 2)
+        beside = np.stack([samples[first + shift : last + shift] for shift in (-2, -1, 1, 2)])
+        middle = 0.5 * (beside.sum(axis=0) - beside.max(axis=0) - beside.min(axis=0))
+        away[first:last] = np.abs(samples[first:last] - middle)
     most = max(3 * MOST_CELLS, samples.size // 1000)
     order = np.argpartition(away, -most - 1)[-most - 1 :]
     order = order[np.argsort(away[order])[::-1]]

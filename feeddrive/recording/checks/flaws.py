@@ -20,8 +20,9 @@ from feeddrive.units.quantity import format_quantity
 
 IndexArray = NDArray[np.int64]
 
-BAD, HELD, CLIPPED = "bad", "held", "clipped"
-"""Kinds: cells apart from their neighbours; a value repeated while the machine moved on; a value at its own limit."""
+BAD, HELD, CLIPPED, JOINED = "bad", "held", "clipped", "joined"
+"""Kinds: cells apart from their neighbours; a value repeated while the machine moved on; a value at its own limit; what
+lies between two stretches of a long recording."""
 
 COMPARED = ("motor_torque", "motor_current", "motor_torque_share", "motor_angle", "table_position")
 """Channels whose flawed rows can be left out of a comparison."""
@@ -36,7 +37,7 @@ class Flaw:
 
     Attributes:
         channel: in which they stand.
-        kind: `BAD`, `HELD` or `CLIPPED`.
+        kind: `BAD`, `HELD`, `CLIPPED` or `JOINED`.
         rows: their indices, increasing, (k,).
         level: the first value that stands there [unit of the channel].
         runs: of how many stretches.

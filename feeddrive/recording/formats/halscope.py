@@ -39,7 +39,7 @@ def recognises_sampler(head: str) -> bool:
         return False
     lines = [line.split() for line in head.split("\n")[:40] if line.strip()]
     lines = lines[:-1] if len(head) >= 60_000 else lines
-    rows = [cells for cells in lines if cells != [_OVERRUN]]
+    rows = [cells for cells in lines if " ".join(cells).lower() != _OVERRUN]
     if len(rows) < _FEWEST or (len(rows[0]) < 2 and [_OVERRUN] not in lines):
         return False
     return all(len(cells) == len(rows[0]) and all(map(_is_plain, cells)) for cells in rows[:_FEWEST])
@@ -74,20 +74,21 @@ def _new(lines: list[str], where: str) -> tuple[list[str], FloatArray, tuple[str
     at = next((i for i, line in enumerate(lines) if line.strip() and not line.lstrip().startswith("#")), None)
     if at is None:
         raise InputError("the log holds no names", where, "save it again")
-    names = [name.strip() for name in lines[at].split(";")]
+    mark = next((one for one in ";\t," if one in lines[at]), ";")  # a table program may have written it again
+    names = [name.strip() for name in lines[at].split(mark)]
     while names and not names[-1]:
         names.pop()
     if not names or all(map(_is_plain, names)):
         raise InputError("the row of names is missing", f"{where}, row {at + 1}", "save the log again")
 
     def split(line: str) -> list[str]:
-        cells = [cell.strip().replace(",", ".") for cell in line.split(";")]
+        cells = [cell.strip().replace(",", ".") for cell in line.split(mark)]
         return cells[:-1] if len(cells) == len(names) + 1 and not cells[-1] else cells
 
     first = at + 1
     while first < len(lines) and lines[first].lstrip().startswith("#"):  # how it was drawn: # Position, # Scale
         first += 1
-    separator = "" if any("," in line for line in lines[first : first + 20]) else ";"
+    separator = "" if mark != "," and any("," in line for line in lines[first : first + 20]) else mark
     values, notes = number_rows(lines[first:], split, len(names), first + 1, where, separator=separator)
     return names, values, notes
 
@@ -147,7 +148,7 @@ def read_sampler(text: str, where: str, sample_time: float | None, columns: tupl
     kept: list[str] = []
     rows: list[int] = []
     for number, line in enumerate(lines, start=1):
-        if line.strip() == _OVERRUN:
+        if line.strip().lower() == _OVERRUN:
             losses.append(len(kept))
         elif line.strip():
             kept.append(line)

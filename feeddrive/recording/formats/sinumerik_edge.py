@@ -7,6 +7,7 @@ Signals are called NAME|axis number; `Axis` gives the machine's name of the axis
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping, Sequence
 from datetime import datetime
 from typing import Any
@@ -14,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from feeddrive.errors import InputError
+from feeddrive.recording.traces.naming import known_unit
 from feeddrive.recording.traces.rows import number_rows
 from feeddrive.recording.traces.trace import Signal, Trace, unique_names
 from feeddrive.typing import FloatArray
@@ -29,7 +31,7 @@ _KINDS = {"DES_POS": "position", "ENC_POS": "position", "ENC1_POS": "position", 
 
 def recognises(head: str) -> bool:
     """Tell by its first letters whether a text is a capture in JSON."""
-    return head.lstrip("\ufeff \n\t").startswith("{") and any(
+    return head.lstrip("\ufeff \n\t[").startswith("{") and any(
         mark in head for mark in ('"SignalListHFData"', '"HFData"', '"CycleTimeMs"', '"Header"')
     )
 
@@ -56,6 +58,7 @@ def read(text: str, where: str, sample_time: float | None = None) -> Trace:
     except (ValueError, RecursionError) as error:
         place = f"{where}, line {error.lineno}" if isinstance(error, json.JSONDecodeError) else where
         raise InputError("is not whole JSON", place, "copy or record it again") from None
+    tree = tree[0] if isinstance(tree, list) and len(tree) == 1 else tree
     header = tree.get("Header") if isinstance(tree, Mapping) else None
     listed = header.get("SignalListHFData") if isinstance(header, Mapping) else None
     payload = tree.get("Payload") if isinstance(tree, Mapping) else None
@@ -86,7 +89,16 @@ def read_table(text: str, where: str, sample_time: float | None = None) -> Trace
     names = _split(lines[0])
     while names and not names[-1]:
         names.pop()
-    comma = separator == ";" and any("," in line for line in lines[1:])
+    written = [re.fullmatch(r"(.*?)\s*[\[(](.*)[\])]", name) for name in names]
+    units = [match[2] if match else "" for match in written]
+    names = [match[1] if match else name for name, match in zip(names, written, strict=True)]
+    begin = 1
+    below = _split(lines[1], separator) if len(lines) > 1 else []
+    if len(below) >= len(names) and all(
+        name != _CLOCK or _is_word(cell) for name, cell in zip(names, below, strict=False)
+    ):
+        units, begin = below, 2
+    comma = separator == ";" and any("," in line for line in lines[begin:])
 
     def split(line: str) -> list[str]:
         cells = [cell.strip().strip('"') for cell in (line.replace(",", ".") if comma else line).split(separator)]
@@ -100,18 +112,24 @@ def read_table(text: str, where: str, sample_time: float | None = None) -> Trace
 
     if len(kept) == len(names):
         fast = "" if comma else separator
-        values, notes = number_rows(lines[1:], split, len(names), 2, where, gaps=True, separator=fast)
+        values, notes = number_rows(lines[begin:], split, len(names), begin + 1, where, gaps=True, separator=fast)
     else:
         # A row of another length is told with all its cells: it does not reach the width of those that are kept.
         values, notes = number_rows(
-            lines[1:], lambda line: _as_wide(split_kept(line), len(kept)), len(kept), 2, where, True
+            lines[begin:], lambda line: _as_wide(split_kept(line), len(kept)), len(kept), begin + 1, where, True
         )
         left = ", ".join(names[i] or f"column {i + 1}" for i in range(len(names)) if i not in kept)
         notes = (*notes, f"not signals of the capture and left out: {left}")
     cycle, said = _cycle(None, sample_time, where)
     chosen = [names[i] for i in kept]
     axes = [name.rsplit("|", 1)[-1] if "|" in name else "" for name in chosen]
-    return _trace(chosen, axes, values, cycle, (*said, *notes), where, "row", first_row=2)
+    own = [units[i] if known_unit(units[i]) else "" for i in kept]
+    return _trace(chosen, axes, values, cycle, (*said, *notes), where, "row", begin + 1, own)
+
+
+def _is_word(cell: str) -> bool:
+    """Tell whether a cell below the clock is no count: a row of units is laid under the names."""
+    return re.fullmatch(r"[A-Za-z\[(]?[A-Za-z \])]*", cell) is not None
 
 
 def _as_wide(cells: list[str], width: int) -> list[str]:
@@ -122,8 +140,8 @@ def _separator(line: str) -> str:
     return max(",;\t", key=line.count)
 
 
-def _split(line: str) -> list[str]:
-    return [cell.strip().strip('"') for cell in line.split(_separator(line))]
+def _split(line: str, separator: str = "") -> list[str]:
+    return [cell.strip().strip('"') for cell in line.split(separator or _separator(line))]
 
 
 def _list(value: Any) -> list[Any]:
@@ -164,6 +182,7 @@ def _trace(
     where: str,
     row: str,
     first_row: int = 1,
+    units: Sequence[str] = (),
 ) -> Trace:
     if names.count(_CLOCK) != 1:
         raise InputError(f"there is no signal {_CLOCK}, which is the clock", where, f"record it with {_CLOCK}")
@@ -191,7 +210,8 @@ def _trace(
         if not there.all():
             notes = (*notes, f"{name} lacks {int(np.sum(~there))} values")
         own = time if there.all() else time[there]
-        signals.append(Signal(name, own, values[there, index], "", axes[index], "", kind))
+        unit = units[index] if units else ""
+        signals.append(Signal(name, own, values[there, index], unit, axes[index], "", kind))
     return Trace(NAME, tuple(signal for signal in signals if signal.values.size), notes)
 
 

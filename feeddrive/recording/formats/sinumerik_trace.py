@@ -54,16 +54,14 @@ def read(text: str, where: str) -> Trace:
         InputError: not whole XML, no data, values that are no numbers or do not lie on the signal's grid.
     """
     root = parse_xml(text, where)
-    frames = [frame for data in root.iter("traceData") for frame in data if _tag(frame) == "dataFrame"]
-    if not frames:
-        frames = list(root.iter("dataFrame"))
+    frames = [element for element in root.iter() if _tag(element) == "dataFrame"]
     if not frames:
         raise InputError("the trace holds no data", where, "save it with its data at the control")
     notes: list[str] = []
     if len(frames) > 1:
         notes.append(f"{len(frames)} frames of data; the first is read")
     frame = frames[0]
-    for header in frame.iter("frameHeader"):
+    for header in (one for one in frame.iter() if _tag(one) == "frameHeader"):
         lost = header.get("dropOuts", "0").strip()
         if lost not in ("", "0"):
             notes.append(f"the control reports {lost} drop-outs: samples are missing and were held")
@@ -76,7 +74,7 @@ def read(text: str, where: str) -> Trace:
     if not any(times.values()):
         raise InputError("no signal of the trace has a value", where, "save it with its data at the control")
     end = max(stamps[-1] for stamps in times.values() if stamps)
-    for header in frame.iter("frameHeader"):
+    for header in (one for one in frame.iter() if _tag(one) == "frameHeader"):
         stop = _number(header.get("stopInc", "0"), f"{where}, frameHeader")
         end = max(end, stop) if math.isfinite(stop) else end
     signals, held = [], 0

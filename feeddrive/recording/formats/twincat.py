@@ -27,9 +27,12 @@ _NO_NUMBERS = {"true": "1", "false": "0", "1.#qnan": "nan", "-1.#ind": "nan", "1
 
 def recognises(head: str) -> bool:
     """Tell by its first letters whether a text is such an export."""
+    plain = head.removeprefix("\ufeff")
+    plain = plain.replace('"', "") if plain.startswith('"Name"') else plain
     return (
-        head.startswith("Name") and head[4:5] in "\t ;:," and ("\nData-Type" in head or "Starttime of export" in head)
-    )
+        plain.startswith("Name") and plain[4:5] in "\t ;:,"
+        and ("\nData-Type" in plain or "Starttime of export" in plain)
+    )  # fmt: skip
 
 
 def read(text: str, where: str) -> Trace:
@@ -38,11 +41,11 @@ def read(text: str, where: str) -> Trace:
     Raises:
         InputError: header and numbers that do not fit each other, or cannot be told apart.
     """
-    lines = text.split("\n")
+    lines = _without_quotes(text.split("\n"))
     header = read_header(lines, where)
     table = _Table(header, where)
-    table.fill(lines)
-    names = unique_names(header.attributes["Name"])
+    table.fill([line.replace(_QUOTED, ".") for line in lines] if '"' in text else lines)  # "0,5" between commas
+    names = unique_names([name.replace(_QUOTED, header.separator) for name in header.attributes["Name"]])
     signals: list[Signal] = []
     for group, first in enumerate(_first_channels(header.groups)):
         time = _seconds(table.column(group, 0), header, where)
@@ -51,6 +54,21 @@ def read(text: str, where: str) -> Trace:
                        for i in range(header.groups[group]))  # fmt: skip
     signals, said = scaled(signals, header)
     return Trace(NAME, tuple(signals), (*header.notes, *table.notes, *said))
+
+
+_QUOTED = "\ue000"
+"""Letter of no language that stands for a separator between quotes."""
+
+
+def _without_quotes(lines: list[str]) -> list[str]:
+    """Return lines whose cells stand between quotes, as a table program writes them, as the Scope does."""
+    separator = re.sub('"', "", lines[0])[4:5]
+    if separator == " " or not any('"' in line for line in lines):  # between blanks quotes hold words together
+        return lines
+    quoted = re.compile('"([^"]*)"')
+    return [
+        quoted.sub(lambda cell: cell[1].replace(separator, _QUOTED), line) if '"' in line else line for line in lines
+    ]
 
 
 class _Table:

@@ -22,6 +22,8 @@ _ATTRIBUTES = ("Name", "SymbolComment", "Data-Type", "SampleTime[ms]", "Variable
                "IndexOffset", "SymbolName", "NetID", "Port", "Offset", "ScaleFactor", "BitMask", "Unit",
                "Unit ScaleFactor", "Unit Offset")  # fmt: skip
 _UNIT_CELL = re.compile(r"\(None\)|\S+(?: \((?!None\))[^()]*\))?")
+_NUMBER = re.compile(r"[+-]?\d")
+"""Begins a row of numbers; attributes begin with a letter."""
 _MOST_READINGS = 20_000  # ways of joining words that are tried: 3 joins in 50 words are 18 424
 
 
@@ -55,7 +57,7 @@ def read_header(lines: list[str], where: str) -> Header:
     separator = lines[0][4:5]
     structure, mark = _structure(lines[:200], separator, where)
     top = max((i for i in range(structure + 1) if lines[i].startswith("Name" + separator)), default=structure)
-    blank = (i for i in range(structure, len(lines)) if not lines[i].strip(separator + " "))
+    blank = (i for i in range(structure, len(lines)) if not lines[i].strip(separator + " ") or _NUMBER.match(lines[i]))
     end = next(blank, len(lines))
     marks = [cell == mark for cell in _cells(lines[structure], separator)]
     groups = _widths(marks)
@@ -109,7 +111,7 @@ def _attribute_cells(line: str, name: str, separator: str, groups: tuple[int, ..
         split = [cells[a + 1 : b] for a, b in pairwise(starts)]
     if len(split) != len(groups):
         return None
-    if split and len(split[-1]) == groups[-1] + 1 and not split[-1][-1]:
+    while split and len(split[-1]) > groups[-1] and not split[-1][-1]:  # as many as a table program writes
         split[-1].pop()
     while len(split[-1]) < groups[-1]:  # empty cells at the end of a line are left out
         split[-1].append("")
