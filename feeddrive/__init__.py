@@ -28,6 +28,7 @@ _HOMES = {
     "Effect": "effects.base",
     "Explained": "interface.measured.numbers",
     "ExplainedResponse": "interface.measured.responses",
+    "Fleet": "interface.measured.fleet",
     "HeatSummary": "interface.machine.heat_summary",
     "InputError": "errors",
     "Inspected": "interface.measured.inspection",
@@ -76,6 +77,7 @@ _HOMES = {
     "tune": "interface.servo",
     "warm_up": "interface.runs.warm_up",
     "watch": "interface.measured.watching",
+    "watch_fleet": "interface.measured.fleet",
     "with_load": "interface.runs.controllers",
 }
 

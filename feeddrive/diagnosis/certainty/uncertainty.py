@@ -72,6 +72,7 @@ def certainty(problem: Problem, fitted: Fit) -> Certainty:
     middle = score_covariance(problem.evidence, rows, fitted.residual, jacobian)
     influence = jacobian @ inverse
     model = model_error_rows(problem.evidence, [e.thinned(e.fit_rows) for e in problem.evidence])
+    model = np.concatenate([model, np.zeros(len(problem.numbers))])
     covariance = inverse @ middle @ inverse
     missed = np.diag(inverse @ fitted_away(problem.evidence, rows, jacobian, inverse) @ inverse)
     widened = np.sqrt(_where_it_matters(problem, fitted.residual, influence) / _left(missed, np.diag(inverse)))
@@ -107,7 +108,7 @@ def _left(missed: FloatArray, whole: FloatArray) -> FloatArray:
 
 def _where_it_matters(problem: Problem, residual: FloatArray, influence: FloatArray) -> FloatArray:
     """Residual square where a coordinate is told from, over that of the same channels at large, at least 1; (k,)."""
-    weight, level = influence**2, np.empty_like(residual)
+    weight, level = influence**2, np.full_like(residual, float(np.mean(residual**2)))
     first = 0
     for evidence in problem.evidence:
         count = int(evidence.thinned(evidence.fit_rows).sum())

@@ -10,8 +10,10 @@ import numpy as np
 from feeddrive.diagnosis.calibration.calibrated_result import CalibratedResult
 from feeddrive.diagnosis.certainty.certainty_result import Ambiguity, Correlation, NextExperiment
 from feeddrive.diagnosis.ledger.result import Kept
+from feeddrive.diagnosis.numbers.rows import NumberResult
 from feeddrive.diagnosis.recordings.change_result import RecordingChanges
 from feeddrive.diagnosis.simulated.simulation_result import SimulationResult as SimulationResult
+from feeddrive.diagnosis.suspicion.quality import Quality
 from feeddrive.diagnosis.unexplained.result import Dependence as Dependence
 from feeddrive.diagnosis.unexplained.result import Unexplained as Unexplained
 from feeddrive.typing import FloatArray
@@ -176,6 +178,8 @@ class Diagnosis:
     changes: RecordingChanges = field(default_factory=RecordingChanges)
     kept: Kept = field(default_factory=Kept)
     calibrated: tuple[CalibratedResult, ...] = ()
+    measured: tuple[NumberResult, ...] = ()
+    quality: tuple[Quality, ...] = ()
 
     @property
     def nothing_missing(self) -> bool:

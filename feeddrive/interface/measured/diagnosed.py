@@ -12,6 +12,8 @@ from feeddrive.diagnosis.calibration.plant_text import with_calibrated_values
 from feeddrive.diagnosis.diagnose import diagnose as find_what_lacks
 from feeddrive.diagnosis.judging.result import Diagnosis
 from feeddrive.diagnosis.likelihood.outputs import diagnosis_json, diagnosis_record, write_outputs
+from feeddrive.diagnosis.numbers.measured_file import read_measured_numbers
+from feeddrive.diagnosis.suspicion.quality import is_recorders, quality_lines
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 from feeddrive.interface.axis import Axis, axis_of_text
@@ -21,6 +23,7 @@ from feeddrive.plant.file.effect_text import plant_text_with_effects
 from feeddrive.recording.recording import Recording
 from feeddrive.report.certainty import experiment_sentences
 from feeddrive.report.pages.section_calibrated import calibrated_lines
+from feeddrive.report.pages.section_measured import measured_lines
 from feeddrive.report.parameters import parameter_text
 from feeddrive.report.records import used_sentence
 from feeddrive.report.simulated import simulation_lines
@@ -138,7 +141,7 @@ class Diagnosed(Shown):
         found = self.diagnosis
         lines = [used_sentence(found)]
         lines += [f"{one.name}: {one.evidence} {one.reading}" for one in found.effects]
-        lines += calibrated_lines(found)
+        lines += [*quality_lines(found.quality), *calibrated_lines(found), *measured_lines(found)]
         lines += [f"since the earlier diagnosis: {sentence}" for sentence in found.kept.since]
         lines += [
             f"cannot be told apart by these recordings: {', '.join(one.names)}: {one.reason}" for one in found.alike
@@ -162,7 +165,8 @@ class Diagnosed(Shown):
     def plant(self) -> Axis:
         """The axis with its declared values as calibrated, and with what was found."""
         text = with_calibrated_values(self.axis.text, self.diagnosis.calibrated)
-        axis = axis_of_text(plant_text_with_effects(text, (*self.axis.added, *self.found)), self.axis.path)
+        own = [effect for effect in self.found if not is_recorders(effect)]
+        axis = axis_of_text(plant_text_with_effects(text, (*self.axis.added, *own)), self.axis.path)
         return axis.with_values(dict(self.axis.values)) if self.axis.values else axis
 
     def record(self) -> dict[str, Any]:
@@ -227,6 +231,7 @@ def diagnose(
     validate: Given | Sequence[Given] | None = None,
     split: float = 0.75,
     simulate: bool = False,
+    measured: str | Path | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> Diagnosed:
     """Find what an axis lacks.
@@ -237,6 +242,7 @@ def diagnose(
         validate: to judge on; the last part of each fitted one if left out.
         split: share that is fitted then.
         simulate: also simulate the closed loop where a controller is declared.
+        measured: TOML file of numbers that were measured beside, `[[measured]]`: a stiffness, a natural frequency.
         progress: called with a word for what is being done.
 
     Raises:
@@ -245,7 +251,9 @@ def diagnose(
     fitted, judged = _several(recording, "recording"), _several(validate, "validate")
     if not fitted:
         raise InputError("no recording is given", "recording", "give fd.read(...), or the path of a file")
-    result, effects = find_what_lacks(axis.plant, fitted, judged, split, simulate, progress or (lambda _: None), ())
+    numbers = read_measured_numbers(Path(measured), axis.plant) if measured is not None else ()
+    said = progress or (lambda _: None)
+    result, effects = find_what_lacks(axis.plant, fitted, judged, split, simulate, said, (), numbers)
     return Diagnosed(axis, result, tuple(effects))
 
 

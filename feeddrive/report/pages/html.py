@@ -17,6 +17,7 @@ from feeddrive.report.pages.markup import figure, paragraph, section, text
 from feeddrive.report.pages.section_actions import actions_section
 from feeddrive.report.pages.section_calibrated import calibrated_section
 from feeddrive.report.pages.section_changes import changes_section, since_section
+from feeddrive.report.pages.section_measured import measured_section
 from feeddrive.report.pages.section_unexplained import unexplained_section
 from feeddrive.report.pages.sections import (
     effects_section,
@@ -72,6 +73,7 @@ def report_page(
         actions_section(diagnosis, todo),
         effects_section(diagnosis) + explaining,
         calibrated_section(diagnosis),
+        measured_section(diagnosis),
         changes_section(diagnosis) + since_section(diagnosis),
         ambiguous_section(diagnosis) + experiments_section(diagnosis),
         correlation_section(diagnosis),
