@@ -52,7 +52,7 @@ def actions(diagnosis: Diagnosis, after: Plant) -> Actions:
     names = in_order([one.name for one in diagnosis.effects])
     carried = [one.name for left in diagnosis.unexplained.values() for one in left.carried]
     wanted = [name for name in (*names, *carried) if cure(name).form == "table"]
-    values = values_to_set(after) if after.has_motion else {}
+    values = values_to_set(after) if names and after.has_motion else {}
     if not wanted or not after.has_motion:
         return Actions(tuple(names), set_to=values)
     stroke = after.stroke or recorded_stroke(diagnosis)

@@ -97,7 +97,7 @@ def test_bench_is_a_tab_that_is_there_only_where_there_is_one() -> None:
     # nothing found, a rigid machine, heat alone: no bench
     assert bench_of_diagnosis(axis.plant, _diagnosis()) == ""
     assert bench_of_diagnosis(fd.load("emps").plant, found) == ""
-    assert bench_of_diagnosis(None, found) == ""
+    assert bench_of_diagnosis(fd.load("thermal_bench").plant, found) == ""
 
 
 def test_nothing_found_is_nothing_to_do() -> None:

@@ -148,7 +148,10 @@ def test_prediction_in_every_form(form: str) -> None:
     made = compensate_plant(planted().plant, wishes, beside=form == "sinumerik-enc")
     assert made.prediction is not None
     before, after = made.prediction.before.positioning, made.prediction.after.positioning
-    assert after.accuracy < 0.1 * before.accuracy
+    # FANUC leaves its jumps, 7 % of the planted error, beside the wind-up of friction, which was not planted
+    assert made.prediction.repaired is not None
+    beside = made.prediction.repaired.positioning.reversal_value if made.control.stepwise else 0.0
+    assert after.accuracy - beside < 0.1 * before.accuracy
     assert len(predicted_rows(made)) == 6
     if made.friction is not None:
         # what is told to be best is no worse than nothing

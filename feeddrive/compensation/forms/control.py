@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
-from feeddrive.compensation.table import CompensationTable
+from feeddrive.compensation.table import STEEPEST, CompensationTable
 from feeddrive.errors import InputError
 from feeddrive.units.quantity import format_quantity
 
@@ -62,14 +62,14 @@ class Control:
         resolution: of a value [m].
         most_points: that the control takes.
         usual_points: that smaller controls of the family take, and that are chosen where nobody asks for more.
+        load: what to do with the file, and which settings it needs.
+        write: table, lines for the head and name of the axis to the text of the file.
         steepest: change of the value per length that the control allows [m/m].
         side: where the value is put in.
         reversal: how it changes direction.
-        stepwise: whether the value jumps in the middle between two points, in place of a straight line.
         directions: whether the table holds both directions; else play is a value of its own.
         comments: whether the format allows them.
-        load: what to do with the file, and which settings it needs.
-        write: table, lines for the head and name of the axis to the text of the file.
+        stepwise: whether the value jumps in the middle between two points, in place of a straight line.
     """
 
     name: str
@@ -79,13 +79,13 @@ class Control:
     resolution: float
     most_points: int
     usual_points: int
-    steepest: float
-    side: Side
-    reversal: Reversal
-    directions: bool
-    comments: bool
     load: Callable[[CompensationTable, str], tuple[str, ...]]
     write: Callable[[CompensationTable, Sequence[str], str], str]
+    steepest: float = STEEPEST
+    side: Side = Side.SETPOINT
+    reversal: Reversal = Reversal()
+    directions: bool = True
+    comments: bool = True
     stepwise: bool = False
 
     def loading(self, table: CompensationTable, axis: str) -> tuple[str, ...]:

@@ -18,8 +18,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from feeddrive.compensation.forms.control import Control, Reversal, Side, steps
-from feeddrive.compensation.table import STEEPEST, CompensationTable
+from feeddrive.compensation.forms.control import Control, steps
+from feeddrive.compensation.table import CompensationTable
 from feeddrive.errors import InputError
 from feeddrive.typing import FloatArray
 
@@ -84,9 +84,6 @@ def writer(unit: float) -> Control:
         resolution=unit,
         most_points=129,
         usual_points=129,
-        steepest=STEEPEST,
-        side=Side.SETPOINT,
-        reversal=Reversal(),
         directions=False,
         comments=False,
         load=_load,

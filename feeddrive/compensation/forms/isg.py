@@ -12,8 +12,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from feeddrive.compensation.forms.control import Control, Reversal, Side, plain_line, steps
-from feeddrive.compensation.table import STEEPEST, CompensationTable
+from feeddrive.compensation.forms.control import Control, Reversal, plain_line, steps
+from feeddrive.compensation.table import CompensationTable
 
 _UNIT = 1e-7
 _CYCLES, _MOST_CYCLES = 10, 19
@@ -55,11 +55,7 @@ ISG = Control(
     resolution=_UNIT,
     most_points=1500,
     usual_points=1500,
-    steepest=STEEPEST,
-    side=Side.SETPOINT,
     reversal=Reversal(cycles=_CYCLES, smooth=True, longest=1.0, most_cycles=_MOST_CYCLES, setting=_setting),
-    directions=True,
-    comments=True,
     load=_load,
     write=_write,
 )
