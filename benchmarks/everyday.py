@@ -21,11 +21,11 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
 from feeddrive.files import find_plant  # noqa: E402
+from feeddrive.plant.file.files import read_plant  # noqa: E402
 from feeddrive.recording import read_recording  # noqa: E402
 from feeddrive.report.figures.figures import render_figures  # noqa: E402
 from feeddrive.report.pages.html import write_report  # noqa: E402
 from feeddrive.reproduce.paper_002 import rows  # noqa: E402
-from feeddrive.thermal.file.files import read_thermal_plant  # noqa: E402
 from feeddrive.thermal.full.explicit import run_explicitly  # noqa: E402
 from feeddrive.thermal.full.full_model import discretise, full_model, model_of  # noqa: E402
 from feeddrive.thermal.full.grid import Cells  # noqa: E402
@@ -37,7 +37,7 @@ from tests.claims.book import CLAIMS, keep  # noqa: E402
 
 ROUNDS = 3
 RPM = math.pi / 30
-BENCH = read_thermal_plant(find_plant("thermal_bench"))
+BENCH = read_plant(find_plant("thermal_bench")).heat
 
 
 def main() -> None:

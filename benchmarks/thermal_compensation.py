@@ -25,7 +25,7 @@ from feeddrive.compensation.heat.thermal_sensors import Sensor, mountable_places
 from feeddrive.compensation.heat.thermal_trial import TriedMachine, random_duty, tried_machine
 from feeddrive.compensation.heat.thermal_unknowns import Unknowns
 from feeddrive.files import find_plant
-from feeddrive.thermal.file.files import read_thermal_plant
+from feeddrive.plant.file.files import read_plant
 from feeddrive.thermal.full.full_model import full_model
 from feeddrive.thermal.full.grid import Cells
 from feeddrive.thermal.full.moving_family import moving_family
@@ -34,7 +34,7 @@ from feeddrive.thermal.reduced.stepping import Stepper
 from feeddrive.thermal.run.warm_up import declared_rows
 from feeddrive.typing import FloatArray
 
-PLANT = read_thermal_plant(find_plant("thermal_bench"))
+PLANT = read_plant(find_plant("thermal_bench")).heat
 OTHER_MESH = full_model(PLANT.rig, Cells(330, 5, 36, 7))
 RPM, STEP, ROWS = math.pi / 30, 30.0, 720
 STILL = np.full(ROWS, PLANT.ambient)

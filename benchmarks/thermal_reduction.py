@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from feeddrive.thermal.file.files import read_thermal_plant
+from feeddrive.plant.file.files import read_plant
 from feeddrive.thermal.full.explicit import ExplicitRun, run_explicitly
 from feeddrive.thermal.full.full_model import discretise, full_model, model_of
 from feeddrive.thermal.full.grid import Cells
@@ -28,7 +28,7 @@ from feeddrive.thermal.run.warm_up import simulate
 
 ROOT = Path(__file__).resolve().parents[1]
 SHIPPED = ROOT / "plants" / "thermal_bench.toml"
-BENCH = read_thermal_plant(SHIPPED)
+BENCH = read_plant(SHIPPED).heat
 RPM = math.pi / 30
 WORKING = Sizes(heats=(("nut", 1.3), ("front", 1.0), ("rear", 0.17)))
 HOURS = 3 * 3600.0

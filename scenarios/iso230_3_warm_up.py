@@ -29,11 +29,11 @@ from feeddrive.compensation.heat.thermal_trial import TriedMachine, tried_machin
 from feeddrive.compensation.heat.thermal_unknowns import Unknowns
 from feeddrive.files import find_plant, write_bytes_atomically, write_text_atomically
 from feeddrive.metrology.axis_heating import AxisHeating, axis_heating
+from feeddrive.plant.file.files import read_plant
 from feeddrive.report.figures.drawing import render
 from feeddrive.report.figures.figure_thermal_compensation import axis_heating_figure, compensation_figure, stroke_figure
-from feeddrive.thermal.file.files import read_thermal_plant
 from feeddrive.thermal.full.grid import Cells
-from feeddrive.thermal.plant import ThermalPlant
+from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.reduced.model import HeatModel
 from feeddrive.thermal.rig import Body
 from feeddrive.typing import FloatArray
@@ -53,7 +53,7 @@ BODIES = (
 UNKNOWNS = Unknowns(heats=(("motor_flange", MOTOR_HEAT),))
 
 
-def moving_machine(plant: ThermalPlant) -> TriedMachine:
+def moving_machine(plant: Heat) -> TriedMachine:
     """The machine that is tried: another mesh, 10 % more heat, 10 % less film, a warm motor, air that warms by 2 K."""
     speeds = np.repeat([SPEED, 0.0], [round(HEATING / STEP), round(COOLING / STEP)])
     ambient = plant.ambient + np.linspace(0.0, 2.0, ROWS)
@@ -62,7 +62,7 @@ def moving_machine(plant: ThermalPlant) -> TriedMachine:
     return tried_machine(plant, model, STEP, speeds, ambient, heat=1.1, film=0.9, others=motor)
 
 
-def observed(plant: ThermalPlant, model: HeatModel, error: TableError, machine: TriedMachine, places: tuple[str, ...]
+def observed(plant: Heat, model: HeatModel, error: TableError, machine: TriedMachine, places: tuple[str, ...]
              ) -> FloatArray:  # fmt: skip
     """What the observer makes of sensors at some places; it is not told that the air warms."""
     sensors = [Sensor(place) for place in places]
@@ -71,7 +71,7 @@ def observed(plant: ThermalPlant, model: HeatModel, error: TableError, machine: 
     return observer.observe(machine.speeds, np.full(ROWS, plant.ambient), readings).error
 
 
-def nut_table(plant: ThermalPlant, model: HeatModel) -> LineTable:
+def nut_table(plant: Heat, model: HeatModel) -> LineTable:
     """The straight line over the nut's temperature, from warm-ups and cool-downs of the declared machine's model."""
     still = np.full(ROWS, plant.ambient)
     runs = [
@@ -108,7 +108,7 @@ def print_left(name: str, found: LeftOver) -> None:
 
 def main(folder: Path) -> None:
     """Print the tables and write the files."""
-    plant = replace(read_thermal_plant(find_plant("thermal_bench")), bodies=BODIES)
+    plant = replace(read_plant(find_plant("thermal_bench")).heat, bodies=BODIES)
     model = compensation_model(plant)
     error = table_error(plant, model)
     machine = moving_machine(plant)
@@ -136,7 +136,7 @@ def main(folder: Path) -> None:
     write_files(folder, plant, machine, compensations, table)
 
 
-def write_files(folder: Path, plant: ThermalPlant, machine: TriedMachine, compensations: Mapping[str, FloatArray],
+def write_files(folder: Path, plant: Heat, machine: TriedMachine, compensations: Mapping[str, FloatArray],
                 table: LineTable) -> None:  # fmt: skip
     """Figures and the table for a CNC."""
     temperatures = {name.replace("_", " "): plant.ambient + rise for name, rise in machine.rises.items()}

@@ -53,7 +53,8 @@ function stepFigures(E, y, at) {
     if (Math.abs(share - 1) > 0.02) last = i;
     largest = Math.max(largest, share);
   }
-  return { final, rise: (high - low) * E.tick, overshoot: Math.max(0, largest - 1), settling: last < 0 ? 0 : (first + last) * E.tick - at };
+  const settling = last < 0 ? 0 : (first + last) * E.tick - at; // null: not settled
+  return { final, rise: (high - low) * E.tick, overshoot: Math.max(0, largest - 1), settling: settling > E.settled_by * ((y.length - 1) * E.tick - at) ? null : settling };
 }
 function centreOf(E, position) {
   if (!E.stroke) return position;

@@ -28,12 +28,12 @@ from feeddrive.plant.analysis.ode import ode
 from feeddrive.plant.chain.chain import symbolic
 from feeddrive.plant.equations import bristle_count, chain_symbols, parameter_symbols, parameter_values
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.symbolic_turn import SYMBOLS
 from feeddrive.plant.transmission_law import travel_deviation
 from feeddrive.servo.cascade import Cascade
 from feeddrive.servo.cascade_function import PARAMETERS, cascade_controller
 from feeddrive.servo.sampled import MEASUREMENTS, SampledController
 from feeddrive.simulate.controlled.controlled_machine import TorqueLoop, machine_for, resolutions_of
+from feeddrive.symbolic_turn import SYMBOLS
 
 
 def bench_equations(plant: Plant, cascade: Cascade) -> tuple[str, dict[str, Any]]:

@@ -101,7 +101,7 @@ function startPage() {
     const line = ([l, s, c]) => [
       l ? l.velocity.margins.phase.toFixed(1) + "°" : "–", l ? l.velocity.margins.gain.toFixed(1) + " dB" : "–",
       l ? l.position.margins.phase.toFixed(1) + "°" : "–", l ? l.position.margins.gain.toFixed(1) + " dB" : "–",
-      s ? (1e3 * s.settling).toFixed(1) + " ms" : "–", c ? um(c.deviation) : "–", c ? um(Math.max(...c.glitch.map(Math.abs))) : "–"];
+      s ? (s.settling === null ? "not settled" : (1e3 * s.settling).toFixed(1) + " ms") : "–", c ? um(c.deviation) : "–", c ? um(Math.max(...c.glitch.map(Math.abs))) : "–"];
     const heads = ["", ["velocity loop", 2], ["position loop", 2], "settling", "circle", "glitch"];
     table.replaceChildren();
     const add = (cells, tag, mark) => { const tr = document.createElement("tr"); cells.forEach((t, i) => { const td = document.createElement(tag); if (Array.isArray(t)) { td.colSpan = t[1]; td.textContent = t[0]; } else td.textContent = t; if (mark && mark(i)) td.className = "bad"; tr.append(td); }); table.append(tr); };

@@ -17,6 +17,7 @@ from feeddrive.effects.base import Effect
 from feeddrive.effects.chain.payload import Payload
 from feeddrive.errors import InputError, printable
 from feeddrive.metrology.circular import GLITCH_SPAN
+from feeddrive.metrology.response import SETTLED_BY
 from feeddrive.plant.analysis.steady import MOVING
 from feeddrive.plant.chain.moving_inertia import inertia_at_motor
 from feeddrive.plant.equations import parameter_names, parameter_values
@@ -115,6 +116,7 @@ def bench_data(bench: BenchPage) -> dict[str, Any]:
         "inertia": cascade.feed_forward.inertia or inertia_at_motor(bench.plant),
         "velocity": MOVING,
         "growth": GROWTH,
+        "settled_by": SETTLED_BY,
         "frequency": [grid(_LOWEST, min(_HIGHEST, 0.5 / period)).tolist() for period in periods],
         "circle": _circle(plant, cascade),
         "step": _motion(step_at(plant, plant.middle), cascade, plant.middle) | {"height": HEIGHT, "at": STEP_AT},

@@ -7,7 +7,11 @@ from typing import Annotated
 
 import typer
 
-from feeddrive.cli.output import JsonOption
+from feeddrive.cli.output import JsonOption, deliver, parts_of, tables_of, tell_written, warnings_as_lines
+from feeddrive.errors import InputError
+from feeddrive.interface.axis import load
+from feeddrive.interface.measured.reading import read, read_response_file
+from feeddrive.output_folder import output_folder, refuse_unusable
 
 
 def command(
@@ -28,10 +32,29 @@ def command(
     out: Annotated[Path | None, typer.Option("--out", help="Folder for bode.json and the figures.")] = None,
 ) -> None:
     """Frequency response in Hz, dB and degrees: resonances, margins, families over position and payload."""
-    from feeddrive.cli.boding import Request, run
-
-    run(
-        Request(plant, given, output, at, positions, payload, loop, scenario, frequencies, recording, mapping),
-        as_json,
-        out,
-    )
+    refuse_unusable(out)
+    with warnings_as_lines():
+        axis = load(plant)
+        measured = None
+        if recording is not None and (loop or scenario):
+            raise InputError(
+                "a recording is laid over the mechanics, not over loops", "--recording", "leave out --loop"
+            )
+        if recording is not None:
+            measured = read_response_file(recording) or read(recording, mapping)
+        found = axis.bode(
+            given,
+            output,
+            at=at,
+            positions=parts_of(positions),
+            payload=parts_of(payload),
+            controller=scenario or None,
+            loop=loop,
+            frequencies=parts_of(frequencies),
+            measured=measured,
+        )
+        if out is not None:
+            with output_folder(out) as folder:
+                found.save(folder)
+    deliver(found.record(), [] if as_json else tables_of(found.tables()), as_json, None)
+    tell_written(out, as_json)

@@ -7,13 +7,14 @@ from typing import Annotated
 
 import typer
 
+from feeddrive.cli.diagnose import diagnose_and_print
+from feeddrive.files import find_plant, find_scenario_file
+from feeddrive.interface.measured.diagnosis_run import Job, Source
+
 
 def command(
     out: Annotated[Path, typer.Option("--out", help="Folder for the report.")] = Path("feeddrive-demo"),
 ) -> None:
     """Diagnose a shipped machine from a shipped recording, and say where the report is."""
-    from feeddrive.cli.diagnosing import Job, Source, run_job
-    from feeddrive.files import find_plant, find_scenario_file
-
     recording = find_scenario_file("recordings/demo.csv.gz")
-    run_job(Job(find_plant("bench_axis"), (Source(recording),), (), out))
+    diagnose_and_print(Job(find_plant("bench_axis"), (Source(recording),), (), out))

@@ -12,12 +12,10 @@ from feeddrive.compiler import find_compiler
 from feeddrive.errors import printable
 from feeddrive.export.notes import included, left_out, linear_notes
 from feeddrive.export.point import Point, export_point
-from feeddrive.export.writing import Form, write_export
-from feeddrive.files import find_plant
+from feeddrive.export.writing import Form
 from feeddrive.interface.axis import load
 from feeddrive.output_folder import output_folder, refuse_unusable
 from feeddrive.plant.plant import Plant
-from feeddrive.thermal.file.whole_file import read_drive_plant
 from feeddrive.units.quantity import format_quantity
 
 
@@ -68,10 +66,9 @@ def command(
             content = {"format": "feeddrive-exported/1", "plant": axis.name, "files": [str(path) for path in paths]}
             deliver(content, [f"{path}: heat of {axis.name}" for path in paths], as_json, None)
             return
-        machine = read_drive_plant(find_plant(plant))
-        point = export_point(machine, at)
+        machine, point = axis.plant, export_point(axis.plant, at, "at")
         with output_folder(out) as folder:
-            files = {form: write_export(machine, form, point, folder) for form in dict.fromkeys(to)}
+            files = {form: axis.export(form, folder, at) for form in dict.fromkeys(to)}
         files = {form: tuple(out / path.name for path in paths) for form, paths in files.items()}
     content = _content(machine, point, files)
     if as_json:

@@ -8,9 +8,9 @@ from typing import Annotated
 
 import typer
 
-from feeddrive.cli.output import deliver, table, tell_written, warnings_as_lines
+from feeddrive.cli.output import deliver, tables_of, tell_written, warnings_as_lines
 from feeddrive.errors import InputError
-from feeddrive.interface.drafts import draft
+from feeddrive.interface.machine.drafts import draft
 
 _QUESTIONS = {
     "screw": "Ball screw, such as 32 x 10 mm",
@@ -48,13 +48,22 @@ def command(
                 given[key] = typer.prompt(question, err=True).strip()
     with warnings_as_lines():
         made = draft(
-            screw=given["screw"], motor=given["motor"], mass=given["mass"], stroke=given["stroke"] or None,
-            length=length or None, guide=given["guide"], carriages=carriages, preload=preload or None,
-            supports=supports, bearing=bearing, coupling=coupling, orientation=orientation, structure=structure,
+            screw=given["screw"],
+            motor=given["motor"],
+            mass=given["mass"],
+            stroke=given["stroke"] or None,
+            length=length or None,
+            guide=given["guide"],
+            carriages=carriages,
+            preload=preload or None,
+            supports=supports,
+            bearing=bearing,
+            coupling=coupling,
+            orientation=orientation,
+            structure=structure,
             name=name or path.stem.replace("_", " "),
-        )  # fmt: skip
+        )
         checked = made.check()
         made.save(path)
-    shown = [table(one.title, one.headings, one.rows) for one in (checked.listing(), made.listing())]
-    deliver({}, shown, False, None)
+    deliver({}, tables_of([checked.listing(), made.listing()]), False, None)
     tell_written(path, False)

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from feeddrive.cli.output import JsonOption
+from feeddrive.cli.output import JsonOption, deliver, escaped, tables_of, tell_written, warnings_as_lines
+from feeddrive.interface.axis import load
+from feeddrive.interface.measured.iso230 import iso230
+from feeddrive.output_folder import output_folder, refuse_unusable
 
 
 def command(
@@ -29,6 +33,23 @@ def command(
     Columns of tables: target with up 1, down 1, up 2, ... (or direction and deviation); time with at 0 mm, at 250 mm,
     ...; angle with radius or radial; x and y. Units stand in the headings, as in "target [mm],up 1 [µm]".
     """
-    from feeddrive.cli.measuring import Asked, evaluate_and_tell
-
-    evaluate_and_tell(Asked(tuple(files), plant, part, radius, stop, mapping, decimal), as_json, out)
+    if out is not None:
+        refuse_unusable(out)
+    with warnings_as_lines():
+        found = iso230(
+            list(files),
+            plant=load(plant) if plant else None,
+            part=part or None,
+            radius=radius or None,
+            stop=stop or None,
+            map=mapping,
+            decimal=decimal or None,
+        )
+        if out is not None:
+            with output_folder(out) as folder:
+                found.save(folder)
+    if as_json:
+        print(escaped(json.dumps(found.record(), indent=2, ensure_ascii=False)))
+        return
+    deliver({}, tables_of(found.tables()), False, None)
+    tell_written(out, as_json)

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from feeddrive.cli.output import JsonOption, OutOption, deliver, table
+from feeddrive.cli.output import JsonOption, OutOption, deliver, tables_of
 from feeddrive.interface.keys import keys
 
 
@@ -21,4 +21,4 @@ def command(
     found = keys(path)
     listing = found.listing()
     content = {"format": "feeddrive-keys/1", "path": found.path, "meaning": found.meaning, "keys": listing.records}
-    deliver(content, [table(listing.title, listing.headings, listing.rows)], as_json, out)
+    deliver(content, tables_of([listing]), as_json, out)

@@ -15,6 +15,7 @@ import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import wraps
 from importlib import import_module
 from typing import Annotated, Any
 
@@ -51,7 +52,7 @@ class Entry:
 
 COMMANDS: dict[str, Entry] = {
     "demo": Entry("demo", "Diagnose a shipped machine from a shipped recording."),
-    "list": Entry("list_plants", "List the machines that come with feeddrive."),
+    "list": Entry("list", "List the machines that come with feeddrive."),
     "init": Entry("init", "Write a plant file from a few words and the parts catalogue."),
     "parts": Entry("parts", "List the parts catalogue, each value with its source."),
     "keys": Entry("keys", "Show what may stand in a file: keys, units, ranges, defaults."),
@@ -107,7 +108,22 @@ def load(name: str) -> Any:
     module = import_module(f"feeddrive.cli.{COMMANDS[name].module}")
     single = typer.Typer(add_completion=False, rich_markup_mode=None)
     single.command(name)(module.command)
-    return get_command(single)
+    made = get_command(single)
+    options = {one.name: one.opts[0] for one in made.params if one.opts[0].startswith("--")}
+    called: Any = made.callback
+
+    @wraps(called)
+    def command(*words: Any, **given: Any) -> Any:
+        """Call it, and name the option where the library names the argument of the same name."""
+        try:
+            return called(*words, **given)
+        except InputError as error:
+            if error.where not in options:
+                raise
+            raise InputError(error.what, options[error.where], error.mend) from error
+
+    made.callback = command
+    return made
 
 
 def application() -> Any:

@@ -4,22 +4,31 @@ from __future__ import annotations
 
 import io
 import json
-import math
 import os
 import sys
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 from rich.console import Console, RenderableType
-from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+from rich.progress import (
+    BarColumn,
+    Progress,
+    SpinnerColumn,
+    TaskProgressColumn,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
 from rich.table import Table
 
 from feeddrive.errors import ValidityWarning, printable, quoted
 from feeddrive.files import write_text_atomically
+from feeddrive.interface.shown import Listing
+from feeddrive.units.quantity import parse
 
 JsonOption = Annotated[bool, typer.Option("--json", help="JSON in place of tables; SI units.")]
 OutOption = Annotated[Path | None, typer.Option("--out", help="File to write to, in place of the terminal.")]
@@ -45,7 +54,40 @@ def table(title: str, headings: Sequence[str], rows: Sequence[Sequence[str]]) ->
     return made
 
 
-def deliver(content: dict[str, Any], tables: Sequence[RenderableType], as_json: bool, out: Path | None) -> None:
+def parts_of(text: str) -> list[str]:
+    """What stands between commas; nothing in an empty text."""
+    return [part.strip() for part in text.split(",")] if text.strip() else []
+
+
+def quantities(text: str, unit: str, where: str) -> tuple[float, ...]:
+    """Values between commas, SI.
+
+    Raises:
+        InputError: not a quantity of that unit.
+    """
+    return tuple(parse(part, unit, where) for part in parts_of(text))
+
+
+def tables_of(listings: Iterable[Listing]) -> list[Table]:
+    """Tables of a result for the terminal; one without headings is of names and texts."""
+    return [_table_of(one) for one in listings]
+
+
+def _table_of(one: Listing) -> Table:
+    if one.headings:
+        made = table(one.title, one.headings, one.rows)
+    else:
+        title = printable(one.title) if one.title else None
+        made = Table(title=title, title_justify="left", title_style="bold", show_header=False)
+        made.add_column(min_width=12)
+        made.add_column(overflow="fold")
+        for row in one.rows:
+            made.add_row(*map(_printable_lines, row))
+    made.caption = printable(one.caption) if one.caption else None
+    return made
+
+
+def deliver(content: Mapping[str, Any], tables: Sequence[RenderableType], as_json: bool, out: Path | None) -> None:
     """Show the content, or write it to a file.
 
     Args:
@@ -87,23 +129,29 @@ def working(on: str) -> Iterator[Callable[[str], None]]:
         yield lambda text: shown.update(task, description=printable(text))
 
 
+@contextmanager
+def progress_bar(name: str) -> Iterator[Callable[[float, float], None] | None]:
+    """A bar on a terminal, nothing in a pipe.
+
+    Args:
+        name: beside the bar.
+
+    Yields:
+        Called with what is done, and of how much; None in a pipe.
+    """
+    if not sys.stderr.isatty():
+        yield None
+        return
+    columns = (TextColumn("{task.description}", markup=False), BarColumn(), TaskProgressColumn(), TimeRemainingColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task(printable(name), total=None)
+        yield lambda done, total: bar.update(task, completed=done, total=total)
+
+
 def tell_written(out: Path | None, as_json: bool) -> None:
     """Say after the tables where the files are; nothing where there are none, or where JSON is printed."""
     if out is not None and not as_json:
         typer.echo(f"written: {quoted(str(out.resolve()), LONGEST_LINE)}")
-
-
-def finite(value: float) -> float | None:
-    """The number for JSON; None where it is infinite."""
-    return value if math.isfinite(value) else None
-
-
-def chain_remark(valid_to: float) -> str | None:
-    """What is to be said of the chain that simulations use, where it holds up to `valid_to` [Hz] only."""
-    if not math.isfinite(valid_to):
-        return None
-    holds = f"whose modes are within 1 % up to {valid_to:.0f} Hz" if valid_to else "whose first mode is 1 % off or more"
-    return f"Within 0.5 %, whatever the elements of the screw. Simulations use the declared chain, {holds}."
 
 
 @contextmanager

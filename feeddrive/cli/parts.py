@@ -6,8 +6,8 @@ from typing import Annotated
 
 import typer
 
-from feeddrive.cli.output import JsonOption, OutOption, deliver, table
-from feeddrive.interface.drafts import list_parts
+from feeddrive.cli.output import JsonOption, OutOption, deliver, tables_of
+from feeddrive.interface.machine.drafts import list_parts
 
 
 def command(
@@ -25,5 +25,4 @@ def command(
     given = {"diameter": diameter, "lead": lead, "bore": bore, "rail": rail, "torque": torque, "power": power}
     found = list_parts(kind, **{name: value for name, value in given.items() if value})
     listing = found.listing()
-    shown = table(listing.title, listing.headings, listing.rows)
-    deliver({"format": "feeddrive-parts/1", "parts": listing.records}, [shown], as_json, out)
+    deliver({"format": "feeddrive-parts/1", "parts": listing.records}, tables_of([listing]), as_json, out)

@@ -7,6 +7,13 @@ from typing import Annotated
 
 import typer
 
+from feeddrive.cli.output import deliver, progress_bar, tables_of, tell_written, warnings_as_lines
+from feeddrive.interface.runs.scenario import run
+from feeddrive.output_folder import output_folder, refuse_unusable
+from feeddrive.simulate.scenario.scenario_overrides import parse_overrides
+
+CHECKPOINT = "checkpoint.npz"
+
 
 def command(
     scenario: Annotated[str, typer.Argument(help="Scenario file, or the name of a shipped scenario.")],
@@ -20,6 +27,16 @@ def command(
     ] = None,
 ) -> None:
     """Run a scenario: the plant under its controller; following error, settling and what else the scenario asks for."""
-    from feeddrive.cli.running import run_and_tell
-
-    run_and_tell(scenario, settings or [], as_json, out)
+    refuse_unusable(out)
+    with warnings_as_lines(), progress_bar(Path(scenario).stem) as bar:
+        found = run(
+            scenario,
+            set=parse_overrides(settings or []),
+            checkpoint=None if out is None else out / CHECKPOINT,
+            progress=None if bar is None else lambda share: bar(share, 1.0),
+        )
+    if out is not None:
+        with output_folder(out) as folder:
+            found.save(folder)
+    deliver(found.record(), [] if as_json else tables_of(found.tables()), as_json, None)
+    tell_written(out, as_json)

@@ -7,6 +7,12 @@ from typing import Annotated
 
 import typer
 
+from feeddrive.cli.output import deliver, progress_bar, tables_of, tell_written
+from feeddrive.errors import InputError
+from feeddrive.interface.runs.sweep import sweep
+from feeddrive.output_folder import output_folder, refuse_unusable
+from feeddrive.simulate.scenario.scenario_overrides import parse_overrides
+
 _EXAMPLE = '"controller.position_gain=40:80:9 1/s"'
 
 
@@ -24,15 +30,35 @@ def command(
     seed: Annotated[int, typer.Option(min=0, help="Of the random ranges.")] = 0,
     workers: Annotated[int | None, typer.Option(help="Processes of this computer; all processors if left out.")] = None,
     scheduler: Annotated[str, typer.Option(metavar="ADDRESS", help="Dask scheduler, tcp://host:8786.")] = "",
-    metric: Annotated[list[str] | None, typer.Option(metavar="NAME", help="Shown in the figure; up to 4.")] = None,
+    metrics: Annotated[
+        list[str] | None, typer.Option("--metric", metavar="NAME", help="Shown in the figure; up to 4.")
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print results.json instead of the summary.")] = False,
     out: Annotated[Path | None, typer.Option("--out", help="Folder for table and figure; resumes a sweep.")] = None,
 ) -> None:
     """Run a scenario over varied values: one table and one figure; a stopped sweep resumes with the same --out."""
-    from feeddrive.cli.sweeping import Wanted, sweep_and_tell
-
-    wanted = Wanted(
-        scenario, [*(vary or []), *(more or [])], settings or [], samples, seed, workers, scheduler, metric or [],
-        as_json, out,
-    )  # fmt: skip
-    sweep_and_tell(wanted)
+    refuse_unusable(out)
+    if scheduler and workers is not None:
+        raise InputError("--workers and --scheduler are both given", "", "leave one of them out")
+    with progress_bar(Path(scenario).stem) as bar:
+        try:
+            found = sweep(
+                scenario,
+                vary=[*(vary or []), *(more or [])],
+                set=parse_overrides(settings or []),
+                samples=samples,
+                seed=seed,
+                workers=workers,
+                scheduler=scheduler,
+                metrics=metrics or [],
+                folder=out,
+                progress=bar,
+            )
+        except KeyboardInterrupt:
+            typer.echo("stopped; started again with the same --out it goes on", err=True)
+            raise
+    if out is not None:
+        with output_folder(out) as folder:
+            found.save(folder)
+    deliver(found.record(), tables_of(found.tables()), as_json, None)
+    tell_written(out, as_json)

@@ -7,7 +7,10 @@ from typing import Annotated
 
 import typer
 
-from feeddrive.cli.output import JsonOption
+from feeddrive.cli.output import JsonOption, deliver, tables_of, tell_written, warnings_as_lines, working
+from feeddrive.interface.axis import load
+from feeddrive.interface.runs.warm_up import warm_up
+from feeddrive.output_folder import output_folder, refuse_unusable
 
 
 def command(
@@ -32,6 +35,22 @@ def command(
     out: Annotated[Path | None, typer.Option("--out", help="Folder for thermal.json, recording.csv, figures.")] = None,
 ) -> None:
     """Warm a machine up: temperatures, error at the table, time constants, warm-up time, energy, network."""
-    from feeddrive.cli.warming import Asked, warm_and_tell
-
-    warm_and_tell(plant, Asked(speed, duration, stroke, duty, within, order, segments), as_json, out)
+    refuse_unusable(out)
+    with warnings_as_lines():
+        axis = load(plant)
+        with working(f"warming {axis.name} up: full and reduced model"):
+            found = warm_up(
+                axis,
+                duty,
+                speed=speed,
+                duration=duration,
+                within=within,
+                order=order,
+                stroke=None if stroke is None else [one.strip() for one in stroke.split(" to ")],
+                segments=segments,
+            )
+    if out is not None:
+        with output_folder(out) as folder:
+            found.save(folder)
+    deliver(found.record(), [] if as_json else tables_of(found.tables()), as_json, None)
+    tell_written(out, as_json)

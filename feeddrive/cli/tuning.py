@@ -11,21 +11,20 @@ from typing import Any
 from rich.table import Table
 
 from feeddrive import __version__
-from feeddrive.cli.boding import quantities
-from feeddrive.cli.output import deliver, table, tell_written, warnings_as_lines, working
+from feeddrive.cli.output import deliver, quantities, table, tell_written, warnings_as_lines, working
 from feeddrive.cli.tuning_drive import drive_content, drive_tables, write_drive
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant, find_scenario_or_controller, write_bytes_atomically, write_text_atomically
 from feeddrive.interface.servo import Servo
 from feeddrive.output_folder import output_folder, refuse_unusable
 from feeddrive.plant.file.entries import nearest
+from feeddrive.plant.file.files import read_plant
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import KV_UNIT, Cascade, Feedback
 from feeddrive.servo.loop_response import loops_of
 from feeddrive.servo.response_family import open_family
 from feeddrive.servo.response_json import margins_content
 from feeddrive.simulate.controlled.controller_file import read_controller
-from feeddrive.thermal.file.whole_file import read_drive_plant
 from feeddrive.tuning.bare_drive import bare_drive
 from feeddrive.tuning.demand import Demand, operating_points
 from feeddrive.tuning.drive_forms.drive_file import writer_of
@@ -74,7 +73,7 @@ def run(wanted: Wanted, as_json: bool, out: Path | None) -> None:
     if wanted.form:
         writer_of(wanted.form, "--form")
     with warnings_as_lines():
-        plant = read_drive_plant(find_plant(wanted.plant))
+        plant = read_plant(find_plant(wanted.plant))
         phase = math.degrees(parse(wanted.margin_phase, "rad", "--margin-phase"))
         demand = Demand(phase=round(phase, 9), gain=parse(wanted.margin_gain, "dB", "--margin-gain"))
         drive = drive_of(plant, wanted.drive)

@@ -21,13 +21,18 @@ def drive_content(typed: DriveSettings | None, retuned: Retuned | None) -> dict[
             "form": typed.form,
             "remarks": list(typed.remarks),
             "parameters": [
-                {"name": one.parameter.name, "value": one.typed, "unit": one.parameter.unit,
-                 "resolution": one.parameter.resolution, "meaning": one.parameter.meaning,
-                 "source": one.parameter.source}
+                {
+                    "name": one.parameter.name,
+                    "value": one.typed,
+                    "unit": one.parameter.unit,
+                    "resolution": one.parameter.resolution,
+                    "meaning": one.parameter.meaning,
+                    "source": one.parameter.source,
+                }
                 for one in typed.lines
             ],
             "file": typed.text,
-        }  # fmt: skip
+        }
     if retuned is not None:
         changes = [{"setting": name, "present": old, "recommended": new} for name, old, new in retuned.changes]
         content["present"] = {"changes": changes, "remarks": list(retuned.remarks), "brings": retuned.brings}

@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
+from rich.console import Console
 
-from feeddrive.cli.output import JsonOption
+from feeddrive.cli.output import JsonOption, escaped, table, warnings_as_lines
+from feeddrive.errors import InputError, printable
+from feeddrive.interface.axis import load
+from feeddrive.interface.measured.fleet import OVERVIEW, Fleet, watch_fleet
+from feeddrive.interface.measured.watching import watch
+from feeddrive.report.words.trend_words import shown_quantities
 
 
 def command(
@@ -42,10 +49,51 @@ def command(
 
     Writes trend.html, trend.json, trend.csv and the figures, and keeps what it knows there for the next time.
     """
-    from feeddrive.cli.following import Asked, follow_and_tell
+    if scheduler and not each:
+        raise InputError("a cluster follows several axes", "--scheduler", "say --each, with a folder for each axis")
+    options: dict[str, Any] = {
+        "map": mapping, "decimal": decimal or None, "stamp": stamp, "every": every or None, "first": first,
+        "absolute": tuple(absolute or ()), "limits": dict(map(_limit, limit or ())), "search": search,
+    }  # fmt: skip
+    with warnings_as_lines(), Console(stderr=True).status("looking into the folder") as status:
 
-    asked = Asked(
-        folder, plant, out, mapping, decimal, stamp, every, first, tuple(absolute or ()), tuple(limit or ()), search,
-        each, scheduler,
-    )  # fmt: skip
-    follow_and_tell(asked, as_json)
+        def said(text: str) -> None:
+            status.update(printable(text))
+
+        if each:
+            _tell_fleet(watch_fleet(folder, plant, out=out, scheduler=scheduler, progress=said, **options), as_json)
+            return
+        found = watch(folder, load(plant), out=out, progress=said, **options)
+        place = found.save()
+    if as_json:
+        print(escaped(json.dumps(found.record(), indent=2, ensure_ascii=False)))
+        return
+    console = Console(soft_wrap=True, highlight=False)
+    console.print(printable(found.verdict), markup=False)
+    listing = found.listing()
+    rows = [[one.name, *row[1:5]] for one, row in zip(shown_quantities(found.trend), listing.rows, strict=True)]
+    console.print(table(listing.title, listing.headings[:5], rows), markup=False)
+    for note in found.trend.notes:
+        console.print(printable(note), markup=False)
+    waiting = sum(one.status != "used" for one in found.trend.entries)
+    if waiting:
+        console.print(f"{waiting} files are not used; trend.html says why", markup=False)
+    console.print(f"page: {printable(str((place / 'trend.html').resolve()))}", markup=False)
+
+
+def _tell_fleet(fleet: Fleet, as_json: bool) -> None:
+    if as_json:
+        print(escaped((fleet.out / OVERVIEW).read_text(encoding="utf-8")), end="")
+        return
+    console = Console(soft_wrap=True, highlight=False)
+    listing = fleet.listing()
+    rows = [[printable(cell) for cell in row] for row in listing.rows]
+    console.print(table(listing.title, listing.headings, rows), markup=False)
+    console.print(f"pages: {printable(str(fleet.out))}, trend.html in the folder of each axis", markup=False)
+
+
+def _limit(text: str) -> tuple[str, str]:
+    name, equals, value = text.partition("=")
+    if not equals or not name.strip() or not value.strip():
+        raise InputError(f'"{text}" is no limit', "--limit", "write it as 'play=10 µm' or 'coulomb=20 %'")
+    return name.strip(), value.strip()

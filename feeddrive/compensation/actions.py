@@ -37,17 +37,17 @@ class Actions:
     why_not: str = ""
 
 
-def actions(diagnosis: Diagnosis, after: object) -> Actions:
+def actions(diagnosis: Diagnosis, after: Plant) -> Actions:
     """What to do, with a prediction where a table of positions helps.
 
     Args:
         diagnosis: what was found.
-        after: the machine with what was found; anything but a `Plant` is not simulated.
+        after: the machine with what was found.
     """
     names = in_order([one.name for one in diagnosis.effects])
     carried = [one.name for left in diagnosis.unexplained.values() for one in left.carried]
     wanted = [name for name in (*names, *carried) if cure(name).form == "table"]
-    if not wanted or not isinstance(after, Plant):
+    if not wanted or not after.has_motion:
         return Actions(tuple(names))
     stroke = after.stroke or recorded_stroke(diagnosis)
     if stroke is None:

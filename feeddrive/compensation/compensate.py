@@ -15,7 +15,7 @@ from feeddrive.compensation.forms.control import Control
 from feeddrive.compensation.friction_values import FrictionValues, friction_values
 from feeddrive.compensation.lost_motion import LostMotion, lost_motion, refuse_wind_up, resting_words, without_play
 from feeddrive.compensation.plant_deviations import PlantDeviations, plant_deviations
-from feeddrive.compensation.prediction import Applied, Figures, figures, motions, sticking
+from feeddrive.compensation.prediction import Applied, Figures, best_reversal, figures, motions, sticking
 from feeddrive.compensation.recorded_deviations import RecordedDeviations
 from feeddrive.compensation.repair import repaired
 from feeddrive.compensation.table import CompensationTable, Deviations, fitted, grid
@@ -24,6 +24,7 @@ from feeddrive.plant.file.entries import Origins, Table
 from feeddrive.plant.plant import DeclaredCascade, Plant
 from feeddrive.servo.cascade import Cascade, Feedback
 from feeddrive.simulate.scenario.scenario_controller import read_cascade
+from feeddrive.simulate.setpoints.trajectories import Circle
 from feeddrive.tuning.bare_drive import bare_drive
 from feeddrive.tuning.demand import Demand, cases_of
 from feeddrive.tuning.recommendation import recommend
@@ -60,11 +61,18 @@ class Wishes:
 
 @dataclass(frozen=True, eq=False)
 class Prediction:
-    """Figures of the machine as it is, after repair (None where nothing is worn), and with the table."""
+    """Figures of the machine as it is, after repair (None where nothing is worn), and with the table.
+
+    Attributes:
+        circle: that was driven; None where it is not known.
+        usual_contour: with the table at the usual reversal of the control, where another one was found better [m].
+    """
 
     before: Figures
     repaired: Figures | None
     after: Figures
+    circle: Circle | None = None
+    usual_contour: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -172,12 +180,13 @@ def compensate_plant(
     assert made.lost is not None
     loop = cascade_of(plant, cascade)
     test = motions(_stroke(plant, wishes, where), made.lost)
-    applied = Applied(made.control, made.table, _limits(plant))
     moved = sticking(plant, made.lost)
     renewed = repaired(moved)
+    applied, usual = best_reversal(moved, loop, test, Applied(made.control, made.table, _limits(plant)))
+    made = replace(made, control=applied.control)
     prediction = Prediction(
         figures(moved, loop, test), None if renewed is None else figures(renewed, loop, test),
-        figures(moved, loop, test, applied),
+        figures(moved, loop, test, applied), test.circle, usual,
     )  # fmt: skip
     if not beside:
         return replace(made, prediction=prediction)

@@ -28,8 +28,8 @@ from feeddrive.effects.travel.tabulated_travel import TabulatedTravel
 from feeddrive.effects.travel.thermal_growth import ThermalGrowth
 from feeddrive.plant.equations import parameter_symbols, parameter_values
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.symbolic_turn import SYMBOLS
 from feeddrive.plant.transmission_law import travel_deviation
+from feeddrive.symbolic_turn import SYMBOLS
 from feeddrive.typing import FloatArray
 
 _LEAST, _MOST = 2001, 40_001

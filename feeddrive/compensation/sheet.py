@@ -22,7 +22,7 @@ from feeddrive.units.quantity import format_quantity
 Section = tuple[str, Sequence[str]]
 
 _THROWN = 0.25
-"""Share of the play by which a quadrant may go further inwards before it is said."""
+"""Share of the play by which a quadrant may go inwards before it is said."""
 
 _OTHER = 0.1
 """Share of the play that may be lacking in a simulated reversal before it is said."""
@@ -39,7 +39,7 @@ def head(done: Compensated) -> list[str]:
         f"{done.control.title}, axis {done.wishes.axis} of {plain_line(done.name)}, feeddrive {__version__}",
         f"Sign: {done.control.sign_rule}", f"Source: {done.control.source}",
         *check_of_one_point(done),
-        *done.control.load(done.table, done.wishes.axis),
+        *done.control.loading(done.table, done.wishes.axis),
     ]  # fmt: skip
 
 
@@ -107,18 +107,33 @@ def left(done: Compensated) -> list[str]:
         lines.append(
             f"On reversal the value goes over so fast that the table is thrown across the play, {micrometres(-worst)} "
             f"inwards on the circle (largest contour error {micrometres(both.before.contour)} before, "
-            f"{micrometres(both.after.contour)} after). A slower reversal makes it less; renewing the preload cures it."
+            f"{micrometres(both.after.contour)} after). Renewing the preload cures it."
         )
+    if both is not None and both.usual_contour is not None:
+        lines.append(_reversal_words(done, both.usual_contour))
     return lines
 
 
+def _reversal_words(done: Compensated, usual: float) -> str:
+    """Why the play goes over within the time told, and what it is worth."""
+    assert done.prediction is not None and done.prediction.circle is not None
+    circle, reversal = done.prediction.circle, done.control.reversal
+    within = f"{reversal.cycles} cycles" if reversal.cycles else f"{1e3 * reversal.spread:.1f} ms"
+    return (
+        f"The play goes over within {within}: chosen for the least contour error on the circle of "
+        f"{1e3 * circle.radius:.3g} mm at {60 * circle.limits.velocity:.3g} m/min, "
+        f"{micrometres(done.prediction.after.contour)} in place of {micrometres(usual)}. Quicker throws the table across, slower leaves it behind; the best time "
+        "goes with the square root of play and radius, and with 1 / feed."
+    )
+
+
 def _thrown(done: Compensated) -> bool:
-    """Whether a quadrant goes inwards by a share of the play that it did not before."""
+    """Whether a quadrant goes inwards by a share of the play, and further than it did before."""
     both = done.prediction
     if both is None or done.table.play <= 0:
         return False
-    deeper = min(both.before.circular.glitch) - min(both.after.circular.glitch)
-    return deeper > _THROWN * done.table.play
+    before, after = (min(one.circular.glitch) for one in (both.before, both.after))
+    return after < before and after < -_THROWN * done.table.play
 
 
 def predicted_rows(done: Compensated) -> list[tuple[str, list[float | None]]]:
@@ -146,10 +161,11 @@ def friction_lines(done: Compensated) -> list[str]:
     def glitch(one: Circular) -> str:
         return micrometres(max(one.glitch, key=abs))
 
+    helps = max(map(abs, found.forward.glitch)) < max(map(abs, found.before.glitch))
     lines = [
         f"Friction feed-forward: {found.torque:.3g} N m at the motor with the sign of the set velocity, turning within "
         f"{found.turning:.3g} rad/s. Largest quadrant glitch, simulated with the table: {glitch(found.before)} before, "
-        f"{glitch(found.forward)} with it.",
+        f"{glitch(found.forward)} with it{'' if helps else ': leave it off here'}.",
     ]
     if not found.share:
         return [*lines, "No pulse on the speed set-point makes the quadrants better."]
@@ -178,7 +194,7 @@ def sections(done: Compensated) -> list[Section]:
     ]
     found: list[Section] = [
         ("Table", what), ("Sign", [done.control.sign_rule, f"Source: {done.control.source}"]),
-        ("Check of one point", check_of_one_point(done)), ("Load", done.control.load(done.table, done.wishes.axis)),
+        ("Check of one point", check_of_one_point(done)), ("Load", done.control.loading(done.table, done.wishes.axis)),
     ]  # fmt: skip
     rows = predicted_rows(done)
     if rows:

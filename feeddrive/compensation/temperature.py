@@ -29,7 +29,7 @@ from feeddrive.compensation.heat.thermal_sensors import Sensor, lagged, mountabl
 from feeddrive.compensation.heat.thermal_trial import TriedMachine, random_duty, tried_machine
 from feeddrive.errors import InputError
 from feeddrive.recording.recording import Recording
-from feeddrive.thermal.plant import ThermalPlant
+from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.reduced.model import HeatModel
 from feeddrive.typing import FloatArray
 
@@ -74,7 +74,7 @@ class HeatTable:
     after: FloatArray
 
 
-def heat_table(plant: ThermalPlant, reference: float | None = None) -> HeatTable:
+def heat_table(plant: Heat, reference: float | None = None) -> HeatTable:
     """The table of a machine that declares heat.
 
     Args:
@@ -112,15 +112,15 @@ def heat_table(plant: ThermalPlant, reference: float | None = None) -> HeatTable
                      judged.error, after)  # fmt: skip
 
 
-def _tried(plant: ThermalPlant, model: HeatModel, speeds: FloatArray) -> TriedMachine:
+def _tried(plant: Heat, model: HeatModel, speeds: FloatArray) -> TriedMachine:
     return tried_machine(plant, model, STEP, speeds, np.full(len(speeds), plant.ambient))
 
 
-def _reading(plant: ThermalPlant, machine: TriedMachine, place: str) -> FloatArray:
+def _reading(plant: Heat, machine: TriedMachine, place: str) -> FloatArray:
     return np.asarray(plant.ambient + lagged(machine.rises[place], STEP, Sensor(place).lag))
 
 
-def _left(plant: ThermalPlant, table: LineTable, machine: TriedMachine, place: str) -> tuple[LeftOver, FloatArray]:
+def _left(plant: Heat, table: LineTable, machine: TriedMachine, place: str) -> tuple[LeftOver, FloatArray]:
     told = table.line(_reading(plant, machine, place)).at(machine.positions)
     return left_over(machine.error, told), np.asarray(machine.error - told)
 

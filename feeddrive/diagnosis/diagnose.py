@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feeddrive.blas_threads import one_thread
-from feeddrive.diagnosis.calibration.calibrated_result import calibrated_results
+from feeddrive.diagnosis.calibration.calibrated_result import calibrated_results, known_together
 from feeddrive.diagnosis.certainty.ambiguity import Rival, ambiguous_sets, other_places, rivals_of
 from feeddrive.diagnosis.certainty.correlation import correlation
 from feeddrive.diagnosis.certainty.next_experiment import next_experiments
@@ -25,7 +25,7 @@ from feeddrive.diagnosis.judging.veto import without_denied
 from feeddrive.diagnosis.ledger.entry import kept_of
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.fit import Problem
-from feeddrive.diagnosis.preparation import informative, prepared
+from feeddrive.diagnosis.preparation import Shown, informative, prepared, shown
 from feeddrive.diagnosis.recordings.compared import compared_recordings, last_state, machine_as_last, with_carrying
 from feeddrive.diagnosis.recordings.recordings import without_shifts
 from feeddrive.diagnosis.recordings.rehoming import rehomed_plant
@@ -43,15 +43,13 @@ from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
-from feeddrive.thermal.plant import ThermalPlant
-from feeddrive.thermal.warm_plant import WarmPlant
 
 Said = Callable[[str], None]
 
 
 @one_thread()
 def diagnose(
-    plant: Plant | ThermalPlant | WarmPlant,
+    plant: Plant,
     recordings: Sequence[Recording],
     validation: Sequence[Recording] = (),
     split: float = 0.75,
@@ -79,12 +77,13 @@ def diagnose(
     if not 0.2 <= split <= 0.95:
         raise InputError(f"--split is {split:g}", "", "use a share between 0.2 and 0.95, such as 0.75")
     recordings, validation = informative(plant, recordings), informative(plant, validation)
-    if simulate and isinstance(plant, Plant):
-        refuse_unfit_loop(plant, (*recordings, *validation))
     every = (*recordings, *validation)
-    declared = declared_hold(plant, every)
+    in_motion = shown(plant, recordings) is Shown.MOTION
+    in_the_loop = simulate and in_motion
+    if in_the_loop:
+        refuse_unfit_loop(plant, every)
+    declared = declared_hold(plant, every) if in_motion else None
     begun = _begun(plant, recordings, validation, split, declared, declared_sentence)
-    in_the_loop = simulate and isinstance(plant, Plant)
     settled = _settled(begun.problem, begun.judged, in_the_loop, said, start)
     hold = _logged_hold(settled.searched.search, every) if declared is None else declared
     if hold is not None and declared is None:
@@ -125,6 +124,7 @@ def diagnose(
             *begun.told,
             *(open_lag(found.fit.effects, every) if hold is None else ()),
             *other_places(found, judged),
+            *known_together(found.problem, found.fit),
             *last_state(searched),
             *_notes(begun.problem.evidence, begun.judged, found),
             *refinement.notes,
@@ -150,7 +150,7 @@ class _Begun:
 
 
 def _begun(
-    plant: Plant | ThermalPlant | WarmPlant, recordings: Sequence[Recording], validation: Sequence[Recording],
+    plant: Plant, recordings: Sequence[Recording], validation: Sequence[Recording],
     split: float, hold: float | None, sentence: Callable[[float, float], str],
 ) -> _Begun:  # fmt: skip
     problem, judged, told = prepared(plant, recordings, validation, split, hold)

@@ -4,38 +4,59 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from enum import Enum
 
 import numpy as np
 
 from feeddrive.diagnosis.heat.evidence import left_out_channels, prepare_heat, within_range
 from feeddrive.diagnosis.heat.prediction import heat_predictor
-from feeddrive.diagnosis.heat.warm_evidence import prepare_warm
+from feeddrive.diagnosis.heat.warm_evidence import is_warm_log, prepare_warm
 from feeddrive.diagnosis.heat.warm_prediction import warm_predictor
 from feeddrive.diagnosis.likelihood.evidence import AxisEvidence, Evidence, prepare
 from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
+from feeddrive.diagnosis.likelihood.slow_rows import is_slow
 from feeddrive.diagnosis.suspicion.torque_channel import refuse_what_is_no_torque
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording, check_against_lead, without_unfollowed_setpoint
 from feeddrive.recording.checks.copies import refuse_copied_setpoint
 from feeddrive.recording.long.joined import shortened
-from feeddrive.thermal.plant import ThermalPlant
-from feeddrive.thermal.warm_plant import WarmPlant
+
+
+class Shown(Enum):
+    """What recordings show of a machine."""
+
+    MOTION = "motion and torque, sample by sample"
+    HEAT = "temperatures and growth"
+    BOTH = "motion, torque and temperatures over hours"
+
+
+def shown(plant: Plant, recordings: Sequence[Recording]) -> Shown:
+    """What recordings show of a plant: its motion, its heat, or both where a log of hours holds both."""
+    if not plant.has_motion:
+        return Shown.HEAT
+    if not plant.has_heat:
+        return Shown.MOTION
+    if all("screw_speed" in one and "motor_torque" not in one for one in recordings):
+        return Shown.HEAT
+    logs = plant.joint is not None and all(is_slow(one) and is_warm_log(one, plant.heat) for one in recordings)
+    return Shown.BOTH if logs else Shown.MOTION
+
 
 Prepared = tuple[Problem, list[Evidence], tuple[str, ...]]
 """The problem, what is judged, and what is to be said."""
 
 
-def informative(plant: Plant | ThermalPlant | WarmPlant, recordings: Sequence[Recording]) -> tuple[Recording, ...]:
+def informative(plant: Plant, recordings: Sequence[Recording]) -> tuple[Recording, ...]:
     """The recordings; of long ones of motion what is informative, with what they say as a whole as notes."""
-    if not isinstance(plant, Plant):
+    if shown(plant, recordings) is not Shown.MOTION:
         return tuple(recordings)
     return tuple(shortened(one, plant.chain.motor_radius) for one in recordings)
 
 
 def prepared(
-    plant: Plant | ThermalPlant | WarmPlant,
+    plant: Plant,
     recordings: Sequence[Recording],
     validation: Sequence[Recording],
     split: float,
@@ -53,9 +74,10 @@ def prepared(
     Raises:
         InputError: recordings that cannot be used with this plant.
     """
-    if isinstance(plant, ThermalPlant):
+    what = shown(plant, recordings)
+    if what is Shown.HEAT:
         return _prepared_heat(plant, recordings, validation, split)
-    if isinstance(plant, WarmPlant):
+    if what is Shown.BOTH:
         warm = tuple(prepare_warm(recording, plant, 1.0 if validation else split) for recording in recordings)
         return (
             Problem(plant, warm, warm_predictor(plant)),
@@ -109,12 +131,14 @@ def _known(evidence: Evidence, known: Mapping[AxisEvidence, AxisEvidence], scale
 
 
 def _prepared_heat(
-    plant: ThermalPlant, recordings: Sequence[Recording], validation: Sequence[Recording], split: float
+    plant: Plant, recordings: Sequence[Recording], validation: Sequence[Recording], split: float
 ) -> Prepared:
-    fitted = tuple(prepare_heat(recording, plant, 1.0 if validation else split) for recording in recordings)
-    others = [prepare_heat(recording, plant, 0.0) for recording in validation]
+    fitted = tuple(prepare_heat(recording, plant.heat, 1.0 if validation else split) for recording in recordings)
+    others = [prepare_heat(recording, plant.heat, 0.0) for recording in validation]
     wide, told = within_range(plant, (*fitted, *others))
-    lost = [f"{r.name}: {c} is not predicted" for r in (*recordings, *validation) for c in left_out_channels(r, plant)]
+    lost = [
+        f"{r.name}: {c} is not predicted" for r in (*recordings, *validation) for c in left_out_channels(r, plant.heat)
+    ]
     judged: list[Evidence] = [*others] or [*fitted]
     return Problem(wide, fitted, heat_predictor(wide)), judged, (*told, *lost)
 

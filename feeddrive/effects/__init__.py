@@ -1,0 +1,1 @@
+"""Effects: one law a file, written once as a CasADi expression."""

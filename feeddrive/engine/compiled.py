@@ -14,7 +14,7 @@ import numpy as np
 from feeddrive.compiler import compiled_library
 from feeddrive.engine.driver_source import source_of
 from feeddrive.engine.program import CELL, Position, Program, Run, Status, Stop, Task
-from feeddrive.plant.symbolic_turn import SYMBOLS
+from feeddrive.symbolic_turn import SYMBOLS
 from feeddrive.typing import FloatArray
 
 FLAGS = (

@@ -15,7 +15,7 @@ from feeddrive.engine.interpreted_tangents import CarriedTangents, SampleTangent
 from feeddrive.engine.program import CELL, DEEPEST, Position, Program, Run, Status, Stop, Task
 from feeddrive.engine.stretch import Stretch
 from feeddrive.engine.virtual_machine import Called
-from feeddrive.plant.symbolic_turn import SYMBOLS
+from feeddrive.symbolic_turn import SYMBOLS
 from feeddrive.typing import FloatArray
 
 LONG, SHORT = 8, 1

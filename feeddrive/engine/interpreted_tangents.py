@@ -12,7 +12,7 @@ import numpy as np
 from feeddrive.engine.program import Program, Tangents, Task
 from feeddrive.engine.step.step import StepModel
 from feeddrive.engine.virtual_machine import Called
-from feeddrive.plant.symbolic_turn import SYMBOLS
+from feeddrive.symbolic_turn import SYMBOLS
 from feeddrive.typing import FloatArray
 
 

@@ -21,7 +21,7 @@ import numpy as np
 
 from feeddrive.export.model import Model
 from feeddrive.plant.equations import chain_symbols, parameter_symbols
-from feeddrive.plant.symbolic_turn import SYMBOLS
+from feeddrive.symbolic_turn import SYMBOLS
 from feeddrive.typing import Expression
 
 BESIDE = "beside_table"

@@ -18,7 +18,7 @@ import casadi as ca
 from feeddrive.errors import printable
 from feeddrive.export.model import Model, slopes_of
 from feeddrive.export.quantities import Quantity
-from feeddrive.plant.symbolic_turn import SYMBOLS
+from feeddrive.symbolic_turn import SYMBOLS
 
 
 def header_text(model: Model) -> str:

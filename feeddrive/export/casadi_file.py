@@ -24,7 +24,7 @@ from feeddrive.errors import InputError
 from feeddrive.export.json_file import rows
 from feeddrive.export.model import Model
 from feeddrive.export.quantities import Quantity
-from feeddrive.plant.symbolic_turn import SYMBOLS
+from feeddrive.symbolic_turn import SYMBOLS
 
 
 @SYMBOLS.taken()

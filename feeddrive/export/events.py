@@ -19,7 +19,7 @@ import numpy as np
 
 from feeddrive.export.model import Model
 from feeddrive.export.nominals import nominals
-from feeddrive.plant.symbolic_turn import SYMBOLS
+from feeddrive.symbolic_turn import SYMBOLS
 from feeddrive.typing import Expression, FloatArray
 
 HYSTERESIS = 1e-8

@@ -32,7 +32,7 @@ from feeddrive.export.events import Kinks, kinks_of
 from feeddrive.export.fmu_description import description_text, fixed_parameters
 from feeddrive.export.model import Model
 from feeddrive.export.nominals import nominals
-from feeddrive.plant.symbolic_turn import SYMBOLS
+from feeddrive.symbolic_turn import SYMBOLS
 
 _WRAPPER = "fmi2_model_exchange.c"
 _FLAGS = ("-O1", "-ffp-contract=off", "-fPIC", "-shared", "-fvisibility=hidden")

@@ -17,7 +17,7 @@ from feeddrive.export.fmu_units import exponents
 from feeddrive.export.model import Model
 from feeddrive.export.nominals import nominals
 from feeddrive.export.quantities import Quantity
-from feeddrive.plant.symbolic_turn import SYMBOLS
+from feeddrive.symbolic_turn import SYMBOLS
 
 TOLERANCE = 1e-8
 """Relative, asked of the solver: of a shaft that has turned 100 rad it leaves a microradian, nanometres of travel."""

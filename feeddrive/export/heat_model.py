@@ -14,13 +14,13 @@ from feeddrive.export.model import Model, identifier_of
 from feeddrive.export.point import Point
 from feeddrive.export.quantities import Quantity
 from feeddrive.thermal.equations import HEAT_INPUT_UNITS, HEAT_INPUTS, heat_equations, linear_heat
-from feeddrive.thermal.plant import ThermalPlant
+from feeddrive.thermal.heat import Heat
 from feeddrive.units.quantity import format_quantity
 
 _COMMENTS = ("of the screw, either sign", "of the air around screw and nut")
 
 
-def heat_model_of(plant: ThermalPlant) -> Model:
+def heat_model_of(plant: Heat) -> Model:
     """The equations of the heat of a plant, cold and at rest at the start.
 
     Args:
@@ -50,7 +50,7 @@ def heat_model_of(plant: ThermalPlant) -> Model:
     )
 
 
-def heat_python_text(plant: ThermalPlant, speed: float) -> str:
+def heat_python_text(plant: Heat, speed: float) -> str:
     """Source of a module with the heat linearised at a speed of the screw [rad/s], `system` a control.StateSpace."""
     system = linear_heat(plant, speed)
     held, lacking = _notes(plant)
@@ -68,7 +68,7 @@ def heat_python_text(plant: ThermalPlant, speed: float) -> str:
     return "\n".join(" ".join(line.split()) if line.startswith("#") else line for line in lines) + "\n"
 
 
-def _notes(plant: ThermalPlant) -> tuple[tuple[str, ...], tuple[str, ...]]:
+def _notes(plant: Heat) -> tuple[tuple[str, ...], tuple[str, ...]]:
     held = [
         f"screw, nut and {len(plant.bodies)} bodies, reduced; films, contact and friction heat that follow the speed"
     ]

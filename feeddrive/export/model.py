@@ -18,7 +18,7 @@ from feeddrive.export.point import Point, refuse_outside
 from feeddrive.export.quantities import Quantity, inputs, outputs, parameters, states
 from feeddrive.plant.analysis.linear import steady_motion, timed_ode
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.symbolic_turn import SYMBOLS
+from feeddrive.symbolic_turn import SYMBOLS
 
 _LONGEST = 60
 """Letters of an identifier: C99 tells 63 apart, and file names have ends of their own."""

@@ -10,7 +10,7 @@ from feeddrive.effects.base import BristleEffect, Kind, TimingEffect, Transmissi
 from feeddrive.effects.timing.channel_delay import ChannelDelay
 from feeddrive.plant.analysis.linear import timed_ode
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.symbolic_turn import SYMBOLS
+from feeddrive.symbolic_turn import SYMBOLS
 from feeddrive.units.quantity import format_quantity
 
 
@@ -18,7 +18,7 @@ def included(plant: Plant) -> tuple[str, ...]:
     """What the equations of motion hold."""
     follows = ", following the table position" if plant.chain.varies else ""
     lines = [f"inertias, springs and dampers of the structure {plant.chain.structure}{follows}"]
-    lines += [f"effect {e.label} at port {e.port}" for e in plant.effects if e.kind != Kind.TIMING]
+    lines += [f"effect {e.label} at port {e.port}" for e in plant.motion_effects if e.kind != Kind.TIMING]
     return tuple(lines)
 
 

@@ -55,7 +55,7 @@ def outputs() -> tuple[Quantity, ...]:
 def parameters(plant: Plant) -> tuple[Quantity, ...]:
     """Parameters with values and sources, in the order of `ode_parameters`."""
     units = {value.key: value.unit for value in plant.chain.known_values}
-    units |= {f"{effect.label}.{p.key}": p.unit for effect in plant.effects for p in effect.parameters}
+    units |= {f"{effect.label}.{p.key}": p.unit for effect in plant.motion_effects for p in effect.parameters}
     rows = []
     for name, value in ode_parameters(plant).items():
         key = name.partition("[")[0]

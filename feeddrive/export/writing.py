@@ -21,7 +21,7 @@ from feeddrive.export.point import Point
 from feeddrive.export.python_file import python_text
 from feeddrive.files import write_bytes_atomically
 from feeddrive.plant.plant import Plant
-from feeddrive.thermal.plant import ThermalPlant
+from feeddrive.thermal.heat import Heat
 
 
 class Form(StrEnum):
@@ -61,7 +61,7 @@ def write_export(plant: Plant, form: Form, point: Point, folder: Path) -> tuple[
     return tuple(folder / name for name in files)
 
 
-def write_heat_export(plant: ThermalPlant, form: Form, velocity: float, folder: Path) -> tuple[Path, ...]:
+def write_heat_export(plant: Heat, form: Form, velocity: float, folder: Path) -> tuple[Path, ...]:
     """Write the heat of a machine in one form: a state space, CasADi, C or FMU; else as `write_export`.
 
     Args:

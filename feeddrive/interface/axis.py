@@ -11,40 +11,38 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from feeddrive.diagnosis.heat.warm_evidence import is_warm_log
-from feeddrive.diagnosis.likelihood.slow_rows import is_slow
 from feeddrive.effects.base import Effect
-from feeddrive.effects.catalogue import THERMAL_EFFECTS
-from feeddrive.effects.heat.base import ThermalEffect
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant, write_text_atomically
-from feeddrive.interface.machine_tables import Check, Life, Modes, Stiffness
-from feeddrive.interface.quantities import Quantity, quantities, si, span
+from feeddrive.interface.machine.check import Check
+from feeddrive.interface.machine.modes import Modes
+from feeddrive.interface.machine.summary import Life, Stiffness, Summary
+from feeddrive.interface.quantities import Quantity, quantities, si
+from feeddrive.plant.analysis.lumping import lump
 from feeddrive.plant.analysis.mode_map import mode_map
 from feeddrive.plant.analysis.plausibility import check_plant
 from feeddrive.plant.analysis.rated_life import rated_life
 from feeddrive.plant.analysis.stiffness_budget import stiffness_budget
+from feeddrive.plant.analysis.summary import summarise
 from feeddrive.plant.chain.moving_inertia import inertia_at_motor
 from feeddrive.plant.file.declared_check import check_declared
 from feeddrive.plant.file.effect_text import plant_text_with_effects
 from feeddrive.plant.file.entries import parse_toml
-from feeddrive.plant.file.files import declares_heat_alone, plant_from_entries
-from feeddrive.plant.file.plant_schema import plant_table
+from feeddrive.plant.file.files import plant_from_entries
 from feeddrive.plant.plant import Plant
-from feeddrive.recording import Recording
 from feeddrive.simulate.scenario.scenario_overrides import with_overrides
-from feeddrive.thermal.file.coupling_section import coupling
-from feeddrive.thermal.file.files import SECTION, thermal_plant
-from feeddrive.thermal.plant import ThermalPlant
-from feeddrive.thermal.run.plausibility import check_thermal_plant
-from feeddrive.thermal.warm_plant import WarmPlant, warm_plant
+from feeddrive.thermal.heat import Heat
 
 if TYPE_CHECKING:
     import casadi
     import control
 
-    from feeddrive.interface.bode import Bode
+    from feeddrive.interface.machine.bode import Bode
+    from feeddrive.interface.machine.heat_summary import HeatSummary
+    from feeddrive.interface.machine.lumped import Lumped
     from feeddrive.interface.servo import Servo
+    from feeddrive.recording.frequency_response import FrequencyResponse
+    from feeddrive.recording.recording import Recording
 
 
 def load(name: str | Path) -> Axis:
@@ -105,12 +103,12 @@ class Axis:
 
     def __repr__(self) -> str:
         """Name, structure, effects, stroke."""
-        if not self.has_motion:
-            return f"Axis {self.heat.name!r}: heat alone, {len(self.heat.effects)} effects"
         plant = self.plant
+        if not plant.has_motion:
+            return f"Axis {plant.name!r}: heat alone, {len(plant.effects)} effects"
         low, high = ("" if plant.stroke is None else _short(end) for end in plant.stroke or (0.0, 0.0))
         stroke = f", stroke {low} to {high}" if plant.stroke else ""
-        heat = ", with heat" if self.has_heat else ""
+        heat = ", with heat" if plant.has_heat else ""
         return f"Axis {plant.name!r}: {plant.chain.structure}, {len(plant.effects)} effects{stroke}{heat}"
 
     @cached_property
@@ -119,63 +117,34 @@ class Axis:
         written = parse_toml(self.text, str(self.path))
         return with_overrides(written, dict(self.values))
 
+    @cached_property
+    def plant(self) -> Plant:
+        """The machine: chain, effects and drive, and its heat where it is declared."""
+        return plant_from_entries(self.entries, self.path).with_effects(*self.added)
+
     @property
     def has_motion(self) -> bool:
         """Whether the file declares masses and drives."""
-        return not declares_heat_alone(self.entries)
+        return self.plant.has_motion
 
     @property
     def has_heat(self) -> bool:
         """Whether the file declares heat."""
-        return SECTION in self.entries
+        return self.plant.has_heat
 
-    @cached_property
-    def plant(self) -> Plant:
-        """The equations of motion, with chain, effects and drive.
-
-        Raises:
-            InputError: the file declares heat alone.
-        """
-        motion = [one for one in self.added if not isinstance(one, ThermalEffect)]
-        return plant_from_entries(self.entries, self.path).with_effects(*motion)
-
-    @cached_property
-    def heat(self) -> ThermalPlant:
+    @property
+    def heat(self) -> Heat:
         """The heat of the machine.
 
         Raises:
             InputError: the file declares none.
         """
-        top = plant_table(self.entries, str(self.path))
-        found = thermal_plant(top, self.path.stem)
-        return found.with_effects(*(one for one in self.added if isinstance(one, ThermalEffect)))
-
-    @cached_property
-    def warm(self) -> WarmPlant:
-        """Motion and heat as one machine.
-
-        Raises:
-            InputError: the file does not declare masses, heat and how they are joined.
-        """
-        return warm_plant(self.plant, self.heat, coupling(plant_table(self.entries, str(self.path))))
-
-    def machine(self, recordings: Sequence[Recording] = ()) -> Plant | ThermalPlant | WarmPlant:
-        """What of the machine recordings are of: its motion, its heat, or both where a log of hours holds both."""
-        if not self.has_motion:
-            return self.heat
-        if not self.has_heat or not recordings:
-            return self.plant
-        if all("screw_speed" in one and "motor_torque" not in one for one in recordings):
-            return self.heat
-        joined = "coupling" in self.entries[SECTION]
-        if joined and all(is_slow(one) and is_warm_log(one, self.heat) for one in recordings):
-            return self.warm
-        return self.plant
+        return self.plant.heat
 
     @property
     def name(self) -> str:
         """Name of the machine."""
-        return self.plant.name if self.has_motion else self.heat.name
+        return self.plant.name
 
     @property
     def inertia_at_motor(self) -> float:
@@ -193,10 +162,7 @@ class Axis:
         Raises:
             InputError: the first thing that cannot be used.
         """
-        if self.has_motion:
-            _ = self.plant
-        if self.has_heat:
-            _ = self.heat
+        _ = self.plant
 
     def with_values(self, values: Mapping[str, Quantity | Sequence[str]]) -> Axis:
         """The axis with other values.
@@ -231,8 +197,6 @@ class Axis:
         for one in effects:
             if not isinstance(one, Effect):
                 raise InputError(f"{one!r} is no effect", "with_effects", 'give fd.effect("backlash", width="7.5 um")')
-            if one.name in THERMAL_EFFECTS and not self.has_heat:
-                raise InputError(f"{one.name} acts on heat, and none is declared", str(self.path), "declare [thermal]")
         changed = replace(self, added=(*self.added, *effects))
         changed.refuse_unusable()
         return changed
@@ -249,6 +213,45 @@ class Axis:
         target = Path(path)
         write_text_atomically(target, plant_text_with_effects(self.text, self.added))
         return target
+
+    def summary(self, at: Quantity | None = None) -> Summary | HeatSummary:
+        """Values with their sources, inertias, stiffness budget, friction, modes and life; of heat alone its own.
+
+        Args:
+            at: table position for stiffness and modes; the middle of the stroke if left out.
+
+        Raises:
+            InputError: a position off the screw.
+
+        >>> import feeddrive as fd
+        >>> [one.title for one in fd.load("bench_axis").summary().tables()][2]
+        'Inertia'
+        """
+        from feeddrive.interface.machine.heat_summary import HeatSummary
+
+        if not self.has_motion:
+            return HeatSummary(self.heat)
+        found = summarise(self.plant, None if at is None else si(at, "m", "at"))
+        return Summary(self.plant, found, rated_life(self.plant))
+
+    def lumped(self, at: Quantity | None = None) -> Lumped:
+        """The three inertias that are nearest to a machine of parts, and how near they are.
+
+        Args:
+            at: table position; the middle of the stroke if left out.
+
+        Raises:
+            InputError: a machine that is not described by parts, or a position off the screw.
+
+        >>> import feeddrive as fd
+        >>> fd.load("kimm_testbed").lumped(at="600 mm").text.startswith("#")
+        True
+        """
+        from feeddrive.interface.machine.lumped import Lumped
+
+        further = ("the [thermal] sections; temperatures are predicted with the file of the parts",)
+        place = self.plant.middle if at is None else si(at, "m", "at")
+        return Lumped(self.name, lump(self.plant, place, further if self.has_heat else ()))
 
     def modes(self, at: Quantity | Sequence[Quantity] | None = None) -> Modes:
         """Natural frequencies, motor held and free.
@@ -290,8 +293,6 @@ class Axis:
         Raises:
             InputError: a gain that is not above zero.
         """
-        if not self.has_motion:
-            return Check(self.name, check_thermal_plant(self.heat))
         gain = None if position_gain is None else si(position_gain, "1/s", "position_gain")
         if gain is not None and not gain > 0:
             raise InputError(f"{position_gain} is no gain", "position_gain", "write one above zero, such as '50 1/s'")
@@ -331,27 +332,30 @@ class Axis:
 
     def bode(
         self,
-        given: str = "motor_torque",
-        output: str = "motor_speed",
+        given: str = "",
+        output: str = "",
         *,
         at: str = "",
         positions: Quantity | Sequence[Quantity] | None = None,
         payload: Quantity | Sequence[Quantity] | None = None,
         controller: Servo | str | Path | None = None,
-        loop: str = "open",
+        loop: str = "",
         frequencies: Sequence[Quantity] = ("1 Hz", "2 kHz"),
+        measured: Recording | FrequencyResponse | None = None,
     ) -> Bode:
-        """Frequency responses: of the mechanics, or with a controller of its velocity loop.
+        """Frequency responses: of the mechanics, or with a controller of its loops.
 
         Args:
-            given: input, such as "motor_torque"; of the mechanics.
-            output: such as "motor_speed" or "table_position"; of the mechanics.
+            given: input, "motor_torque" if left out; of a closed loop also a set-point.
+            output: such as "table_position"; "motor_speed" if left out.
             at: operating point, "x=200 mm, v=3 m/min".
             positions: of the table, one curve each; that of `at` if left out.
             payload: masses on the table beyond the declared one, one curve each.
             controller: of `tune`, or a controller or scenario file; its loops are shown then.
-            loop: "velocity" or "position", with a controller: that open loop with its margins.
+            loop: "open" (all open loops with their margins, as if left out), "closed", "velocity" or "position" (that
+                open loop alone).
             frequencies: lowest and highest.
+            measured: recording, or frequency response of a file, that is laid over the mechanics.
 
         Raises:
             InputError: an unknown signal or loop, a point off the stroke, an unstable loop.
@@ -361,26 +365,20 @@ class Axis:
         >>> len(bode.curves)
         2
         """
-        from feeddrive.export.point import export_point
-        from feeddrive.interface.bode import Bode
-        from feeddrive.interface.servo import cascade_for
-        from feeddrive.plant.file.entries import nearest
-        from feeddrive.servo.loop_response import loops_of
-        from feeddrive.servo.response_family import mechanics_family, open_family
-        from feeddrive.tuning.demand import cases_of
+        from feeddrive.interface.machine.bode import bode
 
-        point = export_point(self.plant, at, "at")
-        places = quantities(positions, "m", "positions") or (point.position,)
-        cases = cases_of(self.plant, places, quantities(payload, "kg", "payload"), point.linearised_at)
-        low, high = span(frequencies, "Hz", "frequencies")
-        if controller is None:
-            return Bode(self.name, mechanics_family(self.plant, given, output, cases, low, high))
-        cascade = cascade_for(self.plant, controller)
-        wanted = "velocity" if loop == "open" else loop
-        known = {str(one): one for one in loops_of(cascade)}
-        if wanted not in known:
-            raise InputError(f'no loop "{loop}"', "loop", nearest(loop, known))
-        return Bode(self.name, open_family(self.plant, cascade, known[wanted], cases, low, high))
+        return bode(
+            self.plant,
+            given,
+            output,
+            at=at,
+            positions=positions,
+            payload=payload,
+            controller=controller,
+            loop=loop,
+            frequencies=frequencies,
+            measured=measured,
+        )
 
     def export(self, form: str, folder: str | Path, at: str = "", heat: bool = False) -> tuple[Path, ...]:
         """Write the axis in the form of another tool.

@@ -11,7 +11,7 @@ from feeddrive.bench_page.page import BenchPage, bench_page
 from feeddrive.errors import InputError
 from feeddrive.files import DIAGNOSED, write_text_atomically
 from feeddrive.interface.axis import Axis, load
-from feeddrive.interface.diagnosed import Diagnosed
+from feeddrive.interface.measured.diagnosed import Diagnosed
 from feeddrive.interface.quantities import Quantity, si
 from feeddrive.interface.servo import Servo, cascade_for, tune
 from feeddrive.servo.frequency_response import Case

@@ -48,15 +48,3 @@ def quantities(values: Quantity | Sequence[Quantity] | None, unit: str, where: s
     if isinstance(values, str) or not isinstance(values, Sequence | np.ndarray):
         return (si(values, unit, where),)
     return tuple(si(value, unit, where) for value in values)
-
-
-def span(ends: Sequence[Quantity], unit: str, where: str) -> tuple[float, float]:
-    """Two ascending quantities, in SI.
-
-    Raises:
-        InputError: not two of them, or not ascending.
-    """
-    found = quantities(ends, unit, where)
-    if len(found) != 2 or not found[0] < found[1]:
-        raise InputError(f"{ends!r} is not two ascending values", where, f'write ("1 {unit}", "2000 {unit}")')
-    return found[0], found[1]

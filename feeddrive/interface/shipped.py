@@ -8,10 +8,12 @@ from feeddrive.effects.base import Effect
 from feeddrive.effects.catalogue import EFFECTS, THERMAL_EFFECTS
 from feeddrive.errors import InputError
 from feeddrive.files import shipped_plants, shipped_scenarios
+from feeddrive.interface.axis import load
 from feeddrive.interface.shown import Listing, Shown
 from feeddrive.plant.file.effect_sections import read_effects
-from feeddrive.plant.file.entries import nearest
+from feeddrive.plant.file.entries import nearest, parse_toml
 from feeddrive.plant.file.plant_schema import plant_table
+from feeddrive.report.words.words import effect_words
 
 
 def list_plants() -> tuple[str, ...]:
@@ -70,6 +72,64 @@ def list_effects() -> Catalogue:
     True
     """
     return Catalogue()
+
+
+class Shipped(Shown):
+    """Machines, scenarios and effects that come with feeddrive, each in a line."""
+
+    def listing(self) -> Listing:
+        """The machines."""
+        return self.tables()[0]
+
+    def tables(self) -> tuple[Listing, ...]:
+        """Machines, scenarios, effects."""
+        found = self.record()
+        plants = [list(one.values()) for one in found["plants"]]
+        effects = []
+        for one in found["effects"]:
+            keys = ", ".join([one["place"]] * bool(one["place"]) + [f"{k} [{unit}]" for k, unit in one["keys"].items()])
+            effects.append([one["name"], effect_words(one["name"]), ", ".join(one["ports"]), keys])
+        scenarios = [[name, str(entries.get("description", ""))] for name, entries in _scenarios().items()]
+        tables = (
+            Listing("Plants", ("name", "machine", "structure"), plants, found["plants"]),
+            Listing("Scenarios", ("name", "what happens"), scenarios),
+            Listing("Effects", ("name", "what it is", "port", "keys"), effects, found["effects"]),
+        )
+        return tuple(one for one in tables if one.rows)
+
+    def record(self) -> dict[str, Any]:
+        """Everything as plain values."""
+        axes = {path.stem: load(path) for path in shipped_plants()}
+        return {
+            "plants": [
+                {
+                    "name": name,
+                    "machine": one.name,
+                    "structure": one.plant.chain.structure if one.has_motion else "heat alone",
+                }
+                for name, one in axes.items()
+            ],
+            "scenarios": list(_scenarios()),
+            "effects": [
+                {
+                    "name": one.name,
+                    "kind": str(one.kind),
+                    "ports": [str(port) for port in one.ports],
+                    "place": one.place_key,
+                    "keys": {parameter.key: parameter.unit for parameter in one.parameters},
+                }
+                for one in (*EFFECTS.values(), *THERMAL_EFFECTS.values())
+            ],
+        }
+
+
+def _scenarios() -> dict[str, dict[str, Any]]:
+    return {path.stem: parse_toml(path.read_text(encoding="utf-8"), str(path)) for path in shipped_scenarios()}
+
+
+def shipped() -> Shipped:
+    """Machines, scenarios and effects that come with feeddrive."""
+    return Shipped()
 
 
 def effect(name: str, **values: object) -> Effect:

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Sequence
+import json
+import math
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from feeddrive.errors import InputError
+from feeddrive.files import write_bytes_atomically, write_text_atomically
 
 if TYPE_CHECKING:
     import pandas
@@ -29,12 +33,14 @@ class Listing:
         headings: of the columns, as shown.
         rows: cells as shown, each row as long as the headings.
         records: the same rows for programs: key with its SI unit, such as "position [m]", to value.
+        caption: below the table; empty where there is nothing to add.
     """
 
     title: str
     headings: Sequence[str]
     rows: Sequence[Sequence[str]]
-    records: Sequence[dict[str, Any]]
+    records: Sequence[dict[str, Any]] = ()
+    caption: str = ""
 
     def text(self) -> str:
         """Title, headings and rows in columns of equal width."""
@@ -44,7 +50,7 @@ class Listing:
             "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in shown
         ]
         more = [f"… {len(self.rows) - MOST_ROWS} more"] if len(self.rows) > MOST_ROWS else []
-        return "\n".join([self.title, *lines, *more])
+        return "\n".join([self.title, *lines, *more, *([self.caption] if self.caption else [])])
 
     def html(self) -> str:
         """The table as HTML."""
@@ -94,6 +100,33 @@ class Shown:
         if not figures:
             raise InputError("there is nothing to draw", self.listing().title, "look at its table")
         return figures[0].figure
+
+
+def write_json(content: Mapping[str, Any], path: Path, indent: int = 2) -> None:
+    """Write plain values as JSON, whole or not at all.
+
+    Raises:
+        InputError: the file cannot be written.
+    """
+    write_text_atomically(path, json.dumps(content, indent=indent, ensure_ascii=False, allow_nan=False) + "\n")
+
+
+def write_figures(figures: Iterable[ReportFigure], folder: Path) -> None:
+    """Write each figure as PNG under its own name.
+
+    Raises:
+        InputError: a file cannot be written.
+    """
+    from feeddrive.report.figures.drawing import render  # matplotlib takes time to import
+
+    for one in figures:
+        drawn = render(one)
+        write_bytes_atomically(folder / f"{drawn.stem}.png", drawn.png)
+
+
+def finite(value: float | None) -> float | None:
+    """A number for JSON; None where it is not finite."""
+    return None if value is None or not math.isfinite(value) else float(value)
 
 
 def needed_pandas() -> Any:

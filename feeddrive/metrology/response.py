@@ -9,12 +9,18 @@ averaged over whole periods without window, where nothing leaks. Source: Pintelo
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from feeddrive.errors import InputError
 from feeddrive.typing import FloatArray
+
+SETTLED_BY = 0.8
+"""Share of what was recorded after a step by which it must have come within its band for good. An exponential approach
+1 - e^(-t/T) that is cut off at t_e has its end value put wrong by e^(-t_e/T); where that is the band of 2 % itself, the
+approach enters the band about the wrong end at 0.8 t_e: who enters later, has an end value that is not known."""
 
 _LEAKING = 3
 """Lowest lines into which a Hann window lets what is left of the mean and of a drift leak."""
@@ -113,7 +119,8 @@ class StepResponse:
         final: value at the end, in the unit of the signal.
         rise: from 10 to 90 % [s].
         overshoot: beyond the end value, as a share of the height.
-        settling: until within 2 % of the height for good [s]; from the step on.
+        settling: until within 2 % of the height for good [s], from the step on; NaN where it has not settled by
+            `SETTLED_BY` of the record, so that its end value is not known either.
     """
 
     final: float
@@ -144,4 +151,6 @@ def step_response(time: FloatArray, values: FloatArray, at: float) -> StepRespon
     rise = float(time[first + np.argmax(share >= 0.9)] - time[first + np.argmax(share >= 0.1)])
     outside = np.flatnonzero(np.abs(share - 1) > 0.02)
     settled = float(time[first + outside[-1]] - at) if len(outside) else 0.0
+    if settled > SETTLED_BY * float(time[-1] - at):
+        settled = math.nan
     return StepResponse(final, rise, float(max(0.0, share.max() - 1)), settled)

@@ -1,0 +1,1 @@
+"""What a catalogue sells: geometry and catalogue values become stiffness, inertia, friction, load, life."""

@@ -1,0 +1,1 @@
+"""The plant: a chain and effects at its ports become equations; its file, its analysis."""

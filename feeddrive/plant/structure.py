@@ -11,8 +11,8 @@ import casadi as ca
 
 from feeddrive.effects.base import Effect
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.symbolic_turn import SYMBOLS
 from feeddrive.plant.symbols import Symbols
+from feeddrive.symbolic_turn import SYMBOLS
 
 Options = TypeVarTuple("Options")
 Machine = TypeVar("Machine")
@@ -68,7 +68,7 @@ def structure_key(plant: Plant) -> tuple[object, ...]:
 
     The order of the values is part of it, since it is that of the columns which the equations read.
     """
-    return (plant.chain.key, tuple(plant.chain.values), *(_effect_key(effect) for effect in plant.effects))
+    return (plant.chain.key, tuple(plant.chain.values), *(_effect_key(effect) for effect in plant.motion_effects))
 
 
 def _effect_key(effect: Effect) -> tuple[object, ...]:
@@ -88,6 +88,6 @@ def without_left_out(plant: Plant, symbols: Symbols) -> Symbols:
     """The symbols with a plain 0 for what is left out, so that nothing is computed for it; the vector stays."""
     effects = {
         effect.label: {**symbols.effects[effect.label], **dict.fromkeys(left_out(effect), ca.SX(0))}
-        for effect in plant.effects
+        for effect in plant.motion_effects
     }
     return replace(symbols, effects=effects)

@@ -32,7 +32,7 @@ def parameter_symbols(plant: Plant) -> Symbols:
     """Symbols for every parameter of the plant."""
     chain = {key: ca.SX.sym(key) for key in plant.chain.values}
     effects: dict[str, dict[str, Expression]] = {}
-    for effect in plant.effects:
+    for effect in plant.motion_effects:
         effects[effect.label] = {}
         for key, value in effect.values.items():
             effects[effect.label][key] = ca.SX.sym(f"{effect.label}.{key}", _length(value))
@@ -43,7 +43,7 @@ def parameter_symbols(plant: Plant) -> Symbols:
 def parameter_names(plant: Plant) -> tuple[str, ...]:
     """Names in the order of `Symbols.vector`, for who needs no symbols."""
     names = list(plant.chain.values)
-    for effect in plant.effects:
+    for effect in plant.motion_effects:
         for key, value in effect.values.items():
             name, length = f"{effect.label}.{key}", _length(value)
             names += [name] if length == 1 else [f"{name}[{i}]" for i in range(length)]

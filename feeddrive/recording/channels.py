@@ -21,8 +21,14 @@ CHANNEL_UNITS: dict[str, str] = {
     "table_velocity": "m/s",
     "screw_speed": "rad/s",
     "cutting_force": "N",
+    "injected_torque": "N m",
+    "injected_speed": "rad/s",
 }
 """Canonical channel -> SI unit; temperatures and growths have open names."""
+
+INJECTED = ("injected_torque", "injected_speed")
+"""What a test signal adds to the torque command, and to the set-point of the motor's speed behind the position loop;
+commands as the torque is: each acts from its sample to the next."""
 
 MOTION_AND_TORQUE = (
     "motor_torque",
@@ -38,11 +44,23 @@ MOTION_AND_TORQUE = (
 _OPEN_NAMES = ((re.compile(r"[a-z0-9_]+_temperature"), "degC"), (re.compile(r"table_growth_[a-z0-9_]+"), "m"))
 _HEADING = re.compile(r"(?P<name>[^\[\]]*?)\s*(?:\[(?P<unit>[^\[\]]*)\])?")
 _COMMON_NAMES = {
-    "t": "time", "torque": "motor_torque", "current": "motor_current", "position": "table_position",
-    "angle": "motor_angle", "speed": "motor_speed", "velocity": "table_velocity", "force": "cutting_force",
-    "reference": "setpoint", "command": "setpoint", "scale": "table_position", "encoder": "motor_angle",
-    "temperature": "nut_temperature", "growth": "table_growth_1",
-}  # fmt: skip
+    "t": "time",
+    "torque": "motor_torque",
+    "current": "motor_current",
+    "position": "table_position",
+    "angle": "motor_angle",
+    "speed": "motor_speed",
+    "velocity": "table_velocity",
+    "force": "cutting_force",
+    "excitation": "injected_torque",
+    "injection": "injected_torque",
+    "reference": "setpoint",
+    "command": "setpoint",
+    "scale": "table_position",
+    "encoder": "motor_angle",
+    "temperature": "nut_temperature",
+    "growth": "table_growth_1",
+}
 
 
 @dataclass(frozen=True)

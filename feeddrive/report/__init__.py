@@ -1,0 +1,1 @@
+"""Reports: the only place where sentences, figures and pages are made."""

@@ -1,0 +1,1 @@
+"""The five source papers: every number beside what the program computes."""

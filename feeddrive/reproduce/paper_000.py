@@ -11,7 +11,6 @@ import math
 import numpy as np
 from scipy.optimize import brentq
 
-from feeddrive.parts.lubricant import ISO_GRADES
 from feeddrive.parts.screw.contact_angle_optimum import (
     best_contact_angle,
     friction_of_highest_efficiency,
@@ -25,6 +24,9 @@ from feeddrive.parts.screw.slip_angle import Groove, groove_at, slip_angle
 from feeddrive.parts.screw.torque_regression import split_torque
 from feeddrive.reproduce.paper_000_equations import equation_rows
 from feeddrive.reproduce.row import Paper, Row, claim, not_possible, number, span
+
+ISO_GRADES = (2.2, 3.2, 4.6, 6.8, 10, 15, 22, 32, 46, 68, 100, 150, 220, 320, 460, 680, 1000, 1500, 2200, 3200)
+"""ISO 3448: middle of the grade's range of viscosity at 40 degC [mm^2/s]; a grade's name is this number, rounded."""
 
 PAPER = Paper.EFFICIENCY
 CONTACT_ANGLE = math.radians(45)

@@ -20,9 +20,9 @@ import numpy as np
 from feeddrive.thermal.full.full_model import NUT, discretise, model_of
 from feeddrive.thermal.full.grid import Cells
 from feeddrive.thermal.full.moving import moving_system
+from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.laws.films import Films
 from feeddrive.thermal.laws.friction import Friction, nut_load_torque
-from feeddrive.thermal.plant import ThermalPlant
 from feeddrive.thermal.reduced.reduction import compressed_basis
 from feeddrive.thermal.rig import Nut, Rig, Seat, Steel, Travel
 from feeddrive.typing import FloatArray
@@ -81,7 +81,7 @@ class WarmUp:
         return float(np.interp((1 - math.exp(-1)) * self.rise, self.nut, self.minutes))
 
 
-def plant(assumptions: Assumptions, preload: float) -> ThermalPlant:
+def plant(assumptions: Assumptions, preload: float) -> Heat:
     """The paper's machine at a preload [N]."""
     printed = assumptions is Assumptions.PRINTED
     travel = Travel(0.2, 0.3)
@@ -91,7 +91,7 @@ def plant(assumptions: Assumptions, preload: float) -> ThermalPlant:
         steel=Steel(heat_capacity=3.8e6 if printed else 3.926e6), nut_heat_share=0.5 if printed else 1.0,
     )  # fmt: skip
     contact = CONTACT_MIDDLE[PRELOADS.index(int(preload))] * (1 if printed else 10)
-    return ThermalPlant(
+    return Heat(
         "paper 002", rig, FILMS, contact, preload, 5e-3 / (2 * math.pi),
         nut=nut_friction(preload, 0.5 if printed else 0.609), front=bearing_friction() if printed else None,
     )  # fmt: skip

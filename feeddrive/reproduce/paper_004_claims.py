@@ -12,7 +12,12 @@ from feeddrive.parts.combined_stiffness import (
     torsional_from_axial,
 )
 from feeddrive.parts.screw.screw_drive import BallScrewDrive
-from feeddrive.parts.screw.wedge import self_locking, self_locking_lead, wedge_back_driving_efficiency, wedge_efficiency
+from feeddrive.parts.screw.wedge import (
+    self_locking,
+    self_locking_lead,
+    wedge_back_driving_efficiency,
+    wedge_efficiency,
+)
 from feeddrive.reproduce.paper_004_drive import MODULI, printed_chains, printed_parts
 from feeddrive.reproduce.row import Paper, Row, claim, not_possible, number, span
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from feeddrive.diagnosis.stiffness.candidates import DriveAt
-from feeddrive.diagnosis.stiffness.gap import explain_stiffness, frequency_of
 from feeddrive.parts.combined_stiffness import combined_stiffness
 from feeddrive.parts.screw.screw_drive import BallScrewDrive
+from feeddrive.reproduce.paper_004_candidates import DriveAt
 from feeddrive.reproduce.paper_004_drive import FORCE_LENGTH, MODULI, TORQUE_LENGTH, paper_drive
+from feeddrive.reproduce.paper_004_gap import explain_stiffness, frequency_of
 from feeddrive.reproduce.row import Paper, Row, claim, not_possible, number
 
 _STIFFNESS, _FREQUENCY = 191e6, 185.0

@@ -1,4 +1,4 @@
-"""Keys of [thermal] and of what stands inside it; `feeddrive.thermal.file.files` and `coupling_section` read them."""
+"""Keys of [thermal] and of what stands inside it; `feeddrive.plant.file.heat` reads them."""
 
 from __future__ import annotations
 

@@ -9,10 +9,10 @@ from functools import lru_cache
 import casadi as ca
 import numpy as np
 
-from feeddrive.plant.symbolic_turn import SYMBOLS
 from feeddrive.servo.cascade import Cascade, Feedback
 from feeddrive.servo.filters import Filter
 from feeddrive.servo.sampled import SampledController
+from feeddrive.symbolic_turn import SYMBOLS
 from feeddrive.typing import Expression, FloatArray
 
 REFERENCES = ("position", "velocity", "acceleration", "speed_excitation", "torque_excitation")

@@ -14,7 +14,8 @@ Loops with a controller are sampled, see `servo.linear_loop`; their responses ar
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from enum import StrEnum
 
 import control
 import numpy as np
@@ -23,6 +24,7 @@ from feeddrive.effects.base import TimingEffect
 from feeddrive.effects.chain.payload import Payload
 from feeddrive.errors import InputError
 from feeddrive.plant.analysis.linear import INPUTS, MOVING, OUTPUTS, state_space
+from feeddrive.plant.analysis.rest import freed, held
 from feeddrive.plant.file.entries import nearest
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.margins import frequency_response
@@ -40,6 +42,14 @@ _ABOUT_RESONANCE = np.concatenate([-np.geomspace(6.0, 0.05, 20), np.geomspace(0.
 """Grid about a lightly damped root, in units of its damping: the peak is not missed, however sharp."""
 
 
+class Friction(StrEnum):
+    """What stands for friction in a response: the declared law, or a limit of it at rest (`plant.analysis.rest`)."""
+
+    DECLARED = "declared"
+    FREE = "free"
+    HELD = "held"
+
+
 @dataclass(frozen=True)
 class Case:
     """What a response holds for.
@@ -48,18 +58,23 @@ class Case:
         position: of the table [m].
         velocity: of the table, about which is linearised [m/s].
         payload: mass on the table beyond the declared one [kg].
+        friction: the declared law, or a limit of it at rest.
     """
 
     position: float = 0.0
     velocity: float = MOVING
     payload: float = 0.0
+    friction: Friction = Friction.DECLARED
 
     def on(self, plant: Plant) -> Plant:
-        """The plant with the payload on its table.
+        """The plant with the payload on its table, its friction as the case has it.
 
         Raises:
             InputError: a payload that leaves no mass.
         """
+        if self.friction is not Friction.DECLARED:
+            plain = replace(self, friction=Friction.DECLARED).on(plant)
+            return freed(plain) if self.friction is Friction.FREE else held(plain, self.position)
         if not self.payload:
             return plant
         loaded = plant.with_effects(Payload.of(mass=self.payload))
@@ -176,7 +191,7 @@ def refuse_no_range(low: float, high: float) -> None:
     """
     if not 0 < low < high < math.inf:
         what = f"{low:g} Hz to {high:g} Hz is no range of frequencies"
-        raise InputError(what, "--range", 'write e.g. --range "1 Hz,2 kHz"')
+        raise InputError(what, "frequencies", 'write e.g. "1 Hz,2 kHz"')
 
 
 def grid(low: float, high: float, roots: tuple[Resonance, ...] = ()) -> FloatArray:

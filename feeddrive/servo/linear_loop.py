@@ -25,12 +25,12 @@ import numpy as np
 from feeddrive.errors import InputError
 from feeddrive.plant.analysis.linear import INPUTS, MOVING, OUTPUTS
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.symbolic_turn import SYMBOLS
 from feeddrive.servo.cascade import Cascade, FeedForward
 from feeddrive.servo.cascade_function import cascade_controller, velocity_loop_of
 from feeddrive.servo.margins import GROWTH
 from feeddrive.servo.sampled import SampledController
 from feeddrive.servo.sampled_plant import Matrices, sampled_plant
+from feeddrive.symbolic_turn import SYMBOLS
 from feeddrive.typing import FloatArray
 
 if TYPE_CHECKING:

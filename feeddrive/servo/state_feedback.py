@@ -29,9 +29,9 @@ import numpy as np
 
 from feeddrive.errors import InputError
 from feeddrive.plant.analysis.linear import OUTPUTS
-from feeddrive.plant.symbolic_turn import SYMBOLS
 from feeddrive.servo.sampled import SampledController
 from feeddrive.servo.sampled_plant import Matrices
+from feeddrive.symbolic_turn import SYMBOLS
 from feeddrive.typing import FloatArray
 
 MEASURED = ("motor_angle", "table_position")

@@ -1,0 +1,1 @@
+"""Simulation: the plant driven, controlled, swept, warmed."""

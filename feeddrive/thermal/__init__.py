@@ -1,0 +1,1 @@
+"""The heat of a machine: full model, reduction, laws, runs."""

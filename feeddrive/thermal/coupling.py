@@ -20,7 +20,7 @@ from dataclasses import dataclass
 
 from feeddrive.errors import InputError
 from feeddrive.parts.lubricant import Lubricant
-from feeddrive.parts.screw.preload_loss import stiffness_share, torque_share
+from feeddrive.parts.screw.preload_loss import stiffness_share
 from feeddrive.thermal.laws.nut_preload import Spacer, preload_change
 from feeddrive.thermal.rig import refuse_negative, refuse_unless, refuse_unless_positive
 from feeddrive.typing import Expression
@@ -55,11 +55,6 @@ class Changes:
     bearing_viscous: float = 1.0
     preload: float = 1.0
     nut_stiffness: float = 1.0
-
-    @property
-    def preload_torque(self) -> float:
-        """On the torque that the preload causes [1]."""
-        return torque_share(self.preload)
 
 
 @dataclass(frozen=True)

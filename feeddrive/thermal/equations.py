@@ -14,16 +14,16 @@ The rows of `warm_up` are these equations with speed and surroundings held. A co
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import casadi as ca
 import control
 import numpy as np
 
-from feeddrive.plant.symbolic_turn import SYMBOLS
+from feeddrive.symbolic_turn import SYMBOLS
 from feeddrive.thermal.full.full_model import NUT
+from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.laws.laws import FOLLOWED, INPUTS, PATHS, growth_places, laws_of, values_of
-from feeddrive.thermal.plant import ThermalPlant
 from feeddrive.thermal.reduced.model import AMBIENT, HeatModel
 from feeddrive.thermal.reduced.reduction import reduce_model
 from feeddrive.thermal.rig import refuse_unless
@@ -70,7 +70,7 @@ class HeatEquations:
 
 
 @SYMBOLS.taken()
-def heat_equations(plant: ThermalPlant, model: HeatModel | None = None) -> HeatEquations:
+def heat_equations(plant: Heat, model: HeatModel | None = None) -> HeatEquations:
     """The equations of a plant.
 
     Args:
@@ -81,8 +81,7 @@ def heat_equations(plant: ThermalPlant, model: HeatModel | None = None) -> HeatE
         InputError: a full model, which is too large.
     """
     if model is None:
-        bare = plant.without_effects()
-        model = reduce_model([bare.full_model()], plant.limits())[0]
+        model = reduce_model([replace(plant, effects=()).full_model()], plant.limits())[0]
     refuse_unless(isinstance(model.conduction, np.ndarray), "a full model is too large", "thermal", "reduce it first")
     laws, n = laws_of(plant), model.order
     lagged = [(channel, i) for channel, rows in laws.lagging.items() for i in rows]
@@ -122,7 +121,7 @@ def heat_equations(plant: ThermalPlant, model: HeatModel | None = None) -> HeatE
     return HeatEquations(function, sizes, outputs, {key: (_unit(plant, key), float(v)) for key, v in named.items()})
 
 
-def linear_heat(plant: ThermalPlant, speed: float, model: HeatModel | None = None) -> control.StateSpace:
+def linear_heat(plant: Heat, speed: float, model: HeatModel | None = None) -> control.StateSpace:
     """The equations linearised at a speed of the screw [rad/s], cold and at the temperature of the start.
 
     Inputs and outputs are deviations, with their names, SI.
@@ -151,7 +150,7 @@ def _flow(model: HeatModel, x: Expression, g: Expression, given: dict[str, Expre
     return flow
 
 
-def _shown(plant: ThermalPlant, model: HeatModel, x: Expression, frame: Expression) -> dict[str, Expression]:
+def _shown(plant: Heat, model: HeatModel, x: Expression, frame: Expression) -> dict[str, Expression]:
     """Channel to its rise or growth, without lags; those of the plant's sensors, or all."""
     named = {sensor.output: sensor.channel for sensor in plant.sensors}
     moved = dict(zip(growth_places(plant), ca.vertsplit(frame), strict=True))
@@ -162,7 +161,7 @@ def _shown(plant: ThermalPlant, model: HeatModel, x: Expression, frame: Expressi
     }
 
 
-def _unit(plant: ThermalPlant, name: str) -> str:
+def _unit(plant: Heat, name: str) -> str:
     """Unit of a parameter."""
     group, _, key = name.partition(".")
     key = key.partition("[")[0]

@@ -8,10 +8,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from feeddrive.effects.base import Port
 from feeddrive.errors import InputError
 from feeddrive.plant.analysis.linear import MOVING
+from feeddrive.plant.analysis.rest import ports_without_presliding
 from feeddrive.plant.plant import Plant
-from feeddrive.servo.frequency_response import Case
+from feeddrive.servo.frequency_response import Case, Friction
 
 PHASE, GAIN = 45.0, 8.0
 """Usual margins of automatic tuning in drives: 45 degrees and 8 dB."""
@@ -72,13 +74,22 @@ def operating_points(
 ) -> tuple[Case, ...]:
     """Where the margins of a tuned cascade have to hold: every position with every payload, in motion and at rest.
 
-    In motion friction acts by its small slope over the speed. At rest it holds the table: by the stiffness of its
-    bristle, or by the slope of tanh, which nearly clamps it, and the motor then turns against the screw alone.
+    In motion friction acts by its small slope over the speed. At rest a declared bristle acts by its stiffness; where
+    none is declared, friction is known to lie between two limits, and the margins have to hold in both: nothing holds
+    the table, and nothing moves it, when the motor turns against the screw alone (`plant.analysis.rest`).
 
     Args, raises: as `cases_of`.
     """
     moving = cases_of(plant, positions, payloads, velocity)
-    return (*moving, *(replace(case, velocity=0.0) for case in moving)) if velocity else moving
+    if not velocity:
+        return moving
+    creeping = ports_without_presliding(plant)
+    freely = Friction.FREE if creeping else Friction.DECLARED
+    rest = [replace(case, velocity=0.0, friction=freely) for case in moving]
+    if Port.TABLE in creeping:  # of a table that is held no payload shows
+        places = dict.fromkeys(case.position for case in moving)
+        rest += [Case(place, 0.0, 0.0, Friction.HELD) for place in places]
+    return (*moving, *rest)
 
 
 def refuse_off_stroke(plant: Plant, position: float) -> None:

@@ -11,7 +11,7 @@ from feeddrive.plant.analysis.modes import braked_modes
 from feeddrive.plant.chain.moving_inertia import inertia_at_motor
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import KV_UNIT, Cascade
-from feeddrive.servo.frequency_response import Case
+from feeddrive.servo.frequency_response import Case, Friction
 from feeddrive.tuning.filter_choice import FilterChoice
 from feeddrive.tuning.largest_gain import GainLimit, Limit
 from feeddrive.tuning.recommendation import Recommendation
@@ -19,6 +19,12 @@ from feeddrive.units.quantity import format_quantity
 
 _COMPLETE = 200.0
 """Depth of a complete notch in a file [dB]: 1e-10, beyond every digit of a drive."""
+
+
+_AT_REST = {
+    Friction.DECLARED: "at rest, held by its bristles", Friction.FREE: "at rest without friction",
+    Friction.HELD: "at rest with the table held",
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -119,7 +125,9 @@ def operating_points(found: Recommendation) -> str:
 
 
 def _motion(case: Case) -> str:
-    return f"at {format_quantity(case.velocity, 'm/s')}" if case.velocity else "at rest"
+    if case.velocity:
+        return f"at {format_quantity(case.velocity, 'm/s')}"
+    return _AT_REST[case.friction]
 
 
 def _listed(words: list[str]) -> str:

@@ -30,7 +30,7 @@ from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade
 from feeddrive.servo.filters import Filter
-from feeddrive.servo.frequency_response import Case, grid, transfer
+from feeddrive.servo.frequency_response import Case, Friction, grid, transfer
 from feeddrive.servo.linear_loop import open_velocity_loop
 from feeddrive.servo.margins import frequency_response
 from feeddrive.servo.resonances import Kind, Resonance, resonances
@@ -81,14 +81,14 @@ class VelocityGains:
 class _Task:
     """Grid [Hz], loops at K_p = 1 without integrator (cases, n), resonances by case, what filters may be.
 
-    `velocities` of the cases [m/s]: a table that friction holds has other resonances than one that moves.
+    `alike` tells cases of the same motion and friction: a table that is held has other resonances than one that moves.
     """
 
     tick: float
     frequency: FloatArray
     loops: ComplexArray
     resonances: tuple[tuple[Resonance, ...], ...]
-    velocities: tuple[float, ...]
+    alike: tuple[tuple[float, Friction], ...]
     demand: Demand
     limits: FilterLimits
 
@@ -131,8 +131,8 @@ def _task(plant: Plant, drive: Cascade, cases: Sequence[Case], demand: Demand, l
         frequency_response(open_velocity_loop(case.on(plant), bare, case.velocity, case.position), frequency)
         for case in cases
     ]
-    velocities = tuple(case.velocity for case in cases)
-    return _Task(drive.sample_time, frequency, np.array(loops), roots, velocities, demand, limits)
+    alike = tuple((case.velocity, case.friction) for case in cases)
+    return _Task(drive.sample_time, frequency, np.array(loops), roots, alike, demand, limits)
 
 
 def _best(task: _Task, filters: tuple[FilterChoice, ...], reset_times: FloatArray) -> VelocityGains:
@@ -219,8 +219,8 @@ def _moved(task: _Task, found: VelocityGains) -> VelocityGains:
 def _limiting_resonance(task: _Task, found: VelocityGains) -> tuple[float, float] | None:
     """Least and greatest natural frequency over the cases of the resonance that limits; None where none does."""
     every = [[root.frequency for root in some if root.kind is Kind.RESONANCE] for some in task.resonances]
-    own, velocity = every[found.limit.case], task.velocities[found.limit.case]
-    poles = [some for some, other in zip(every, task.velocities, strict=True) if other == velocity]
+    own, motion = every[found.limit.case], task.alike[found.limit.case]
+    poles = [some for some, other in zip(every, task.alike, strict=True) if other == motion]
     near = [f for f in own if abs(f / found.limit.frequency - 1) < _NEAR]
     if not near:
         return None

@@ -20,10 +20,11 @@ from feeddrive.plant.file.files import read_plant
 from feeddrive.plant.plant import Plant
 from feeddrive.recording.recording import Recording
 from feeddrive.servo.cascade import Cascade, Feedback
+from feeddrive.servo.filters import pt2
 from feeddrive.servo.frequency_response import Case, delay_of, mechanics
-from feeddrive.servo.linear_loop import open_velocity_loop
+from feeddrive.servo.linear_loop import closed_loop, open_velocity_loop
 from feeddrive.servo.loop_response import Loop, closed_figures, closed_response, controlled_response, open_response
-from feeddrive.servo.margins import margins
+from feeddrive.servo.margins import frequency_response, margins
 from feeddrive.servo.resonances import Kind, extrema, on_curve
 from feeddrive.servo.response_family import mechanics_family
 from feeddrive.simulate.controlled.controller_file import read_controller
@@ -157,6 +158,42 @@ def test_margins_are_those_of_control() -> None:
     assert same == found
     np.testing.assert_allclose(response.frd().omega, 2 * math.pi * response.frequency)
     np.testing.assert_allclose(response.frd().eval(2 * math.pi * response.frequency), response.values)
+
+
+def test_small_response_does_not_cancel() -> None:
+    """A closed position loop that has fallen to 1e-6: by elimination with 64 bits of mantissa, where there are so many.
+
+    Its states are metres, torques and integrals of speed. Solved as they are, their sum was known to 1e-13, which is
+    1e-7 of the loop; a margin or a comparison there would be one of rounding.
+    """
+    if np.finfo(np.longdouble).nmant < 63:
+        pytest.skip("the longest number of this machine is a double")
+    plant = read_plant(find_plant("kimm_testbed"))
+    servo = Cascade(plant.chain.motor_radius, 125e-6, 4, 60.0, 8.0, 5e-3, 5e-3, torque_filters=(pt2(600.0, 0.7),) * 3,
+                    current_lag=160e-6, dead_time=125e-6, feedback=Feedback.MOTOR)  # fmt: skip
+    loop = closed_loop(plant, servo, 0.05, 0.5)["measured_position", "position"]
+    frequency = np.array([300.0, 800.0, 970.0, 995.0])
+    a, b, c = (np.asarray(one, dtype=np.clongdouble) for one in (loop.A, loop.B, loop.C))
+    found = frequency_response(loop, frequency)
+    assert np.abs(found).min() < 1e-4
+    for f, value in zip(frequency, found, strict=True):
+        z = np.exp(2j * np.pi * np.longdouble(f) * np.longdouble(loop.dt))
+        exact = (c @ _eliminated(z * np.eye(len(a)) - a, b[:, 0]))[0]
+        assert abs(value - exact) < 1e-11 * abs(exact), abs(value - exact) / abs(exact)
+
+
+def _eliminated(matrix: np.ndarray, given: np.ndarray) -> np.ndarray:
+    """The solution by elimination with the largest pivot, in the numbers given."""
+    a, x = matrix.copy(), given.copy()
+    for k in range(len(a)):
+        p = k + int(np.argmax(np.abs(a[k:, k])))
+        a[[k, p]], x[[k, p]] = a[[p, k]], x[[p, k]]
+        factor = a[k + 1 :, k] / a[k, k]
+        a[k + 1 :] -= factor[:, None] * a[k]
+        x[k + 1 :] -= factor * x[k]
+    for k in range(len(a) - 1, -1, -1):
+        x[k] = (x[k] - a[k, k + 1 :] @ x[k + 1 :]) / a[k, k]
+    return x
 
 
 def test_closed_position_loop_of_a_slow_gain_is_a_first_order_lag() -> None:

@@ -7,14 +7,23 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from feeddrive.diagnosis.calibration.calibration import whitener
+from feeddrive.diagnosis.calibration.beyond import is_within_tolerance, said_by_effects
+from feeddrive.diagnosis.calibration.calibration import Calibration, whitener
 from feeddrive.diagnosis.calibration.declared import CalibratedValue, as_effect, calibrated_values, with_values
+from feeddrive.diagnosis.likelihood.evidence import prepare
+from feeddrive.diagnosis.likelihood.fit import Problem
+from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
 from feeddrive.diagnosis.likelihood.tolerances import MASS, deviation_of
+from feeddrive.effects.base import Port
+from feeddrive.effects.chain.payload import Payload
+from feeddrive.effects.friction.friction_deviation import FrictionDeviation
+from feeddrive.effects.source.constant_force import ConstantForce
 from feeddrive.files import plants_folder
 from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.plant import Plant
 from tests.generator.drawn_drives import drawn_drive
 from tests.recovery.rigid_runs import MASS as RIGID_MASS
-from tests.recovery.rigid_runs import PLANT
+from tests.recovery.rigid_runs import PLANT, Truth, rigid_run
 
 RANDOM = np.random.default_rng(3)
 
@@ -85,3 +94,34 @@ def test_the_effect_that_names_a_value_does_the_same(tmp_path: Path) -> None:
         named_plant = plant.with_effects(as_effect(plant, value, 2.0))
         moved = with_values(plant, [value], np.array([2.0]))
         assert named_plant.chain_values()[value.key] == pytest.approx(moved.chain.values[value.key], rel=1e-12)
+
+
+def beside(plant: Plant, coordinates: np.ndarray) -> Problem:
+    """A problem of no recording, its declared values at these coordinates."""
+    return Problem(plant, (), AxisPredictor(), Calibration(calibrated_values(plant), coordinates, {}, 1.0))
+
+
+def test_a_declared_value_that_an_effect_says_is_fitted_by_it_alone_and_the_machine_stays(tmp_path: Path) -> None:
+    plant = plant_of(PLANT, tmp_path)
+    problem = beside(plant, RANDOM.standard_normal(len(calibrated_values(plant))))
+    before = problem.machine((FrictionDeviation.of(Port.TABLE, viscous_factor=0.8), Payload.of(mass=3.0)))
+    left, effects = said_by_effects(
+        problem, [FrictionDeviation.of(Port.TABLE, viscous_factor=0.8), Payload.of(mass=3.0)]
+    )
+    assert left.calibration is not None
+    assert {one.key for one in left.calibration.values} == {"table.smoothing_velocity", "torque_constant"}
+    after = left.machine(effects)
+    recorded = prepare(rigid_run("a", Truth(), seconds=6.0), plant, 1.0)
+    torques = [AxisPredictor().predict(one, recorded)["motor_torque"] for one in (before, after)]
+    assert torques[1] == pytest.approx(torques[0], rel=1e-9, abs=1e-9)
+
+
+def test_an_effect_within_the_tolerance_of_a_declared_value_is_no_lack_of_the_plant(tmp_path: Path) -> None:
+    plant = plant_of(PLANT, tmp_path)
+    friction, mass = 1.30, 0.05 * RIGID_MASS  # tolerances of a catalogue
+    assert is_within_tolerance(FrictionDeviation.of(Port.TABLE, viscous_factor=0.99 * friction), plant)
+    assert not is_within_tolerance(FrictionDeviation.of(Port.TABLE, viscous_factor=1.01 * friction), plant)
+    assert is_within_tolerance(Payload.of(mass=0.99 * mass), plant)
+    assert not is_within_tolerance(Payload.of(mass=1.01 * mass), plant)
+    assert not is_within_tolerance(Payload.of(mass=-RIGID_MASS), plant)
+    assert is_within_tolerance(ConstantForce.of(force=1.0), plant) is None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -308,6 +309,24 @@ def test_direction_holds_at_rest_and_spreads_over_its_time() -> None:
     assert given[-1] == pytest.approx(-PLAY, abs=1e-7)
     assert given[10 + 7] == pytest.approx(-PLAY * 8 / 15, abs=1e-7)  # 15 ms, evenly
     assert np.all(given[30:] == given[-1])
+
+
+@pytest.mark.parametrize(
+    ("form", "words"),
+    [
+        ("isg", "n_backlash_cyc 13:"), ("heidenhain-csv", "MP752 (MP_filterTime) = 12.5 ms"),
+        ("sinumerik-enc", "MD32457 $MA_BACKLASH_DYN_MAX_VELO = 28.8 mm/min"), ("csv", "within 12.5 ms"),
+    ],
+)  # fmt: skip
+def test_reversal_is_set_as_the_control_takes_it(form: str, words: str) -> None:
+    """6 um within 12.5 ms are 28.8 mm/min."""
+    asked = control(form)
+    set_to = replace(asked, reversal=asked.reversal.over(12.6e-3 if form == "isg" else 12.5e-3, 1e-3))
+    held = table()
+    assert any(words in line for line in set_to.loading(held, "X1"))
+    without_play = replace(held, forward=held.mean, reverse=held.mean)
+    assert not any(words in line for line in set_to.loading(without_play, "X1"))
+    assert asked.reversal.over(5.0, 1e-3).longest == 1.0
 
 
 def test_resolution_of_a_form_can_be_coarser_not_finer() -> None:

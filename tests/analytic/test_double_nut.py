@@ -16,7 +16,6 @@ from feeddrive.parts.screw.double_nut import (
     friction_torque_backward,
     friction_torque_forward,
     rigid_sharing,
-    spring_sharing,
 )
 from feeddrive.parts.screw.preload_torque import preload_torque
 from feeddrive.parts.screw.screw_efficiency import back_driving_loss, driving_loss, jamming_friction
@@ -30,11 +29,10 @@ SCREW = ScrewFriction(ScrewGeometry(0.01, 0.041, math.pi / 4), 0.034)
 
 @given(FORCES, PRELOADS)
 def test_shared_loads_balance_the_force(force: float, preload: float) -> None:
-    for sharing in (rigid_sharing, spring_sharing):
-        nut_a, nut_b = sharing(force, preload)
-        assert nut_a >= 0.0 and nut_b >= 0.0
-        # 1e-8 N from holding the root just short of the opening, 1e-12 from rounding.
-        assert nut_a - nut_b == pytest.approx(force, rel=1e-11, abs=1e-8)
+    nut_a, nut_b = rigid_sharing(force, preload)
+    assert nut_a >= 0.0 and nut_b >= 0.0
+    # 1e-8 N from holding the root just short of the opening, 1e-12 from rounding.
+    assert nut_a - nut_b == pytest.approx(force, rel=1e-11, abs=1e-8)
 
 
 @given(st.floats(-0.999, 0.999), st.floats(1.0, 2e4))
@@ -52,8 +50,7 @@ def test_sharing_is_the_same_in_both_directions(force: float, preload: float) ->
 
 @given(FORCES)
 def test_without_preload_one_nut_carries_all(force: float) -> None:
-    for sharing in (rigid_sharing, spring_sharing):
-        assert sharing(force, 0.0) == (max(force, 0.0), max(-force, 0.0))
+    assert rigid_sharing(force, 0.0) == (max(force, 0.0), max(-force, 0.0))
 
 
 def test_opens_at_two_root_two_times_the_preload() -> None:
@@ -63,20 +60,13 @@ def test_opens_at_two_root_two_times_the_preload() -> None:
     assert rigid_sharing(1e4, 3e3)[0] == pytest.approx(1e4, rel=1e-11)
 
 
-def test_spring_side_stays_at_the_preload() -> None:
-    assert spring_sharing(np.array([-4e3, -3e3, -1e3, 0.0, 5e3]), 3e3) == (
-        pytest.approx([0.0, 0.0, 2e3, 3e3, 8e3]),
-        pytest.approx([4e3, 3e3, 3e3, 3e3, 3e3]),
-    )
-
-
-@given(FORCES, PRELOADS, st.floats(0.0, 0.5), st.sampled_from([rigid_sharing, spring_sharing]))
-def test_never_creates_power_in_any_quadrant(force: float, preload: float, f: float, sharing: object) -> None:
+@given(FORCES, PRELOADS, st.floats(0.0, 0.5))
+def test_never_creates_power_in_any_quadrant(force: float, preload: float, f: float) -> None:
     """Shaft power in is at least the axial power out, for both signs of force and speed."""
     groove = groove_at(0.077, math.pi / 4)
     assume(f < jamming_friction(groove))
     losses = driving_loss(groove, f), back_driving_loss(groove, f)
-    nut_a, nut_b = sharing(force, preload)  # type: ignore[operator]
+    nut_a, nut_b = rigid_sharing(force, preload)
     assert friction_torque_forward(nut_a, nut_b, 1.6e-3, *losses) >= 0.0
     assert friction_torque_backward(nut_a, nut_b, 1.6e-3, *losses) >= 0.0
 

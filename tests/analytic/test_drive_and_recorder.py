@@ -33,10 +33,10 @@ from feeddrive.plant.motor_torque import acting_torques, asked_torques
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 from feeddrive.servo.sampled import SampledController
-from feeddrive.simulate import scenario_run
 from feeddrive.simulate.controlled.controlled import TorqueLoop, simulate_controlled
 from feeddrive.simulate.controlled.sensitivity import simulate_sensitivity
 from feeddrive.simulate.held_torque import simulate_torque
+from feeddrive.simulate.scenario import scenario_run
 from feeddrive.simulate.scenario.scenario import Scenario
 from feeddrive.simulate.scenario.scenario_file import read_scenario
 from feeddrive.simulate.scenario.scenario_run import run_scenario
@@ -144,7 +144,7 @@ def test_places_of_one_effect_are_not_the_same_equations() -> None:
     torque = 3 * np.sin(2 * math.pi * 40 * time)
     for where in ("motor", "screw", "motor"):
         plant = BENCH.with_effects(InertiaDeviation.of(place=where, inertia=3e-4))
-        plain = replace(BENCH, chain=replace(BENCH.chain, values=plant.chain_values()))
+        plain = BENCH.with_chain_values(plant.chain_values())
         run, same = simulate_torque(plant, time, torque), simulate_torque(plain, time, torque)
         np.testing.assert_array_equal(run.position, same.position)
 

@@ -52,7 +52,7 @@ def _with(name: str) -> Plant:
 
 
 def _replaced(plant: Plant, **values: float) -> Plant:
-    return dataclasses.replace(plant, chain=type(plant.chain)({**plant.chain.values, **values}))
+    return dataclasses.replace(plant, mechanics=type(plant.chain)({**plant.chain.values, **values}))
 
 
 def test_names() -> None:
@@ -175,7 +175,7 @@ def test_rigid_plant_is_the_published_first_order_model() -> None:
 def test_stiff_axis_becomes_the_rigid_one() -> None:
     stiff = _replaced(BENCH, axial_stiffness=1e13, torsional_stiffness=1e9)
     values = {value.key: BENCH.chain.values[value.key] for value in Rigid.required}
-    rigid = dataclasses.replace(BENCH, chain=Rigid(values))
+    rigid = dataclasses.replace(BENCH, mechanics=Rigid(values))
     at = 2j * math.pi * 20  # far below the first mode of the stiff axis
     # The ratio of the frequencies squared, below 1e-6.
     assert stiff_response(stiff, at) == pytest.approx(stiff_response(rigid, at), rel=1e-5)

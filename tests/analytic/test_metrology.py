@@ -139,3 +139,15 @@ def test_step_of_a_second_order_system() -> None:
     assert found.overshoot == pytest.approx(math.exp(-math.pi * damping / math.sqrt(1 - damping**2)), abs=2e-4)
     assert found.final == pytest.approx(3.0, rel=1e-6)
     assert found.rise == pytest.approx(1.64 / w, abs=1.5e-3)  # textbook value for D = 0.5: 1.64 / w, two samples
+
+
+@pytest.mark.parametrize(("cut", "settles"), [(3.0, False), (3.7, False), (4.5, True), (9.0, True)])
+def test_an_approach_that_is_cut_off_has_not_settled(cut: float, settles: bool) -> None:
+    """1 - e^(-t/T) over so many T: it settles to 2 % at 3.9 T, and a record much shorter than that cannot tell."""
+    time = np.arange(0.0, 1.0 + cut * 0.1, 1e-4)
+    values = np.where(time < 1.0, 0.0, 1 - np.exp(-(time - 1.0) / 0.1))
+    found = step_response(time, values, 1.0)
+    assert math.isfinite(found.settling) is settles
+    if settles:
+        # the end value is put too low by e^(-cut): at 4.5 T that costs a tenth of the settling time
+        assert found.settling == pytest.approx(0.1 * math.log(50.0), rel=1.05 * (0.02 / 0.9 + 15 * math.exp(-cut)))

@@ -10,10 +10,10 @@ import pytest
 from feeddrive.diagnosis.heat.evidence import GAIN_ERROR, MODEL_ERROR, HeatEvidence, prepare_heat
 from feeddrive.diagnosis.likelihood.cross_validation import gain_of_model_error, model_error_rows
 from feeddrive.files import plants_folder
+from feeddrive.plant.file.files import read_plant
 from feeddrive.recording import Recording
-from feeddrive.thermal.file.files import read_thermal_plant
 
-PLANT = read_thermal_plant(plants_folder() / "thermal_bench.toml")
+PLANT = read_plant(plants_folder() / "thermal_bench.toml").heat
 ROWS, STEP = 240, 30.0
 
 

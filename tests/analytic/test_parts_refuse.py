@@ -17,12 +17,9 @@ from feeddrive.parts.guide.guide_coefficients import SET_A
 from feeddrive.parts.guide.guide_equilibrium import guide_equilibrium
 from feeddrive.parts.guide.guide_geometry import HSR_20R
 from feeddrive.parts.life.life import (
-    DutyPhase,
     distance,
-    equivalent_load,
     rated_revolutions,
     rating_of_test,
-    revolutions_at,
     running_time,
     survival,
 )
@@ -32,9 +29,8 @@ from feeddrive.parts.life.stress_cycles import effective_screw_groove
 from feeddrive.parts.life.subsurface_shear import axis_stresses, greatest_shear_on_axis
 from feeddrive.parts.life.weibull import WeibullLaw
 from feeddrive.parts.life.weibull_interval import complete_slope_interval
-from feeddrive.parts.lubricant import mineral_oil
+from feeddrive.parts.lubricant import Lubricant
 from feeddrive.parts.screw.load_distribution import continuum_extremes, load_distribution, nut_body
-from feeddrive.parts.screw.preload_loss import opening_force, preload_share_from_stiffness, preload_share_from_torque
 from feeddrive.parts.screw.screw_contact import BallTrack
 from feeddrive.parts.screw.screw_friction import ScrewFriction, ScrewGeometry
 from feeddrive.parts.screw.wedge import self_locking_lead
@@ -46,7 +42,7 @@ CONTACT = ball_in_groove(3.969e-3, 0.52)
 BEARING = BallBearing(ANGULAR_CONTACT, 0.022, 3850.0)
 SCREW = ScrewFriction(ScrewGeometry(0.010, 0.041, math.pi / 4), 0.034)
 LAW = WeibullLaw(1.0, 2.0)
-OIL = mineral_oil(32)
+OIL = Lubricant(32e-6, 5.3e-6)
 
 # Name, function of one value; the value is refused where it is not a number, infinite or below 0.
 REFUSING: dict[str, Callable[[float], object]] = {
@@ -70,7 +66,6 @@ REFUSING: dict[str, Callable[[float], object]] = {
     "tested life": lambda v: rating_of_test(1e3, v),
     "revolutions": lambda v: survival(v, 1e6),
     "rating": lambda v: rated_revolutions(v, 1e3),
-    "probability": lambda v: revolutions_at(v, 1e6),
     "speed": lambda v: running_time(1e6, v),
     "lead": lambda v: distance(1e6, v),
     "stress exponent": lambda v: load_exponent(v, 3.6),
@@ -78,12 +73,6 @@ REFUSING: dict[str, Callable[[float], object]] = {
     "depth exponent": lambda v: diameter_exponent(31.4, v),
     "slope of a groove": lambda v: effective_screw_groove(TRACK, 0.1, v),
     "locking friction": lambda v: self_locking_lead(v, 0.04),
-    "torque now": lambda v: preload_share_from_torque(v, 1.0),
-    "torque when new": lambda v: preload_share_from_torque(0.5, v),
-    "drag": lambda v: preload_share_from_torque(0.5, 1.0, v),
-    "stiffness now": lambda v: preload_share_from_stiffness(v, 1e9),
-    "stiffness when new": lambda v: preload_share_from_stiffness(1e9, v),
-    "opening": opening_force,
     "preload": SCREW.preload_torque,
     "share of failures": LAW.life,
     "known share": lambda v: WeibullLaw.through(1.0, v, 2.0),
@@ -113,10 +102,7 @@ def test_signed_values_must_be_finite(value: float) -> None:
         lambda: viscous_torque(2.0, 3e-5, value, 0.02),
         lambda: SCREW.torque(value, 1.0),
         lambda: SCREW.torque(1.0, value),
-        lambda: equivalent_load((DutyPhase(value, 1.0, 1.0),)),
-        lambda: equivalent_load((DutyPhase(1.0, value, 1.0),)),
-        lambda: OIL.density(value),
-        lambda: OIL.dynamic_viscosity(value),
+        lambda: OIL.viscosity(value),
     ):
         with pytest.raises(InputError):
             attempt()

@@ -32,7 +32,7 @@ def plant() -> Plant:
 
 def shift(effect: Effect, coordinate: int, recording: int, *by: float) -> RecordingShift:
     """A shift with its values."""
-    return shift_of(target_of(effect, coordinate), recording, len(by), thermal=False).with_values(shift=by)
+    return shift_of(target_of(effect, coordinate), recording, len(by)).with_values(shift=by)
 
 
 def test_a_shift_moves_its_parameter_in_its_recording_alone(plant: Plant) -> None:

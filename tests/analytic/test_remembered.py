@@ -16,7 +16,6 @@ from feeddrive.diagnosis.recordings.recordings import RecordingPredictor
 from feeddrive.files import plants_folder
 from feeddrive.plant.file.files import read_plant
 from feeddrive.recording import Recording
-from feeddrive.thermal.file.files import read_thermal_plant
 from feeddrive.typing import FloatArray
 
 
@@ -78,10 +77,10 @@ def test_a_recording_is_not_taken_for_one_that_was_there_before() -> None:
 
 
 def test_a_warm_up_is_not_taken_for_one_that_was_there_before() -> None:
-    plant = read_thermal_plant(plants_folder() / "thermal_bench.toml")
+    plant = read_plant(plants_folder() / "thermal_bench.toml")
     predictor = heat_predictor(plant)
     for turn in range(30):
-        evidence = prepare_heat(warm_up(10.0 + turn), plant, 1.0)
+        evidence = prepare_heat(warm_up(10.0 + turn), plant.heat, 1.0)
         found = predictor.predict(plant, evidence)
         alone = replace(predictor, _known=Remembered(lambda found: 0)).predict(plant, evidence)
         assert all(np.array_equal(found[name], alone[name]) for name in found)
@@ -119,5 +118,5 @@ def test_motions_kept_are_bounded_by_their_bytes() -> None:
     predictor = AxisPredictor(_runs=Remembered(lambda run: run.size, 7 * one))
     for change in range(12):
         chain = replace(plant.chain, values={**plant.chain.values, "table_mass": 30.0 + change})
-        predictor.load_motion(replace(plant, chain=chain), evidence)
+        predictor.load_motion(replace(plant, mechanics=chain), evidence)
     assert predictor._runs.size == 7 * one

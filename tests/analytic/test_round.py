@@ -24,17 +24,18 @@ RANDOM = np.random.default_rng(5)
 SMALL, REAL, IMITATOR = (RANDOM.standard_normal(ROWS) for _ in range(3))
 IMITATOR = 0.8 * SMALL + 0.6 * IMITATOR
 NOISE = RANDOM.standard_normal(ROWS)
-TOO_SMALL, OTHER, LIKE = Payload.of(mass=1.0), ConstantForce.of(force=1.0), LeadErrorCumulative.of(slope=1e-6)
+TOO_SMALL, OTHER, LIKE = Payload.of(mass=0.1), ConstantForce.of(force=1.0), LeadErrorCumulative.of(slope=1e-6)
+"""The first is less than a thousandth of the table of 134 kg."""
 
 
 def problem() -> Any:
-    """What a round asks of a problem: samples in blocks, and which effect is too small."""
+    """What a round asks of a problem: samples in blocks."""
     evidence = SimpleNamespace(
         channels=("a",), fit_rows=np.ones(ROWS, dtype=bool), recording=SimpleNamespace(sample_time=1.0),
         block=20.0, edge=0.5, model_error={}, noise={}, thinned=lambda rows: rows, counted=np.ones(ROWS, dtype=bool),
         motion_speed=np.zeros(ROWS),
     )  # fmt: skip
-    predictor = SimpleNamespace(chance=30.0, is_material=lambda effect, plant: effect.name != TOO_SMALL.name)
+    predictor = SimpleNamespace(chance=30.0)
     return SimpleNamespace(evidence=(evidence,), predictor=predictor, plant=Plant("axis", BENCH))
 
 

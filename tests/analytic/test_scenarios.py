@@ -119,12 +119,12 @@ def test_recorded_torque_is_what_acts() -> None:
     reference = np.column_stack([motion.position, motion.velocity, motion.acceleration, zeros, zeros])
     start = resting_state(wanted.plant, controller, loop, motion.position[0])
     run = simulate_controlled(wanted.plant, controller, reference, None, loop, start)
-    state, torques = ActingTorque.at_rest(cascade), []
+    state, torques = ActingTorque.at_rest(loop, cascade.sample_time), []
     for k in range(200, 2000, 200):  # in stretches, as a long run does
         torques.append(state.state[0])
         assert torques[-1] == pytest.approx(run.torque[k - 200], abs=1e-9)  # rounding of 10 N m
-        _, state = state.means(cascade, run.command[k - 200 : k])
-    means, _ = ActingTorque.at_rest(cascade).means(cascade, run.command)
+        _, state = state.means(loop, cascade.sample_time, run.command[k - 200 : k])
+    means, _ = ActingTorque.at_rest(loop, cascade.sample_time).means(loop, cascade.sample_time, run.command)
     # the trapezium of the torque at the ticks differs from its mean by the curve within a tick, and not on average
     trapezium = 0.5 * (run.torque[1:] + run.torque[:-1])
     assert np.mean(means[:-1]) == pytest.approx(np.mean(trapezium), abs=2e-3)

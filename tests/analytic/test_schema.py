@@ -21,16 +21,13 @@ from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.files import find_scenario_file, plants_folder
 from feeddrive.interface.keys import ROOTS, every_section
 from feeddrive.plant.file.entries import Origins, Table, read_toml
-from feeddrive.plant.file.files import declares_heat_alone, plant_from_entries
-from feeddrive.plant.file.plant_schema import plant_table
+from feeddrive.plant.file.files import plant_from_entries
 from feeddrive.plant.plant import DeclaredCascade
 from feeddrive.recording.files.mapping import read_mapping
 from feeddrive.schema.key import Key, Kind
 from feeddrive.schema.section import Section, UndeclaredKeyError
 from feeddrive.simulate.scenario.scenario_controller import read_cascade
 from feeddrive.simulate.scenario.scenario_file import read_scenario
-from feeddrive.thermal.file.coupling_section import coupling
-from feeddrive.thermal.file.files import thermal_plant
 from feeddrive.units.quantity import unit_conversion
 
 NONSENSE = {"nonsense": "nobody means this"}
@@ -104,15 +101,9 @@ PLANTS = list(plants())
 
 def read_plant_entries(entries: dict[str, Any]) -> None:
     """Everything that any command reads of a plant file."""
-    if not declares_heat_alone(entries):
-        plant = plant_from_entries(entries, PATH)
-        if isinstance(plant.controller, DeclaredCascade):
-            read_cascade(Table(plant.controller.entries, plant.controller.where, Origins()), plant)
-    if "thermal" in entries:
-        top = plant_table(entries, str(PATH))
-        thermal_plant(top, "machine")
-        if "coupling" in entries["thermal"]:
-            coupling(top)
+    plant = plant_from_entries(entries, PATH)
+    if isinstance(plant.controller, DeclaredCascade):
+        read_cascade(Table(plant.controller.entries, plant.controller.where, Origins()), plant)
 
 
 def places(root: Section) -> Iterator[tuple[tuple[str, ...], Section, str]]:

@@ -14,11 +14,8 @@ from scipy.integrate import quad
 from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.parts.life.consumed_life import consumed_life, rigid_nut_forces
 from feeddrive.parts.life.life import (
-    DutyPhase,
-    equivalent_load,
     rated_revolutions,
     rating_of_test,
-    revolutions_at,
     running_time,
     survival,
 )
@@ -40,13 +37,6 @@ from feeddrive.parts.life.subsurface_shear import (
     line_shear,
 )
 from feeddrive.parts.screw.load_distribution import Loading, NutBody, continuum_extremes, load_distribution, nut_body
-from feeddrive.parts.screw.preload_loss import (
-    opening_force,
-    preload_share_from_stiffness,
-    preload_share_from_torque,
-    stiffness_share,
-    torque_share,
-)
 from feeddrive.parts.screw.screw_contact import BallTrack, contact_constant, nut_contact, screw_contact
 from feeddrive.recording.recording import Recording
 
@@ -257,9 +247,6 @@ def test_life_and_rating_are_inverse(capacity: float, share: float) -> None:
     revolutions = rated_revolutions(capacity, share * capacity)
     assert rating_of_test(share * capacity, revolutions) == pytest.approx(capacity, rel=1e-12)
     assert survival(revolutions, revolutions) == pytest.approx(0.9, rel=1e-12)
-    assert revolutions_at(survival(0.7 * revolutions, revolutions), revolutions) == pytest.approx(
-        0.7 * revolutions, rel=1e-9
-    )
 
 
 def test_life_at_the_edges() -> None:
@@ -270,15 +257,6 @@ def test_life_at_the_edges() -> None:
     with pytest.raises(InputError, match="force"):
         rated_revolutions(1e4, -1.0)
     assert running_time(480.0, 480.0 * math.pi / 30) == pytest.approx(60.0, rel=1e-12)
-
-
-def test_equivalent_load_of_a_duty() -> None:
-    duty = (DutyPhase(2e3, 100.0, 3.0), DutyPhase(-2e3, -50.0, 6.0))
-    assert equivalent_load(duty) == pytest.approx(2e3, rel=1e-12)
-    uneven = (DutyPhase(4e3, 10.0, 1.0), DutyPhase(0.0, 10.0, 7.0))
-    assert equivalent_load(uneven) == pytest.approx(2e3, rel=1e-12)  # an eighth of the turns at twice the load
-    with pytest.raises(InputError, match="does not turn"):
-        equivalent_load((DutyPhase(1e3, 0.0, 1.0),))
 
 
 @given(st.lists(st.tuples(st.floats(-500, 500), st.floats(-2e4, 2e4)), min_size=4, max_size=30), st.integers(1, 2))
@@ -301,14 +279,6 @@ def test_consumed_life_of_a_constant_load_is_the_rated_life() -> None:
     assert used.total == pytest.approx([(3e3 / 9636.0) ** 3] * 2, rel=1e-12)
     rated = rated_revolutions(9636.0 * double_nut_share(), 3e3)
     assert used.repetitions * 1e6 == pytest.approx(rated, rel=1e-12)
-
-
-def test_consumed_life_of_a_duty_is_that_of_its_equivalent_load() -> None:
-    angle = np.array([0.0, 1.0, 3.0, 2.0])
-    force = np.array([1e3, 2e3, 4e3, 0.0])
-    mean = equivalent_load((DutyPhase(1e3, 1.0, 1.0), DutyPhase(2e3, 2.0, 1.0), DutyPhase(4e3, 1.0, 1.0)))
-    used = consumed_life(angle, force, 9e3).total[0]
-    assert used == pytest.approx(4.0 / (2 * math.pi * 1e6) * (mean / 9e3) ** 3, rel=1e-12)
 
 
 def test_consumed_life_along_a_recording() -> None:
@@ -340,20 +310,6 @@ def test_a_screw_at_rest_uses_no_life() -> None:
 def test_unusable_recordings_are_refused(angle: list[float], force: list[float]) -> None:
     with pytest.raises(InputError):
         consumed_life(np.array(angle), np.array(force), 9e3)
-
-
-@given(st.floats(0.01, 1.0))
-def test_preload_comes_back_from_torque_and_stiffness(share: float) -> None:
-    assert preload_share_from_torque(0.05 + 0.6 * torque_share(share), 0.65, 0.05) == pytest.approx(share, rel=1e-9)
-    assert preload_share_from_stiffness(3e8 * stiffness_share(share), 3e8) == pytest.approx(share, rel=1e-12)
-
-
-def test_preload_loss_of_impossible_measurements_is_refused() -> None:
-    with pytest.raises(InputError, match="drag"):
-        preload_share_from_torque(0.02, 0.5, 0.05)
-    with pytest.raises(InputError, match="above 0"):
-        preload_share_from_stiffness(0.0, 1e8)
-    assert opening_force(1e3) == pytest.approx(2828.4, abs=0.05)
 
 
 def test_exponents_outside_their_range_are_refused() -> None:

@@ -28,7 +28,6 @@ from feeddrive.plant.analysis.ode import ode
 from feeddrive.plant.analysis.steady import steady_motion
 from feeddrive.plant.plant import Plant, PositionVelocityController
 from feeddrive.plant.structure import forget_machines
-from feeddrive.plant.symbolic_turn import SYMBOLS, SymbolicTurn
 from feeddrive.servo import cascade_function
 from feeddrive.servo.cascade import Cascade, Feedback
 from feeddrive.servo.cascade_function import cascade_controller
@@ -37,7 +36,7 @@ from feeddrive.servo.sampled import SampledController
 from feeddrive.servo.sampled_plant import sampled_plant
 from feeddrive.servo.scheduled import scheduled
 from feeddrive.servo.state_feedback import state_feedback
-from feeddrive.simulate import controlled_machine, position_velocity
+from feeddrive.simulate.controlled import controlled_machine, position_velocity
 from feeddrive.simulate.controlled.controlled import TorqueLoop, simulate_controlled
 from feeddrive.simulate.controlled.position_velocity import position_velocity_controller
 from feeddrive.simulate.controlled.sensitivity import simulate_sensitivity
@@ -45,6 +44,7 @@ from feeddrive.simulate.driven import motor_motion, simulate_driven
 from feeddrive.simulate.held_torque import simulate_torque
 from feeddrive.simulate.scenario.scenario_file import read_scenario
 from feeddrive.simulate.scenario.scenario_run import run_scenario
+from feeddrive.symbolic_turn import SYMBOLS, SymbolicTurn
 from tests.convergence.test_simulate import BENCH
 
 

@@ -12,16 +12,15 @@ from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant
 from feeddrive.parts.bearings.bearing_friction import viscous_torque
-from feeddrive.parts.lubricant import mineral_oil
+from feeddrive.parts.lubricant import Lubricant
 from feeddrive.plant.file.files import read_plant
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.warmed import warmed
 from feeddrive.servo.cascade_function import cascade_controller
 from feeddrive.simulate.controlled.controlled import ControlledRun, TorqueLoop, resting_state, simulate_controlled
 from feeddrive.simulate.scenario.cycle_losses import CycleLosses, cycle_losses
 from feeddrive.thermal.coupling import Changes, Coupling, Temperatures, viscous_share
-from feeddrive.thermal.file.coupling_section import read_coupling
 from feeddrive.thermal.laws.nut_preload import Spacer
-from feeddrive.thermal.warmed_plant import warmed
 from tests.analytic.warm_cases import COUPLING, PLANT_FILE, THERMAL, short_cycle
 
 PITCH, PRELOAD, STEEL = 0.0335, 2200.0, 11.7e-6
@@ -41,7 +40,7 @@ def test_equal_temperatures_change_nothing_but_oil() -> None:
 
 
 def test_viscous_share_is_that_of_palmgrens_torque() -> None:
-    oil = mineral_oil(100)
+    oil = Lubricant(100e-6, 11.2e-6)
     torques = [viscous_torque(10.0, oil.viscosity(at), 200.0, PITCH) for at in (20.0, 45.0)]
     assert viscous_share(oil, 45.0, 20.0) == pytest.approx(torques[1] / torques[0], rel=1e-12)
 
@@ -70,7 +69,6 @@ def test_preload_follows_the_spacer_and_stiffness_its_third_root() -> None:
         radial = COUPLING.nut_stiffness / 2 * PITCH / 2
         assert found.preload == pytest.approx(1 + STEEL * 2.0 * (axial - radial) / PRELOAD, rel=1e-12)
         assert found.nut_stiffness == pytest.approx(found.preload ** (1 / 3), rel=1e-12)
-        assert found.preload_torque == found.preload
     pulled = replace(COUPLING, spacer=Spacer.UNDERSIZE)
     assert _changes(COUPLING, 22.0, 20.0).preload > 1 > _changes(pulled, 22.0, 20.0).preload
 
@@ -145,7 +143,7 @@ def test_nut_loses_what_its_preload_torque_takes() -> None:
 
 def test_file_without_coupling_and_bad_values_are_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"no \[thermal.coupling\]"):
-        read_coupling(find_plant("thermal_bench"))
+        _ = read_plant(find_plant("thermal_bench")).coupling
     text = PLANT_FILE.read_text(encoding="utf-8")
     for old, new, told in (
         ('group_distance = "70 mm"', 'group_distance = "-70 mm"', "not possible"),
@@ -158,4 +156,4 @@ def test_file_without_coupling_and_bad_values_are_refused(tmp_path: Path) -> Non
         assert old in text
         bad.write_text(text.replace(old, new), encoding="utf-8")
         with pytest.raises(InputError, match=told):
-            read_coupling(bad)
+            read_plant(bad)

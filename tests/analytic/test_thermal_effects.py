@@ -17,12 +17,11 @@ from feeddrive.effects.heat.bearing_heat import reference_torque
 from feeddrive.errors import InputError
 from feeddrive.files import plants_folder
 from feeddrive.plant.file.files import plant_text_with_effects, read_plant
-from feeddrive.thermal.file.files import read_thermal_plant
 from feeddrive.thermal.laws.friction import Friction
 from feeddrive.thermal.reduced.model import HeatModel
 from feeddrive.thermal.reduced.reduction import reduce_model
 from feeddrive.thermal.run.warm_up import declared_rows, lagging, simulate
-from tests.analytic.thermal_cases import BENCH, RPM
+from tests.analytic.thermal_cases import BENCH, RPM, with_effects
 
 NEUTRAL: dict[str, dict[str, float]] = {
     "motor_heat": {"power": 0.0, "at_speed": 75.0},
@@ -61,7 +60,7 @@ def _made(name: str, values: dict[str, float]) -> ThermalEffect:
 
 
 def _run(model: HeatModel, *effects: ThermalEffect) -> dict[str, np.ndarray]:
-    plant = BENCH.with_effects(*effects)
+    plant = with_effects(*effects)
     for body in plant.attached:
         model = model.with_body(body)
     return simulate(plant, model, STEP, SPEEDS, AMBIENT)
@@ -116,7 +115,7 @@ def test_bearing_torque_is_that_of_the_source() -> None:
 
 def test_bearing_heat_is_counted_by_the_bearing_that_the_plant_declares() -> None:
     bearing = Friction(load_torque=0.09, viscous_factor=4.5, viscosity=87.6e-6, mean_diameter=37e-3)
-    own = replace(BENCH, front=bearing).with_effects(_made("bearing_heat", {"factor": 1.0}))
+    own = replace(with_effects(_made("bearing_heat", {"factor": 1.0})), front=bearing)
     speeds, air = np.array([300.0, 900.0]) * RPM, np.full(2, 23.0)
     shown = declared_rows(own, STEP, speeds, air).inputs
     # As much again as is declared at the front, and that at the rear, which declares none.
@@ -138,7 +137,7 @@ def test_lag_is_of_its_channel_alone(model: HeatModel) -> None:
 
 
 def test_drift_of_long_enough_is_the_rise_of_everything(model: HeatModel) -> None:
-    plant = BENCH.with_effects(
+    plant = with_effects(
         THERMAL_EFFECTS["ambient_drift"].of(amplitude=2.0, time=(0.0, 60.0, 1e6), shape=(0.0, 1.0, 1.0))
     )
     shown = simulate(plant, model, STEP, np.zeros(6000), np.full(6000, 23.0))
@@ -162,7 +161,7 @@ def test_plant_text_with_an_effect_reads_back(name: str, tmp_path: Path) -> None
     text = (plants_folder() / "thermal_bench.toml").read_text(encoding="utf-8")
     path = tmp_path / "after.toml"
     path.write_text(plant_text_with_effects(text, [effect]), encoding="utf-8")
-    (read,) = read_thermal_plant(path).effects
+    (read,) = read_plant(path).effects
     assert (read.name, read.place, dict(read.values)) == (effect.name, effect.place, dict(effect.values))
 
 
@@ -172,7 +171,7 @@ def test_effects_of_the_other_kind_are_refused(tmp_path: Path) -> None:
     path = tmp_path / "plant.toml"
     path.write_text(heat + '[[effect]]\nname = "backlash"\nwidth = "5 µm"\n', encoding="utf-8")
     with pytest.raises(InputError, match="acts on motion"):
-        read_thermal_plant(path)
+        read_plant(path)
     path.write_text(axis + '[[effect]]\nname = "cooling"\nconductance = "1 W/K"\n', encoding="utf-8")
     with pytest.raises(InputError, match="acts on heat"):
         read_plant(path)
@@ -184,9 +183,9 @@ def test_file_of_motion_and_heat_gives_both(tmp_path: Path) -> None:
     path = tmp_path / "both.toml"
     section = heat[heat.index("[thermal]") :]
     path.write_text(axis + section + '[[effect]]\nname = "cooling"\nconductance = "1 W/K"\n', encoding="utf-8")
-    assert "cooling" not in [effect.name for effect in read_plant(path).effects]
-    plant = read_thermal_plant(path)
-    assert [effect.name for effect in plant.effects] == ["cooling"] and len(plant.sensors) == 5
+    plant = read_plant(path)
+    assert "cooling" not in [effect.name for effect in plant.motion_effects]
+    assert [effect.name for effect in plant.heat.effects] == ["cooling"] and len(plant.heat.sensors) == 5
 
 
 @pytest.mark.parametrize(
@@ -203,7 +202,7 @@ def test_wrong_sensor_is_refused(old: str, new: str, told: str, tmp_path: Path) 
     path = tmp_path / "plant.toml"
     path.write_text(text.replace(old, new, 1), encoding="utf-8")
     with pytest.raises(InputError, match=told):
-        read_thermal_plant(path)
+        read_plant(path)
 
 
 def test_reading_of_a_deviation_tells_its_direction() -> None:

@@ -19,7 +19,7 @@ from feeddrive.thermal.equations import heat_equations, linear_heat
 from feeddrive.thermal.reduced.model import HeatModel
 from feeddrive.thermal.reduced.reduction import reduce_model
 from feeddrive.thermal.run.warm_up import simulate
-from tests.analytic.thermal_cases import BENCH, RPM
+from tests.analytic.thermal_cases import BENCH, RPM, with_effects
 
 EFFECTS = (
     THERMAL_EFFECTS["preload_growth"].of(coefficient=0.02),
@@ -28,7 +28,7 @@ EFFECTS = (
     THERMAL_EFFECTS["structure_growth"].of(growth=1e-6, time_constant=1800.0),
     THERMAL_EFFECTS["sensor_lag"].of(place="nut_temperature", time_constant=90.0),
 )
-PLANT = BENCH.with_effects(*EFFECTS)
+PLANT = with_effects(*EFFECTS)
 SPEED, HOUR = 500 * RPM, 3600.0
 
 

@@ -17,11 +17,11 @@ from feeddrive.errors import InputError
 from feeddrive.thermal.full.explicit import places_of, run_explicitly, stability_limit
 from feeddrive.thermal.full.full_model import Discretisation, discretise, full_model, model_of
 from feeddrive.thermal.full.grid import Cells, cylinder
-from feeddrive.thermal.full.node_classes import node_classes, printed_rates, stability_by_class
 from feeddrive.thermal.full.occupancy import cell_edges, overlap
 from feeddrive.thermal.reduced.model import Path
 from feeddrive.thermal.reduced.system import HeatSystem
 from feeddrive.thermal.rig import Body, Nut, Seat, Steel, Travel
+from tests.analytic.node_classes import node_classes, printed_rates, stability_by_class
 from tests.analytic.thermal_cases import BENCH, bench_parts, conductances, nut_heat
 from tests.claims.book import CLAIMS
 

@@ -9,14 +9,9 @@ import numpy as np
 import pytest
 
 from feeddrive.errors import InputError, ValidityWarning
-from feeddrive.thermal.file.files import read_thermal_plant
+from feeddrive.plant.file.files import read_plant
 from feeddrive.thermal.full.full_model import full_model
 from feeddrive.thermal.full.occupancy import cell_edges
-from feeddrive.thermal.laws.contact_conductance import (
-    conductance_at_preload,
-    conductance_per_area,
-    constriction_resistance,
-)
 from feeddrive.thermal.laws.expansion import FIXED_FREE, Supports, expansion, fixed_fixed, fixed_supported
 from feeddrive.thermal.laws.films import Films, rotating_cylinder_film
 from feeddrive.thermal.laws.friction import Friction
@@ -89,7 +84,6 @@ def test_heat_takes_the_stretch_and_says_when_none_is_left() -> None:
         (lambda: Friction(-1.0, 10, 170e-6, 0.01675), "load_torque"),
         (lambda: Films(-1.0, 0.0, 0.0, 0.0), "film.screw"),
         (lambda: rotating_cylinder_film(10.0, 0.0), "diameter"),
-        (lambda: constriction_resistance(1e-4, 2e-4, 50, 50), "no ellipse"),
     ],
 )  # fmt: skip
 def test_bad_input_is_refused(make: object, message: str) -> None:
@@ -110,16 +104,6 @@ def test_heat_is_torque_times_speed_and_none_at_rest() -> None:
     heats = BENCH.nut.heats(np.array([-500.0, 0.0, 500.0]) * RPM)
     torque = BENCH.nut.load_torque + 1e-10 * 10 * (170 * 500) ** (2 / 3) * 16.75**3
     np.testing.assert_allclose(heats, 0.609 * 500 * RPM * torque * np.array([1.0, 0.0, 1.0]), rtol=1e-9)
-
-
-def test_contact_grows_with_the_third_root_of_the_preload() -> None:
-    # A load twice as large: both axes of the ellipse grow by its third root, the resistance falls by it.
-    weak, strong = (constriction_resistance(230e-6 * f, 60e-6 * f, 50.0, 50.0) for f in (1.0, 2 ** (1 / 3)))
-    assert conductance_per_area(strong, 40, 4e-3) == pytest.approx(
-        conductance_at_preload(conductance_per_area(weak, 40, 4e-3), 2.0, 1.0), rel=1e-12
-    )
-    # A circle: two half spaces in series, K(0) = π/2, R = 1/(4 λ a) each.
-    assert constriction_resistance(1e-4, 1e-4, 50.0, 25.0) == pytest.approx(1 / (4 * 1e-4) * (1 / 50 + 1 / 25))
 
 
 def test_bench_file_is_the_declared_rig() -> None:
@@ -154,7 +138,7 @@ def test_bad_files_are_refused_with_place_and_mend(tmp_path: FilePath, old: str,
     count = -1 if old == "[thermal" else 1
     path.write_text(text.replace(old, new, count), encoding="utf-8")
     with pytest.raises(InputError, match=message) as refusal:
-        read_thermal_plant(path)
+        read_plant(path)
     assert str(path) in str(refusal.value)
 
 
@@ -168,7 +152,7 @@ def test_bearings_may_have_heat_and_film(tmp_path: FilePath) -> None:
         '[[thermal.body]]\nname = "motor"\nport = "front"\ncapacity = "900 J/K"\nconductance = "0.5 W/K"\n',
         encoding="utf-8",
     )
-    plant = read_thermal_plant(path)
+    plant = read_plant(path).heat
     assert plant.bodies[0].capacity == pytest.approx(900.0)
     assert "motor" in plant.full_model().readings
     assert plant.front is not None and plant.rear is None

@@ -12,15 +12,15 @@ import scipy.linalg
 
 from feeddrive.effects.base import Effect, Value
 from feeddrive.effects.catalogue import THERMAL_EFFECTS
+from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.laws.laws import laws_of
-from feeddrive.thermal.plant import ThermalPlant
 from feeddrive.thermal.reduced.model import HeatModel
 from feeddrive.thermal.reduced.propagators import propagator
 from feeddrive.thermal.reduced.reduction import reduce_model
 from feeddrive.thermal.run.sensitivity import simulate_with_slopes
 from feeddrive.thermal.run.warm_up import simulate
 from tests.analytic.test_thermal_effects import AMBIENT, NEUTRAL, PLACE, SPEEDS, STEP, STRONG
-from tests.analytic.thermal_cases import BENCH
+from tests.analytic.thermal_cases import BENCH, with_effects
 
 Values = Mapping[str, Value]
 CASES: list[tuple[str, Values]] = [
@@ -38,7 +38,7 @@ def bare() -> HeatModel:
     return reduce_model([BENCH.full_model()], BENCH.limits(3.0))[0]
 
 
-def with_bodies(plant: ThermalPlant) -> HeatModel:
+def with_bodies(plant: Heat) -> HeatModel:
     """The reduced bench with what effects attach."""
     model = bare()
     for body in plant.attached:
@@ -48,7 +48,7 @@ def with_bodies(plant: ThermalPlant) -> HeatModel:
 
 def series(effect: Effect) -> dict[str, np.ndarray]:
     """Channels of the bench with an effect."""
-    plant = BENCH.with_effects(OTHER, effect)
+    plant = with_effects(OTHER, effect)
     return simulate(plant, with_bodies(plant), STEP, SPEEDS, AMBIENT)
 
 
@@ -65,7 +65,7 @@ def moved(effect: Effect, key: str, by: float) -> Effect:
 @pytest.mark.parametrize(("name", "values"), CASES, ids=[f"{name}-{len(values)}" for name, values in CASES])
 def test_slopes_are_those_of_the_run(name: str, values: Values) -> None:
     effect = THERMAL_EFFECTS[name].of(None, PLACE.get(name, ""), **values)
-    plant = BENCH.with_effects(OTHER, effect)
+    plant = with_effects(OTHER, effect)
     label = plant.effects[-1].label
     keys = [n.split(".", 1)[1] for n in laws_of(plant).names if n.startswith(f"{label}.") and ".time[" not in n]
     shown = simulate_with_slopes(plant, with_bodies(plant), STEP, SPEEDS, AMBIENT, [f"{label}.{key}" for key in keys])
@@ -94,7 +94,7 @@ def test_declared_values_have_slopes_too() -> None:
         assert np.all(np.isfinite(slopes)) and np.all(np.ptp(slopes, axis=0) > 0)
 
 
-def _scaled(by: float) -> ThermalPlant:
+def _scaled(by: float) -> Heat:
     return replace(BENCH, nut=replace(BENCH.nut, load_torque=BENCH.nut.load_torque * (1 + by)))
 
 

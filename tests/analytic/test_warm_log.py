@@ -7,6 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 
+from feeddrive.diagnosis.preparation import Shown, shown
 from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.errors import InputError
 from feeddrive.interface.axis import Axis, load
@@ -17,8 +18,6 @@ from feeddrive.simulate.warm.warm_log import friction_powers, warm_log
 from feeddrive.thermal.coupling import Temperatures
 from feeddrive.thermal.laws.friction import Friction
 from feeddrive.thermal.laws.laws import laws_of, values_of
-from feeddrive.thermal.plant import ThermalPlant
-from feeddrive.thermal.warm_plant import WarmPlant
 
 VALUES: dict[str, dict[str, float]] = {
     "backlash": {"width": 8e-6},
@@ -94,11 +93,11 @@ def test_heat_takes_the_friction_that_the_motion_declares() -> None:
 
 
 def test_powers_of_a_warm_machine_follow_its_oil() -> None:
-    plant: WarmPlant = axis().warm
+    plant = axis().plant
     log = warm_log(cycling()[0], 20.0)
     powers = friction_powers(plant, log)
     rises = np.array([10.0, 8.0, 4.0, 3.0])
-    factors = laws_of(plant.heat).factors(rises, 20.0, values_of(plant.heat)).full()[:, 0]
+    factors = laws_of(plant.joined_heat).factors(rises, 20.0, values_of(plant.joined_heat)).full()[:, 0]
     changes = plant.coupling.changes(Temperatures(*(20.0 + rises)), 20.0, plant.heat.preload, 33.5e-3, 11.7e-6)
     np.testing.assert_allclose(factors, [changes.preload, changes.nut_viscous, changes.bearing_viscous], rtol=1e-9)
     by = np.concatenate([[1.0], factors - 1])
@@ -107,11 +106,11 @@ def test_powers_of_a_warm_machine_follow_its_oil() -> None:
     assert powers["nut"][-1] @ by == pytest.approx(wanted, rel=5e-3)
 
 
-def test_machine_of_a_log_is_both_its_motion_and_its_heat() -> None:
+def test_a_log_shows_both_motion_and_heat() -> None:
     log, _ = cycling()
     nut = {"nut_temperature": np.full(len(log), 20.0)}
     with_both = {**log.channels, "table_position": 1.6e-3 * log["motor_angle"], **nut}
-    assert isinstance(axis().machine([_recording(with_both)]), WarmPlant)
+    assert shown(axis().plant, [_recording(with_both)]) is Shown.BOTH
     heat_alone = {"screw_speed": np.abs(log["motor_angle"]), **nut}
-    assert isinstance(axis().machine([_recording(heat_alone)]), ThermalPlant)
-    assert axis().machine([log]) is axis().plant
+    assert shown(axis().plant, [_recording(heat_alone)]) is Shown.HEAT
+    assert shown(axis().plant, [log]) is Shown.MOTION

@@ -12,7 +12,7 @@ from feeddrive.simulate.warm.warm_up_result import CLOSES
 from feeddrive.simulate.warm.warm_up_run import MacroSteps, run_warm_up
 from feeddrive.thermal.reduced.model import Path
 from feeddrive.thermal.run.ledger import with_ledger
-from tests.analytic.warm_cases import COUPLING, THERMAL, short_cycle
+from tests.analytic.warm_cases import short_cycle
 
 
 def _effect(name: str, place: str = "", **values: float) -> Effect:
@@ -21,7 +21,7 @@ def _effect(name: str, place: str = "", **values: float) -> Effect:
 
 def _cycle(*effects: Effect, nut: float = 0.0, time: float = 0.0) -> Cycle:
     """The cycle with effects, all of the nut warmer by `nut` [K] than the start."""
-    servo = ServoCycle(short_cycle(), THERMAL.with_effects(*effects), COUPLING)
+    servo = ServoCycle(short_cycle(*effects))
     model = with_ledger(servo.heat_model())
     state = nut * np.linalg.pinv(np.atleast_2d(model.readings["nut"]))[:, 0]
     return servo.at(model, state, time)
@@ -55,6 +55,6 @@ def test_frame_shows_at_the_stops() -> None:
 
 def test_energy_closes_with_effects() -> None:
     effects = _effect("motor_heat", power=7.0, at_speed=200.0), _effect("heat_sink", conductance=0.5, capacity=900.0)
-    run = run_warm_up(short_cycle(), THERMAL.with_effects(*effects), COUPLING, 120.0, MacroSteps(fixed=60.0))
+    run = run_warm_up(short_cycle(*effects), 120.0, MacroSteps(fixed=60.0))
     assert abs(run.energy.imbalance) < CLOSES
     assert "heat_sink" in run.points[-1].temperatures

@@ -6,17 +6,25 @@ import math
 
 import numpy as np
 
+from feeddrive.effects.base import Effect
 from feeddrive.files import plants_folder
-from feeddrive.thermal.file.files import read_thermal_plant
+from feeddrive.plant.file.files import read_plant
 from feeddrive.thermal.full.full_model import Discretisation, discretise
 from feeddrive.thermal.full.grid import Cells
+from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.reduced.model import Path
 
 BENCH_FILE = plants_folder() / "thermal_bench.toml"
-BENCH = read_thermal_plant(BENCH_FILE)
+PLANT = read_plant(BENCH_FILE)
+BENCH = PLANT.heat
 RPM = math.pi / 30
 QUICK = Cells(100, 4, 20, 6)
 """Half as many cells along the shaft as by default: enough for what is compared on one grid."""
+
+
+def with_effects(*effects: Effect) -> Heat:
+    """The bench with effects on its heat."""
+    return PLANT.with_effects(*effects).heat
 
 
 def conductances(speed: float) -> dict[Path, float]:

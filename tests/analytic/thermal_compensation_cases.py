@@ -11,11 +11,11 @@ from feeddrive.compensation.heat.thermal_error import table_error
 from feeddrive.compensation.heat.thermal_open_loop import compensation_model
 from feeddrive.compensation.heat.thermal_trial import TriedMachine, random_duty, tried_machine
 from feeddrive.files import find_plant
-from feeddrive.thermal.file.files import read_thermal_plant
+from feeddrive.plant.file.files import read_plant
 from feeddrive.thermal.full.full_model import full_model
 from feeddrive.thermal.full.grid import Cells
 
-BENCH = read_thermal_plant(find_plant("thermal_bench"))
+BENCH = read_plant(find_plant("thermal_bench")).heat
 RPM = np.pi / 30
 STEP, ROWS = 30.0, 720
 SIGNS = tuple(product((0.9, 1.1), (0.9, 1.1)))

@@ -15,9 +15,9 @@ from pathlib import Path
 import pytest
 
 import feeddrive
-from feeddrive.cli import diagnosing
 from feeddrive.cli.main import main
 from feeddrive.files import find_plant, find_scenario_file
+from feeddrive.interface.measured import diagnosis_run as diagnosing
 from feeddrive.report.figures.drawing import RenderedFigure
 from tests.analytic import report_examples as examples
 
@@ -27,7 +27,7 @@ FILES = {"diagnosis.json", "ledger.json", "plant_after.toml", "prediction.csv", 
 
 PROGRAM = """
 import pathlib, sys, time
-from feeddrive.cli import diagnosing
+from feeddrive.interface.measured import diagnosis_run as diagnosing
 from feeddrive.cli.main import main
 from feeddrive.report.figures.drawing import RenderedFigure
 from tests.analytic import report_examples as examples
@@ -86,13 +86,13 @@ def test_plant_edited_while_it_is_read(
 ) -> None:
     plant = tmp_path / "machine.toml"
     plant.write_bytes(PLANT)
-    read = diagnosing.read_machine
+    read = diagnosing.load
 
     def edited(*arguments: object) -> object:
         plant.write_bytes(PLANT.replace(b'"134 kg"', b'"999 kg"'))
         return read(*arguments)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(diagnosing, "read_machine", edited)
+    monkeypatch.setattr(diagnosing, "load", edited)
     assert main(["diagnose", str(plant), RECORDING, "--out", str(tmp_path / "out")]) == 2
     assert "machine.toml: was changed while it was read" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()

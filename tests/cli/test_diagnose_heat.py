@@ -15,8 +15,8 @@ from feeddrive.diagnosis.heat.evidence import prepare_heat
 from feeddrive.diagnosis.heat.prediction import heat_predictor
 from feeddrive.diagnosis.ledger.continued import earlier_run
 from feeddrive.files import plants_folder
+from feeddrive.plant.file.files import read_plant
 from feeddrive.recording import read_recording
-from feeddrive.thermal.file.files import read_thermal_plant
 from feeddrive.thermal.run.warm_up import simulate
 
 BENCH = plants_folder() / "thermal_bench.toml"
@@ -34,8 +34,8 @@ def _write(path: Path, part: str, channels: tuple[str, ...] = CHANNELS, drop: st
     """A recording with preload growth, simulated by the full model, noise added."""
     schedule = RUNS[part]
     speeds = np.repeat([float(rpm) for rpm, _ in schedule], [count for _, count in schedule])
-    plant = read_thermal_plant(BENCH)
-    grown = plant.with_effects(_preload_growth())
+    plant = read_plant(BENCH)
+    grown = plant.with_effects(_preload_growth()).heat
     run = simulate(grown, heat_predictor(plant).model, 30.0, speeds * RPM, np.full(len(speeds), 23.0))
     generator = np.random.default_rng(len(part))
     columns = {"time [s]": 30.0 * np.arange(1, len(speeds) + 1), "screw_speed [rev/min]": speeds}
@@ -94,9 +94,9 @@ def test_relative_is_rms_over_rms_of_the_measured(folder: Path) -> None:
 
 
 def test_plant_after_reads_back_and_predicts_the_same(folder: Path) -> None:
-    plant = read_thermal_plant(folder / "out" / "plant_after.toml")
+    plant = read_plant(folder / "out" / "plant_after.toml")
     assert [effect.name for effect in plant.effects] == ["preload_growth"]
-    evidence = prepare_heat(read_recording(folder / "validate.csv"), plant, 0.0)
+    evidence = prepare_heat(read_recording(folder / "validate.csv"), plant.heat, 0.0)
     shown = heat_predictor(plant).predict(plant, evidence)
     with (folder / "out" / "prediction.csv").open(encoding="utf-8") as file:
         rows = list(csv.DictReader(file))

@@ -14,10 +14,7 @@ import pytest
 from feeddrive.cli.main import main
 from feeddrive.errors import InputError
 from feeddrive.files import plants_folder, shipped_plants
-from feeddrive.plant.file.entries import Origins, Table
-from feeddrive.plant.file.files import declares_heat_alone
-from feeddrive.thermal.file.files import thermal_plant
-from feeddrive.thermal.file.whole_file import drive_plant
+from feeddrive.plant.file.files import plant_from_entries
 
 _QUANTITY = re.compile(r"[+-]?[\d.]+(?:[eE][+-]?\d+)?(?P<unit>\s*[A-Za-z°µ%].*)")
 _WORDS = ("source", "tolerance", "format", "name", "structure", "description", "kind", "carriage")
@@ -38,10 +35,7 @@ def _quantities(entries: Any, way: tuple[Any, ...] = ()) -> Iterator[tuple[tuple
 
 
 def _read(entries: dict[str, Any], path: Path) -> None:
-    if declares_heat_alone(entries):
-        thermal_plant(Table(entries, str(path), Origins()), path.stem)
-    else:
-        drive_plant(entries, path)
+    plant_from_entries(entries, path)
 
 
 @pytest.mark.parametrize("number", ["1e150", "-1e150"])

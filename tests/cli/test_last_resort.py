@@ -84,7 +84,7 @@ DAMAGES: dict[str, Callable[[bytes], bytes]] = {
 def checkpoint(tmp_path_factory: pytest.TempPathFactory) -> bytes:
     """The checkpoint of a run that was stopped after its first stretch."""
     from feeddrive.files import find_scenario
-    from feeddrive.simulate import scenario_run
+    from feeddrive.simulate.scenario import scenario_run
     from feeddrive.simulate.scenario.scenario_file import read_scenario
 
     path = tmp_path_factory.mktemp("stopped") / "checkpoint.npz"

@@ -13,8 +13,8 @@ from typing import Any
 import pytest
 from rich.console import Console
 
-from feeddrive.cli.comparison import Comparison, deviation_text
 from feeddrive.cli.main import main
+from feeddrive.cli.reproduce import Comparison, deviation_text
 from feeddrive.parts.life.life_exponents import load_exponent
 from feeddrive.reproduce.collection import FIELDS, as_csv, counts, record, rows_of
 from feeddrive.reproduce.row import Paper, Row, Status, claim, not_possible, number

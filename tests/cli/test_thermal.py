@@ -73,7 +73,7 @@ def test_bad_input_is_one_line(options: list[str], told: str, capsys: pytest.Cap
 
 def test_plant_without_heat_or_with_negative_conductance(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["thermal", str(find_plant("bench_axis"))]) == 2
-    assert "no [thermal] section" in capsys.readouterr().err
+    assert "declares no heat" in capsys.readouterr().err
     bad = tmp_path / "bad.toml"
     text = BENCH_FILE.read_text(encoding="utf-8")
     bad.write_text(text.replace('contact_conductance = "1250', 'contact_conductance = "-1250'), encoding="utf-8")

@@ -10,11 +10,12 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from feeddrive.cli import diagnosing, output
-from feeddrive.cli.diagnosing import Job, Source
+from feeddrive.cli import output
 from feeddrive.cli.main import main
 from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.files import find_plant, shipped_scenarios
+from feeddrive.interface.measured import diagnosis_run
+from feeddrive.interface.measured.diagnosis_run import Job, Source
 from feeddrive.report.words.words import effect_words
 
 QUICK_WITH_OUT = (
@@ -67,13 +68,13 @@ def test_report_tells_the_command_that_makes_it_again(monkeypatch: pytest.Monkey
     typed = ["a b.csv", "--validate", "c.csv", "--map", "m.toml", "--decimal", ",", "--simulate", "--out", "report"]
     files = tuple(Source(Path(one), Path("m.toml"), ",") for one in ("a b.csv", "c.csv"))
     job = Job(find_plant("bench_axis"), files[:1], files[1:], Path("report"), simulate=True)
-    assert shlex.split(diagnosing._command(job)) == ["feeddrive", "diagnose", "bench_axis", *typed]
+    assert shlex.split(diagnosis_run._command(job)) == ["feeddrive", "diagnose", "bench_axis", *typed]
     alone = Job(Path("my.toml"), (Source(Path("a.csv")),), (), Path("report"), 0.6)
-    assert diagnosing._command(alone) == "feeddrive diagnose my.toml a.csv --split 0.6 --out report"
+    assert diagnosis_run._command(alone) == "feeddrive diagnose my.toml a.csv --split 0.6 --out report"
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "86400")
-    assert diagnosing._today() == "1970-01-02"
+    assert diagnosis_run._today() == "1970-01-02"
     monkeypatch.delenv("SOURCE_DATE_EPOCH")
-    assert re.fullmatch(r"20\d\d-[01]\d-[0-3]\d", diagnosing._today())
+    assert re.fullmatch(r"20\d\d-[01]\d-[0-3]\d", diagnosis_run._today())
 
 
 def test_title_is_one_line_above_a_narrow_table() -> None:

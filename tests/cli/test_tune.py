@@ -24,8 +24,10 @@ def test_recommendation_is_written_and_runs(tmp_path: Path, capsys: pytest.Captu
     assert content["format"] == "feeddrive-tune/1"
     points = content["operating_points"]
     assert points["velocity [m/s]"] == [0.0, pytest.approx(0.05)] and points["payload [kg]"] == [0.0, 50.0]
-    assert len(content["reached"]) == 4
-    assert points["text"] == "table at 0 mm, payloads 0 kg and 50 kg, at 3 m/min and at rest"
+    assert len(content["reached"]) == 5  # held, no payload of the table shows
+    assert points["text"] == (
+        "table at 0 mm, payloads 0 kg and 50 kg, at 3 m/min, at rest without friction and at rest with the table held"
+    )
     assert points["text"] in " ".join(shown.out.split())
     assert points["text"] in (out / "controller.toml").read_text(encoding="utf-8")
     for one in content["reached"]:

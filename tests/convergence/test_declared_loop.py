@@ -14,10 +14,10 @@ from feeddrive.files import plants_folder
 from feeddrive.plant.file.files import read_plant
 from feeddrive.plant.plant import PositionVelocityController
 from feeddrive.recording import read_recording
-from feeddrive.simulate.controlled.closed_loop import simulate_closed_loop
 from feeddrive.simulate.controlled.declared_loop import DeclaredLoop, declared_loop
 from feeddrive.simulate.controlled.replay import replayed_command
 from feeddrive.typing import FloatArray
+from tests.convergence.declared_run import declared_run
 from tests.recovery.declared_controller import controlled_plant
 from tests.recovery.planted import pair
 
@@ -47,21 +47,21 @@ def test_a_declared_cascade_commands_what_was_recorded_until_something_else_does
 def test_a_declared_cascade_moves_the_plant_as_recorded(tmp_path: Path) -> None:
     plant, (recording, _) = controlled_plant(tmp_path, "bench"), pair("bench", "null")
     time: FloatArray = 5e-4 * np.arange(len(recording), dtype=np.float64)
-    run = simulate_closed_loop(plant, time, recording["setpoint"], recording["setpoint"][0])
-    assert rms((recording["motor_torque"] - run.torque)[BEFORE_CHIRP]) < 1.1 * NOISE
+    run, _ = declared_run(plant, time, recording["setpoint"], recording["setpoint"][0])
+    assert rms((recording["motor_torque"] - run.command)[BEFORE_CHIRP]) < 1.1 * NOISE
     # noise and resolution of the scale are 15 nm, the set-point's rounding moves the axis by as much again
-    assert rms((recording["table_position"] - run.position)[BEFORE_CHIRP]) < 40e-9
+    assert rms((recording["table_position"] - run.table_position)[BEFORE_CHIRP]) < 40e-9
 
 
 def test_a_controller_faster_than_the_recording(tmp_path: Path) -> None:
     plant = controlled_plant(tmp_path, "bench", rate="4 kHz")
     fine: FloatArray = 2.5e-4 * np.arange(4001, dtype=np.float64)
     setpoint: FloatArray = 0.05 * (1 - np.cos(2 * math.pi * 1.5 * fine))
-    every = simulate_closed_loop(plant, fine, setpoint, 0.0)
-    second = simulate_closed_loop(plant, fine[::2], setpoint[::2], 0.0)
+    every, _ = declared_run(plant, fine, setpoint, 0.0)
+    second, samples = declared_run(plant, fine[::2], setpoint[::2], 0.0)
     # what is left is the smoothing of the recorded set-point for its velocity, with other samples in its window
-    assert rms(second.torque - every.torque[::2]) < 0.02 * rms(every.torque)
-    assert rms(second.position - every.position[::2]) < 2e-6
+    assert rms((second.command - every.command)[samples]) < 0.02 * rms(every.command)
+    assert rms((second.table_position - every.table_position)[samples]) < 2e-6
 
 
 def test_rates_that_do_not_fit_are_refused(tmp_path: Path) -> None:
@@ -78,10 +78,10 @@ def test_velocity_from_differences_is_half_the_samples_late() -> None:
     time: FloatArray = 1e-3 * np.arange(2000, dtype=np.float64)
     setpoint: FloatArray = 0.2 * time**2
     told = [replace(plant, controller=replace(plant.controller, velocity_samples=m)) for m in (0, 2)]
-    exact, late = (simulate_closed_loop(p, time, setpoint, 0.0) for p in told)
+    exact, late = (declared_run(p, time, setpoint, 0.0)[0] for p in told)
     # the velocity is read 0.4 m/s^2 * 1 ms low, which the position gain makes up for by so much
     expected = -0.4 * 1e-3 / plant.controller.position_gain
-    measured = float((late.position - exact.position)[1000:].mean())
+    measured = float((late.table_position - exact.table_position)[1000:].mean())
     assert measured == pytest.approx(-expected, rel=0.02)
 
 

@@ -8,17 +8,18 @@ import numpy as np
 import pytest
 
 from feeddrive.errors import InputError
+from feeddrive.simulate.scenario.scenario import Scenario
 from feeddrive.simulate.warm.warm_up_result import CLOSES, WarmUpRun
 from feeddrive.simulate.warm.warm_up_run import MacroSteps, run_warm_up
 from feeddrive.thermal.full.full_model import FRONT, NUT
 from feeddrive.typing import FloatArray
-from tests.analytic.warm_cases import COUPLING, THERMAL, short_cycle
+from tests.analytic.warm_cases import short_cycle
 
 DURATION = 2400.0
 
 
 def _run(steps: MacroSteps) -> WarmUpRun:
-    return run_warm_up(short_cycle(), THERMAL, COUPLING, DURATION, steps)
+    return run_warm_up(short_cycle(), DURATION, steps)
 
 
 def _end(run: WarmUpRun) -> FloatArray:
@@ -78,15 +79,20 @@ def test_heat_thins_the_oil_and_stretches_the_screw(fine: WarmUpRun) -> None:
 )
 def test_motion_that_is_no_cycle_is_refused(targets: str, told: str) -> None:
     with pytest.raises(InputError, match=told):
-        run_warm_up(short_cycle(trajectory__targets=targets), THERMAL, COUPLING, 60.0)
+        run_warm_up(short_cycle(trajectory__targets=targets), 60.0)
+
+
+def _joined(**changes: object) -> Scenario:
+    scenario = short_cycle()
+    return replace(scenario, plant=replace(scenario.plant, joint=replace(scenario.plant.coupling, **changes)))
 
 
 def test_bad_settings_are_refused() -> None:
     with pytest.raises(InputError, match="shorter than the cycle"):
-        run_warm_up(short_cycle(), THERMAL, COUPLING, 0.1)
+        run_warm_up(short_cycle(), 0.1)
     with pytest.raises(InputError, match="is not possible"):
         MacroSteps(tolerance=0.0)
     with pytest.raises(InputError, match='no body "spindle"'):
-        run_warm_up(short_cycle(), THERMAL, replace(COUPLING, guide_heat_to="spindle"), 60.0)
+        run_warm_up(_joined(guide_heat_to="spindle"), 60.0)
     with pytest.raises(InputError, match="leaves the shaft"):
-        run_warm_up(short_cycle(), THERMAL, replace(COUPLING, nut_at_zero=0.8), 60.0)
+        run_warm_up(_joined(nut_at_zero=0.8), 60.0)

@@ -15,10 +15,12 @@ import scipy.special  # noqa: F401
 
 matplotlib.use("Agg")
 
-from feeddrive.cli import output, running, sweeping
+from feeddrive.cli import output
 from feeddrive.cli.main import COMMANDS, load, main
+from feeddrive.engine import compiled
 from feeddrive.errors import InputError
-from feeddrive.simulate import compiled
+from feeddrive.interface.runs import scenario as running
+from feeddrive.interface.runs import sweep as sweeping
 
 MOST_TICKS = 4000
 """Of a run; a longer one that is possible is cut, for interpreted it takes its time."""

@@ -67,14 +67,16 @@ def open_loop(torque: Array, state: State, s: Sampling, c: Constants) -> Array:
 
 
 def closed_loop(
-    setpoint: Array, injected: Array, state: State, s: Sampling, c: Constants
+    setpoint: Array, injected: Array, state: State, s: Sampling, c: Constants, injected_speed: Array | None = None
 ) -> tuple[Array, Array, Array]:
     """Return commanded torque (n,) [N m], states (n, WIDTH) at the sample instants, and those `reading` seconds later.
 
     Position P with speed feed-forward, speed PI with back-calculation, on the quantised encoder; `injected` [N m]
-    is added before the limit. The torque of sample i acts from t_i + drive_delay to t_(i+1) + drive_delay.
+    is added before the limit, `injected_speed` [rad/s] to the wanted speed. The torque of sample i acts from
+    t_i + drive_delay to t_(i+1) + drive_delay.
     """
-    return compiled_closed_loop(setpoint, injected, state, s, packed(c))
+    speed = np.zeros_like(setpoint) if injected_speed is None else injected_speed
+    return compiled_closed_loop(setpoint, injected, speed, state, s, packed(c))
 
 
 @compiled
@@ -91,7 +93,7 @@ def compiled_open_loop(torque: Array, state: State, s: Sampling, c: Constants) -
 
 @compiled
 def compiled_closed_loop(
-    setpoint: Array, injected: Array, state: State, s: Sampling, c: Constants
+    setpoint: Array, injected: Array, injected_speed: Array, state: State, s: Sampling, c: Constants
 ) -> tuple[Array, Array, Array]:
     """Return what `closed_loop` does, for packed constants."""
     count = setpoint.size
@@ -110,7 +112,7 @@ def compiled_closed_loop(
         keep(states, i, state)
         angle = round(state.angle / s.encoder_step) * s.encoder_step
         wanted_speed = (setpoint[i] - old_setpoint) / (radius * s.sample_time)
-        wanted_speed += s.position_gain * (setpoint[i] / radius - angle)
+        wanted_speed += s.position_gain * (setpoint[i] / radius - angle) + injected_speed[i]
         quotient = (angle - old_angle) / s.sample_time
         speed = quotient if s.speed_share == 1.0 else speed + s.speed_share * (quotient - speed)
         error = wanted_speed - speed

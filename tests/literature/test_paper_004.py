@@ -13,8 +13,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from feeddrive.diagnosis.stiffness.candidates import DriveAt
-from feeddrive.diagnosis.stiffness.gap import explain_frequency, explain_stiffness
 from feeddrive.parts.bearings.supports import check_position
 from feeddrive.parts.combined_stiffness import (
     Deformation,
@@ -23,12 +21,19 @@ from feeddrive.parts.combined_stiffness import (
     natural_frequency,
     stiffness_along,
 )
-from feeddrive.parts.effective_mass import added_mass, rayleigh_frequency
 from feeddrive.parts.screw.ball_screw import ScrewShaft
 from feeddrive.parts.screw.screw_drive import BallScrewDrive
-from feeddrive.parts.screw.wedge import self_locking, self_locking_lead, wedge_back_driving_efficiency, wedge_efficiency
+from feeddrive.parts.screw.wedge import (
+    self_locking,
+    self_locking_lead,
+    wedge_back_driving_efficiency,
+    wedge_efficiency,
+)
 from feeddrive.reproduce.paper_004 import rows
+from feeddrive.reproduce.paper_004_candidates import DriveAt
+from feeddrive.reproduce.paper_004_gap import explain_frequency, explain_stiffness
 from feeddrive.reproduce.row import Row, Status
+from tests.analytic.rayleigh import added_mass, rayleigh_frequency
 from tests.analytic.screw_fem import ScrewDrive, frequencies
 from tests.analytic.stiffness_cases import AT_NUT, paper_drive
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from feeddrive.diagnosis import round as rounds
+from feeddrive.diagnosis.finding import round as rounds
 from feeddrive.diagnosis.finding.search import search
 from feeddrive.diagnosis.likelihood.coordinates import read_coordinates
 from feeddrive.diagnosis.preparation import prepared

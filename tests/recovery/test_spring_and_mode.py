@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from feeddrive.diagnosis.diagnose import diagnose
+from feeddrive.diagnosis.finding.scene import scene_of
 from feeddrive.diagnosis.likelihood.evidence import prepare
 from feeddrive.diagnosis.likelihood.fit import Problem, fit
 from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
@@ -72,7 +73,7 @@ def problem_of(axis: str, *effects: Planted, **options: float) -> Problem:
 
 def started(problem: Problem, name: str) -> list[Effect]:
     """All starts of a candidate on the declared plant."""
-    return [start for form in STARTS[name](problem.predictor.scene(problem, ())) for start in form]  # type: ignore[arg-type]
+    return [start for form in STARTS[name](scene_of(problem, ())) for start in form]  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("axis", list(AXES))

@@ -17,9 +17,9 @@ import pytest
 from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.judging.result import Diagnosis
 from feeddrive.files import plants_folder
+from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording, read_recording
-from feeddrive.thermal.file.files import read_thermal_plant
-from feeddrive.thermal.plant import ThermalPlant
 from tests.generator.thermal import TRAIN, VALIDATE, Rig, measured, simulate, write_csv
 from tests.generator.thermal_effects import Planted, ThermalTruth
 
@@ -93,9 +93,9 @@ NOISE_REACHED = 1.2
 
 
 @cache
-def plant() -> ThermalPlant:
+def plant() -> Plant:
     """The declared bench."""
-    return read_thermal_plant(plants_folder() / "thermal_bench.toml")
+    return read_plant(plants_folder() / "thermal_bench.toml")
 
 
 @cache

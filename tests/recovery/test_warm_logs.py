@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import feeddrive as fd
-from feeddrive.interface.diagnosed import Diagnosed
+from feeddrive.interface.measured.diagnosed import Diagnosed
 from tests.generator.thermal_effects import Planted
 from tests.generator.warm_axis import Truth, simulate, write_csv
 
@@ -76,4 +76,4 @@ def test_what_is_planted_is_named(case: str, tmp_path: Path) -> None:
             assert key in ("at_speed", "share_at_rest") or abs(shown - value) <= WITHIN * abs(value), (key, shown)
     assert at_the_floor(found) == []
     after = found.plant
-    assert len(after.warm.effects) == len(fd.load("warm_axis").warm.effects) + 1
+    assert len(after.plant.effects) == len(fd.load("warm_axis").plant.effects) + 1

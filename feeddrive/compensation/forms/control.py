@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 from feeddrive.compensation.table import CompensationTable
@@ -28,11 +28,20 @@ class Reversal:
         spread: time over which it does so evenly [s].
         cycles: position cycles over which it does so evenly, in place of a time.
         ramped: whether the whole value follows with half of the axis' limits of velocity and acceleration.
+        longest: time to which it may be set [s]; 0 where the control has no such setting.
+        setting: table, name of the axis and this reversal to the line that says how to set it.
     """
 
     spread: float = 0.0
     cycles: int = 0
     ramped: bool = False
+    longest: float = 0.0
+    setting: Callable[[CompensationTable, str, Reversal], str] | None = None
+
+    def over(self, time: float, cycle: float) -> Reversal:
+        """Set to a time [s], at a position cycle [s]."""
+        time = min(time, self.longest)
+        return replace(self, cycles=max(1, round(time / cycle))) if self.cycles else replace(self, spread=time)
 
 
 @dataclass(frozen=True)
@@ -72,6 +81,12 @@ class Control:
     load: Callable[[CompensationTable, str], tuple[str, ...]]
     write: Callable[[CompensationTable, Sequence[str], str], str]
     stepwise: bool = False
+
+    def loading(self, table: CompensationTable, axis: str) -> tuple[str, ...]:
+        """What to do with the file, and which settings it needs, that of the reversal among them."""
+        told = self.reversal.setting
+        play = () if told is None or not table.directions_differ else (told(table, axis, self.reversal),)
+        return (*self.load(table, axis), *play)
 
     def refuse_beyond_limits(self, table: CompensationTable) -> None:
         """Refuse a table that the control does not take.

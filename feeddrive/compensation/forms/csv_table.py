@@ -21,6 +21,10 @@ def _load(_: CompensationTable, axis: str) -> tuple[str, ...]:
     return (f"A control that adds to the command of {axis} takes the negative; one that takes off takes it as it is.",)
 
 
+def _setting(_: CompensationTable, __: str, reversal: Reversal) -> str:
+    return f"On reversal go over from one column to the other within {1e3 * reversal.spread:.1f} ms."
+
+
 CSV = Control(
     name="csv",
     title="a control that takes straight lines off its set-point, per direction",
@@ -31,7 +35,7 @@ CSV = Control(
     usual_points=1000,
     steepest=STEEPEST,
     side=Side.SETPOINT,
-    reversal=Reversal(),
+    reversal=Reversal(longest=1.0, setting=_setting),
     directions=True,
     comments=True,
     load=_load,

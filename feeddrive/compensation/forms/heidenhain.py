@@ -5,7 +5,7 @@ traverse [mm]. A value may change by 1/64 of the distance of two points. The byt
 file and the sign of its values stand in no page at hand: this is no *.COM file, and the check of one point decides.
 
 Source: MANUALplus 620 Technical Manual, pages 708, 716 to 718; TNC 407 Technical Manual, pages 153 to 156 and 622
-(256 entries a table); iTNC 530 HSCI, page 650 (backlash spread over MP752, 15 ms in its example).
+(256 entries a table); iTNC 530 HSCI, page 650 (backlash spread over MP752, 0 to 1000 ms, 15 ms in its example).
 """
 
 from __future__ import annotations
@@ -33,6 +33,10 @@ def _load(_: CompensationTable, axis: str) -> tuple[str, ...]:
     )
 
 
+def _setting(_: CompensationTable, __: str, reversal: Reversal) -> str:
+    return f"MP752 (MP_filterTime) = {1e3 * reversal.spread:.1f} ms: time over which the backlash goes over."
+
+
 HEIDENHAIN = Control(
     name="heidenhain-csv",
     title="Heidenhain *.COM table (as CSV)",
@@ -43,7 +47,7 @@ HEIDENHAIN = Control(
     usual_points=256,
     steepest=1 / 64,
     side=Side.SETPOINT,
-    reversal=Reversal(spread=0.015),
+    reversal=Reversal(spread=0.015, longest=1.0, setting=_setting),
     directions=True,
     comments=True,
     load=_load,

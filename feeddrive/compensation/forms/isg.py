@@ -39,8 +39,12 @@ def _write(table: CompensationTable, head: Sequence[str], axis: str) -> str:
 def _load(_: CompensationTable, axis: str) -> tuple[str, ...]:
     return (
         f"Write kopf.achs_nr with the logical number of axis {axis} in front, as in the list of your start-up.",
-        f"In the axis parameter list: lr_param.ssfk 1, lr_param.n_backlash_cyc {_CYCLES}; no backlash beside it.",
+        "In the axis parameter list: lr_param.ssfk 1; no backlash beside it.",
     )
+
+
+def _setting(_: CompensationTable, __: str, reversal: Reversal) -> str:
+    return f"lr_param.n_backlash_cyc {reversal.cycles}: position cycles over which the play goes over on reversal."
 
 
 ISG = Control(
@@ -53,7 +57,7 @@ ISG = Control(
     usual_points=1500,
     steepest=STEEPEST,
     side=Side.SETPOINT,
-    reversal=Reversal(cycles=_CYCLES),
+    reversal=Reversal(cycles=_CYCLES, longest=1.0, setting=_setting),
     directions=True,
     comments=True,
     load=_load,

@@ -3,14 +3,15 @@
 ENC_COMP holds one value a position, straight between the points and constant beyond; it is added to the actual value
 of the encoder. "A positive compensation value causes the corresponding machine axis to move in the negative direction":
 value = actual - target. The axis must be referenced; the value at the reference point should be 0. Play is a value of
-its own, MD32450 BACKLASH.
+its own: MD32450 BACKLASH goes over at once, MD32456 BACKLASH_DYN, half of it with the sign of the direction, by a ramp
+of the velocity MD32457 (per cent of MD32000) while the PLC asks for it (DB31 DBX25.0).
 
 CEC acts on the set-point: table 0 in positive, table 1 in negative direction, straight between, constant beyond. Its
 sign stands in no page at hand; two public generators write target - actual, which is what the set-point lacks. The
 check of one point decides.
 
-Source: SINUMERIK Extended Functions 6FC5397-1BP40-3BA1, pages 242 (ENC_COMP), 248, 249, 264 (CEC); SINUMERIK 808D
-Function Manual 01/2017, page 106 (sign).
+Source: SINUMERIK Extended Functions 6FC5397-1BP40-3BA1, pages 242 (ENC_COMP), 234 (BACKLASH_DYN), 248, 249, 264 (CEC);
+SINUMERIK 808D Function Manual 01/2017, page 106 (sign); 808D ADVANCED Parameter Manual 08/2013, page 229 (MD32457).
 """
 
 from __future__ import annotations
@@ -76,12 +77,23 @@ def _cec_block(table: CompensationTable, values: FloatArray, axis: str, number: 
 
 
 def _load_encoder(table: CompensationTable, axis: str) -> tuple[str, ...]:
-    play = f"MD32450 $MA_BACKLASH[{_ENCODER},{axis}] = {millimetres(table.play, _DIGITS)} mm, set by hand: the play."
     return (
         f"MD38000 $MA_MM_ENC_COMP_MAX_POINTS[{_ENCODER},{axis}] must be {len(table)} or more (8 bytes a point; an 808D "
         "has 200); it reorganises the memory, so set it first and save.",
         f"MD32700 $MA_ENC_COMP_ENABLE[{_ENCODER},{axis}] = 0 while loading, then 1; reference the axis.",
-        *((play,) if table.directions_differ else ()),
+    )
+
+
+def _setting_encoder(table: CompensationTable, axis: str, reversal: Reversal) -> str:
+    play, place = millimetres(table.play, _DIGITS), f"[{_ENCODER},{axis}]"
+    if not reversal.spread:
+        return f"MD32450 $MA_BACKLASH{place} = {play} mm, set by hand: the play."
+    speed = 60e3 * table.play / reversal.spread
+    return (
+        f"The play, set by hand: MD32456 $MA_BACKLASH_DYN{place} = {play} mm, which goes over by a ramp, MD32457 "
+        f"$MA_BACKLASH_DYN_MAX_VELO = {speed:.3g} mm/min as a percentage of MD32000 (within "
+        f"{1e3 * reversal.spread:.1f} ms), DB31 DBX25.0 = 1, MD32450 = 0. A control without MD32456 takes MD32450 = "
+        f"{play} mm, which goes over at once."
     )
 
 
@@ -103,7 +115,7 @@ SINUMERIK_ENC = Control(
     usual_points=801,  # as in the manual's example; an 808D has 200, which the sheet says
     steepest=0.01,  # MD32760 COMP_ADD_VELO_FACTOR, 1 % of the axis' velocity
     side=Side.ACTUAL,
-    reversal=Reversal(),
+    reversal=Reversal(longest=1.0, setting=_setting_encoder),
     directions=False,
     comments=True,
     load=_load_encoder,

@@ -15,8 +15,8 @@ import numpy as np
 import scipy.sparse as sparse
 
 from feeddrive.errors import InputError
+from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.laws.expansion import FIXED_FREE, Supports, expansion
-from feeddrive.thermal.plant import ThermalPlant
 from feeddrive.thermal.reduced.model import HeatModel
 from feeddrive.thermal.rig import refuse_unless
 from feeddrive.typing import FloatArray
@@ -43,7 +43,7 @@ class TableError:
 
 
 def table_error(
-    plant: ThermalPlant, model: HeatModel, supports: Supports = FIXED_FREE, count: int = POSITIONS
+    plant: Heat, model: HeatModel, supports: Supports = FIXED_FREE, count: int = POSITIONS
 ) -> TableError:  # fmt: skip
     """The error along the plant's travel.
 

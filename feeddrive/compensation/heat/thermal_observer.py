@@ -26,7 +26,7 @@ from feeddrive.compensation.heat.thermal_error import TableError
 from feeddrive.compensation.heat.thermal_sensors import Sensor, refuse_unmountable
 from feeddrive.compensation.heat.thermal_unknowns import Unknowns
 from feeddrive.errors import InputError
-from feeddrive.thermal.plant import ThermalPlant
+from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.reduced.model import AMBIENT, HeatModel
 from feeddrive.thermal.rig import refuse_unless_positive
 from feeddrive.thermal.run.warm_up import declared_rows, grouped
@@ -61,7 +61,7 @@ class ThermalObserver:
         error: of the table along the stroke.
     """
 
-    plant: ThermalPlant
+    plant: Heat
     system: Augmented
     error: TableError
 
@@ -123,7 +123,7 @@ class ThermalObserver:
 
 
 def thermal_observer(
-    plant: ThermalPlant, model: HeatModel, error: TableError, sensors: Sequence[Sensor],
+    plant: Heat, model: HeatModel, error: TableError, sensors: Sequence[Sensor],
     unknowns: Unknowns | None = None, step: float = 30.0,
 ) -> ThermalObserver:  # fmt: skip
     """An observer.

@@ -7,7 +7,7 @@ through in full. It costs no sensor, and it is the prediction inside the observe
 from __future__ import annotations
 
 from feeddrive.compensation.heat.thermal_error import TableError
-from feeddrive.thermal.plant import ThermalPlant
+from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.reduced.model import HeatModel, Path
 from feeddrive.thermal.reduced.reduction import Sizes, reduce_model
 from feeddrive.thermal.run.warm_up import declared_rows, run
@@ -21,7 +21,7 @@ _FILMS = 1.25
 """Range of the films beyond that from rest to the highest speed: the tolerance twice, and some."""
 
 
-def compensation_model(plant: ThermalPlant, order: int = ORDER, sizes: Sizes | None = None) -> HeatModel:
+def compensation_model(plant: Heat, order: int = ORDER, sizes: Sizes | None = None) -> HeatModel:
     """The reduced model that a compensation runs: its films may vary with speed, its contact is the declared one.
 
     Args:
@@ -39,7 +39,7 @@ def compensation_model(plant: ThermalPlant, order: int = ORDER, sizes: Sizes | N
 
 
 def model_alone(
-    plant: ThermalPlant, model: HeatModel, error: TableError, step: float, speeds: FloatArray, ambient: FloatArray
+    plant: Heat, model: HeatModel, error: TableError, step: float, speeds: FloatArray, ambient: FloatArray
 ) -> FloatArray:  # fmt: skip
     """Error of the table that the model foretells at the end of each row, (k, p) [m].
 

@@ -21,7 +21,7 @@ from feeddrive.compensation.heat.thermal_observer import ThermalObserver, therma
 from feeddrive.compensation.heat.thermal_sensors import Sensor, mountable_places
 from feeddrive.compensation.heat.thermal_unknowns import Unknowns
 from feeddrive.errors import InputError
-from feeddrive.thermal.plant import ThermalPlant
+from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.reduced.model import HeatModel
 from feeddrive.typing import FloatArray
 
@@ -42,7 +42,7 @@ class Placement:
 
 
 def placements(
-    plant: ThermalPlant, model: HeatModel, error: TableError, count: int, speeds: Sequence[float],
+    plant: Heat, model: HeatModel, error: TableError, count: int, speeds: Sequence[float],
     unknowns: Unknowns | None = None, kind: Sensor | None = None,
 ) -> tuple[Placement, ...]:  # fmt: skip
     """All sets of `count` mountable places, the best first.

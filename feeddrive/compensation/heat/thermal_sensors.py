@@ -17,7 +17,7 @@ import numpy as np
 
 from feeddrive.errors import InputError
 from feeddrive.thermal.full.full_model import FRONT, NUT, REAR
-from feeddrive.thermal.plant import ThermalPlant
+from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.rig import refuse_negative, refuse_unless_positive
 from feeddrive.typing import FloatArray
 
@@ -41,14 +41,14 @@ class Sensor:
         refuse_negative(self.lag, "s", f"{self.place}.lag")
 
 
-def mountable_places(plant: ThermalPlant) -> tuple[str, ...]:
+def mountable_places(plant: Heat) -> tuple[str, ...]:
     """Places of a plant where a sensor can be mounted."""
     covered = {body.port for body in plant.bodies}
     seats = tuple(seat for seat in (FRONT, REAR) if seat not in covered)
     return (NUT, *seats, *(body.name for body in plant.bodies))
 
 
-def refuse_unmountable(plant: ThermalPlant, sensors: Sequence[Sensor]) -> None:
+def refuse_unmountable(plant: Heat, sensors: Sequence[Sensor]) -> None:
     """Refuse sensors where none can be mounted, or two at one place.
 
     Raises:

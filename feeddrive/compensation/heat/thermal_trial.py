@@ -10,8 +10,8 @@ import numpy as np
 from feeddrive.compensation.heat.thermal_deviation import deviating
 from feeddrive.compensation.heat.thermal_error import table_error
 from feeddrive.compensation.heat.thermal_sensors import Sensor, mountable_places, simulated_readings
+from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.laws.expansion import FIXED_FREE, Supports
-from feeddrive.thermal.plant import ThermalPlant
 from feeddrive.thermal.reduced.model import HeatModel
 from feeddrive.thermal.rig import refuse_unless
 from feeddrive.thermal.run.warm_up import declared_rows, run
@@ -52,7 +52,7 @@ class TriedMachine:
 
 
 def tried_machine(
-    plant: ThermalPlant, model: HeatModel, step: float, speeds: FloatArray, ambient: FloatArray, *,
+    plant: Heat, model: HeatModel, step: float, speeds: FloatArray, ambient: FloatArray, *,
     heat: float = 1.0, film: float = 1.0, others: Mapping[str, FloatArray] | None = None,
     supports: Supports = FIXED_FREE,
 ) -> TriedMachine:  # fmt: skip

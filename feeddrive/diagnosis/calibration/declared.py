@@ -197,7 +197,7 @@ def with_values(plant: Plant, values: Sequence[CalibratedValue], coordinates: Fl
             chain[value.key] *= factor
     effects = tuple(_with_friction(effect, frictions) for effect in plant.effects)
     more = (TorqueGain.of(gain=1 / gain),) if gain != 1.0 else ()
-    return replace(plant, chain=replace(plant.chain, values=chain), effects=(*effects, *more))
+    return replace(plant.with_chain_values(chain), effects=(*effects, *more))
 
 
 def _with_friction(effect: Effect, factors: Mapping[tuple[str, str], float]) -> Effect:

@@ -27,7 +27,6 @@ from feeddrive.effects.base import Effect
 from feeddrive.effects.chain.stiffness_deviation import PARTS, StiffnessDeviation, parts_of
 from feeddrive.errors import InputError
 from feeddrive.plant.analysis.stiffness_budget import participation
-from feeddrive.plant.plant import Plant
 
 SAME_ERROR = 1.05
 """Ratio of validation errors (rms) within which two effects count as the same."""
@@ -150,7 +149,7 @@ def other_places(found: Search, judged: Sequence[Judged]) -> tuple[str, ...]:
 def _shares(effect: Effect, alike: Sequence[str], found: Search) -> str:
     """How much of the compliance at the table parts that cannot be told apart have; empty for other effects."""
     plant = found.problem.plant
-    if not isinstance(effect, StiffnessDeviation) or not isinstance(plant, Plant) or effect.place not in PARTS:
+    if not isinstance(effect, StiffnessDeviation) or effect.place not in PARTS:
         return ""
     parts = [part for part in (effect.place, *alike) if part in PARTS]
     shares = [f"{part} {participation(plant, PARTS[part], plant.middle):.0%}" for part in parts]
@@ -159,9 +158,8 @@ def _shares(effect: Effect, alike: Sequence[str], found: Search) -> str:
 
 def _possible(effect: Effect, found: Search) -> tuple[str, ...]:
     """Places that the effect may have on this machine."""
-    plant = found.problem.plant
-    if isinstance(effect, StiffnessDeviation) and isinstance(plant, Plant):
-        return parts_of(plant.chain.values)
+    if isinstance(effect, StiffnessDeviation):
+        return parts_of(found.problem.plant.chain.values)
     return effect.places
 
 

@@ -14,7 +14,6 @@ below F1 the two are one; a search that starts at forces which can be seen does 
 
 from __future__ import annotations
 
-from feeddrive.diagnosis.likelihood.predictor import Machine
 from feeddrive.effects.base import Effect
 from feeddrive.effects.transmission.backlash import Backlash
 from feeddrive.effects.transmission.preload_loss import PreloadLoss
@@ -25,14 +24,14 @@ SOFTENED = 0.1
 """Ratio a of the start: far from both ends of its range, 0.01 (free play) and 1 (no loss)."""
 
 
-def imitations_of(effect: Effect, plant: Machine) -> tuple[Effect, ...]:
+def imitations_of(effect: Effect, plant: Plant) -> tuple[Effect, ...]:
     """The effects that this one could be a small case of; none for most.
 
     Args:
         effect: found.
         plant: as declared.
     """
-    if not isinstance(effect, Backlash) or not isinstance(plant, Plant) or not plant.chain.elastic:
+    if not isinstance(effect, Backlash) or not plant.chain.elastic:
         return ()
     width = effect.values["width"]
     if not isinstance(width, float) or width <= 0:

@@ -9,12 +9,13 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from feeddrive.diagnosis.certainty.ambiguity import AGAINST, Rival, at_its_limit
+from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.likelihood.coordinates import read_coordinates
 from feeddrive.diagnosis.likelihood.fit import Problem, fit
-from feeddrive.diagnosis.likelihood.predictor import Machine
 from feeddrive.diagnosis.recordings.recordings import is_shift
 from feeddrive.effects.base import Effect
+from feeddrive.plant.plant import Plant
 
 
 def with_the_preferred(found: Search, rivals: Sequence[list[Rival]]) -> tuple[Search, list[list[Rival]]]:
@@ -39,7 +40,7 @@ def with_the_preferred(found: Search, rivals: Sequence[list[Rival]]) -> tuple[Se
 
 def _preferred(problem: Problem, effect: Effect, alike: Sequence[Rival]) -> Rival | None:
     """The rival for which the data speak by as much as refuses one, else the simplest that is simpler."""
-    material = [rival for rival in alike if problem.predictor.is_material(rival.effect, problem.plant)]
+    material = [rival for rival in alike if is_material(rival.effect, problem.plant)]
     likeliest = min(material, key=lambda rival: rival.odds, default=None)
     if likeliest is not None and likeliest.odds < -AGAINST:
         return likeliest
@@ -48,6 +49,6 @@ def _preferred(problem: Problem, effect: Effect, alike: Sequence[Rival]) -> Riva
     return min(simpler, key=lambda rival: _simplicity(rival.effect, problem.plant), default=None)
 
 
-def _simplicity(effect: Effect, plant: Machine) -> tuple[int, bool]:
+def _simplicity(effect: Effect, plant: Plant) -> tuple[int, bool]:
     """What comes first in a tie: fewest parameters, and none at an end of its range."""
     return len(read_coordinates([effect], plant)), at_its_limit(effect)

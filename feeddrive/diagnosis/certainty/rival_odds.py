@@ -26,7 +26,7 @@ from feeddrive.diagnosis.certainty.noise_colour import score_covariance
 from feeddrive.diagnosis.judging.judge import Judged, error_series
 from feeddrive.diagnosis.likelihood.cross_validation import model_error_rows
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem
-from feeddrive.diagnosis.likelihood.predictor import Machine
+from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray
 
 
@@ -39,13 +39,13 @@ class Residuals:
     coordinates: int
 
     @classmethod
-    def of(cls, problem: Problem, fitted: Fit, plants: Sequence[tuple[Machine, Judged]]) -> Residuals:
+    def of(cls, problem: Problem, fitted: Fit, plants: Sequence[tuple[Plant, Judged]]) -> Residuals:
         """Of a fit, with the plant that it gives for each judged recording."""
         judged = np.concatenate([_thinned_error(problem, plant, j) for plant, j in plants])
         return cls(fitted.residual, judged, len(fitted.coordinates))
 
 
-def _thinned_error(problem: Problem, plant: Machine, judged: Judged) -> FloatArray:
+def _thinned_error(problem: Problem, plant: Plant, judged: Judged) -> FloatArray:
     evidence = judged.evidence
     errors = error_series(problem, plant, evidence)
     return evidence.weighted(errors, evidence.thinned(evidence.judged_rows))

@@ -30,7 +30,7 @@ class Twin:
     reason: str
 
 
-def twins_of(effect: Effect, plant: object, evidence: Sequence[Evidence]) -> tuple[Twin, ...]:
+def twins_of(effect: Effect, plant: Plant, evidence: Sequence[Evidence]) -> tuple[Twin, ...]:
     """The effects that say the same as one that was found; none for most.
 
     Args:
@@ -38,8 +38,6 @@ def twins_of(effect: Effect, plant: object, evidence: Sequence[Evidence]) -> tup
         plant: as declared.
         evidence: recordings.
     """
-    if not isinstance(plant, Plant):
-        return ()
     if effect.name == "drive_delay" and not any("table_position" in e.channels for e in evidence):
         reason = "without a table position a torque that acts late is a motor angle that is recorded late"
         return (Twin("channel_delay", f"{reason}; record the table position to tell them apart"),)

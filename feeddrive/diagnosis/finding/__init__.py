@@ -1,0 +1,1 @@
+"""The search for effects that a plant lacks."""

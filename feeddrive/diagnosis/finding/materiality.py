@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from feeddrive.diagnosis.declared_friction import declared_level
-from feeddrive.effects.base import Effect, Port
+from feeddrive.diagnosis.heat.materiality import is_material_heat
+from feeddrive.effects.base import Effect, Kind, Port
 from feeddrive.effects.chain.inertia_deviation import InertiaDeviation, declared_inertia
 from feeddrive.plant.plant import Plant
 
@@ -33,6 +34,8 @@ FORCE_KEYS = ("delta_force", "force", "peak")
 
 def is_material(effect: Effect, plant: Plant) -> bool:
     """Whether an effect is of a size that matters on this plant."""
+    if effect.kind is Kind.HEAT:
+        return is_material_heat(effect, plant.heat)
     values = {key: value for key, value in effect.values.items() if isinstance(value, float)}
     if effect.name == "friction_deviation":
         return any(abs(values[key] - 1) >= LEAST_FACTOR for key in ("coulomb_factor", "viscous_factor"))

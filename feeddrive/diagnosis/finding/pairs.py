@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from feeddrive.diagnosis.finding.attempt import Attempt, compared
+from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.likelihood.coordinates import absent_coordinates, read_coordinates
 from feeddrive.diagnosis.likelihood.cross_validation import (
     Comparison,
@@ -54,7 +55,7 @@ def masked_pair(attempts: Sequence[Attempt], found: Fit, winner: Attempt | None)
         except InputError:
             continue
         pair = compared(problem, f"{first.name} with {second.name}", result, found.effects)
-        material = all(problem.predictor.is_material(effect, problem.plant) for effect in result.effects[-2:])
+        material = all(is_material(effect, problem.plant) for effect in result.effects[-2:])
         if material and pair.comparison.pays and pair.comparison.gain > least:
             return pair
     return None

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections import Counter, OrderedDict
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Sequence
 from threading import Lock
 from typing import Generic, TypeVar
+
+from feeddrive.effects.base import Effect
 
 Value = TypeVar("Value")
 
@@ -70,3 +72,8 @@ class Remembered(Generic[Value]):
         self._sources[source] -= 1
         if not self._sources[source]:
             del self._sources[source], self._least[source]
+
+
+def effects_key(effects: Sequence[Effect]) -> tuple[object, ...]:
+    """What a prediction depends on of effects: names, places and values."""
+    return tuple((e.name, str(e.port), e.place, tuple(e.values.items())) for e in effects)

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 
 from feeddrive.diagnosis.finding.attempt import PROMISE, Attempt, refined, started, together
+from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.finding.pairs import linear_pair
 from feeddrive.diagnosis.finding.scene import Scene
 from feeddrive.diagnosis.likelihood.coordinates import read_coordinates
@@ -57,7 +58,7 @@ def _ties(other: Attempt, best: Attempt) -> bool:
 
 
 def _is_material(attempt: Attempt) -> bool:
-    return attempt.problem.predictor.is_material(attempt.fit.effects[-1], attempt.problem.plant)
+    return is_material(attempt.fit.effects[-1], attempt.problem.plant)
 
 
 def _adds(attempt: Attempt, other: Attempt, found: Fit) -> bool:

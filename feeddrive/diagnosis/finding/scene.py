@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -23,11 +23,18 @@ class Scene:
         problem: declared plant and recordings.
         found: effects found so far.
         residuals: per recording, channel to measured less predicted in the band, shape (n,).
+        runs: per recording, the motion of the load side; none where temperatures alone are predicted.
     """
 
     problem: Problem
     found: tuple[Effect, ...]
     residuals: tuple[dict[str, FloatArray], ...]
+    runs: tuple[LoadMotion, ...] = ()
+
+    @property
+    def plant(self) -> Plant:
+        """The declared plant."""
+        return self.problem.plant
 
     @property
     def longest(self) -> int:
@@ -35,21 +42,14 @@ class Scene:
         return int(np.argmax([e.fit_rows.sum() for e in self.problem.evidence]))
 
 
-@dataclass(frozen=True)
-class AxisScene(Scene):
-    """A scene of motion and torque.
-
-    Attributes:
-        runs: per recording, the motion of the load side.
-    """
-
-    runs: tuple[LoadMotion, ...]
-
-    @property
-    def plant(self) -> Plant:
-        """The declared plant."""
-        assert isinstance(self.problem.plant, Plant)
-        return self.problem.plant
+def scene_of(problem: Problem, found: Sequence[Effect]) -> Scene:
+    """What starts are read from, after the effects found so far."""
+    plant, residuals, runs = problem.machine(found), [], []
+    for evidence in problem.evidence:
+        predicted = problem.predictor.predict(plant, evidence)
+        residuals.append({name: evidence.measured[name] - predicted[name] for name in evidence.channels})
+        runs.append(problem.predictor.load_motion(plant, evidence))
+    return Scene(problem, tuple(found), tuple(residuals), tuple(run for run in runs if run is not None))
 
 
 @dataclass(frozen=True)

@@ -12,10 +12,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from feeddrive.diagnosis.calibration.calibrate import beyond_tolerance, calibrated, recalibrated
+from feeddrive.diagnosis.calibration.beyond import beyond_tolerance
+from feeddrive.diagnosis.calibration.calibrate import calibrated, recalibrated
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, Attempt, together
 from feeddrive.diagnosis.finding.pairs import masked_pair
 from feeddrive.diagnosis.finding.round import TIE, one_round, simplest_of_the_best
+from feeddrive.diagnosis.finding.scene import scene_of
 from feeddrive.diagnosis.judging.result import Trial
 from feeddrive.diagnosis.likelihood.coordinates import read_coordinates
 from feeddrive.diagnosis.likelihood.cross_validation import (
@@ -147,7 +149,7 @@ def _greedy(problem: Problem, said: Callable[[str], None], turn: _Turn | None = 
             winner = together(turn.attempt, found)
             rounds.append(tuple(attempts))
         else:
-            attempts = one_round(problem.predictor.scene(problem, found.effects), found, impossible)
+            attempts = one_round(scene_of(problem, found.effects), found, impossible)
             rounds.append(tuple(attempts))
             winner = simplest_of_the_best(attempts, found)
             pair = masked_pair(attempts, found, winner)

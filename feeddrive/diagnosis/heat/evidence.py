@@ -14,10 +14,11 @@ import numpy as np
 
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.errors import InputError
+from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 from feeddrive.recording.channels import channel_unit
 from feeddrive.thermal.full.full_model import growth_name
-from feeddrive.thermal.plant import ThermalPlant
+from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.run.warm_up import channel_of
 from feeddrive.typing import BoolArray, FloatArray
 
@@ -86,7 +87,7 @@ class HeatEvidence(Evidence):
         return _over_start(name, self.recording)
 
 
-def prepare_heat(recording: Recording, plant: ThermalPlant, share: float) -> HeatEvidence:
+def prepare_heat(recording: Recording, plant: Heat, share: float) -> HeatEvidence:
     """Evidence of a recording, its first `share` fitted and the rest judged.
 
     Args:
@@ -135,12 +136,12 @@ def _over_start(name: str, recording: Recording) -> FloatArray:
     return rise
 
 
-def plant_noise(plant: ThermalPlant) -> dict[str, float]:
+def plant_noise(plant: Heat) -> dict[str, float]:
     """Channel to its declared noise; those without are left out."""
     return {sensor.channel: sensor.noise for sensor in plant.sensors if sensor.noise > 0}
 
 
-def predicted_channels(plant: ThermalPlant) -> tuple[str, ...]:
+def predicted_channels(plant: Heat) -> tuple[str, ...]:
     """Channels that a plant predicts: those of its sensors, or all under their default names."""
     if plant.sensors:
         return tuple(sensor.channel for sensor in plant.sensors)
@@ -165,13 +166,15 @@ def same_speeds(speed: FloatArray) -> FloatArray:
     return np.asarray((np.bincount(which, weights=speed) / np.bincount(which))[which])
 
 
-def within_range(plant: ThermalPlant, evidence: Sequence[HeatEvidence]) -> tuple[ThermalPlant, tuple[str, ...]]:
+def within_range(plant: Plant, evidence: Sequence[HeatEvidence]) -> tuple[Plant, tuple[str, ...]]:
     """The plant with its highest speed raised to the recordings', and what is to be said of it."""
-    fastest = max(float(one.speed.max()) for one in evidence)
-    if fastest <= plant.highest_speed * (1 + 1e-9):
+    fastest, declared = max(float(one.speed.max()) for one in evidence), plant.heat.highest_speed
+    if fastest <= declared * (1 + 1e-9):
         return plant, ()
-    told = f"the screw turns at {fastest * 30 / np.pi:.0f} rev/min, declared are {plant.highest_speed * 30 / np.pi:.0f}"
-    return replace(plant, highest_speed=fastest), (f"{told} at most: films and friction are extrapolated",)
+    told = f"the screw turns at {fastest * 30 / np.pi:.0f} rev/min, declared are {declared * 30 / np.pi:.0f}"
+    return replace(plant, network=replace(plant.heat, highest_speed=fastest)), (
+        f"{told} at most: films and friction are extrapolated",
+    )
 
 
 def _fitted(time: FloatArray, share: float) -> BoolArray:
@@ -186,7 +189,7 @@ def _refuse_missing(recording: Recording) -> None:
         raise InputError(f"no channel {AMBIENT}", recording.name, "record the air's temperature at the machine")
 
 
-def _predicted(recording: Recording, plant: ThermalPlant) -> list[str]:
+def _predicted(recording: Recording, plant: Heat) -> list[str]:
     """Channels that are compared; a name that only nearly is a sensor's is refused."""
     known = predicted_channels(plant)
     names = [name for name in known if name in recording]
@@ -203,7 +206,7 @@ def _predicted(recording: Recording, plant: ThermalPlant) -> list[str]:
     return names
 
 
-def left_out_channels(recording: Recording, plant: ThermalPlant) -> tuple[str, ...]:
+def left_out_channels(recording: Recording, plant: Heat) -> tuple[str, ...]:
     """Temperatures and growths of a recording that the plant does not predict."""
     known = (*predicted_channels(plant), AMBIENT)
     slow = [c for c in recording.channels if c.endswith("_temperature") or c.startswith("table_growth_")]

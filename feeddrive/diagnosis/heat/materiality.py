@@ -6,8 +6,8 @@ import numpy as np
 
 from feeddrive.effects.base import Effect, listed
 from feeddrive.effects.heat.bearing_heat import reference_torque
+from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.laws.friction import torque_law
-from feeddrive.thermal.plant import ThermalPlant
 
 LEAST_HEAT_SHARE = 2e-4
 """A heat over that of the nut at the highest declared speed: a sensor on a flange shows milliwatts, and what shows is
@@ -36,7 +36,7 @@ LEAST_LAG = 3.0
 """Of a sensor [s]."""
 
 
-def is_material_heat(effect: Effect, plant: ThermalPlant) -> bool:
+def is_material_heat(effect: Effect, plant: Heat) -> bool:
     """Whether a thermal effect is of a size that matters on this plant."""
     v = {key: value for key, value in effect.values.items() if isinstance(value, float)}
     fastest = np.array([plant.highest_speed])
@@ -71,19 +71,19 @@ def _largest_shape(effect: Effect) -> float:
     return max(abs(s) for s in nodes) if len(listed(effect.values["time"])) > 1 else 1.0
 
 
-def _bearing_torque(plant: ThermalPlant) -> float:
+def _bearing_torque(plant: Heat) -> float:
     """Of the bearing that `bearing_heat` counts by, at the highest speed [N m]."""
     speed = plant.highest_speed
     return float(reference_torque(speed) if plant.front is None else torque_law(speed, vars(plant.front)))
 
 
-def _film_of_nut(plant: ThermalPlant) -> float:
+def _film_of_nut(plant: Heat) -> float:
     """Conductance to the air at rest [W/K]."""
     outside = 2 * np.pi * plant.rig.nut.outer_radius * plant.rig.nut.length
     return float(plant.films.on_nut(np.zeros(1))[0] * outside)
 
 
-def _capacity_of_nut(plant: ThermalPlant) -> float:
+def _capacity_of_nut(plant: Heat) -> float:
     """[J/K]."""
     section = np.pi * (plant.rig.nut.outer_radius**2 - plant.rig.radius**2)
     return float(plant.rig.steel.heat_capacity * section * plant.rig.nut.length)

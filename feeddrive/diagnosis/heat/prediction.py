@@ -1,4 +1,4 @@
-"""What a thermal plant predicts for a recording: temperatures and growth from speed and surroundings alone."""
+"""What a heat network predicts for a recording: temperatures and growth from speed and surroundings alone."""
 
 from __future__ import annotations
 
@@ -8,15 +8,13 @@ from typing import ClassVar
 
 import numpy as np
 
-from feeddrive.diagnosis.finding.remembered import Remembered
-from feeddrive.diagnosis.finding.scene import Candidate, Scene
+from feeddrive.diagnosis.finding.remembered import Remembered, effects_key
+from feeddrive.diagnosis.finding.scene import Candidate
 from feeddrive.diagnosis.heat.candidates import HEAT_CANDIDATES
 from feeddrive.diagnosis.heat.evidence import HeatEvidence
-from feeddrive.diagnosis.heat.materiality import is_material_heat
-from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.diagnosis.likelihood.predictor import Predictor
-from feeddrive.effects.base import Effect
-from feeddrive.thermal.plant import ThermalPlant
+from feeddrive.plant.plant import Plant
+from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.reduced.model import HeatModel, Path
 from feeddrive.thermal.reduced.reduction import reduce_model
 from feeddrive.thermal.run.sensitivity import simulate_with_slopes
@@ -31,13 +29,13 @@ WIDEST_FILM, WIDEST_CONTACT, MOST_COOLING = 5.0, 10.0, 5.0
 
 
 @dataclass
-class HeatPredictor(Predictor[ThermalPlant, HeatEvidence]):
+class HeatPredictor(Predictor[HeatEvidence]):
     """Predicts recordings with one reduced model; bodies that effects attach are added to it.
 
     Not a frozen record: it remembers.
 
     Attributes:
-        declared: plant that the model was made for.
+        declared: network that the model was made for.
         model: its reduced model.
     """
 
@@ -45,7 +43,7 @@ class HeatPredictor(Predictor[ThermalPlant, HeatEvidence]):
     many: ClassVar[int] = 4  # a second search is cheap, and heats do much alike
     chance: ClassVar[float] = 18.0  # as that of motion, of some hundred starts
 
-    declared: ThermalPlant
+    declared: Heat
     model: HeatModel
     _known: Remembered[dict[str, FloatArray]] = field(default_factory=lambda: Remembered(_size))
 
@@ -54,34 +52,23 @@ class HeatPredictor(Predictor[ThermalPlant, HeatEvidence]):
         """Effects on temperatures and growth."""
         return HEAT_CANDIDATES
 
-    def predict(self, plant: ThermalPlant, evidence: HeatEvidence) -> dict[str, FloatArray]:
+    def predict(self, plant: Plant, evidence: HeatEvidence) -> dict[str, FloatArray]:
         """Channel to its prediction, (n,) [degC, m]."""
-        values = tuple((e.name, e.place, tuple(e.values.items())) for e in plant.effects)
-        return self._known.found(evidence.recording, values, lambda: self._simulated(plant, evidence))
+        key = effects_key(plant.heat.effects)
+        return self._known.found(evidence.recording, key, lambda: self._simulated(plant, evidence))
 
-    def slopes(
-        self, plant: ThermalPlant, evidence: HeatEvidence, numbers: Sequence[str]
-    ) -> dict[str, FloatArray] | None:
+    def slopes(self, plant: Plant, evidence: HeatEvidence, numbers: Sequence[str]) -> dict[str, FloatArray] | None:
         """Exact slopes, carried along with the run."""
         step = evidence.recording.sample_time
-        run = simulate_with_slopes(plant, self._model(plant), step, evidence.speed, evidence.ambient, numbers)
+        run = simulate_with_slopes(plant.heat, self._model(plant), step, evidence.speed, evidence.ambient, numbers)
         none = np.zeros((evidence.start_rows, len(numbers)))
         return {name: np.vstack([none, run[name][1]]) for name in evidence.channels}
 
-    def scene(self, problem: Problem, found: Sequence[Effect]) -> Scene:
-        """Residuals with the effects found so far."""
-        plant = problem.plant.with_effects(*found)
-        residuals = []
-        for evidence in problem.evidence:
-            predicted = problem.predictor.predict(plant, evidence)
-            residuals.append({name: evidence.measured[name] - predicted[name] for name in evidence.channels})
-        return Scene(problem, tuple(found), tuple(residuals))
-
-    def variables(self, plant: ThermalPlant, evidence: HeatEvidence) -> dict[str, FloatArray]:
+    def variables(self, plant: Plant, evidence: HeatEvidence) -> dict[str, FloatArray]:
         """Speed, surroundings, time, and the predicted rise of the nut."""
         n = len(evidence.recording)
         run = self._all_channels(plant, evidence)
-        nut = {sensor.output: sensor.channel for sensor in plant.sensors}.get("nut", channel_of("nut"))
+        nut = {sensor.output: sensor.channel for sensor in plant.heat.sensors}.get("nut", channel_of("nut"))
         return {
             "screw_speed": _from_start(evidence.speed, 0.0, n),
             "time": np.arange(n, dtype=np.float64) * evidence.recording.sample_time,
@@ -89,29 +76,19 @@ class HeatPredictor(Predictor[ThermalPlant, HeatEvidence]):
             "nut_rise": _from_start(run[nut] - float(evidence.ambient[0]), 0.0, n),
         }
 
-    def reference(self, name: str, plant: ThermalPlant, evidence: HeatEvidence) -> FloatArray:
+    def reference(self, name: str, plant: Plant, evidence: HeatEvidence) -> FloatArray:
         """The measured channel itself, a temperature in degC."""
         measured: FloatArray = evidence.measured[name][evidence.judged_rows]
         return measured
 
-    def is_material(self, effect: Effect, plant: ThermalPlant) -> bool:
-        """The physical minimum of heats, factors and times."""
-        return is_material_heat(effect, plant)
-
-    def _all_channels(self, plant: ThermalPlant, evidence: HeatEvidence) -> dict[str, FloatArray]:
+    def _all_channels(self, plant: Plant, evidence: HeatEvidence) -> dict[str, FloatArray]:
         step = evidence.recording.sample_time
-        return simulate(plant, self._model(plant), step, evidence.speed, evidence.ambient)
+        return simulate(plant.heat, self._model(plant), step, evidence.speed, evidence.ambient)
 
-    def _model(self, plant: ThermalPlant) -> HeatModel:
-        """The reduced model with the bodies that effects attach to the declared plant."""
-        model = self.model
-        own = {body.name for body in self.declared.attached}
-        for body in plant.attached:
-            if body.name not in own:
-                model = model.with_body(body)
-        return model
+    def _model(self, plant: Plant) -> HeatModel:
+        return with_bodies_of(plant.heat, self.declared, self.model)
 
-    def _simulated(self, plant: ThermalPlant, evidence: HeatEvidence) -> dict[str, FloatArray]:
+    def _simulated(self, plant: Plant, evidence: HeatEvidence) -> dict[str, FloatArray]:
         """The compared channels of `_all_channels`, (n,) each."""
         run, n = self._all_channels(plant, evidence), len(evidence.recording)
         first = float(evidence.ambient[0])
@@ -121,14 +98,28 @@ class HeatPredictor(Predictor[ThermalPlant, HeatEvidence]):
         }
 
 
-def heat_predictor(plant: ThermalPlant) -> HeatPredictor:
-    """The predictor of a plant: its model reduced once, wide enough for every effect."""
-    limits = dict(plant.limits(WIDEST_FILM))
-    limits[Path.CONTACT] = (plant.contact / WIDEST_CONTACT, plant.contact * WIDEST_CONTACT)
+def heat_predictor(plant: Plant) -> HeatPredictor:
+    """The predictor of a plant's heat."""
+    return HeatPredictor(plant.heat, wide_model(plant.heat))
+
+
+def wide_model(heat: Heat) -> HeatModel:
+    """The model of a network, reduced once and wide enough for every effect."""
+    limits = dict(heat.limits(WIDEST_FILM))
+    limits[Path.CONTACT] = (heat.contact / WIDEST_CONTACT, heat.contact * WIDEST_CONTACT)
     limits[Path.COOLING] = (0.0, MOST_COOLING)
-    reduced = reduce_model([plant.full_model()], limits, ORDER)[0]
+    reduced = reduce_model([heat.full_model()], limits, ORDER)[0]
     # a fit may pass through values outside; what it ends at is inside the physical range of its effect
-    return HeatPredictor(plant, replace(reduced, limits={}))
+    return replace(reduced, limits={})
+
+
+def with_bodies_of(heat: Heat, declared: Heat, model: HeatModel) -> HeatModel:
+    """A reduced model of the declared network with the bodies that further effects attach."""
+    own = {body.name for body in declared.attached}
+    for body in heat.attached:
+        if body.name not in own:
+            model = model.with_body(body)
+    return model
 
 
 def _size(prediction: dict[str, FloatArray]) -> int:

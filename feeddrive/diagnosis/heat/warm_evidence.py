@@ -13,10 +13,10 @@ import numpy as np
 
 from feeddrive.diagnosis.heat.evidence import HEAT_BLOCK, MODEL_ERROR, HeatEvidence, model_error_of, smooth_noise
 from feeddrive.errors import InputError
+from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 from feeddrive.simulate.warm.warm_log import HEAT_STEP, WarmLog, steady_mean, thermometers, warm_log
-from feeddrive.thermal.plant import ThermalPlant
-from feeddrive.thermal.warm_plant import WarmPlant
+from feeddrive.thermal.heat import Heat
 from feeddrive.typing import BoolArray, FloatArray
 
 MOTION = ("motor_torque", "table_position")
@@ -60,13 +60,13 @@ class WarmEvidence(HeatEvidence):
         return self.model_error[name] if name in MOTION else super().missed(name)
 
 
-def is_warm_log(recording: Recording, heat: ThermalPlant) -> bool:
+def is_warm_log(recording: Recording, heat: Heat) -> bool:
     """Whether a recording holds a motion and temperatures of one machine."""
     seen = any(channel in recording for channel in thermometers(heat))
     return "motor_angle" in recording and seen and any(name in recording for name in MOTION)
 
 
-def prepare_warm(recording: Recording, plant: WarmPlant, share: float) -> WarmEvidence:
+def prepare_warm(recording: Recording, plant: Plant, share: float) -> WarmEvidence:
     """Evidence of a log, its first `share` fitted and the rest judged.
 
     Args:
@@ -89,7 +89,7 @@ def prepare_warm(recording: Recording, plant: WarmPlant, share: float) -> WarmEv
     for name in names:
         series = np.asarray(recording[name])
         if name in MOTION:
-            beside = series - (plant.motion.chain.motor_radius * log.angle if name == "table_position" else 0.0)
+            beside = series - (plant.chain.motor_radius * log.angle if name == "table_position" else 0.0)
             noise[name] = _repeated(beside, log)
             scale = float(np.sqrt(np.mean(series[log.uniform] ** 2)))
             missed[name] = MODEL_ERROR["m"] if name == "table_position" else TORQUE_ERROR * scale

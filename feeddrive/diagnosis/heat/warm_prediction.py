@@ -2,30 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import ClassVar
 
 import numpy as np
 
 from feeddrive.diagnosis.finding.candidates import CANDIDATES
-from feeddrive.diagnosis.finding.materiality import is_material
-from feeddrive.diagnosis.finding.remembered import Remembered
-from feeddrive.diagnosis.finding.scene import AxisScene, Candidate
+from feeddrive.diagnosis.finding.remembered import Remembered, effects_key
+from feeddrive.diagnosis.finding.scene import Candidate
 from feeddrive.diagnosis.heat.candidates import HEAT_CANDIDATES
-from feeddrive.diagnosis.heat.materiality import is_material_heat
-from feeddrive.diagnosis.heat.prediction import heat_predictor
+from feeddrive.diagnosis.heat.prediction import wide_model, with_bodies_of
 from feeddrive.diagnosis.heat.warm_evidence import WarmEvidence
-from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.diagnosis.likelihood.predictor import Predictor
-from feeddrive.effects.base import Effect, Kind
 from feeddrive.engine.program import StepReport
 from feeddrive.plant.plant import Plant
 from feeddrive.simulate.driven import LoadMotion
 from feeddrive.simulate.warm.warm_log import WarmRun, friction_powers, simulate_log
-from feeddrive.thermal.plant import ThermalPlant
+from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.reduced.model import HeatModel
-from feeddrive.thermal.warm_plant import WarmPlant
 from feeddrive.typing import FloatArray
 
 IN_UNIFORM_MOTION = (
@@ -37,20 +31,8 @@ many times a turn, and a warming that knows no temperature (`thermal_growth`, `v
 that is declared here."""
 
 
-@dataclass(frozen=True)
-class WarmScene(AxisScene):
-    """A scene of motion, torque and temperatures."""
-
-    @property
-    def plant(self) -> Plant:
-        """The declared motion."""
-        machine = self.problem.plant
-        assert isinstance(machine, WarmPlant)
-        return machine.motion
-
-
 @dataclass
-class WarmPredictor(Predictor[WarmPlant, WarmEvidence]):
+class WarmPredictor(Predictor[WarmEvidence]):
     """Predicts logs with one reduced heat model and the plant's equations in uniform motion.
 
     Not a frozen record: it remembers.
@@ -64,7 +46,7 @@ class WarmPredictor(Predictor[WarmPlant, WarmEvidence]):
     many: ClassVar[int] = 4  # as that of heat
     chance: ClassVar[float] = 18.0
 
-    declared: ThermalPlant
+    declared: Heat
     model: HeatModel
     _known: Remembered[WarmRun] = field(default_factory=lambda: Remembered(lambda run: run.size))
     _powers: Remembered[dict[str, FloatArray]] = field(default_factory=lambda: Remembered(_size_of_powers))
@@ -74,32 +56,22 @@ class WarmPredictor(Predictor[WarmPlant, WarmEvidence]):
         """Effects on heat, and those on motion that uniform motion shows."""
         return (*HEAT_CANDIDATES, *(one for one in CANDIDATES if one.name in IN_UNIFORM_MOTION))
 
-    def run(self, plant: WarmPlant, evidence: WarmEvidence) -> WarmRun:
+    def run(self, plant: Plant, evidence: WarmEvidence) -> WarmRun:
         """What the plant does in the log."""
         log = evidence.log
-        powers = self._powers.found(log, _values(plant.motion.effects), lambda: friction_powers(plant, log))
+        powers = self._powers.found(log, effects_key(plant.motion_effects), lambda: friction_powers(plant, log))
         return self._known.found(
-            log, _values(plant.effects), lambda: simulate_log(plant, self._model(plant), log, powers)
+            log, effects_key(plant.effects), lambda: simulate_log(plant, self._model(plant), log, powers)
         )
 
-    def predict(self, plant: WarmPlant, evidence: WarmEvidence) -> dict[str, FloatArray]:
+    def predict(self, plant: Plant, evidence: WarmEvidence) -> dict[str, FloatArray]:
         """Channel to its prediction, (n,) [N m, m, degC]."""
         channels = self.run(plant, evidence).channels
         return {name: channels[name] for name in evidence.channels}
 
-    def scene(self, problem: Problem, found: Sequence[Effect]) -> WarmScene:
-        """Residuals and motion with the effects found so far."""
-        plant = problem.plant.with_effects(*found)
-        residuals, runs = [], []
-        for evidence in problem.evidence:
-            predicted = problem.predictor.predict(plant, evidence)
-            residuals.append({name: evidence.measured[name] - predicted[name] for name in evidence.channels})
-            runs.append(self._motion(plant, evidence))  # type: ignore[arg-type]
-        return WarmScene(problem, tuple(found), tuple(residuals), tuple(runs))
-
-    def variables(self, plant: WarmPlant, evidence: WarmEvidence) -> dict[str, FloatArray]:
+    def variables(self, plant: Plant, evidence: WarmEvidence) -> dict[str, FloatArray]:
         """Speed, position, time, and the predicted rise of the nut."""
-        radius = plant.motion.chain.motor_radius
+        radius = plant.chain.motor_radius
         return {
             "motor_speed": evidence.log.speed,
             "nut_position": plant.coupling.nut_at_zero + radius * evidence.log.angle,
@@ -107,32 +79,21 @@ class WarmPredictor(Predictor[WarmPlant, WarmEvidence]):
             "nut_rise": self.run(plant, evidence).rises[:, 0],
         }
 
-    def reference(self, name: str, plant: WarmPlant, evidence: WarmEvidence) -> FloatArray:
+    def reference(self, name: str, plant: Plant, evidence: WarmEvidence) -> FloatArray:
         """The channel itself; of the table its motion beyond lead / 2 pi times the motor's."""
         rows = evidence.judged_rows
         if name != "table_position":
             return np.asarray(evidence.measured[name][rows])
-        beyond = evidence.measured[name] - plant.motion.chain.motor_radius * evidence.log.angle
+        beyond = evidence.measured[name] - plant.chain.motor_radius * evidence.log.angle
         return np.asarray(beyond[rows] - np.mean(beyond[rows]))
 
-    def is_material(self, effect: Effect, plant: WarmPlant) -> bool:
-        """The physical minimum of either kind."""
-        if effect.kind is Kind.HEAT:
-            return is_material_heat(effect, plant.heat)
-        return is_material(effect, plant.motion)
+    def _model(self, plant: Plant) -> HeatModel:
+        return with_bodies_of(plant.heat, self.declared, self.model)
 
-    def _model(self, plant: WarmPlant) -> HeatModel:
-        model = self.model
-        own = {body.name for body in self.declared.attached}
-        for body in plant.heat.attached:
-            if body.name not in own:
-                model = model.with_body(body)
-        return model
-
-    def _motion(self, plant: WarmPlant, evidence: WarmEvidence) -> LoadMotion:
+    def load_motion(self, plant: Plant, evidence: WarmEvidence) -> LoadMotion:
         """The motion as starts of candidates read it, (n,); its forces at uniform rows alone."""
         log, found = evidence.log, self.run(plant, evidence).motion
-        radius = plant.motion.chain.motor_radius
+        radius = plant.chain.motor_radius
         torque = np.zeros(len(log.time))
         torque[log.uniform] = found.torque
         return LoadMotion(
@@ -142,15 +103,10 @@ class WarmPredictor(Predictor[WarmPlant, WarmEvidence]):
         )  # fmt: skip
 
 
-def _values(effects: Sequence[Effect]) -> tuple[object, ...]:
-    return tuple((e.name, str(e.port), e.place, tuple(e.values.items())) for e in effects)
-
-
 def _size_of_powers(powers: dict[str, FloatArray]) -> int:
     return sum(table.nbytes for table in powers.values())
 
 
-def warm_predictor(plant: WarmPlant) -> WarmPredictor:
-    """The predictor of a machine: its heat reduced once, wide enough for every effect."""
-    wide = heat_predictor(plant.heat)
-    return WarmPredictor(plant.heat, wide.model)
+def warm_predictor(plant: Plant) -> WarmPredictor:
+    """The predictor of a machine of motion and heat."""
+    return WarmPredictor(plant.heat, wide_model(plant.heat))

@@ -1,0 +1,1 @@
+"""Judging what was found on data not fitted, and what is reported."""

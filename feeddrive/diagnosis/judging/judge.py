@@ -16,9 +16,9 @@ from feeddrive.diagnosis.likelihood.cross_validation import (
 )
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.fit import Problem, fit
-from feeddrive.diagnosis.likelihood.predictor import Machine
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
+from feeddrive.plant.plant import Plant
 from feeddrive.recording.channels import channel_unit
 from feeddrive.typing import FloatArray, IntegerArray
 
@@ -28,13 +28,13 @@ class Judged:
     """One recording, judged: the evidence, the plants before and after for it, and by what its zero was shifted."""
 
     evidence: Evidence
-    before: Machine
-    after: Machine
+    before: Plant
+    after: Plant
     shift: float = 0.0
 
-    def with_effects(self, problem: Problem, effects: Sequence[Effect]) -> Machine:
+    def with_effects(self, problem: Problem, effects: Sequence[Effect]) -> Plant:
         """The declared plant with other effects than those found, counted from this recording's zero."""
-        plant: Machine = problem.settled(effects).machine(shifted(effects, self.shift))
+        plant: Plant = problem.settled(effects).machine(shifted(effects, self.shift))
         return plant
 
 
@@ -49,14 +49,14 @@ def shifted(effects: Sequence[Effect], shift: float) -> list[Effect]:
 
 
 def prepared_for_judging(
-    problem: Problem, evidence: Evidence, before: Machine, after: Machine, shift: float = 0.0
+    problem: Problem, evidence: Evidence, before: Plant, after: Plant, shift: float = 0.0
 ) -> Judged:
     """The recording without the samples that the plant cannot predict, both plants on the same samples."""
     kept = evidence.where_predictable(problem.predictor.predictable(after, evidence))
     return Judged(kept if kept.judged_rows.any() else evidence, before, after, shift)
 
 
-def error_series(problem: Problem, plant: Machine, evidence: Evidence) -> dict[str, FloatArray]:
+def error_series(problem: Problem, plant: Plant, evidence: Evidence) -> dict[str, FloatArray]:
     """Channel to measured less predicted over the judged samples, the zero of the scale taken out; NaN elsewhere."""
     predicted = problem.predictor.predict(plant, evidence)
     rows = evidence.judged_rows
@@ -91,7 +91,7 @@ def judged_channels(judged: Sequence[Judged]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(name for j in judged for name in j.evidence.channels))
 
 
-def judged_residual(problem: Problem, plant_of: Sequence[tuple[Machine, Evidence]]) -> tuple[FloatArray, IntegerArray]:
+def judged_residual(problem: Problem, plant_of: Sequence[tuple[Plant, Evidence]]) -> tuple[FloatArray, IntegerArray]:
     """Noise-weighted error at the judged samples, all channels and recordings one after the other, and their blocks.
 
     Returns:
@@ -163,7 +163,7 @@ def share_beyond(problem: Problem, judged: Sequence[Judged], refitted: Sequence[
     return Share(explains, comparison, 2 * predicted / chance if chance > 0 else float("inf"))
 
 
-def _pooled(problem: Problem, pairs: Sequence[tuple[Machine, Evidence]], name: str) -> float:
+def _pooled(problem: Problem, pairs: Sequence[tuple[Plant, Evidence]], name: str) -> float:
     parts = [pair for pair in pairs if name in pair[1].channels]
     errors = np.concatenate([error_series(problem, plant, evidence)[name] for plant, evidence in parts])
     return float(np.nansum(errors**2))

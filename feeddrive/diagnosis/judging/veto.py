@@ -40,7 +40,6 @@ from feeddrive.diagnosis.likelihood.folds import block_numbers
 from feeddrive.diagnosis.recordings.judged_changes import judged_changes
 from feeddrive.diagnosis.recordings.recordings import RecordingShift, is_shift, without_shifts
 from feeddrive.effects.base import ChainEffect, Effect
-from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray, IntegerArray
 from feeddrive.units.quantity import format_quantity
 
@@ -185,7 +184,7 @@ def ends_reached(problem: Problem, fitted: Fit) -> list[str]:
 
 def _leaves_too_little(problem: Problem, effects: Sequence[Effect]) -> bool:
     """Whether several effects together leave less of a mass, an inertia or a stiffness than one may."""
-    if not isinstance(problem.plant, Plant):
+    if not problem.plant.has_motion:
         return False
     declared = problem.plant.chain_values()
     after = problem.plant.with_effects(*without_shifts(effects)).chain_values()

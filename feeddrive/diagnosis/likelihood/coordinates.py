@@ -12,7 +12,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from feeddrive.diagnosis.declared_friction import declared_level, declared_viscous
-from feeddrive.diagnosis.likelihood.predictor import Machine
 from feeddrive.effects.base import Effect, Value
 from feeddrive.effects.chain.inertia_deviation import InertiaDeviation, declared_inertia
 from feeddrive.effects.tabulated import Tabulated
@@ -164,7 +163,7 @@ LEFT = 0.05
 """Least share of a declared mass or inertia that an effect may leave, as of a stiffness (`stiffness_deviation`)."""
 
 
-def coordinates_of(effect: Effect, plant: Machine) -> list[Coordinate]:
+def coordinates_of(effect: Effect, plant: Plant) -> list[Coordinate]:
     """The coordinates in which the effect is fitted, for the form that its values choose."""
     if {"amplitude", "phase"} <= set(effect.values):
         return [Sine(effect.parameter("amplitude").size), Linear("order", ORDER_SIZE)]
@@ -184,26 +183,40 @@ def coordinates_of(effect: Effect, plant: Machine) -> list[Coordinate]:
     return result
 
 
-def _unused(effect: Effect, plant: Machine) -> set[str]:
+def _unused(effect: Effect, plant: Plant) -> set[str]:
     """Parameters without effect in the form that the values choose."""
     if effect.name == "friction_vs_position":
         as_table = isinstance(effect.values["position"], tuple)
         return {"peak", "centre", "half_width"} if as_table else {"delta_force"}
     if effect.name == "ambient_drift":
         return {"period", "amplitude"} if isinstance(effect.values["time"], tuple) else {"shape"}
-    if effect.name == "friction_deviation" and isinstance(plant, Plant):
+    if effect.name == "friction_deviation":
         unused = {"coulomb_factor"} if declared_level(plant, effect.port) == 0 else set()
         return unused | ({"viscous_factor"} if declared_viscous(plant, effect.port) == 0 else set())
     return set()
 
 
-def read_coordinates(effects: Sequence[Effect], plant: Machine) -> FloatArray:
+def read_coordinates(effects: Sequence[Effect], plant: Plant) -> FloatArray:
     """All coordinates of the effects in one vector."""
     values = [c for effect in effects for coordinate in coordinates_of(effect, plant) for c in coordinate.read(effect)]
     return np.array(values, dtype=float)
 
 
-def absent_coordinates(effects: Sequence[Effect], plant: Machine) -> tuple[FloatArray, IntegerArray]:
+def longest_steps(effects: Sequence[Effect], plant: Plant) -> FloatArray:
+    """The longest difference over which the prediction bends by no more than a tenth, of every coordinate; (k,).
+
+    Half of the smallest size of interest, a tenth of a value that is known to a factor.
+    """
+    lengths = [
+        0.1 if isinstance(coordinate, Logarithmic) else 0.5
+        for effect in effects
+        for coordinate in coordinates_of(effect, plant)
+        for _ in coordinate.read(effect)
+    ]
+    return np.array(lengths, dtype=float)
+
+
+def absent_coordinates(effects: Sequence[Effect], plant: Plant) -> tuple[FloatArray, IntegerArray]:
     """Coordinates at which the effects are absent, and which belong together.
 
     Returns:
@@ -220,7 +233,7 @@ def absent_coordinates(effects: Sequence[Effect], plant: Machine) -> tuple[Float
     return np.array(absent, dtype=float), np.array(groups, dtype=np.int64)
 
 
-def coordinate_ends(effects: Sequence[Effect], plant: Machine) -> tuple[FloatArray, FloatArray]:
+def coordinate_ends(effects: Sequence[Effect], plant: Plant) -> tuple[FloatArray, FloatArray]:
     """Ends of what is physical on this plant, lower and upper, of every coordinate; (k,) each."""
     low: list[float] = []
     high: list[float] = []
@@ -233,7 +246,7 @@ def coordinate_ends(effects: Sequence[Effect], plant: Machine) -> tuple[FloatArr
     return np.array(low, dtype=float), np.array(high, dtype=float)
 
 
-def _ends(effect: Effect, coordinate: Coordinate, plant: Machine) -> tuple[float, float]:
+def _ends(effect: Effect, coordinate: Coordinate, plant: Plant) -> tuple[float, float]:
     if isinstance(coordinate, Sine):
         return -math.inf, math.inf
     if isinstance(coordinate, TwoHeats):
@@ -245,10 +258,8 @@ def _ends(effect: Effect, coordinate: Coordinate, plant: Machine) -> tuple[float
     return least / coordinate.size, parameter.maximum / coordinate.size
 
 
-def _least_left(effect: Effect, plant: Machine) -> float:
+def _least_left(effect: Effect, plant: Plant) -> float:
     """Least value of an effect that takes from a declared mass or inertia."""
-    if not isinstance(plant, Plant):
-        return -math.inf
     if effect.name == "payload":
         return -(1 - LEFT) * plant.chain_values()["table_mass"]
     if isinstance(effect, InertiaDeviation):
@@ -265,7 +276,7 @@ def _absent(coordinate: Coordinate) -> float:
     return 0.0
 
 
-def write_coordinates(effects: Sequence[Effect], plant: Machine, vector: FloatArray) -> list[Effect]:
+def write_coordinates(effects: Sequence[Effect], plant: Plant, vector: FloatArray) -> list[Effect]:
     """The effects with the values of the vector, each inside what is physical on the plant."""
     result, at = [], 0
     for effect in effects:
@@ -289,7 +300,7 @@ def numbers(effect: Effect) -> list[str]:
     ]
 
 
-def value_slopes(effects: Sequence[Effect], plant: Machine, vector: FloatArray) -> FloatArray:
+def value_slopes(effects: Sequence[Effect], plant: Plant, vector: FloatArray) -> FloatArray:
     """Exact slope of every number of the effects' values with the coordinates, shape (numbers, k)."""
     step = 1e-6
     base = _flat(write_coordinates(effects, plant, vector))
@@ -302,7 +313,7 @@ def value_slopes(effects: Sequence[Effect], plant: Machine, vector: FloatArray) 
 
 
 def spread_to_values(
-    effects: Sequence[Effect], plant: Machine, vector: FloatArray, covariance: FloatArray
+    effects: Sequence[Effect], plant: Plant, vector: FloatArray, covariance: FloatArray
 ) -> list[dict[str, FloatArray]]:
     """Standard deviation of every fitted value, by the exact slope of the coordinates; a list entry per effect."""
     jacobian = value_slopes(effects, plant, vector)

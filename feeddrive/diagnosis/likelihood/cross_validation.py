@@ -24,8 +24,8 @@ from feeddrive.diagnosis.likelihood.coordinates import absent_coordinates
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.fit import DIFFERENCE, Fit, Problem, unit_columns
 from feeddrive.diagnosis.likelihood.folds import FOLDS
-from feeddrive.diagnosis.likelihood.predictor import Machine
 from feeddrive.effects.base import Effect
+from feeddrive.plant.plant import Plant
 from feeddrive.typing import BoolArray, FloatArray, IntegerArray
 
 
@@ -71,7 +71,7 @@ class Prior:
     width: FloatArray
 
 
-def prior_of(effects: Sequence[Effect], plant: Machine, coordinates: FloatArray) -> Prior:
+def prior_of(effects: Sequence[Effect], plant: Plant, coordinates: FloatArray) -> Prior:
     """The prior of effects whose coordinates are as given, shape (k,).
 
     Components and nodes that belong together share one width, the root of their mean square. A form is known to its

@@ -100,6 +100,10 @@ class Evidence:
             [self.without_open(name, self.evened(name, series[name])[rows], rows) for name in self.channels]
         )
 
+    def in_band(self, series: FloatArray) -> FloatArray:
+        """A series, (n,), as it shows in the comparison."""
+        return series
+
     def known_to(self, name: str) -> float:
         """Rms of what the sensors add to a channel in the band."""
         return self.noise[name]
@@ -141,6 +145,10 @@ class AxisEvidence(Evidence):
     zero: float = 0.0
     gains: dict[str, FloatArray] = field(default_factory=dict)
     added: dict[str, float] = field(default_factory=dict)
+
+    def in_band(self, series: FloatArray) -> FloatArray:
+        """A series or columns, (n,), in the band of the comparison."""
+        return self.band.filter(series)
 
     def known_to(self, name: str) -> float:
         """Rms of what sensor and encoder add to a channel in the band."""
@@ -215,7 +223,11 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
         counted &= known
     counted &= sound_rows(recording, plant.torque_limit, band)
     refuse_little_left(counted, recording)
-    noise = {name: sensor_noise(series, band) for name, series in raw.items()}
+    sensed = dict(raw)
+    if "motor_torque" in raw and "injected_torque" in recording and not scaled_from:
+        # the jumps of an injected binary sequence are no noise of the torque's sensor
+        sensed["motor_torque"] = raw["motor_torque"] - recording["injected_torque"]
+    noise = {name: sensor_noise(series, band) for name, series in sensed.items()}
     zero = _zero_of_angle(recording, plant)
     encoder = None if slow else encoder_error(_placed(plant, zero), recording, band, noise)
     motion = encoder.motion if encoder is not None else motor_motion(time, recording["motor_angle"])
@@ -241,10 +253,7 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
 
 def _placed(plant: Plant, zero: float) -> Plant:
     """The plant with its nut a way [m] further along."""
-    if not zero:
-        return plant
-    values = {**plant.chain.values, "first_nut_position": plant.chain.values["first_nut_position"] + zero}
-    return replace(plant, chain=replace(plant.chain, values=values))
+    return plant.with_chain_values(plant.chain.nut_moved(zero)) if zero else plant
 
 
 def _zero_of_angle(recording: Recording, plant: Plant) -> float:

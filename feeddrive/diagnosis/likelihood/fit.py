@@ -22,13 +22,14 @@ from feeddrive.diagnosis.calibration.calibration import Calibration, Whitener, w
 from feeddrive.diagnosis.calibration.declared import with_values
 from feeddrive.diagnosis.likelihood.coordinates import (
     coordinate_ends,
+    longest_steps,
     numbers,
     read_coordinates,
     value_slopes,
     write_coordinates,
 )
 from feeddrive.diagnosis.likelihood.evidence import Evidence
-from feeddrive.diagnosis.likelihood.predictor import Machine, Predictor
+from feeddrive.diagnosis.likelihood.predictor import Predictor
 from feeddrive.effects.base import Effect
 from feeddrive.plant.passive_friction import is_passive
 from feeddrive.plant.plant import Plant
@@ -43,6 +44,11 @@ one step earlier or later. What has the size one moves the table by nanometres, 
 
 ENOUGH = 1e-4
 """A step that lowers the squared error by less than this share ends the fit."""
+
+SEEN = 0.5
+"""Move of all rows together, in deviations, from which a difference is believed where a prediction goes from cell to
+cell: the cells leave some hundredths. What declared values do as well is whitened away, and the step that is long
+enough for a prediction shows nothing but cells in what is left of it."""
 
 STRAIGHT = 0.03
 """Bend of the prediction over a step, as a share of the step, below which the slope before it still holds after it."""
@@ -96,22 +102,22 @@ class Problem:
     Attributes:
         plant: as declared.
         evidence: recordings.
-        predictor: of their kind of machine.
+        predictor: of their kind.
         calibration: of the declared values; None where all are taken as exact.
     """
 
-    plant: Machine
+    plant: Plant
     evidence: tuple[Evidence, ...]
-    predictor: Predictor[Any, Any]
+    predictor: Predictor[Any]
     calibration: Calibration | None = None
 
-    def machine(self, effects: Sequence[Effect] = ()) -> Any:  # a plant of the predictor's kind
+    def machine(self, effects: Sequence[Effect] = ()) -> Plant:
         """The plant with its declared values as calibrated, and further effects."""
         return self._calibrated.with_effects(*effects)
 
     @cached_property
-    def _calibrated(self) -> Machine:
-        if self.calibration is None or not isinstance(self.plant, Plant):
+    def _calibrated(self) -> Plant:
+        if self.calibration is None:
             return self.plant
         return with_values(self.plant, self.calibration.values, self.calibration.coordinates)
 
@@ -168,7 +174,7 @@ class Problem:
     def possible(self, effects: Sequence[Effect]) -> bool:
         """Whether the plant with these effects is one that a file may hold: its friction takes power everywhere."""
         plant = self.machine(effects)
-        return not isinstance(plant, Plant) or is_passive(plant)
+        return not self.predictor.of_motion or is_passive(plant)
 
     def measured(self) -> FloatArray:
         """Weighted measurement at the fitted samples of all recordings, whitened."""
@@ -201,13 +207,25 @@ class Problem:
         if moved and (exact := self._exact_jacobian(effects, moved, vector)) is not None:
             return exact
         _, high = coordinate_ends(moved, self.plant)
+        coarse, longest = not self.predictor.smooth(self.plant), longest_steps(moved, self.plant)
         columns = []
         for i in range(len(vector)):
             step = np.zeros(len(vector))
             step[i] = self.difference if vector[i] + self.difference <= high[i] else -self.difference
-            changed = _placed(effects, free, write_coordinates(moved, self.plant, vector + step))
-            columns.append((self.predicted(changed) - base) / step[i])
+            moves = self._moves(effects, free, moved, vector + step, base)
+            size = float(np.linalg.norm(moves))
+            if coarse and size < SEEN:
+                far = min(longest[i], self.difference * SEEN / max(size, 1e-3 * SEEN))
+                step[i] = far if vector[i] + far <= high[i] else -far
+                moves = self._moves(effects, free, moved, vector + step, base)
+            columns.append(moves / step[i])
         return np.column_stack(columns) if columns else np.zeros((len(base), 0))
+
+    def _moves(
+        self, effects: Sequence[Effect], free: Sequence[bool], moved: Sequence[Effect], to: FloatArray, base: FloatArray
+    ) -> FloatArray:
+        """What the prediction changes by when the free effects go to other coordinates."""
+        return self.predicted(_placed(effects, free, write_coordinates(moved, self.plant, to))) - base
 
     def _exact_jacobian(
         self, effects: Sequence[Effect], moved: Sequence[Effect], vector: FloatArray

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
@@ -10,11 +9,9 @@ import numpy as np
 
 from feeddrive.diagnosis.calibration.declared import torque_gain
 from feeddrive.diagnosis.finding.candidates import CANDIDATES
-from feeddrive.diagnosis.finding.materiality import is_material
-from feeddrive.diagnosis.finding.remembered import Remembered
-from feeddrive.diagnosis.finding.scene import AxisScene, Candidate
+from feeddrive.diagnosis.finding.remembered import Remembered, effects_key
+from feeddrive.diagnosis.finding.scene import Candidate
 from feeddrive.diagnosis.likelihood.evidence import AxisEvidence
-from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.diagnosis.likelihood.predictability import predictable_samples, samples_to_fit
 from feeddrive.diagnosis.likelihood.predictor import Predictor
 from feeddrive.diagnosis.suspicion.timing import lag_of, lagging
@@ -28,7 +25,7 @@ from feeddrive.typing import BoolArray, FloatArray
 
 
 @dataclass
-class AxisPredictor(Predictor[Plant, AxisEvidence]):
+class AxisPredictor(Predictor[AxisEvidence]):
     """Predicts recordings, and remembers what the load side did.
 
     Not a frozen record: it is a cache.
@@ -83,21 +80,14 @@ class AxisPredictor(Predictor[Plant, AxisEvidence]):
         return tuple(scale_sentence(self.scaled[0].scaled_from, *scales) for _ in scales[:1])
 
     @property
+    def of_motion(self) -> bool:
+        """It does."""
+        return True
+
+    @property
     def candidates(self) -> tuple[Candidate, ...]:
         """Effects on motion and torque."""
         return CANDIDATES
-
-    def scene(self, problem: Problem, found: Sequence[Effect]) -> AxisScene:
-        """Residuals and motion of the load side with the effects found so far."""
-        plant = problem.machine(found)
-        assert isinstance(plant, Plant)
-        residuals, runs = [], []
-        for evidence in problem.evidence:
-            assert isinstance(evidence, AxisEvidence)
-            predicted = self.predict(plant, evidence)
-            residuals.append({name: evidence.measured[name] - predicted[name] for name in evidence.channels})
-            runs.append(self.load_motion(plant, evidence))
-        return AxisScene(problem, tuple(found), tuple(residuals), tuple(runs))
 
     def smooth(self, plant: Plant) -> bool:
         """A chain that varies with the table's position is simulated from cell to cell."""
@@ -131,10 +121,6 @@ class AxisPredictor(Predictor[Plant, AxisEvidence]):
         about_mean: FloatArray = beyond - beyond.mean()
         return about_mean
 
-    def is_material(self, effect: Effect, plant: Plant) -> bool:
-        """The physical minimum of friction, forces and masses."""
-        return is_material(effect, plant)
-
 
 def motor_sources(plant: Plant, run: LoadMotion) -> FloatArray:
     """Torque that the sources at the motor ask for [N m], shape (n,)."""
@@ -156,10 +142,10 @@ def _simulated(plant: Plant, evidence: AxisEvidence) -> LoadMotion:
 
 def _load_side(plant: Plant) -> Plant:
     """The plant as the load side sees it: chain effects in the chain's values, nothing that acts at the motor alone."""
-    kept = tuple(e for e in plant.effects if not (_at_motor_alone(e) or _in_values(e)))
+    kept = tuple(e for e in plant.motion_effects if not (_at_motor_alone(e) or _in_values(e)))
     values = plant.chain_values()
     chain = replace(plant.chain, values={key: values[key] for key in plant.chain.values})
-    return replace(plant, chain=chain, effects=kept)
+    return replace(plant, mechanics=chain, effects=kept)
 
 
 def _in_values(effect: Effect) -> bool:
@@ -175,5 +161,4 @@ def _at_motor_alone(effect: Effect) -> bool:
 
 
 def _values_key(plant: Plant) -> object:
-    effects = tuple((e.name, str(e.port), e.place, tuple(e.values.items())) for e in plant.effects)
-    return (tuple(plant.chain.values.items()), effects)
+    return (tuple(plant.chain.values.items()), effects_key(plant.effects))

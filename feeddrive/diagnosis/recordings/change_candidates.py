@@ -19,7 +19,6 @@ from feeddrive.effects.chain.stiffness_deviation import StiffnessDeviation
 from feeddrive.effects.friction.friction_deviation import FrictionDeviation
 from feeddrive.effects.source.constant_force import ConstantForce
 from feeddrive.effects.travel.lead_error_cumulative import LeadErrorCumulative
-from feeddrive.plant.plant import Plant
 
 UNCHANGING = ("order",)
 """Parameters that no wear and no temperature changes."""
@@ -41,15 +40,15 @@ class Movable:
     effect: int
     columns: tuple[int, ...]
 
-    def shifts(self, recordings: Sequence[int], thermal: bool) -> tuple[RecordingShift, ...]:
+    def shifts(self, recordings: Sequence[int]) -> tuple[RecordingShift, ...]:
         """Shifts of nothing yet, one per recording."""
-        return tuple(shift_of(self.target, number, len(self.columns), thermal) for number in recordings)
+        return tuple(shift_of(self.target, number, len(self.columns)) for number in recordings)
 
 
 def levels(problem: Problem, effects: Sequence[Effect]) -> tuple[Effect, ...]:
-    """Neutral effects for the levels that no effect of the list holds yet; none on a plant of temperatures."""
+    """Neutral effects for the levels that no effect of the list holds yet; none where temperatures are predicted."""
     plant = problem.plant
-    if not isinstance(plant, Plant):
+    if not problem.predictor.of_motion:
         return ()
     ports = [p for p in FrictionDeviation.ports if declared_level(plant, p) or declared_viscous(plant, p)]
     neutral: list[Effect] = [FrictionDeviation.of(port) for port in ports]

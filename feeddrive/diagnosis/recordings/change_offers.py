@@ -20,7 +20,6 @@ from feeddrive.diagnosis.likelihood.fit import Fit, Problem, linear_step
 from feeddrive.diagnosis.likelihood.folds import block_numbers
 from feeddrive.diagnosis.recordings.change_candidates import Movable
 from feeddrive.diagnosis.recordings.recordings import RecordingPredictor
-from feeddrive.thermal.plant import ThermalPlant
 from feeddrive.typing import FloatArray, IntegerArray
 
 Offer = tuple[Movable, Comparison]
@@ -76,7 +75,7 @@ def _left_out(problem: Problem, fitted: Fit, blocks: IntegerArray) -> FloatArray
 def _with_shifts(problem: Problem, current: Fit, one: Movable, rows: IntegerArray, recordings: Sequence[int]) -> Fit:
     """The fit with shifts of nothing yet."""
     columns = _columns(current, one, rows, recordings)
-    shifts = one.shifts(recordings, isinstance(problem.plant, ThermalPlant))
+    shifts = one.shifts(recordings)
     return replace(
         current,
         effects=(*current.effects, *shifts),

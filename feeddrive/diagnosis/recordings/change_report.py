@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from feeddrive.diagnosis.calibration.beyond import is_within_tolerance
+from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.diagnosis.recordings.change_result import CommonTrial, Measure, ParameterChange, PerRecording
 from feeddrive.diagnosis.recordings.change_values import Compared, compared_values, keys_of, material_difference
@@ -100,10 +102,15 @@ def common_trials(changes: Changes, judged: bool) -> tuple[CommonTrial, ...]:
 
 
 def neutral_somewhere(problem: Problem, effects: Sequence[Effect], effect: Effect, count: int) -> bool:
-    """Whether a level is as declared in one of the recordings, so that the declared plant does not lack it."""
+    """Whether a level is as declared in one of the recordings, so that the declared plant does not lack it.
+
+    A declared value is as declared within its tolerance; any other level where it is too small to matter.
+    """
     for number in range(count):
         here = in_recording(effects, problem.plant, number)
         same = [e for e in here if (e.name, e.port, e.place) == (effect.name, effect.port, effect.place)]
-        if same and not problem.predictor.is_material(same[-1], problem.plant):
-            return True
+        if same:
+            within = is_within_tolerance(same[-1], problem.plant)
+            if within or not is_material(same[-1], problem.plant):
+                return True
     return False

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from feeddrive.diagnosis.certainty.uncertainty import certainty
+from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.likelihood.coordinates import Sine, TwoHeats, coordinates_of, write_coordinates
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem
 from feeddrive.diagnosis.recordings.recordings import Target, in_recording
@@ -101,7 +102,7 @@ def material_difference(
     neutral = {p.key: p.default for p in here.parameters if p.default is not None and p.key in here.values}
     change = float(values[0]) - float(values[1])  # type: ignore[arg-type]
     alone = here.with_values(**{**neutral, key: change + neutral.get(key, _zero(here))})
-    return problem.predictor.is_material(alone, problem.plant)
+    return is_material(alone, problem.plant)
 
 
 def _certain(effect: Effect) -> float:

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 from scipy.stats import norm
 
+from feeddrive.diagnosis.calibration.beyond import said_by_effects
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
 from feeddrive.diagnosis.recordings.change_candidates import levels, movables
@@ -57,11 +58,13 @@ class Changes:
     """The fit with what differs by recording.
 
     Attributes:
+        problem: of the fit; a declared value that differs is said by an effect and no more fitted beside it.
         fit: effects of the machine, then the shifts of what differs.
         targets: what differs, in the order found.
         trials: all that was tried.
     """
 
+    problem: Problem
     fit: Fit
     targets: tuple[Target, ...]
     trials: tuple[ChangeTrial, ...]
@@ -80,28 +83,30 @@ def find_changes(problem: Problem, effects: Sequence[Effect], recordings: Sequen
     """
     common = fit(problem, effects, iterations=REFERENCE_STEPS)
     if not recordings:
-        return Changes(common, (), ())
+        return Changes(problem, common, (), ())
     ranked: dict[Target, Offer] = {}
-    current, kept = _forward(problem, common, recordings, ranked)
+    wide, current, kept = _forward(problem, common, recordings, ranked)
     while kept:
-        worst = _worst(problem, current, kept, recordings, len(ranked))
+        worst = _worst(wide, current, kept, recordings, len(ranked))
         if not worst:
-            return Changes(machine_first(problem, current), tuple(kept), _trials(ranked, kept))
+            return Changes(wide, machine_first(wide, current), tuple(kept), _trials(ranked, kept))
         kept = [target for target in kept if target not in worst]
-        current = in_common(problem, common, current, worst, recordings)
-    return Changes(common, (), _trials(ranked, ()))
+        wide, current = in_common(problem, common, current, worst, recordings)
+    return Changes(problem, common, (), _trials(ranked, ()))
 
 
 def _forward(
     problem: Problem, common: Fit, recordings: Sequence[int], ranked: dict[Target, Offer]
-) -> tuple[Fit, list[Target]]:
+) -> tuple[Problem, Fit, list[Target]]:
     """Parameters that pay when set free, the likeliest first; what each brings is noted in `ranked`."""
     taken: list[Target] = []
     current = common
     while len(taken) < MOST_CHANGES:
-        at_rest = fit(problem, [*current.effects, *levels(problem, current.effects)], iterations=0)
-        free = [one for one in movables(at_rest.effects, problem) if one.target not in taken]
-        offered = offers(problem, at_rest, free, recordings)
+        effects = [*current.effects, *levels(problem, current.effects)]
+        asked, together = said_by_effects(problem, effects)
+        at_rest = fit(asked, together, iterations=0)
+        free = [one for one in movables(effects, asked) if one.target not in taken]
+        offered = offers(asked, at_rest, free, recordings)
         for one, comparison in offered:
             if one.target not in ranked or comparison.gain > ranked[one.target][1].gain:
                 ranked[one.target] = one, comparison
@@ -109,15 +114,15 @@ def _forward(
         likely = [one for one, c in offered if c.gain > c.least]
         for one in likely[:OFFERS]:
             group = [other for other in free if other is one or _partners(one.target, other.target)]
-            wider, comparison = set_free(problem, current, at_rest.effects[one.effect], group, recordings)
+            own, wider, comparison = set_free(problem, current, effects[one.effect], group, recordings)
             ranked[one.target] = one, comparison
-            if _pays(comparison, len(free) + len(taken)) and _material(problem, wider, one.target, recordings):
+            if _pays(comparison, len(free) + len(taken)) and _material(own, wider, one.target, recordings):
                 taken += [other.target for other in group]
-                current = wider
+                problem, current = own, wider
                 break
         else:
             break
-    return current, taken
+    return problem, current, taken
 
 
 def _partners(one: Target, other: Target) -> bool:

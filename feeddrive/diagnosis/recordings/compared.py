@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.judging.judge import Judged
 from feeddrive.diagnosis.judging.result import EffectResult
 from feeddrive.diagnosis.recordings.change_report import (
@@ -83,7 +84,7 @@ def machine_as_last(searched: Searched, listed: Sequence[bool]) -> tuple[Effect,
     rest = [
         effect
         for effect, named in zip(machine, listed, strict=True)
-        if not named and found.problem.predictor.is_material(effect, found.problem.plant)
+        if not named and is_material(effect, found.problem.plant)
     ]
     return (*first, *rest)
 

@@ -63,6 +63,7 @@ def judged_changes(found: Search, judged: Sequence[Judged]) -> JudgedChanges | N
     changes = find_changes(problem, found.fit.effects, range(first, first + len(apart)))
     if not changes.targets:
         return JudgedChanges(changes, (), (), {}, problem, tuple(judged))
+    problem = changes.problem
     names = [evidence.recording.name for evidence in found.problem.evidence]
     against = names[-1] if len(names) == 1 or len(set(names)) < len(names) else f"{names[-1]}, the last one fitted"
     questions = [
@@ -73,7 +74,7 @@ def judged_changes(found: Search, judged: Sequence[Judged]) -> JudgedChanges | N
     rehomed = {one.evidence.recording.name for one in apart if one.shift}
     stated = tuple(one for one in stated if not (one.parameter == "phase" and one.recording in rehomed))
     allowed = [Judged(j.evidence, j.before, problem.machine(changes.fit.effects)) for j in judged]
-    carrying = replace(found.problem, predictor=problem.predictor)
+    carrying = replace(problem, evidence=found.problem.evidence)
     count = len(without_shifts(found.fit.effects))
     numbers = [question.here for question in questions]
     carries = tuple(_carries(carrying, judged, changes.fit.effects, i, numbers) for i in range(count))

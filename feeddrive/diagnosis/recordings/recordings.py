@@ -11,14 +11,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from feeddrive.diagnosis.finding.scene import AxisScene, Candidate, Scene
+from feeddrive.diagnosis.finding.scene import Candidate
 from feeddrive.diagnosis.likelihood.coordinates import coordinates_of, read_coordinates, write_coordinates
 from feeddrive.diagnosis.likelihood.evidence import Evidence
-from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.diagnosis.likelihood.predictor import Predictor
 from feeddrive.effects.base import Effect, Kind, Parameter, Port, Signature
 from feeddrive.effects.heat.base import ThermalEffect
+from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
+from feeddrive.simulate.driven import LoadMotion
 from feeddrive.typing import BoolArray, FloatArray
 
 SAME_ORDER = 0.02
@@ -82,7 +83,7 @@ class RecordingShift(Effect):
 
 @dataclass(frozen=True)
 class ThermalRecordingShift(RecordingShift, ThermalEffect):
-    """The same on a plant of temperatures."""
+    """A shift of an effect on heat."""
 
     ports = (Port.THERMAL,)
 
@@ -97,7 +98,7 @@ def without_shifts(effects: Sequence[Effect]) -> tuple[Effect, ...]:
     return tuple(effect for effect in effects if not is_shift(effect))
 
 
-def in_recording(effects: Sequence[Effect], plant: Any, number: int | None) -> tuple[Effect, ...]:
+def in_recording(effects: Sequence[Effect], plant: Plant, number: int | None) -> tuple[Effect, ...]:
     """The effects as they are in one recording, the shifts taken out.
 
     Args:
@@ -114,7 +115,7 @@ def in_recording(effects: Sequence[Effect], plant: Any, number: int | None) -> t
     return tuple(result)
 
 
-def _moved(effect: Effect, plant: Any, shift: RecordingShift) -> Effect:
+def _moved(effect: Effect, plant: Plant, shift: RecordingShift) -> Effect:
     coordinates = coordinates_of(effect, plant)
     by = shift.values["shift"]
     steps = by if isinstance(by, tuple) else (by,)
@@ -125,18 +126,18 @@ def _moved(effect: Effect, plant: Any, shift: RecordingShift) -> Effect:
 
 
 @dataclass
-class RecordingPredictor(Predictor[Any, Any]):
+class RecordingPredictor(Predictor[Any]):
     """Predicts each recording with its own shifts.
 
     Attributes:
-        inner: predicts one kind of machine.
+        inner: predicts one kind of recording.
         numbers: recording to its number; a recording that is not there has no shifts.
     """
 
-    inner: Predictor[Any, Any]
+    inner: Predictor[Any]
     numbers: Mapping[Recording, int]
 
-    def machine(self, plant: Any, evidence: Evidence) -> Any:
+    def machine(self, plant: Plant, evidence: Evidence) -> Plant:
         """The plant as it is in this recording, without shifts."""
         if not any(is_shift(effect) for effect in plant.effects):
             return plant
@@ -144,58 +145,49 @@ class RecordingPredictor(Predictor[Any, Any]):
         return replace(plant, effects=in_recording(plant.effects, plant, number))
 
     @property
+    def of_motion(self) -> bool:
+        """As the inner one."""
+        return self.inner.of_motion
+
+    @property
     def candidates(self) -> tuple[Candidate, ...]:
         """Effects that are tried."""
         return self.inner.candidates
 
-    def predict(self, plant: Any, evidence: Any) -> dict[str, FloatArray]:
+    def predict(self, plant: Plant, evidence: Any) -> dict[str, FloatArray]:
         """Channel to its prediction, (n,), SI."""
         return self.inner.predict(self.machine(plant, evidence), evidence)
 
-    def scene(self, problem: Problem, found: Sequence[Effect]) -> Scene:
-        """What starts are read from, every recording with its own machine."""
-        parts = []
-        for evidence in problem.evidence:
-            own = self.machine(problem.machine(found), evidence)
-            count = len(own.effects) - len(without_shifts(found))
-            declared = replace(own, effects=own.effects[:count])
-            parts.append(self.inner.scene(Problem(declared, (evidence,), self.inner), own.effects[count:]))
-        residuals = tuple(residual for part in parts for residual in part.residuals)
-        whole = replace(parts[0], problem=problem, found=tuple(found), residuals=residuals)
-        if isinstance(whole, AxisScene):
-            runs = tuple(run for part in parts if isinstance(part, AxisScene) for run in part.runs)
-            return replace(whole, runs=runs)
-        return whole
+    def load_motion(self, plant: Plant, evidence: Any) -> LoadMotion | None:
+        """Motion of the load side."""
+        return self.inner.load_motion(self.machine(plant, evidence), evidence)
 
-    def variables(self, plant: Any, evidence: Any) -> dict[str, FloatArray]:
+    def variables(self, plant: Plant, evidence: Any) -> dict[str, FloatArray]:
         """Variables that a residual may depend on."""
         return self.inner.variables(self.machine(plant, evidence), evidence)
 
-    def reference(self, name: str, plant: Any, evidence: Any) -> FloatArray:
+    def reference(self, name: str, plant: Plant, evidence: Any) -> FloatArray:
         """Series that a relative error refers to."""
         return self.inner.reference(name, plant, evidence)
 
-    def is_material(self, effect: Effect, plant: Any) -> bool:
-        """Whether an effect is of a size that matters."""
-        return self.inner.is_material(effect, plant)
-
-    def told(self, before: Any, after: Any) -> tuple[str, ...]:
+    def told(self, before: Plant, after: Plant) -> tuple[str, ...]:
         """What is to be said of the way to predict, recordings without shifts."""
         plain = [replace(plant, effects=without_shifts(plant.effects)) for plant in (before, after)]
         return self.inner.told(*plain)
 
-    def predictable(self, plant: Any, evidence: Any) -> BoolArray:
+    def predictable(self, plant: Plant, evidence: Any) -> BoolArray:
         """Samples that can be predicted."""
         return self.inner.predictable(self.machine(plant, evidence), evidence)
 
-    def to_fit(self, plant: Any, evidence: Any) -> BoolArray:
+    def to_fit(self, plant: Plant, evidence: Any) -> BoolArray:
         """Samples that a fit can learn from."""
         return self.inner.to_fit(self.machine(plant, evidence), evidence)
 
 
-def shift_of(target: Target, recording: int, count: int, thermal: bool) -> RecordingShift:
+def shift_of(target: Target, recording: int, count: int) -> RecordingShift:
     """A shift of nothing yet, of as many coordinates as the target has."""
-    kind, port = (ThermalRecordingShift, Port.THERMAL) if thermal else (RecordingShift, Port.TABLE)
+    on_heat = target.port is Port.THERMAL
+    kind, port = (ThermalRecordingShift, Port.THERMAL) if on_heat else (RecordingShift, Port.TABLE)
     return kind(
         values={"shift": (0.0,) * count}, port=port, label=RecordingShift.name, target=target, recording=recording
     )

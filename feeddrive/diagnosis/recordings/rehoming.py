@@ -16,8 +16,8 @@ from feeddrive.diagnosis.judging.judge import judged_residual, shifted
 from feeddrive.diagnosis.likelihood.cross_validation import compare_left_out
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.fit import Problem
-from feeddrive.diagnosis.likelihood.predictor import Machine
 from feeddrive.effects.base import Effect
+from feeddrive.plant.plant import Plant
 
 FIRST_SHARE = 0.15
 """Share of the recording on which the shift is found."""
@@ -33,7 +33,7 @@ SCAN = 48
 class Rehomed:
     """A recording with its effects shifted [rad of the motor], the first part no longer judged."""
 
-    plant: Machine
+    plant: Plant
     shift: float
     evidence: Evidence
     statement: str

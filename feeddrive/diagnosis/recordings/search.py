@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
+from feeddrive.diagnosis.calibration.calibrate import recalibrated, with_new_slopes
 from feeddrive.diagnosis.finding.attempt import with_predictable
 from feeddrive.diagnosis.finding.search import UNEXPLAINED, Search, search
 from feeddrive.diagnosis.likelihood.evidence import Evidence
@@ -87,8 +88,14 @@ def _followed(problem: Problem, held: Changes, earlier: Sequence[int], said: Cal
     said("comparing the recordings with the effects found")
     changes = find_changes(found.problem, found.fit.effects, earlier)
     if changes.targets:
-        changes = replace(changes, fit=still_needed(found.problem, changes.fit))
-    return Searched(replace(found, fit=changes.fit), changes)
+        changes = _settled(replace(changes, fit=still_needed(changes.problem, changes.fit)))
+    return Searched(replace(found, problem=changes.problem, fit=changes.fit), changes)
+
+
+def _settled(changes: Changes) -> Changes:
+    """The other declared values as they are most likely beside what differs."""
+    problem = recalibrated(changes.problem, changes.fit.effects)
+    return replace(changes, problem=problem, fit=fit(problem, changes.fit.effects))
 
 
 def _continued(problem: Problem, start: Sequence[Effect], said: Callable[[str], None]) -> Searched:
@@ -101,8 +108,8 @@ def _continued(problem: Problem, start: Sequence[Effect], said: Callable[[str], 
     more = _searched(problem, again, said)
     effects = (*without_shifts(again.fit.effects), *more.fit.effects)
     changes = find_changes(more.problem, effects, earlier)
-    together = still_needed(more.problem, fit(more.problem, changes.fit.effects))
-    return Searched(replace(more, fit=together), replace(changes, fit=together))
+    together = still_needed(changes.problem, fit(changes.problem, changes.fit.effects))
+    return Searched(replace(more, problem=changes.problem, fit=together), replace(changes, fit=together))
 
 
 def _better(first: Searched, second: Searched) -> Searched:
@@ -118,7 +125,7 @@ def _explained(one: Searched) -> bool:
 
 
 def _nothing(problem: Problem) -> Changes:
-    return Changes(fit(problem, (), iterations=0), (), ())
+    return Changes(problem, fit(problem, (), iterations=0), (), ())
 
 
 def _plausible(held: Changes) -> bool:
@@ -142,7 +149,7 @@ def _searched(problem: Problem, held: Changes, said: Callable[[str], None]) -> S
         return search(problem, said)
     nuisance = problem.plant.with_effects(*held.fit.effects)
     found = search(replace(problem, plant=nuisance), said)
-    declared = replace(found.problem, plant=problem.plant)
+    declared = with_new_slopes(replace(found.problem, plant=problem.plant), found.fit.effects)
     return replace(found, problem=declared, fit=fit(declared, found.fit.effects, iterations=0))
 
 
@@ -158,7 +165,7 @@ def _levels_alone(problem: Problem, changes: Changes, earlier: Sequence[int]) ->
     if not wanted:
         return _nothing(problem)
     kept = [effect for effect in changes.fit.effects if _belongs(effect, wanted)]
-    return Changes(fit(problem, kept), tuple(wanted), ())
+    return Changes(problem, fit(problem, kept), tuple(wanted), ())
 
 
 def _belongs(effect: Effect, targets: Sequence[Target]) -> bool:

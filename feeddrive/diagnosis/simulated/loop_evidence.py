@@ -1,7 +1,7 @@
 """A recording made ready for closed-loop simulation: the declared loop, where it starts, and which samples count.
 
 The declared controller is first fed the recorded set-point and motion. Where it does not command what was recorded,
-something else had a part in the torque (an excitation that no channel holds), and no simulation can know it: blocks of
+something else had a part in the torque (a test signal that no channel holds), and no simulation can know it: blocks of
 time in which it misses more than a quarter of the torque's rms are left out, with their neighbours, as what is excited
 rings on.
 """
@@ -22,7 +22,6 @@ from feeddrive.engine.step.step_constants import SimulationError
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
-from feeddrive.simulate.controlled.controlled import simulate_controlled
 from feeddrive.simulate.controlled.declared_loop import DeclaredLoop, declared_loop
 from feeddrive.simulate.controlled.replay import replayed_command
 from feeddrive.typing import BoolArray, FloatArray
@@ -82,16 +81,12 @@ class LoopEvidence:
     def simulated(self, plant: Plant) -> dict[str, FloatArray]:
         """Channel to its simulated series, shape (n,), SI; NaN where the plant cannot be followed."""
         try:
-            start = self.loop.begin(plant, self.position, self.velocity)
-            controller = self.loop.started(plant, self.position, self.velocity)
-            run = simulate_controlled(
-                plant, controller, self.reference, None, self.loop.torque_loop, start, quantised=False
-            )
+            run = self.loop.simulated(plant, self.reference, self.position, self.velocity)
         except SimulationError:
             nothing = np.full(len(self.recording), np.nan)
             return dict.fromkeys(self.channels, nothing)
         every = slice(None, None, self.loop.ticks)
-        found = {"motor_torque": run.command[every], "table_position": run.table_position[every]}
+        found = {"motor_torque": self.loop.recorded_torque(run.command), "table_position": run.table_position[every]}
         step, late = self.recording.sample_time, {name: lateness(plant.effects, name) for name in SIMULATED}
         found["motor_torque"] = late_mean(found["motor_torque"], step, late["motor_torque"])
         found["table_position"] = lagging(found["table_position"], late["table_position"], step)
@@ -134,13 +129,14 @@ def loop_evidence(plant: Plant, evidence: Evidence) -> LoopEvidence:
     commanded = _commanded(plant, loop, evidence)
     if commanded.sum() < LEAST_SHARE * evidence.counted.sum():
         what = "the declared controller, fed with the recorded motion, does not command the recorded torque"
-        raise InputError(what, recording.name, "check its gains, rates and feed-forward")
+        mend = "check its gains, rates and feed-forward; record a test signal as injected_torque or injected_speed"
+        raise InputError(what, recording.name, mend)
     r = plant.chain.motor_radius
     position, velocity = (r * float(series[0]) for series in (evidence.motion.angle, evidence.motion.speed))
     # a loop closed at the table has the scale's zero; everything here counts from the motor angle's
     scale = not loop.at_motor and "table_position" in recording
     offset = float(recording["table_position"][0]) - position if scale else 0.0
-    reference = loop.reference(recording["setpoint"] - offset)
+    reference = loop.reference(recording["setpoint"] - offset, recording.channels)
     return LoopEvidence(evidence, loop, reference, commanded, position, velocity)
 
 
@@ -148,7 +144,8 @@ def _commanded(plant: Plant, loop: DeclaredLoop, evidence: AxisEvidence) -> Bool
     """Samples in blocks, and neighbours of blocks, whose torque the declared controller makes."""
     torque = evidence.recording["motor_torque"]
     missed = torque - replayed_command(plant, loop, evidence.recording)
-    noise = white_noise(torque, 1 / evidence.recording.sample_time)
+    # of what is missed, as a test signal in the torque is no noise
+    noise = white_noise(missed, 1 / evidence.recording.sample_time)
     block = (np.arange(len(torque)) * evidence.recording.sample_time / evidence.block).astype(int)
     count = np.bincount(block)
     # an integrator's unknown start leaves an offset, which says nothing

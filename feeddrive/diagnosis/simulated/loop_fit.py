@@ -30,9 +30,6 @@ from feeddrive.plant.plant import Plant
 from feeddrive.simulate.controlled.sensitivity import simulate_sensitivity
 from feeddrive.typing import BoolArray, FloatArray
 
-SERIES = {"motor_torque": "command", "table_position": "table_position"}
-"""Recorded channel to the series of a controlled run."""
-
 VALUE_STEP = 1e-6
 """Step of the differences from coordinates to values, which are elementary functions."""
 
@@ -92,7 +89,7 @@ class LoopProblem:
         for loop in self.loops:
             changes = _changes(plant, loop, chosen)
             for name in loop.channels:
-                part = changes[SERIES[name]][loop.fit_rows] @ by_coordinate[moved]
+                part = changes[name][loop.fit_rows] @ by_coordinate[moved]
                 part = part - part.mean(axis=0) if name in loop.evidence.floating else part
                 parts.append(np.sqrt(self.weights[name]) * part)
         return np.concatenate(parts)
@@ -159,14 +156,15 @@ def value_slopes(problem: LoopProblem, coordinates: FloatArray) -> tuple[tuple[s
 
 
 def _changes(plant: Plant, loop: LoopEvidence, names: Sequence[str]) -> dict[str, FloatArray]:
-    """Series to its derivatives with the values, shape (n, values)."""
+    """Channel to its derivatives with the values, shape (n, values)."""
     start = loop.loop.begin(plant, loop.position, loop.velocity)
     controller = loop.loop.started(plant, loop.position, loop.velocity)
     found = simulate_sensitivity(
         plant, controller, loop.reference, names, torque_loop=loop.loop.torque_loop, start=start
     ).changes
-    every = slice(None, None, loop.loop.ticks)
-    return {series: np.column_stack([found[name][series][every] for name in names]) for series in SERIES.values()}
+    torques = [loop.loop.recorded_torque(found[name]["command"]) for name in names]
+    positions = [found[name]["table_position"][:: loop.loop.ticks] for name in names]
+    return {"motor_torque": np.column_stack(torques), "table_position": np.column_stack(positions)}
 
 
 def fit_loop(problem: LoopProblem) -> FloatArray:

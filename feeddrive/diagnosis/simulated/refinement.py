@@ -29,7 +29,6 @@ from feeddrive.diagnosis.simulated.simulation import LoopErrors, before_and_afte
 from feeddrive.diagnosis.simulated.simulation_result import RefinedValue, SimulatedChannel, SimulationResult
 from feeddrive.effects.base import Effect, Kind
 from feeddrive.errors import InputError
-from feeddrive.plant.plant import Plant
 from feeddrive.recording.channels import channel_unit
 from feeddrive.typing import BoolArray
 
@@ -93,7 +92,6 @@ def refined(found: Search, outcome: Outcome, judge: Judge) -> Refinement:
         judge: judges other values of them.
     """
     plant, judged = found.problem.plant, outcome[0]
-    assert isinstance(plant, Plant)
     try:
         loops = tuple(loop_evidence(plant, j.evidence) for j in judged)
     except InputError as refusal:
@@ -134,7 +132,6 @@ def _errors(found: Search, loops: Sequence[LoopEvidence], judged: Sequence[Judge
 
 def _problem(found: Search) -> LoopProblem:
     plant = found.problem.settled(found.fit.effects).machine()
-    assert isinstance(plant, Plant)
     loops = [loop_evidence(plant, evidence) for evidence in found.problem.evidence]
     fitted = [loop for loop in loops if loop.fit_rows.any()]
     if not fitted:

@@ -13,7 +13,6 @@ import numpy as np
 from feeddrive.diagnosis.judging.judge import Judged
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.fit import Problem
-from feeddrive.diagnosis.likelihood.predictor import Machine
 from feeddrive.diagnosis.recordings.recordings import RecordingPredictor
 from feeddrive.diagnosis.simulated.loop_evidence import LoopEvidence
 from feeddrive.diagnosis.simulated.simulation_result import ErrorFigure
@@ -24,7 +23,7 @@ LoopErrors = dict[str, ErrorFigure]
 """Channel to its simulation error, all judged recordings together."""
 
 
-def loop_errors(loops: Sequence[LoopEvidence], plants: Sequence[Machine]) -> LoopErrors:
+def loop_errors(loops: Sequence[LoopEvidence], plants: Sequence[Plant]) -> LoopErrors:
     """Channel to its simulation error over the judged samples.
 
     Args:
@@ -40,7 +39,6 @@ def loop_errors(loops: Sequence[LoopEvidence], plants: Sequence[Machine]) -> Loo
         rows = loop.judged_rows
         if not rows.any():
             continue
-        assert isinstance(plant, Plant)
         for name, error in loop.missed(loop.simulated(plant), rows).items():
             missed.setdefault(name, []).append(error)
             shown.setdefault(name, []).append(_scale(loop, name)[rows])
@@ -55,10 +53,10 @@ def before_and_after(
     return before, loop_errors(loops, [machine_in(problem, j.after, j.evidence) for j in judged])
 
 
-def machine_in(problem: Problem, plant: Machine, evidence: Evidence) -> Machine:
+def machine_in(problem: Problem, plant: Plant, evidence: Evidence) -> Plant:
     """The plant as it is in one recording, where recordings differ."""
     predictor = problem.predictor
-    machine: Machine = predictor.machine(plant, evidence) if isinstance(predictor, RecordingPredictor) else plant
+    machine: Plant = predictor.machine(plant, evidence) if isinstance(predictor, RecordingPredictor) else plant
     return machine
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from feeddrive.diagnosis.declared_friction import declared_viscous
-from feeddrive.diagnosis.finding.scene import AxisScene
+from feeddrive.diagnosis.finding.scene import Scene
 from feeddrive.diagnosis.starts.periodogram import strongest_orders
 from feeddrive.diagnosis.starts.residual_force import residual_force
 from feeddrive.diagnosis.starts.starts import explains, highest_order, sine
@@ -19,7 +19,7 @@ SHARES_OF_DURATION = (0.15, 0.6)
 """Time constants that are tried first, over the duration; a longer one looks like a straight line."""
 
 
-def position_spring(scene: AxisScene) -> list[list[Effect]]:
+def position_spring(scene: Scene) -> list[list[Effect]]:
     """The straight line of the residual force over the position."""
     at = scene.longest
     rows, run = scene.problem.evidence[at].fit_rows, scene.runs[at]
@@ -33,19 +33,19 @@ def position_spring(scene: AxisScene) -> list[list[Effect]]:
     return [[PositionSpring.of(stiffness=float(slope), zero=float(np.clip(zero, middle - reach, middle + reach)))]]
 
 
-def thermal_growth(scene: AxisScene) -> list[list[Effect]]:
+def thermal_growth(scene: Scene) -> list[list[Effect]]:
     """A strain of its usual size, settling within the recording."""
     size = ThermalGrowth.parameter("strain").size
     return [[ThermalGrowth.of(strain=size, time_constant=seconds) for seconds in _time_constants(scene)]]
 
 
-def viscous_warmup(scene: AxisScene) -> list[list[Effect]]:
+def viscous_warmup(scene: Scene) -> list[list[Effect]]:
     """A tenth of the viscous drag lost within the recording, at every port that declares one."""
     ports = [port for port in ViscousWarmup.ports if declared_viscous(scene.plant, port)]
     return [[ViscousWarmup.of(port, share=0.1, time_constant=t) for t in _time_constants(scene)] for port in ports]
 
 
-def ball_pass_ripple(scene: AxisScene) -> list[list[Effect]]:
+def ball_pass_ripple(scene: Scene) -> list[list[Effect]]:
     """Orders of the residual torque that changes sign with the direction."""
     at = scene.longest
     rows, run = scene.problem.evidence[at].fit_rows, scene.runs[at]
@@ -59,7 +59,7 @@ def ball_pass_ripple(scene: AxisScene) -> list[list[Effect]]:
     return [[start] for start in starts if explains(start, resisting)]
 
 
-def _time_constants(scene: AxisScene) -> list[float]:
+def _time_constants(scene: Scene) -> list[float]:
     evidence = scene.problem.evidence[scene.longest]
     duration = float(evidence.fit_rows.sum()) * evidence.recording.sample_time
     return [share * duration for share in SHARES_OF_DURATION]

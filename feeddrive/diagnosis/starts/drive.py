@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from feeddrive.diagnosis.finding.scene import AxisScene
+from feeddrive.diagnosis.finding.scene import Scene
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.effects.base import Effect
 from feeddrive.effects.chain.inertia_deviation import InertiaDeviation
@@ -22,13 +22,13 @@ CONTINUOUS = 0.3
 TORQUE, ANGLE, TABLE = "motor_torque", "motor_angle", "table_position"
 
 
-def drive_delay(scene: AxisScene) -> list[list[Effect]]:
+def drive_delay(scene: Scene) -> list[list[Effect]]:
     """No delay, and that at which the residual of the torque is least."""
     found = _least_error(scene, {TORQUE: -1})
     return [[DriveDelay.of(delay=delay) for delay in sorted({0.0, found})]]
 
 
-def channel_delay(scene: AxisScene) -> list[list[Effect]]:
+def channel_delay(scene: Scene) -> list[list[Effect]]:
     """For every channel none, and the delay at which the residual is least.
 
     A late motor angle makes the others early. Without a table position it is a late drive, and left to that name.
@@ -48,13 +48,13 @@ def channel_delay(scene: AxisScene) -> list[list[Effect]]:
     return forms
 
 
-def inertia(scene: AxisScene) -> list[list[Effect]]:
+def inertia(scene: Scene) -> list[list[Effect]]:
     """None, at every shaft that has no further inertia yet."""
     taken = {effect.place for effect in scene.found if effect.name == InertiaDeviation.name}
     return [[InertiaDeviation.of(place=where, inertia=0.0)] for where in InertiaDeviation.places if where not in taken]
 
 
-def droop(scene: AxisScene) -> list[list[Effect]]:
+def droop(scene: Scene) -> list[list[Effect]]:
     """None, told at the same torque for every recording of a machine; at the largest recorded one where no limit is."""
     at = CONTINUOUS * scene.plant.torque_limit
     if not np.isfinite(at):
@@ -62,7 +62,7 @@ def droop(scene: AxisScene) -> list[list[Effect]]:
     return [[TorqueConstantDroop.of(share=0.0, at_torque=float(f"{at:.1e}"))]] if at > 0 else []
 
 
-def _least_error(scene: AxisScene, moved: dict[str, int]) -> float:
+def _least_error(scene: Scene, moved: dict[str, int]) -> float:
     """Delay in whole samples [s] at which the residual is least; `moved`: channel to +1 where it makes its rows late.
 
     Only the longest recording is looked at: shifts of what was predicted there, nothing is simulated.

@@ -16,7 +16,7 @@ from scipy.optimize import minimize
 from scipy.signal.windows import hann
 
 from feeddrive.diagnosis.finding.materiality import is_material
-from feeddrive.diagnosis.finding.scene import AxisScene
+from feeddrive.diagnosis.finding.scene import Scene
 from feeddrive.effects.base import Effect
 from feeddrive.effects.chain.structural_mode import StructuralMode
 from feeddrive.typing import BoolArray, ComplexArray, FloatArray
@@ -41,7 +41,7 @@ LEAST_SHARE = 0.005
 payload leaves: what is no better there is one. The best of the grid takes 0.0015 of noise."""
 
 
-def structural_mode(scene: AxisScene) -> list[list[Effect]]:
+def structural_mode(scene: Scene) -> list[list[Effect]]:
     """The mass, frequency and damping that explain most of the spectra."""
     seen = _Spectra(scene)
     payload, _ = seen.fitted(np.ones_like(seen.frequency))
@@ -90,7 +90,7 @@ class _Spectra:
         unit: what a payload of one kilogram would leave, shape (channels, n).
     """
 
-    def __init__(self, scene: AxisScene) -> None:
+    def __init__(self, scene: Scene) -> None:
         at = scene.longest
         evidence, run, residual = scene.problem.evidence[at], scene.runs[at], scene.residuals[at]
         window = _faded(evidence.fit_rows, evidence.recording.sample_time)
@@ -121,7 +121,7 @@ def _faded(rows: BoolArray, sample_time: float) -> FloatArray:
     return faded
 
 
-def _responses(scene: AxisScene, frequency: FloatArray) -> dict[str, ComplexArray]:
+def _responses(scene: Scene, frequency: FloatArray) -> dict[str, ComplexArray]:
     """Table position and motor torque per force on the table with the motor's motion as it is; complex, shape (n,)."""
     plant = scene.problem.machine(scene.found)
     p, x = plant.chain_values(), plant.middle

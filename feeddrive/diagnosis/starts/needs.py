@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from feeddrive.diagnosis.declared_friction import declared_level
-from feeddrive.diagnosis.finding.scene import AxisScene
+from feeddrive.diagnosis.finding.scene import Scene
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.effects.base import Port
 from feeddrive.simulate.driven import LoadMotion
@@ -24,7 +24,7 @@ WITHOUT_TORQUE = "the recordings hold no torque or current"
 """Why what acts at the motor cannot be seen."""
 
 
-def both_directions(scene: AxisScene) -> str:
+def both_directions(scene: Scene) -> str:
     """The table must move both ways."""
     moved = [_moved(run, evidence) for run, evidence in zip(scene.runs, scene.problem.evidence, strict=True)]
     forward, backward = sum(m[0] for m in moved), sum(m[1] for m in moved)
@@ -39,7 +39,7 @@ def _moved(run: LoadMotion, evidence: Evidence) -> tuple[float, float]:
     return float(steps[steps > 0].sum()), float(-steps[steps < 0].sum())
 
 
-def reversals(scene: AxisScene) -> str:
+def reversals(scene: Scene) -> str:
     """The motor must turn round twice or more."""
     count = 0
     for run, evidence in zip(scene.runs, scene.problem.evidence, strict=True):
@@ -49,7 +49,7 @@ def reversals(scene: AxisScene) -> str:
     return "" if count >= 2 else f"the recording has {count} reversals; it needs two or more"
 
 
-def turns(scene: AxisScene) -> str:
+def turns(scene: Scene) -> str:
     """The motor must turn often enough for a period to be told from a trend."""
     travelled = max(
         float(np.ptp(run.motor_angle[e.fit_rows])) for run, e in zip(scene.runs, scene.problem.evidence, strict=True)
@@ -58,113 +58,113 @@ def turns(scene: AxisScene) -> str:
     return "" if count >= LEAST_TURNS else f"the recording covers {count:.2g} revolutions; it needs {LEAST_TURNS:g}"
 
 
-def lead(scene: AxisScene) -> str:
+def lead(scene: Scene) -> str:
     """Travel errors need a table position and some revolutions."""
     if not any("table_position" in evidence.channels for evidence in scene.problem.evidence):
         return "it needs a table position beside the motor angle"
     return turns(scene)
 
 
-def gap(scene: AxisScene) -> str:
+def gap(scene: Scene) -> str:
     """Free play needs an elastic chain and reversals."""
     if not scene.plant.chain.elastic:
         return "the structure is rigid: free play needs a screw that moves against the table"
     return reversals(scene)
 
 
-def friction(scene: AxisScene) -> str:
+def friction(scene: Scene) -> str:
     """Friction at the table needs a declared level and both directions."""
     if not any(effect.name == "guide_friction" for effect in scene.plant.effects):
         return "the plant declares no guide_friction to act on"
     return force(scene) or both_directions(scene)
 
 
-def torque(scene: AxisScene) -> str:
+def torque(scene: Scene) -> str:
     """What acts at the motor shows in its torque alone, as the motor's motion is given."""
     seen = any("motor_torque" in evidence.channels for evidence in scene.problem.evidence)
     return "" if seen else WITHOUT_TORQUE
 
 
-def torque_turns(scene: AxisScene) -> str:
+def torque_turns(scene: Scene) -> str:
     """A ripple of the motor needs its torque and some revolutions."""
     return torque(scene) or turns(scene)
 
 
-def torque_inertia(scene: AxisScene) -> str:
+def torque_inertia(scene: Scene) -> str:
     """Inertias need the torque, and something between them and the table."""
     return torque(scene) or inertia(scene)
 
 
-def force(scene: AxisScene) -> str:
+def force(scene: Scene) -> str:
     """Forces show in the torque, or in what an elastic chain gives way."""
     return torque(scene) and ("" if scene.plant.chain.elastic else WITHOUT_TORQUE)
 
 
-def nothing(scene: AxisScene) -> str:
+def nothing(scene: Scene) -> str:
     """Every recording can show it."""
     return ""
 
 
-def elastic(scene: AxisScene) -> str:
+def elastic(scene: Scene) -> str:
     """Stiffness shows only where the chain is elastic."""
     return "" if scene.plant.chain.elastic else "the structure is rigid"
 
 
-def inertia(scene: AxisScene) -> str:
+def inertia(scene: Scene) -> str:
     """An inertia differs from a mass on the table only where something between them gives way."""
     return "" if scene.plant.chain.elastic else "the structure is rigid: an inertia is a mass on the table (payload)"
 
 
-def scale(scene: AxisScene) -> str:
+def scale(scene: Scene) -> str:
     """Travel along the stroke needs a table position and a stroke."""
     if not any("table_position" in evidence.channels for evidence in scene.problem.evidence):
         return "it needs a table position beside the motor angle"
     return stroke(scene)
 
 
-def stroke(scene: AxisScene) -> str:
+def stroke(scene: Scene) -> str:
     """What depends on the position needs a stroke."""
     runs = zip(scene.runs, scene.problem.evidence, strict=True)
     longest = max(float(np.ptp(run.table_position[e.fit_rows])) for run, e in runs)
-    least = LEAST_STROKE_TURNS * scene.plant.chain.values["lead"]
+    least = LEAST_STROKE_TURNS * 2 * np.pi * scene.plant.chain.radius
     return "" if longest >= least else f"the stroke is {longest * 1e3:.2g} mm; it needs {least * 1e3:.3g} mm"
 
 
-def elastic_stroke(scene: AxisScene) -> str:
+def elastic_stroke(scene: Scene) -> str:
     """A stiffness along the stroke needs an elastic chain and a stroke."""
     return elastic(scene) or stroke(scene)
 
 
-def stiffness_along_stroke(scene: AxisScene) -> str:
+def stiffness_along_stroke(scene: Scene) -> str:
     """A stiffness along the stroke that is no part of the chain itself."""
     if scene.plant.chain.varies:
         return "the chain has its stiffness along the stroke from its parts; ask for that of a part"
     return elastic_stroke(scene)
 
 
-def duration(scene: AxisScene) -> str:
+def duration(scene: Scene) -> str:
     """What changes slowly needs time."""
     evidence = scene.problem.evidence[scene.longest]
     seconds = float(evidence.fit_rows.sum()) * evidence.recording.sample_time
     return "" if seconds >= LEAST_SECONDS else f"the recording lasts {seconds:.2g} s; it needs {LEAST_SECONDS:g} s"
 
 
-def force_stroke(scene: AxisScene) -> str:
+def force_stroke(scene: Scene) -> str:
     """A force over the position needs forces and a stroke."""
     return force(scene) or stroke(scene)
 
 
-def force_duration(scene: AxisScene) -> str:
+def force_duration(scene: Scene) -> str:
     """Friction that changes needs forces and time."""
     return force(scene) or duration(scene)
 
 
-def scale_duration(scene: AxisScene) -> str:
+def scale_duration(scene: Scene) -> str:
     """Growth needs a table position and time."""
     return scale(scene) or duration(scene)
 
 
-def screw_drag(scene: AxisScene) -> str:
+def screw_drag(scene: Scene) -> str:
     """What changes the drag of the screw needs a declared one, and a force that the chain knows."""
     if not declared_level(scene.plant, Port.SCREW):
         return "the plant declares no nut_drag or bearing_drag to act on"
@@ -173,11 +173,11 @@ def screw_drag(scene: AxisScene) -> str:
     return elastic(scene) or both_directions(scene)
 
 
-def screw_drag_turns(scene: AxisScene) -> str:
+def screw_drag_turns(scene: Scene) -> str:
     """A ripple of the drag needs a declared one and some revolutions."""
     return screw_drag(scene) or turns(scene)
 
 
-def friction_reversals(scene: AxisScene) -> str:
+def friction_reversals(scene: Scene) -> str:
     """Presliding needs declared friction and reversals."""
     return friction(scene) or reversals(scene)

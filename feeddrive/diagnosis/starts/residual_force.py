@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from feeddrive.diagnosis.finding.scene import AxisScene
+from feeddrive.diagnosis.finding.scene import Scene
 from feeddrive.plant.analysis.stiffness_budget import static_stiffness
 from feeddrive.typing import FloatArray
 
 
-def residual_force(scene: AxisScene, at: int) -> FloatArray:
+def residual_force(scene: Scene, at: int) -> FloatArray:
     """Force that resists + motion beyond what is predicted [N], shape (n,), of the recording number `at`.
 
     From the torque over the radius; without a torque from the table lagging on the spring that holds it.
@@ -15,7 +15,7 @@ def residual_force(scene: AxisScene, at: int) -> FloatArray:
     return residual_forces(scene, at)[0]
 
 
-def residual_forces(scene: AxisScene, at: int) -> list[FloatArray]:
+def residual_forces(scene: Scene, at: int) -> list[FloatArray]:
     """The same force by every channel that shows it, the torque's first; shape (n,) each.
 
     On a soft drive the lag of the table tells forces that are lost in the noise of the torque.

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from feeddrive.diagnosis.declared_friction import declared_level, declared_viscous
-from feeddrive.diagnosis.finding.scene import AxisScene
+from feeddrive.diagnosis.finding.scene import Scene
 from feeddrive.diagnosis.starts.periodogram import sine_at, strongest_orders
 from feeddrive.diagnosis.starts.position_curve import bump_of, friction_over_position
 from feeddrive.diagnosis.starts.residual_force import residual_forces
@@ -32,12 +32,12 @@ LEAST_CURVE = 0.01
 """Share of the residual force's square that must follow the position before a table is tried."""
 
 
-def plain(effect: Effect) -> Callable[[AxisScene], list[list[Effect]]]:
+def plain(effect: Effect) -> Callable[[Scene], list[list[Effect]]]:
     """One start, whatever the residual."""
     return lambda scene: [[effect]]
 
 
-def deviation(scene: AxisScene) -> list[list[Effect]]:
+def deviation(scene: Scene) -> list[list[Effect]]:
     """A factor of one at every port that declares friction and has none yet."""
     plant = scene.plant
     ports = [p for p in FrictionDeviation.ports if declared_level(plant, p) or declared_viscous(plant, p)]
@@ -45,14 +45,14 @@ def deviation(scene: AxisScene) -> list[list[Effect]]:
     return [[FrictionDeviation.of(port)] for port in ports if port not in taken]
 
 
-def stribeck(scene: AxisScene) -> list[list[Effect]]:
+def stribeck(scene: Scene) -> list[list[Effect]]:
     """A typical size at a few velocities of the recording."""
     fastest = max(float(np.abs(run.table_velocity).max()) for run in scene.runs)
     size = Stribeck.parameter("delta_force").size
     return [[Stribeck.of(delta_force=size, velocity=fastest * share) for share in (0.005, 0.015, 0.05, 0.15, 0.4)]]
 
 
-def presliding(scene: AxisScene) -> list[list[Effect]]:
+def presliding(scene: Scene) -> list[list[Effect]]:
     """Bristles of a few deflections, slipping from the start or after break-away."""
     level = max(declared_level(scene.plant, Port.TABLE), 1.0)
     deflections = (1e-7, 3e-7, 1e-6, 3e-6, 1e-5, 3e-5, 1e-4)
@@ -61,7 +61,7 @@ def presliding(scene: AxisScene) -> list[list[Effect]]:
     ]
 
 
-def backlash(scene: AxisScene) -> list[list[Effect]]:
+def backlash(scene: Scene) -> list[list[Effect]]:
     """Widths about the lag of the table."""
     at = scene.longest
     residual, rows = scene.residuals[at], scene.problem.evidence[at].fit_rows
@@ -72,7 +72,7 @@ def backlash(scene: AxisScene) -> list[list[Effect]]:
     return [[Backlash.of(width=min(width, 5e-3)) for width in widths]]
 
 
-def ripple(scene: AxisScene) -> list[list[Effect]]:
+def ripple(scene: Scene) -> list[list[Effect]]:
     """The strongest orders of the residual torque."""
     at = scene.longest
     rows = scene.problem.evidence[at].fit_rows
@@ -81,7 +81,7 @@ def ripple(scene: AxisScene) -> list[list[Effect]]:
     return [[sine(TorqueRipple, angle, residual, order) for order in orders]] if orders else []
 
 
-def lead_error(scene: AxisScene) -> list[list[Effect]]:
+def lead_error(scene: Scene) -> list[list[Effect]]:
     """The strongest orders of the residual position."""
     at = scene.longest
     rows = scene.problem.evidence[at].fit_rows
@@ -94,7 +94,7 @@ def lead_error(scene: AxisScene) -> list[list[Effect]]:
     return [kept] if kept else []
 
 
-def highest_order(scene: AxisScene, at: int) -> float:
+def highest_order(scene: Scene, at: int) -> float:
     """Order whose frequency meets half the sample rate at the highest speed; above it a sampled sine is another one."""
     fastest = float(np.abs(scene.runs[at].motor_speed).max())
     return float(np.pi / scene.problem.evidence[at].recording.sample_time / fastest)
@@ -112,7 +112,7 @@ def explains(start: Effect, residual: FloatArray) -> bool:
     return 0.5 * amplitude**2 >= LEAST_SINE * float(np.mean(residual**2))
 
 
-def over_position(scene: AxisScene) -> list[list[Effect]]:
+def over_position(scene: Scene) -> list[list[Effect]]:
     """Bumps that fit the friction left over, and a table where it follows the position."""
     at = scene.longest
     rows, run = scene.problem.evidence[at].fit_rows, scene.runs[at]

@@ -14,8 +14,7 @@ from __future__ import annotations
 import numpy as np
 
 from feeddrive.diagnosis.finding.materiality import is_material
-from feeddrive.diagnosis.finding.scene import AxisScene
-from feeddrive.diagnosis.likelihood.evidence import AxisEvidence
+from feeddrive.diagnosis.finding.scene import Scene
 from feeddrive.effects.base import Effect
 from feeddrive.effects.chain.stiffness_deviation import StiffnessDeviation, parts_of
 from feeddrive.effects.transmission.preload_loss import PreloadLoss
@@ -37,7 +36,7 @@ NOTHING = 1e-18
 """Mean square over the largest square below which a series does not change: rounding leaves as much of a constant."""
 
 
-def preload_loss(scene: AxisScene) -> list[list[Effect]]:
+def preload_loss(scene: Scene) -> list[list[Effect]]:
     """The force up to which the lag grows best with it, and the ratio that goes with it."""
     lag, force = _lag(scene), _transmitted(scene)
     if not np.any(force):
@@ -61,14 +60,14 @@ def preload_loss(scene: AxisScene) -> list[list[Effect]]:
     return [[start]] if is_material(start, scene.plant) else []
 
 
-def stiffness(scene: AxisScene) -> list[list[Effect]]:
+def stiffness(scene: Scene) -> list[list[Effect]]:
     """The declared stiffness, of every part that the chain knows apart and that has no other one yet."""
     taken = {effect.place for effect in scene.found if effect.name == StiffnessDeviation.name}
     parts = [part for part in parts_of(scene.plant.chain.values) if part not in taken]
     return [[StiffnessDeviation.of(place=part, factor=1.0)] for part in parts]
 
 
-def stiffness_vs_position(scene: AxisScene) -> list[list[Effect]]:
+def stiffness_vs_position(scene: Scene) -> list[list[Effect]]:
     """The slope over the stroke: the declared one, or where none is declared that of the recordings."""
     low, high = scene.plant.stroke or _travelled(scene)
     lag, force = _lag(scene), _transmitted(scene)
@@ -89,7 +88,7 @@ def stiffness_vs_position(scene: AxisScene) -> list[list[Effect]]:
     return [[StiffnessVsPosition.of(share_over_stroke=0.0, low=low, high=high)]]
 
 
-def _lag(scene: AxisScene) -> FloatArray | None:
+def _lag(scene: Scene) -> FloatArray | None:
     """How far the table stays behind what is predicted, about its mean, fitted samples [m]; None without a scale."""
     residual = scene.residuals[scene.longest]
     if "table_position" not in residual:
@@ -99,21 +98,20 @@ def _lag(scene: AxisScene) -> FloatArray | None:
     return behind
 
 
-def _transmitted(scene: AxisScene) -> FloatArray:
+def _transmitted(scene: Scene) -> FloatArray:
     """Force of the nut on the table with what was found so far, all samples [N]."""
     return scene.runs[scene.longest].force
 
 
-def _in_band(scene: AxisScene, series: FloatArray) -> FloatArray:
+def _in_band(scene: Scene, series: FloatArray) -> FloatArray:
     """Series, or columns, as they show in the comparison, about their means; all samples in, fitted ones out."""
     evidence = scene.problem.evidence[scene.longest]
-    assert isinstance(evidence, AxisEvidence)
-    seen = evidence.band.filter(series)[evidence.fit_rows]
+    seen = evidence.in_band(series)[evidence.fit_rows]
     about_mean: FloatArray = seen - seen.mean(axis=0)
     return about_mean
 
 
-def _travelled(scene: AxisScene) -> tuple[float, float]:
+def _travelled(scene: Scene) -> tuple[float, float]:
     """Least and greatest table position of all recordings [m]."""
     positions = [run.table_position for run in scene.runs]
     return min(float(p.min()) for p in positions), max(float(p.max()) for p in positions)

@@ -1,0 +1,1 @@
+"""The recording as a suspect: signs, factors, clocks, holds."""

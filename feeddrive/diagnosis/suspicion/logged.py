@@ -22,8 +22,6 @@ from feeddrive.plant.file.entries import Origins, Table
 from feeddrive.plant.plant import DeclaredCascade, Plant
 from feeddrive.recording import Recording
 from feeddrive.simulate.scenario.scenario_controller import read_cascade
-from feeddrive.thermal.plant import ThermalPlant
-from feeddrive.thermal.warm_plant import WarmPlant
 
 FASTEST_LOG = 0.9e-3
 """Time between rows [s] below which a recording is taken as one row a cycle."""
@@ -65,13 +63,13 @@ def _nearest(share: float, half: float, step: float) -> float | None:
     return step / cycles if abs((1 - 1 / cycles) / 2 - share) <= max(NEAR, half) else None
 
 
-def declared_hold(plant: Plant | ThermalPlant | WarmPlant, recordings: Sequence[Recording]) -> float | None:
+def declared_hold(plant: Plant, recordings: Sequence[Recording]) -> float | None:
     """Cycle of the declared controller [s], which holds the torque; None where a row is no longer, or none is declared.
 
     Raises:
         InputError: a declared cascade that cannot be read.
     """
-    if not isinstance(plant, Plant) or not isinstance(plant.controller, DeclaredCascade):
+    if not isinstance(plant.controller, DeclaredCascade):
         return None
     if not may_be_logged(recordings):
         return None

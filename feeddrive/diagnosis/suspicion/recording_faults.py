@@ -78,12 +78,9 @@ def refuse_faulty(problem: Problem, recordings: Sequence[Evidence]) -> None:
     Raises:
         InputError: which fault, and how to mend it.
     """
-    plant = problem.plant
-    if not isinstance(plant, Plant):
-        return
     for evidence in dict.fromkeys(recordings):
         if isinstance(evidence, AxisEvidence) and "motor_torque" in evidence.channels:
-            _refuse(problem, plant, evidence)
+            _refuse(problem, problem.plant, evidence)
 
 
 def _refuse(problem: Problem, plant: Plant, evidence: AxisEvidence) -> None:

@@ -30,7 +30,6 @@ from feeddrive.diagnosis.unexplained.view import views_of
 from feeddrive.effects.base import Effect
 from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.effects.tabulated import Tabulated
-from feeddrive.plant.plant import Plant
 
 FEWEST = 2
 """Named effects from which a table that does as well is told."""
@@ -109,7 +108,7 @@ def table_against(
     problem: Problem, effects: Sequence[Effect], judged: Sequence[Judged], channels: Sequence[ChannelResult]
 ) -> Rival | None:
     """The best single table in the declared plant, against the named effects; None where there is none."""
-    if not isinstance(problem.plant, Plant) or any(effect.name not in EFFECTS for effect in effects):
+    if not problem.predictor.of_motion or any(effect.name not in EFFECTS for effect in effects):
         return None
     bare = [replace(j, after=j.before) for j in judged]
     analyses = {channel.name: analysis_of(problem, (), bare, channel) for channel in channels}

@@ -23,7 +23,6 @@ from feeddrive.diagnosis.unexplained.view import views_of
 from feeddrive.diagnosis.unexplained.words import no_effect, no_gain
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
-from feeddrive.plant.plant import Plant
 
 
 def analysis_of(
@@ -33,7 +32,7 @@ def analysis_of(
     plant = problem.machine(effects)
     fitted = views_of(problem, [(plant, evidence) for evidence in problem.evidence], channel.name, False)
     seen = views_of(problem, [(j.after, j.evidence) for j in judged], channel.name, True)
-    radius = plant.chain.motor_radius if isinstance(plant, Plant) else 0.0
+    radius = plant.chain.motor_radius if plant.has_motion else 0.0
     return analyse(fitted, seen, channel.unit, radius)
 
 
@@ -42,7 +41,7 @@ def tried(
     forms: Sequence[Found], channel: ChannelResult,
 ) -> Judgement | str:  # fmt: skip
     """The term as an effect that pays on the judged data, or why there is none."""
-    if not isinstance(problem.plant, Plant):
+    if not problem.predictor.of_motion:
         return no_effect()
     before = [*effects, *(judgement.effect for _, judgement in carried)]
     options = []

@@ -11,10 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feeddrive.diagnosis.likelihood.evidence import AxisEvidence, Evidence
+from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.diagnosis.likelihood.folds import FOLDS, block_of_rows, dealt_blocks
-from feeddrive.diagnosis.likelihood.predictor import Machine
 from feeddrive.diagnosis.unexplained.floor import Floor, noise_floor
 from feeddrive.diagnosis.unexplained.functional_sums import Sample
 from feeddrive.diagnosis.unexplained.term import Term
@@ -60,9 +59,7 @@ class View:
         return np.hstack(parts)
 
     def _filtered(self, raw: FloatArray) -> FloatArray:
-        if not isinstance(self.evidence, AxisEvidence):
-            return raw[self.rows]
-        return self.evidence.band.filter(raw)[self.rows]
+        return self.evidence.in_band(raw)[self.rows]
 
     @property
     def blocks(self) -> IntegerArray:
@@ -76,7 +73,7 @@ class View:
 
 
 def views_of(
-    problem: Problem, plants: Sequence[tuple[Machine, Evidence]], channel: str, judged: bool
+    problem: Problem, plants: Sequence[tuple[Plant, Evidence]], channel: str, judged: bool
 ) -> tuple[View, ...]:
     """Views of one channel of those recordings that have it, at the fitted or at the judged samples.
 
@@ -93,18 +90,18 @@ def views_of(
         predicted = problem.predictor.predict(plant, evidence)
         residual = evidence.measured[channel] - predicted[channel]
         rows = evidence.thinned(evidence.judged_rows if judged else evidence.fit_rows) & np.isfinite(residual)
-        radius = plant.chain.motor_radius if channel == "table_position" and isinstance(plant, Plant) else 0.0
+        radius = plant.chain.motor_radius if channel == "table_position" else 0.0
         values = variables_of(problem, plant, evidence, predicted)
         views.append(View(evidence, channel, residual, rows, values, noise_floor(evidence, channel, radius)))
     return tuple(views)
 
 
 def variables_of(
-    problem: Problem, plant: Machine, evidence: Evidence, predicted: Mapping[str, FloatArray]
+    problem: Problem, plant: Plant, evidence: Evidence, predicted: Mapping[str, FloatArray]
 ) -> dict[str, FloatArray]:
     """Variables that a residual may depend on, (n,) each, SI; `predicted` channels in the band, (n,) each."""
     clock = np.asarray(evidence.recording.time - evidence.recording.time[0], dtype=float)
-    if not isinstance(plant, Plant):
+    if not problem.predictor.of_motion:
         return {"time": clock, **problem.predictor.variables(plant, evidence)}
     motion = problem.predictor.variables(plant, evidence)
     position, velocity = motion["table_position"], motion["table_velocity"]

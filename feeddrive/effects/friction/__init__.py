@@ -1,0 +1,1 @@
+"""Effects in the one friction law of a port."""

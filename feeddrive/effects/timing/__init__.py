@@ -1,0 +1,1 @@
+"""Effects in time: dead time of drive and channels."""

@@ -1,0 +1,1 @@
+"""Effects in the one spring law of the transmission."""

@@ -1,0 +1,1 @@
+"""Effects that add travel between screw and table."""

@@ -1,0 +1,1 @@
+"""One step: the linear chain exactly, effect forces on Radau nodes."""

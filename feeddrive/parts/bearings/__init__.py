@@ -1,0 +1,1 @@
+"""Support bearings: stiffness, friction, arrangement."""

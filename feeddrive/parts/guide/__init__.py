@@ -1,0 +1,1 @@
+"""Linear guides: geometry, stiffness, film, friction, balance of a table's carriages."""

@@ -1,0 +1,1 @@
+"""Life: rated, consumed, and its scatter."""

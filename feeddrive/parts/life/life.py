@@ -1,18 +1,17 @@
-"""Life of a ball screw or bearing from its rating: revolutions, reliability, equivalent load of a duty.
+"""Life of a ball screw or bearing from its rating: revolutions and reliability.
 
-    L = (C / F)^p   [10^6 rev],      S(N) = exp(-ln(1/0.9) (N / L)^e),      F_m = (sum N_i F_i^p / sum N_i)^(1/p)
+    L = (C / F)^p   [10^6 rev],      S(N) = exp(-ln(1/0.9) (N / L)^e)
 
 | symbol | meaning | unit |
 |---|---|---|
 | C, F | basic dynamic axial rating, axial load | N |
 | L | rated life, which 90 % survive | 10^6 rev |
-| N, N_i | revolutions; in the i-th phase of a duty | rev |
+| N | revolutions | rev |
 | S | probability of survival | 1 |
 | p, e | exponents of `feeddrive.parts.life.life_exponents` | 1 |
-| F_m | constant load that is as harmful as the duty | N |
 
 Validity: loads up to half the rating; clean, lubricated contacts; no factor for film or dirt.
-Source: paper 001, eqs. (7), (9) and, for the scatter, (24); the equivalent load is Miner's sum of the same law.
+Source: paper 001, eqs. (7), (9) and, for the scatter, (24).
 """
 
 from __future__ import annotations
@@ -20,7 +19,6 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.parts.elementary import power
@@ -33,25 +31,10 @@ MILLION = 1e6
 HIGHEST_LOAD = 0.5
 """Load over rating up to which the life law is used in design."""
 
-_SHARE = (PartValue("probability", "1", 0.0, 1.0),)
 _LEAD = (PartValue("lead", "m", 0.0, 1.0),)
 _SPEED = (PartValue("speed", "rad/s", 0.0, 1e6),)
 _TEST = (PartValue("force", "N", 0.0, 1e9), PartValue("revolutions", "1", 0.0, 1e30))
 _LOAD = (PartValue("rating", "N", 0.0, usual=(10.0, 5e6)), PartValue("force", "N", 0.0, open_ends=False))
-
-
-@dataclass(frozen=True)
-class DutyPhase:
-    """A part of a duty: axial force [N], screw speed [rad/s] and duration [s]; signs do not matter."""
-
-    force: float
-    speed: float
-    duration: float
-
-    @property
-    def revolutions(self) -> float:
-        """Revolutions, either way [rev]."""
-        return abs(self.speed * self.duration) / (2.0 * math.pi)
 
 
 def rated_revolutions(rating: float, force: float, exponents: LifeExponents = BALL_SCREW) -> float:
@@ -101,18 +84,6 @@ def survival(revolutions: float, rated: float, exponents: LifeExponents = BALL_S
     return math.exp(math.log(0.9) * power(revolutions / rated, exponents.slope))
 
 
-def revolutions_at(probability: float, rated: float, exponents: LifeExponents = BALL_SCREW) -> float:
-    """Revolutions that the share `probability` survives where 90 % survive `rated` [rev].
-
-    Raises:
-        InputError: a probability that does not lie between 0 and 1, or a rated life that is not positive.
-    """
-    check_values("life", _SHARE, {"probability": probability})
-    if not rated > 0.0:
-        raise InputError(f"{rated:g} rated revolutions", "life", "write a rated life above 0")
-    return float(rated * (math.log(probability) / math.log(0.9)) ** (1.0 / exponents.slope))
-
-
 def life_together(lives: Sequence[float], exponents: LifeExponents = BALL_SCREW) -> float:
     """Life that 90 % of sets of several bodies survive: L^-e is the sum of L_i^-e; infinite where all are.
 
@@ -124,22 +95,6 @@ def life_together(lives: Sequence[float], exponents: LifeExponents = BALL_SCREW)
     if math.isinf(shortest):
         return math.inf
     return float(shortest * sum((life / shortest) ** -exponents.slope for life in lives) ** (-1.0 / exponents.slope))
-
-
-def equivalent_load(duty: tuple[DutyPhase, ...], exponents: LifeExponents = BALL_SCREW) -> float:
-    """F_m [N] of a duty.
-
-    Raises:
-        InputError: a duty that turns the screw nowhere, or a force that is not finite.
-    """
-    if not all(math.isfinite(phase.force) for phase in duty):
-        raise InputError("a force is not finite", "duty", "write it as a number of newtons")
-    total = sum(phase.revolutions for phase in duty)
-    if not (total > 0.0 and math.isfinite(total)):
-        raise InputError("the screw does not turn", "duty", "give one phase a speed and a duration")
-    largest = max(abs(phase.force) for phase in duty) or 1.0
-    mean = sum(phase.revolutions / total * (abs(phase.force) / largest) ** exponents.load for phase in duty)
-    return float(largest * mean ** (1.0 / exponents.load))
 
 
 def distance(revolutions: float, lead: float) -> float:

@@ -1,0 +1,1 @@
+"""Ball screw and nut: geometry, friction, efficiency, preload, contact, load distribution."""

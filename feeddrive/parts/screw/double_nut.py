@@ -18,8 +18,7 @@ Rigid preload (spacer, oversize balls), Hertz contacts of stiffness ~ F^(1/3), n
     F_A^(2/3) + F_B^(2/3) = 2 F_0^(2/3)   until F_B = 0 at F = 2 sqrt(2) F_0, then F_A = F
 
 With d = (F_A^(1/3) - F_B^(1/3)) / F_0^(1/3) it reads d^3 - 6 d + 2 F/F_0 = 0, whose middle root is
-d = 2 sqrt(2) sin(asin(F / (2 sqrt(2) F_0)) / 3). Spring preload: the spring's nut stays at F_0, the other takes F_0 + F
-until one of them is free of load.
+d = 2 sqrt(2) sin(asin(F / (2 sqrt(2) F_0)) / 3).
 Source: paper 000, eq. (7) and figure 3, carried on to an axial load here; Hertz for the exponent 2/3.
 """
 
@@ -51,11 +50,6 @@ def rigid_sharing(force: Expression, preload: Expression) -> tuple[Expression, E
     nut_a = preload * (0.5 * (total + d)) ** 3 + positive_part(beyond)
     nut_b = preload * (0.5 * (total - d)) ** 3 + positive_part(-beyond)
     return nut_a, nut_b
-
-
-def spring_sharing(force: Expression, preload: Expression) -> tuple[Expression, Expression]:
-    """F_A and F_B [N] where a soft spring holds nut B at the preload [N]; numbers, arrays or expressions."""
-    return positive_part(preload + force), preload + positive_part(-preload - force)
 
 
 def friction_torque_forward(

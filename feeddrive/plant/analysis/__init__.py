@@ -1,0 +1,1 @@
+"""Questions to a plant: linearisation, modes, stiffness budget, lumping, plausibility."""

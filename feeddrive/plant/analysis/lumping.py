@@ -113,7 +113,7 @@ def lump(plant: Plant, position: float, further: tuple[str, ...] = ()) -> Lumped
     plant.chain.refuse_off_screw(position, plant.name)
     bare = _bare(plant)
     values = _chain_values(bare, position)
-    model = replace(bare, chain=ThreeInertias(values), effects=(), drive=None)
+    model = replace(bare, mechanics=ThreeInertias(values), effects=(), drive=None)
     compared = _compared(bare, model, position)
     effects, remarks = _effects(plant, values)
     left_out = (*_left_out(plant, bare, position), *further)
@@ -225,7 +225,7 @@ def _effects(plant: Plant, values: Mapping[str, float]) -> tuple[tuple[Effect, .
     """The effects that stay effects, and where their values come from."""
     nut = nut_stiffness(plant)
     kept, remarks = [], []
-    for effect in plant.effects:
+    for effect in plant.motion_effects:
         if isinstance(effect, ChainEffect) and not effect.adds_coordinate:
             continue
         made = _on_axial_spring(effect, nut, values["axial_stiffness"])
@@ -268,6 +268,8 @@ def _left_out(plant: Plant, bare: Plant, position: float) -> tuple[str, ...]:
         lines.append("parts, and what is checked of them: critical speed and buckling of the screw, rated life")
         if plant.drive.motor.brake is not None:
             lines.append("the brake: a held motor is held ideally")
+    if plant.has_heat:
+        lines.append("heat: temperatures, growth, and what they change")
     merged = [e.label for e in plant.effects if isinstance(e, ChainEffect) and not e.adds_coordinate]
     if merged:
         lines.append(f"{', '.join(merged)} as effects: they are in the values")

@@ -56,10 +56,9 @@ def mode_map(plant: Plant, positions: FloatArray | None = None, count: int = FIR
     found = [resolved_modes(plant, float(x), count) for x in places]
     held, free = [modes.braked for modes in found], [modes.free for modes in found]
     elastic = plant.chain.elastic
-    first = float(plant.chain.values["first_nut_position"]) if plant.chain.varies else 0.0
     return ModeMap(
         positions=places,
-        nut=places + first if plant.chain.varies else np.zeros(0),
+        nut=places + plant.chain.nut_at_zero if plant.chain.varies else np.zeros(0),
         stiffness=np.array([stiffness_budget(plant, float(x)).total for x in places] if elastic else []),
         held=np.array([modes.frequencies for modes in held]),
         held_damping=np.array([modes.damping for modes in held]),

@@ -18,6 +18,8 @@ from feeddrive.plant.analysis.screw_limits import buckling_force, critical_speed
 from feeddrive.plant.analysis.steady import steady_motions
 from feeddrive.plant.analysis.summary import Summary, summarise
 from feeddrive.plant.plant import Plant, PositionVelocityController
+from feeddrive.thermal.heat import Heat
+from feeddrive.thermal.run.summary import HeatRow, heat_rows
 
 USUAL_DN = 70_000 * 1e-3 * math.pi / 30
 """Ball circle times speed of a ground screw with return tubes [m rad/s]; 70 000 mm rev/min."""
@@ -66,13 +68,32 @@ class Finding:
     source: str
 
 
+HOTTEST_RISE = 60.0
+"""Settled rise at the highest speed beyond which grease and preload of a ball screw do not last [K]."""
+
+LONGEST_WARM_UP = 6 * 3600.0
+"""Slowest time constant of a screw alone [s]; a machine frame is slower, a screw is not."""
+
+STEELS = {"conductivity": (10.0, 70.0, "W/(m K)"), "heat_capacity": (3e6, 4.5e6, "J/(m^3 K)")}
+FILM = (2.0, 200.0)
+"""Film coefficients of air [W/(m² K)]."""
+
+CONTACT = (50.0, 20000.0)
+"""Balls between nut and screw, per area [W/(m² K)]."""
+
+
 def check_plant(plant: Plant, position_gain: float | None = None) -> tuple[Finding, ...]:
-    """Every rule's finding, in the order in which a machine is designed.
+    """Every rule's finding, in the order in which a machine is designed: of its motion, then of its heat.
 
     Args:
         plant: the machine.
         position_gain: of its controller [1/s]; the declared one if not given.
     """
+    on_motion = _of_motion(plant, position_gain) if plant.has_motion else ()
+    return (*on_motion, *(_of_heat(plant.heat) if plant.has_heat else ()))
+
+
+def _of_motion(plant: Plant, position_gain: float | None) -> tuple[Finding, ...]:
     controller = plant.controller
     declared = controller.position_gain if isinstance(controller, PositionVelocityController) else None
     gain = declared if position_gain is None else position_gain
@@ -222,7 +243,7 @@ def _nut_places(plant: Plant) -> tuple[float, float]:
     """Nut from the near bearing at either end of the stroke [m]; the whole screw where no stroke is declared."""
     if plant.stroke is None or not plant.chain.varies:
         return 0.0, plant.drive.screw.length if plant.drive is not None else 0.0
-    first = float(plant.chain.values["first_nut_position"])
+    first = plant.chain.nut_at_zero
     return first + plant.stroke[0], first + plant.stroke[1]
 
 
@@ -242,3 +263,29 @@ def _at_least(rule: str, value: float, limit: float, unit: str, source: str) -> 
 
 def _unknown(rule: str, needs: str) -> Finding:
     return Finding(rule, None, None, "1", Sense.AT_MOST, Verdict.UNKNOWN, needs)
+
+
+def _of_heat(heat: Heat) -> tuple[Finding, ...]:
+    rows = heat_rows(heat)
+    return (
+        *(_between(key.replace("_", " "), getattr(heat.rig.steel, key), low, high, unit, "steels")
+          for key, (low, high, unit) in STEELS.items()),
+        _between("expansion", heat.rig.steel.expansion, 8e-6, 20e-6, "1/K", "steels"),
+        _between("smallest film coefficient", _films(rows)[0], *FILM, "W/(m^2 K)", "air, free to forced"),
+        _between("largest film coefficient", _films(rows)[1], *FILM, "W/(m^2 K)", "air, free to forced"),
+        _between("contact conductance", heat.contact, *CONTACT, "W/(m^2 K)", "paper 002, table 5, and ten times it"),
+        _at_most("settled rise of the nut at the highest speed", rows[-1].nut_rise, HOTTEST_RISE, "K",
+                 "grease, preload"),
+        _at_most("slowest time constant", rows[0].time_constants[0], LONGEST_WARM_UP, "s", "a screw without its frame"),
+    )  # fmt: skip
+
+
+def _films(rows: tuple[HeatRow, ...]) -> tuple[float, float]:
+    values = np.array([(row.screw_film, row.nut_film) for row in rows])
+    return float(values.min()), float(values.max())
+
+
+def _between(rule: str, value: float, low: float, high: float, unit: str, source: str) -> Finding:
+    """The side that is broken, or the nearer one."""
+    nearer_low = value < np.sqrt(low * high)
+    return (_at_least if nearer_low else _at_most)(rule, value, low if nearer_low else high, unit, source)

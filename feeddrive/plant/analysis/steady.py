@@ -15,7 +15,7 @@ from feeddrive.plant.analysis.ode import ode
 from feeddrive.plant.chain.chain import symbolic
 from feeddrive.plant.equations import bristle_count, friction_level, parameter_symbols, parameter_values
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.symbolic_turn import SYMBOLS
+from feeddrive.symbolic_turn import SYMBOLS
 from feeddrive.typing import Expression, FloatArray
 
 MOVING = 0.05

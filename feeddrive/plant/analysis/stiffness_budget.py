@@ -11,7 +11,7 @@ Source: paper 004, eqs. (5) to (8): axial and torsional spring chain act in seri
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -98,7 +98,7 @@ def participation(plant: Plant, key: str, position: float) -> float:
     """Share of a chain value in the compliance at the table, motor held ideally: -d ln(1/k) / d ln(value) [1]."""
     step = 1e-4
     values = {**plant.chain.values, key: plant.chain.values[key] * (1 + step)}
-    stiffer = replace(plant, chain=replace(plant.chain, values=values))
+    stiffer = plant.with_chain_values(values)
     ratio = static_stiffness(stiffer, position) / static_stiffness(plant, position)
     return math.log(ratio) / math.log(1 + step)
 
@@ -129,7 +129,7 @@ def _of_parts(plant: Plant, position: float) -> list[tuple[str, str, float]]:
     """The same part by part; none where there are no parts, or the chain differs from them."""
     if plant.drive is None or not plant.chain.varies:
         return []
-    place = float(plant.chain.values["first_nut_position"]) + position
+    place = plant.chain.nut_at_zero + position
     held = combined_stiffness(without_brake(plant.drive), place)
     if abs(held.total * static_shape(plant, position)[-1] - 1) > _SAME:
         return []

@@ -1,0 +1,1 @@
+"""Chains: matrices of inertia, damping and stiffness from lumped or distributed parts."""

@@ -57,6 +57,7 @@ overhang and of the split span follow from the Pade approximants given.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from feeddrive.errors import InputError
@@ -217,6 +218,16 @@ class DistributedScrew(Chain):
         motion = {"motor": p["ratio"] / r, "table": 1.0} | turning
         return [motion.get(name, 0.0) for name in self.coordinates]
 
+    @property
+    def nut_at_zero(self) -> float:
+        return self.values["first_nut_position"]
+
+    def nut_moved(self, way: float) -> Mapping[str, float]:
+        return {**self.values, "first_nut_position": self.nut_at_zero + way}
+
+    def nut_softened(self, share: float, stiffness: float) -> Mapping[str, float]:
+        return {**self.values, "nut_stiffness": share * self.values["nut_stiffness"]}
+
     def refuse_off_screw(self, position: float, where: str) -> None:
         first, last = self.positions_on_screw()
         if not first < position < last:
@@ -226,7 +237,7 @@ class DistributedScrew(Chain):
 
     def positions_on_screw(self) -> tuple[float, float]:
         """Table positions [m] between which the nut lies between the bearing at the motor's end and the far one."""
-        first = self.values["first_nut_position"]
+        first = self.nut_at_zero
         return -first, min(self.values["bearing_distance"], self.values["screw_length"]) - first
 
     def nut_place(self, p: Values, position: Expression) -> Expression:

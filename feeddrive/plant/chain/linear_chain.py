@@ -146,6 +146,24 @@ class Chain:
         """The chain without further masses on its table."""
         return self
 
+    @property
+    def nut_at_zero(self) -> float:
+        """Place of the nut from the near bearing with the table at 0 [m]; 0 where nothing depends on it."""
+        return 0.0
+
+    def nut_moved(self, way: float) -> Mapping[str, float]:
+        """Values with the nut a way further along the screw [m]."""
+        return self.values
+
+    def nut_softened(self, share: float, stiffness: float) -> Mapping[str, float]:
+        """Values with the nut's stiffness times a share.
+
+        Args:
+            share: [1].
+            stiffness: declared, of the nut [N/m]; taken where the chain knows it only in series with others.
+        """
+        return self.values
+
     def refuse_off_screw(self, position: float, where: str) -> None:
         """Refuse a table position [m] at which the nut would not be on the screw; any other chain takes all.
 

@@ -25,6 +25,7 @@ Source: paper 004, eqs. (6)-(8): the axial and the torsional spring chain act in
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from feeddrive.plant.chain.linear_chain import Chain, ChainValue, Matrix, Row, Spring, Values
@@ -123,6 +124,10 @@ class ThreeInertias(Chain):
             "ratio", "transmission", "1", meaning="turns of the motor per turn of the screw; 1 where it is direct"
         ),
     )
+
+    def nut_softened(self, share: float, stiffness: float) -> Mapping[str, float]:
+        softer = 1 / (1 / self.values["axial_stiffness"] + (1 / share - 1) / stiffness)
+        return {**self.values, "axial_stiffness": softer}
 
     @property
     def coordinates(self) -> tuple[str, ...]:

@@ -61,7 +61,7 @@ def resolved(plant: Plant, frequency: float, positions: Sequence[float]) -> Plan
     bare = DistributedScrew(plant.chain_values())
     waves = max(waves_needed(bare, frequency, x, ACCURACY) for x in positions)
     hubs = hubs_between(plant.drive) if plant.drive is not None else ()
-    return replace(plant, chain=ScrewWithWaves(chain.values, 1, waves, hubs))
+    return replace(plant, mechanics=ScrewWithWaves(chain.values, 1, waves, hubs))
 
 
 def resolved_modes(plant: Plant, position: float, count: int = FIRST) -> ResolvedModes:

@@ -16,7 +16,7 @@ the table, which stays the last.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from feeddrive.plant.chain.linear_chain import Chain, Matrix, Row, Spring, Values
@@ -62,6 +62,16 @@ class TableMode(Chain):
     @property
     def key(self) -> tuple[object, ...]:
         return (*self.carrier.key, self.label)
+
+    @property
+    def nut_at_zero(self) -> float:
+        return self.without_modes.nut_at_zero
+
+    def nut_moved(self, way: float) -> Mapping[str, float]:
+        return self.without_modes.nut_moved(way)
+
+    def nut_softened(self, share: float, stiffness: float) -> Mapping[str, float]:
+        return self.without_modes.nut_softened(share, stiffness)
 
     def refuse_off_screw(self, position: float, where: str) -> None:
         self.without_modes.refuse_off_screw(position, where)

@@ -1,0 +1,1 @@
+"""Plant files: reading, drafting and writing a machine as TOML."""

@@ -9,34 +9,32 @@ from itertools import pairwise
 from feeddrive.effects.base import Effect, Parameter, Port, TransmissionEffect, Value
 from feeddrive.effects.catalogue import EFFECTS, THERMAL_EFFECTS
 from feeddrive.errors import InputError
-from feeddrive.plant.file.entries import Table, nearest
+from feeddrive.plant.file.entries import Table, declares_heat_alone, nearest
 from feeddrive.plant.file.stroke import read_stroke
 
 
-def read_effects(top: Table, known: Mapping[str, type[Effect]] = EFFECTS) -> tuple[Effect, ...]:
-    """The effects of one catalogue, in the order of the file.
+def read_effects(top: Table, known: Mapping[str, type[Effect]] | None = None) -> tuple[Effect, ...]:
+    """The effects of a file, in its order.
 
     Args:
-        top: the file; where it declares motion and heat, effects of the other catalogue are passed over.
-        known: catalogue, name to class.
+        top: the file.
+        known: catalogue, name to class; that of what a plant file declares, motion, heat or both, where it is None.
 
     Raises:
         InputError: unknown name, key or port, a value that is missing or out of its range, tables that do not fit.
     """
+    catalogue = _declared(top) if known is None else known
     effects: list[Effect] = []
     for table in top.tables("effect"):
         name = table.text("name")
-        if _belongs_elsewhere(name, known, top):
-            continue
         label = next_label(name, effects)
-        effects.append(_effect(replace(table, where=f"{table.where} ({name})"), label, known, top))
+        effects.append(_effect(replace(table, where=f"{table.where} ({name})"), label, catalogue, top))
     return tuple(effects)
 
 
-def _belongs_elsewhere(name: str, known: Mapping[str, type[Effect]], top: Table) -> bool:
-    """Whether an effect is one of the other catalogue in a file that declares motion and heat."""
-    both = "structure" in top.entries and "thermal" in top.entries
-    return both and name not in known and name in {**EFFECTS, **THERMAL_EFFECTS}
+def _declared(top: Table) -> dict[str, type[Effect]]:
+    on_heat: Mapping[str, type[Effect]] = THERMAL_EFFECTS if "thermal" in top.entries else {}
+    return {**({} if declares_heat_alone(top.entries) else EFFECTS), **on_heat}
 
 
 def next_label(name: str, before: Sequence[Effect]) -> str:

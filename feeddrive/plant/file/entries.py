@@ -291,6 +291,11 @@ def whole_file(entries: Mapping[str, Any], where: str, section: Section) -> Tabl
     return replace(plain, source=plain.text("source", ""), section=section)
 
 
+def declares_heat_alone(entries: Mapping[str, Any]) -> bool:
+    """Whether a plant file has a thermal section and no structure: no chain can be made of it."""
+    return "thermal" in entries and "structure" not in entries
+
+
 def read_toml(path: Path, kind: str) -> dict[str, Any]:
     """Parse a TOML file; a byte order mark is passed over.
 

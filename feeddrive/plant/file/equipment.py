@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from feeddrive.errors import InputError
-from feeddrive.plant.file.entries import Table
+from feeddrive.plant.file.entries import Table, declares_heat_alone
 from feeddrive.plant.plant import DeclaredCascade, PositionVelocityController, Sensor
 from feeddrive.recording.channels import channel_unit
 
@@ -24,15 +24,15 @@ MOST_SAMPLES = 64
 
 
 def read_sensors(top: Table) -> tuple[Sensor, ...]:
-    """The declared sensors of a plant file, resolutions in the SI unit of their channel.
+    """The declared sensors of motion of a plant file, resolutions in the SI unit of their channel.
 
     Raises:
         InputError: unknown key, channel, kind or place, a negative resolution, or a channel declared twice.
     """
     sensors: list[Sensor] = []
-    for table in top.tables("sensor"):
+    for table in () if declares_heat_alone(top.entries) else top.tables("sensor"):
         if "thermal" in top.entries and _OF_HEAT.fullmatch(str(table.entries.get("channel"))):
-            continue  # `feeddrive.thermal.file.sensor_sections` reads it
+            continue  # `feeddrive.plant.file.heat.sensor_sections` reads it
         sensor = _sensor(table)
         if any(sensor.channel == other.channel for other in sensors):
             raise InputError(f"{sensor.channel} is declared twice", table.where, "keep one of them")

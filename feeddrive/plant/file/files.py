@@ -55,7 +55,9 @@ computed, and a value of the chain that is written takes the place of the comput
     carriages = 4
     seal_drag = "8 N"                # of one
 
-and ratings for plausibility rules (`feeddrive.plant.file.ratings`). Nothing in the file is evaluated.
+and ratings for plausibility rules (`feeddrive.plant.file.ratings`). Heat is declared in `[thermal]`
+(`feeddrive.plant.file.heat.heat_section`), beside the motion or, in a file without `structure`, alone. Nothing in the
+file is evaluated.
 """
 
 from __future__ import annotations
@@ -65,7 +67,6 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.plant.chain.chain import CHAINS, Chain, ChainValue, DistributedScrew, Rigid, ThreeInertias
 from feeddrive.plant.composition import refuse_what_cannot_compose
@@ -74,8 +75,10 @@ from feeddrive.plant.file.chain_sections import positive, read_chain
 from feeddrive.plant.file.drive_sections import PART_VALUES, describes_parts
 from feeddrive.plant.file.effect_sections import read_effects
 from feeddrive.plant.file.effect_text import plant_text_with_effects
-from feeddrive.plant.file.entries import Table, read_toml
+from feeddrive.plant.file.entries import Table, declares_heat_alone, read_toml
 from feeddrive.plant.file.equipment import read_controller, read_sensors
+from feeddrive.plant.file.heat.coupling_section import read_coupling
+from feeddrive.plant.file.heat.heat_section import read_heat
 from feeddrive.plant.file.plant_schema import NAMED_PARTS, plant_table
 from feeddrive.plant.file.ratings import RATINGS, read_data
 from feeddrive.plant.file.stroke import read_stroke
@@ -85,7 +88,6 @@ from feeddrive.units.quantity import format_quantity
 
 __all__ = [
     "FORMAT",
-    "declares_heat_alone",
     "plant_from_entries",
     "plant_text_with_effects",
     "read_plant",
@@ -93,6 +95,7 @@ __all__ = [
 ]
 
 FORMAT = "feeddrive-plant/1"
+_TOP_OF_HEAT_ALONE = ("format", "name", "source", "description", "ball_screw", "effect", "sensor", "thermal")
 _SECTIONS = (
     "motor",
     "ball_screw",
@@ -136,19 +139,30 @@ def plant_from_entries(entries: Mapping[str, Any], path: Path) -> Plant:
         entries: of the file.
         path: of the file, for messages and the name.
     """
-    top = _top(entries, path)
-    _refuse_unknown_keys(top)
-    chain, drive = read_chain(top)
+    where = str(path)
+    if entries.get("format") != FORMAT:
+        raise InputError("is not a plant file of this version", where, f'write format = "{FORMAT}" in its first line')
+    top = plant_table(entries, where)
+    top.text("description", "")
+    moving = not declares_heat_alone(entries)
+    if moving:
+        top.refuse_undeclared()
+        _refuse_unknown_keys(top)
+    else:
+        top.refuse_unknown(_TOP_OF_HEAT_ALONE)
+    chain, drive = read_chain(top) if moving else (None, None)
     motor = top.table("motor")
     limit = positive(motor, "torque_limit", "N m", "torque_limit") if "torque_limit" in motor.entries else float("inf")
     constant = "torque_constant"
     per_ampere = positive(motor, constant, "N m/A", constant) if constant in motor.entries else None
-    declared = read_effects(top, EFFECTS)
+    declared = read_effects(top)
     effects = (*declared, *derived_effects(top, declared))
-    refuse_what_cannot_compose(effects, chain.elastic, top.where)
+    if chain is not None:
+        refuse_what_cannot_compose(effects, chain.elastic, top.where)
+    joint = read_coupling(top)
     plant = Plant(
         name=top.text("name", path.stem),
-        chain=chain,
+        mechanics=chain,
         effects=effects,
         torque_limit=limit,
         sensors=read_sensors(top),
@@ -158,35 +172,20 @@ def plant_from_entries(entries: Mapping[str, Any], path: Path) -> Plant:
         data=read_data(top),
         origins=top.origins.found,
         torque_constant=per_ampere,
+        network=read_heat(top, path.stem, effects, joint),
+        joint=joint,
     )
-    _refuse_moving_mass(plant, str(path))
-    refuse_active_friction(plant, str(path))
-    _refuse_stroke_off_screw(plant, str(path))
-    _warn_of_unusual(chain, str(path))
+    if chain is not None:
+        _refuse_moving_mass(plant, where)
+        refuse_active_friction(plant, where)
+        _refuse_stroke_off_screw(plant, where)
+        _warn_of_unusual(chain, where)
     return plant
-
-
-def declares_heat_alone(entries: Mapping[str, Any]) -> bool:
-    """Whether a plant file has a thermal section and no structure: no chain can be made of it, only a thermal plant."""
-    return "thermal" in entries and "structure" not in entries
 
 
 def section_key(value: ChainValue) -> str:
     """Key of a chain value inside its section: `motor_inertia` is `inertia` in [motor]."""
     return value.section_key
-
-
-def _top(entries: Mapping[str, Any], path: Path) -> Table:
-    where = str(path)
-    if entries.get("format") != FORMAT:
-        raise InputError("is not a plant file of this version", where, f'write format = "{FORMAT}" in its first line')
-    if declares_heat_alone(entries):
-        what = "declares heat alone, and this needs a machine with masses and drives"
-        raise InputError(what, where, 'name another plant, or add structure = "..." with its sections')
-    top = plant_table(entries, where)
-    top.refuse_undeclared()
-    top.text("description", "")
-    return top
 
 
 def _refuse_unknown_keys(top: Table) -> None:

@@ -1,0 +1,1 @@
+"""Checks of a recording: what no machine has made is found, said, left out or refused."""

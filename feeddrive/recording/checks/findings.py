@@ -6,12 +6,12 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from feeddrive.recording.channels import channel_unit
+from feeddrive.recording.channels import INJECTED, channel_unit
 from feeddrive.typing import BoolArray, FloatArray
 from feeddrive.units.quantity import format_quantity
 
 _LIMITED_CHANNELS = ("motor_torque", "motor_current", "cutting_force")  # a position at rest sits at its end rightly
-_NOT_MEASURED = ("setpoint", "screw_speed")  # a ramp repeats its own step, a programme has few values
+_NOT_MEASURED = ("setpoint", "screw_speed", *INJECTED)  # a ramp repeats its own step, a programme has few values
 _FEWEST_LEVELS = 5
 _SATURATED_SHARE = 0.01
 _SATURATED_RUN = 3  # samples in a row at the limit

@@ -26,6 +26,8 @@ USUAL: dict[str, float] = {
     "table_velocity": 10.0,
     "screw_speed": 1e3,
     "cutting_force": 1e4,
+    "injected_torque": 1e3,
+    "injected_speed": 1e3,
 }
 """Largest size of a channel that is usual on machine tools [SI unit]; 100 for temperatures, 1 mm for growths."""
 

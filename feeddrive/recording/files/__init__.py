@@ -1,0 +1,1 @@
+"""Reading and writing recordings: text tables, .mat, mappings."""

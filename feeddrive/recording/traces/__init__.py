@@ -1,0 +1,1 @@
+"""Traces before they are recordings: channels named, judged, and brought onto one grid."""

@@ -15,9 +15,10 @@ from itertools import pairwise
 import numpy as np
 
 from feeddrive.errors import InputError
+from feeddrive.recording.channels import INJECTED
 from feeddrive.typing import FloatArray
 
-HELD = ("motor_torque", "motor_current", "motor_torque_share", "cutting_force")
+HELD = ("motor_torque", "motor_current", "motor_torque_share", "cutting_force", *INJECTED)
 _LONGEST_STEP = 1.5  # of the usual step: a missing sample makes 2, coarse time stamps up to 1.34
 _SAME = 1e-6  # relative difference of steps that are the same
 _MOST_PARTS = 0.01  # of the samples: more breaks are no lost stretches but irregular sampling

@@ -183,15 +183,17 @@ def step_figure(result: ScenarioResult, one: Evaluated) -> ReportFigure:
     figures, settings = cast(StepResponse, one.figure), one.evaluation.settings
     name, at = str(settings["channel"]), float(settings["at"])
     factor, unit = _SHOWN.get(SERIES[name], (1.0, SERIES[name]))
-    span = max(4 * figures.settling, 20 * result.scenario.sample_time)
+    settled = math.isfinite(figures.settling)
+    lasts = 4 * figures.settling if settled else float(result.time[-1]) - at
+    span = max(lasts, 20 * result.scenario.sample_time)
     near = (result.time >= at - 0.15 * span) & (result.time <= at + span)
     figure = new_figure(3.4)
     axes = figure.subplots()
     axes.plot(1e3 * (result.time[near] - at), factor * result.series[name][near], color=AFTER, linewidth=1.1)
     axes.axhline(factor * figures.final, color=NOISE, linewidth=0.8, linestyle="--")
     dress(axes, "time after the step [ms]", f"{name.replace('_', ' ')} [{unit}]")
-    text = (f"Rise 10 to 90 % in {1e3 * figures.rise:.3g} ms, overshoot {100 * figures.overshoot:.3g} %, within 2 % "
-            f"after {1e3 * figures.settling:.3g} ms")  # fmt: skip
+    text = (f"Rise 10 to 90 % in {1e3 * figures.rise:.3g} ms, overshoot {100 * figures.overshoot:.3g} %, "
+            + (f"within 2 % after {1e3 * figures.settling:.3g} ms" if settled else "not settled"))  # fmt: skip
     return ReportFigure("step", "Step response", text, figure)
 
 

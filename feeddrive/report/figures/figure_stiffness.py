@@ -50,7 +50,7 @@ def stiffness_figures(plant: Plant, position: float) -> tuple[ReportFigure, ...]
     """
     if plant.drive is None or not plant.chain.varies:
         return ()
-    first, length = float(plant.chain.values["first_nut_position"]), plant.drive.screw.length
+    first, length = plant.chain.nut_at_zero, plant.drive.screw.length
     low, high = plant.stroke or (-first, length - first)
     # the nut has screw on both sides
     places = np.clip(first + np.linspace(low, high, _PLACES), 1e-3 * length, 0.999 * length)

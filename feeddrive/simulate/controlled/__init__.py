@@ -1,0 +1,1 @@
+"""Runs under a sampled controller: the plant, the loop, what a recorder writes."""

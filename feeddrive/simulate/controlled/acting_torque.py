@@ -20,7 +20,7 @@ from itertools import accumulate
 import numpy as np
 
 from feeddrive.engine.timing import SPLIT
-from feeddrive.servo.cascade import Cascade
+from feeddrive.simulate.controlled.controlled_machine import TorqueLoop
 from feeddrive.typing import FloatArray
 
 
@@ -31,30 +31,31 @@ class ActingTorque:
     state: FloatArray
 
     @classmethod
-    def at_rest(cls, cascade: Cascade) -> ActingTorque:
+    def at_rest(cls, loop: TorqueLoop, tick: float) -> ActingTorque:
         """No torque, none under way."""
-        return cls(np.zeros(_late(cascade)[0] + 2))
+        return cls(np.zeros(_late(loop, tick)[0] + 2))
 
-    def means(self, cascade: Cascade, command: FloatArray) -> tuple[FloatArray, ActingTorque]:
+    def means(self, loop: TorqueLoop, tick: float, command: FloatArray) -> tuple[FloatArray, ActingTorque]:
         """Mean torque of every tick [N m], shape (n,), and the state after the last.
 
         Args:
-            cascade: its tick, lag and dead time.
+            loop: lag and dead time.
+            tick: h [s].
             command: per tick [N m], shape (n,).
         """
-        _, part = _late(cascade)
+        _, part = _late(loop, tick)
         waiting = np.concatenate([self.state[1:], command])
         older, newer = waiting[: len(command)], waiting[1 : 1 + len(command)]
         acting = entered(waiting, (part, 1 - part), len(command))
         after = waiting[len(command) :]
-        if not cascade.current_lag:
+        if not loop.lag:
             return acting, ActingTorque(np.concatenate([acting[-1:], after]))
-        h = cascade.sample_time / cascade.current_lag
+        h = tick / loop.lag
         driven = math.exp(-(1 - part) * h) * -math.expm1(-part * h) * older - math.expm1(-(1 - part) * h) * newer
         decay = math.exp(-h)
         lagged = accumulate(driven.tolist(), lambda torque, new: decay * torque + new, initial=float(self.state[0]))
         torques = np.fromiter(lagged, dtype=float, count=len(driven) + 1)
-        means = mean_torque(acting, torques, cascade.current_lag, cascade.sample_time)
+        means = mean_torque(acting, torques, loop.lag, tick)
         return means, ActingTorque(np.concatenate([torques[-1:], after]))
 
 
@@ -84,8 +85,8 @@ def mean_torque(acting: FloatArray, ends: FloatArray, lag: float, tick: float) -
     return acting - lag / tick * np.diff(ends)
 
 
-def _late(cascade: Cascade) -> tuple[int, float]:
+def _late(loop: TorqueLoop, tick: float) -> tuple[int, float]:
     """Whole ticks of dead time and the rest as part of a tick."""
-    dead = cascade.dead_time / cascade.sample_time
+    dead = loop.dead_time / tick
     late = math.floor(dead + SPLIT)
     return late, dead - late if dead - late > SPLIT else 0.0

@@ -17,9 +17,9 @@ from feeddrive.plant.equations import parameter_symbols
 from feeddrive.plant.motor_torque import acting_torque
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.structure import per_structure
-from feeddrive.plant.symbolic_turn import SYMBOLS
 from feeddrive.servo.sampled import MEASUREMENTS, SampledController
 from feeddrive.simulate.held_torque import readings_of
+from feeddrive.symbolic_turn import SYMBOLS
 from feeddrive.typing import Expression
 
 

@@ -5,10 +5,13 @@ them, are taken as a drive takes them: differences over one tick of the position
 over a few milliseconds, because a recorded set-point is rounded.
 
     v_i = x'(t_i - h / 2),    a_i = x''(t_i - h)        h: from one position tick to the next
+
+A test signal that was injected and recorded is fed as it is: held over the ticks of a sample, which keeps its mean.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,13 +24,23 @@ from feeddrive.plant.plant import DeclaredCascade, Plant
 from feeddrive.servo.cascade import Feedback
 from feeddrive.servo.cascade_function import cascade_controller
 from feeddrive.servo.sampled import SampledController
-from feeddrive.simulate.controlled.controlled import ControlledState, TorqueLoop, resting_state
+from feeddrive.simulate.controlled.acting_torque import ActingTorque
+from feeddrive.simulate.controlled.controlled import (
+    ControlledRun,
+    ControlledState,
+    TorqueLoop,
+    resting_state,
+    simulate_controlled,
+)
 from feeddrive.simulate.controlled.position_velocity import position_velocity_controller
 from feeddrive.simulate.scenario.scenario_controller import read_cascade
 from feeddrive.typing import FloatArray
 
 SMOOTHING = 5e-3
 """Half width of the polynomial that smooths a recorded set-point for its derivatives [s]; a cubic."""
+
+_FED = {"speed_excitation": "injected_speed", "torque_excitation": "injected_torque"}
+"""Reference of a controller to the recorded channel."""
 
 TICKS = 1e-6
 """Deviation of the sample time from whole ticks of the controller that is rounding."""
@@ -51,8 +64,17 @@ class DeclaredLoop:
     position_tick: float
     at_motor: bool
 
-    def reference(self, setpoint: FloatArray) -> FloatArray:
-        """What the controller is fed, from the recorded set-point [m], shape (n,); shape (n ticks, references)."""
+    def reference(self, setpoint: FloatArray, channels: Mapping[str, FloatArray]) -> FloatArray:
+        """What the controller is fed, shape (n ticks, references).
+
+        Args:
+            setpoint: of the position as recorded [m], shape (n,).
+            channels: `injected_torque` [N m] and `injected_speed` [rad/s] where they were recorded, shape (n,); others
+                are not looked at.
+
+        Raises:
+            InputError: a set-point too short for its derivatives.
+        """
         h = self.controller.sample_time
         sample, count = h * self.ticks, len(setpoint)
         recorded = sample * np.arange(count)
@@ -62,21 +84,48 @@ class DeclaredLoop:
         if "velocity" in self.controller.references:
             columns["velocity"] = self._slope(setpoint, 1, time - self.position_tick / 2)
             columns["acceleration"] = self._slope(setpoint, 2, time - self.position_tick)
-        nothing = np.zeros(len(time))
-        return np.column_stack([columns.get(name, nothing) for name in self.controller.references])
+        for name, channel in _FED.items():
+            columns[name] = np.repeat(channels[channel], self.ticks) if channel in channels else np.zeros(len(time))
+        return np.column_stack([columns[name][: len(time)] for name in self.controller.references])
 
     def _slope(self, setpoint: FloatArray, order: int, time: FloatArray) -> FloatArray:
         sample = self.controller.sample_time * self.ticks
         width = max(2 * round(SMOOTHING / sample) + 1, 5)
         if len(setpoint) <= width:
             raise InputError("the set-point is too short", "recording", f"record more than {width} samples")
-        smooth = savgol_filter(setpoint, width, 3, deriv=order, delta=sample, mode="nearest")
+        smooth = savgol_filter(setpoint, width, 3, deriv=order, delta=sample)
         slope: FloatArray = CubicSpline(sample * np.arange(len(setpoint)), smooth)(np.maximum(time, 0.0))
         return slope
 
     def begin(self, plant: Plant, position: float, velocity: float = 0.0) -> ControlledState:
         """The axis at `position` [m] and `velocity` [m/s], no torque, the controller without history."""
         return resting_state(plant, self.started(plant, position, velocity), self.torque_loop, position, velocity)
+
+    def simulated(self, plant: Plant, reference: FloatArray, position: float, velocity: float = 0.0) -> ControlledRun:
+        """The plant under the controller, no torque before the start; sensors are read without their steps.
+
+        Args:
+            plant: with its values.
+            reference: from `reference`.
+            position, velocity: of the table at the start [m, m/s]; the transmission starts without force.
+
+        Raises:
+            SimulationError: a motion that cannot be followed.
+        """
+        start, controller = self.begin(plant, position, velocity), self.started(plant, position, velocity)
+        return simulate_controlled(plant, controller, reference, None, self.torque_loop, start, quantised=False)
+
+    def recorded_torque(self, command: FloatArray) -> FloatArray:
+        """Motor torque as it is recorded, through dead time and lag and averaged over each sample [N m], shape (n,).
+
+        Args:
+            command: at the ticks [N m], shape (n ticks,).
+        """
+        tick = self.controller.sample_time
+        means, _ = ActingTorque.at_rest(self.torque_loop, tick).means(self.torque_loop, tick, command)
+        whole = np.pad(means, (0, -len(means) % self.ticks), mode="edge")
+        torque: FloatArray = whole.reshape(-1, self.ticks).mean(axis=1)
+        return torque
 
     def started(self, plant: Plant, position: float, velocity: float = 0.0) -> SampledController:
         """The controller with the positions that it remembers set to those of a steady motion [m, m/s]."""

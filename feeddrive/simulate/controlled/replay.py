@@ -1,7 +1,7 @@
 """What a declared controller commands when it is fed the recorded set-point and motion, no plant in between.
 
 Beside the recorded torque this says whether the declared controller is the one that was recorded, and where something
-else had a part in the torque, such as an excitation that was not recorded.
+else had a part in the torque, such as a test signal that was injected and not recorded.
 """
 
 from __future__ import annotations
@@ -19,15 +19,15 @@ AT_ONCE = 1000
 
 
 def replayed_command(plant: Plant, loop: DeclaredLoop, recording: Recording) -> FloatArray:
-    """Torque command of the controller over a recording [N m], shape (n,), within the torque limit.
+    """Torque that the controller brings about over a recording [N m], shape (n,), within the torque limit.
 
     Args:
         plant: gives the torque limit, and the table's motion where it was not recorded.
         loop: from `declared_loop`, for the recording's sample time.
-        recording: with setpoint and motor_angle.
+        recording: with setpoint and motor_angle; what was injected counts where it was recorded.
     """
     controller = loop.controller
-    fed = loop.reference(recording["setpoint"])
+    fed = loop.reference(recording["setpoint"], recording.channels)
     time: FloatArray = controller.sample_time * np.arange(len(fed), dtype=np.float64)
     readings = _readings(plant, loop, recording, time)
     measured = np.column_stack([readings[name] for name in controller.measurements])
@@ -42,8 +42,7 @@ def replayed_command(plant: Plant, loop: DeclaredLoop, recording: Recording) -> 
         state = states[:, -1]
         parts.append(np.array(asked).ravel())
     command = np.concatenate(parts)[: len(fed)]
-    clipped: FloatArray = np.clip(command, -plant.torque_limit, plant.torque_limit)[:: loop.ticks]
-    return clipped
+    return loop.recorded_torque(np.clip(command, -plant.torque_limit, plant.torque_limit))
 
 
 def _readings(plant: Plant, loop: DeclaredLoop, recording: Recording, time: FloatArray) -> dict[str, FloatArray]:

@@ -159,7 +159,7 @@ class _Directions:
             given = dict(self.plant.chain.values)
             size = abs(given[key]) or 1.0
             given[key] = given[key] + shift * size  # type: ignore[assignment]
-            moved = replace(self.plant, chain=replace(self.plant.chain, values=given))
+            moved = self.plant.with_chain_values(given)
             return moved.chain_values(), self.loop.lag, size
         effect = next(effect for effect in self.plant.effects if effect.label == label)
         size = abs(float(effect.values[key])) or 1.0  # type: ignore[arg-type]

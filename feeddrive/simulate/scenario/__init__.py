@@ -1,0 +1,1 @@
+"""Scenarios: an experiment as a file, its run, what it gives."""

@@ -16,12 +16,7 @@ from __future__ import annotations
 from feeddrive.errors import InputError
 from feeddrive.plant.file.entries import Table
 from feeddrive.simulate.scenario.scenario import Evaluation
-
-SIGNALS = (
-    "setpoint", "motor_torque", "motor_angle", "motor_speed", "table_position", "table_velocity", "cutting_force",
-    "speed_command",
-)  # fmt: skip
-"""Series of a run that may be evaluated."""
+from feeddrive.simulate.scenario.scenario_result import SERIES
 
 _WORD = "word"
 KINDS: dict[str, dict[str, str]] = {
@@ -35,7 +30,7 @@ KINDS: dict[str, dict[str, str]] = {
     "step": {"channel": _WORD, "at": "s"},
     "response": {"input": _WORD, "output": _WORD, "segment": "s", "start": "s"},
 }
-"""Kind to its settings: key to SI unit, or a word for one of `SIGNALS`."""
+"""Kind to its settings: key to SI unit, or a word for one of `SERIES`."""
 
 _MAY_BE_LEFT_OUT = {("following", "start"), ("following", "end"), ("friction_map", "skip"), ("response", "start")}
 
@@ -58,7 +53,7 @@ def _evaluation(table: Table) -> Evaluation:
     for key, unit in keys.items():
         if key not in table.entries and (kind, key) in _MAY_BE_LEFT_OUT:
             continue
-        settings[key] = table.choice(key, SIGNALS) if unit == _WORD else table.quantity(key, unit, key)
+        settings[key] = table.choice(key, SERIES) if unit == _WORD else table.quantity(key, unit, key)
     for key, value in settings.items():
         if isinstance(value, float) and value < 0:
             raise InputError("is negative", table.place(key), "write zero or more")

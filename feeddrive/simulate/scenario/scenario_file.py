@@ -10,7 +10,7 @@ travel = ["0 mm", "500 mm"]                # may be left out; a set-point beyond
 duration = "2 s"                           # left out: that of the trajectory
 [record]
 rate = "2 kHz"                             # velocity_rate is an integer multiple of it; left out: position_rate
-channels = ["setpoint", "motor_torque", "motor_angle", "table_position"]
+channels = ["setpoint", "motor_torque", "motor_angle", "table_position"]  # left out: these, and what is injected
 noise = { table_position = "5 nm" }        # white, standard deviation
 quantised = false                          # round to the resolution of the plant's sensors
 seed = 1
@@ -33,33 +33,33 @@ from feeddrive.errors import InputError
 from feeddrive.files import find_plant
 from feeddrive.plant.file.effect_sections import read_effects
 from feeddrive.plant.file.entries import Table, read_toml, whole_file
+from feeddrive.plant.file.files import plant_from_entries
 from feeddrive.plant.file.plant_schema import EFFECT
 from feeddrive.plant.passive_friction import refuse_active_friction
 from feeddrive.plant.plant import Plant
-from feeddrive.recording.channels import channel_unit
+from feeddrive.recording.channels import CHANNEL_UNITS, channel_unit
 from feeddrive.schema.scenario import scenario
 from feeddrive.servo.cascade import Cascade, divider
 from feeddrive.servo.linear_loop import refuse_unstable
 from feeddrive.servo.vendor_names import with_own_names
 from feeddrive.simulate.controlled.controller_file import insert_controller
-from feeddrive.simulate.scenario.scenario import Recorder, Scenario
+from feeddrive.simulate.scenario.scenario import Excitation, Place, Recorder, Scenario
 from feeddrive.simulate.scenario.scenario_controller import read_cascade
 from feeddrive.simulate.scenario.scenario_evaluations import read_evaluations
 from feeddrive.simulate.scenario.scenario_motion import read_excitation, read_forces, read_trajectory
 from feeddrive.simulate.scenario.scenario_overrides import with_absolute_paths, with_overrides
+from feeddrive.simulate.scenario.scenario_result import SERIES
 from feeddrive.simulate.scenario.scenario_values import boolean, positive, quantities, texts, whole
 from feeddrive.simulate.setpoints.trajectories import refuse_beyond_travel
-from feeddrive.thermal.file.whole_file import drive_plant
 
 FORMAT = "feeddrive-scenario/1"
 SCENARIO = scenario(EFFECT)
 """What may stand in a scenario file."""
 
-CHANNELS = (
-    "setpoint", "motor_torque", "motor_angle", "motor_speed", "table_position", "table_velocity", "cutting_force",
-)  # fmt: skip
+CHANNELS = tuple(name for name in SERIES if name in CHANNEL_UNITS)
 """What can be recorded, besides the time."""
 _USUAL = ("setpoint", "motor_torque", "motor_angle", "table_position")
+_INJECTED = {Place.SPEED: "injected_speed", Place.TORQUE: "injected_torque"}
 _LONGEST = 2e9
 """Ticks: three days at 8 kHz; more is a slip of a unit."""
 
@@ -131,7 +131,7 @@ def read_scenario(
     return Scenario(
         name=top.text("name", path.stem), description=top.text("description", ""), plant=plant, cascade=cascade,
         trajectory=trajectory, force=read_forces(top.tables("force"), path.parent), excitation=excitation,
-        recorder=_recorder(top, cascade), ticks=ticks, evaluations=read_evaluations(top.tables("evaluate")),
+        recorder=_recorder(top, cascade, excitation), ticks=ticks, evaluations=read_evaluations(top.tables("evaluate")),
         digest=_digest(entries, path.parent, given.content, of_plant),
     )  # fmt: skip
 
@@ -156,7 +156,7 @@ def _plant_path(top: Table, folder: Path) -> Path:
 
 
 def _plant(path: Path, overrides: Mapping[str, str]) -> Plant:
-    return drive_plant(with_overrides(read_toml(path, "plant file"), overrides), path)
+    return plant_from_entries(with_overrides(read_toml(path, "plant file"), overrides), path)
 
 
 def _ticks(top: Table, cascade: Cascade, trajectory: float) -> int:
@@ -177,13 +177,14 @@ def _travel(top: Table) -> tuple[float, float]:
     return ends[0], ends[1]
 
 
-def _recorder(top: Table, cascade: Cascade) -> Recorder:
+def _recorder(top: Table, cascade: Cascade, excitation: Excitation | None) -> Recorder:
     table = top.table("record")
     table.refuse_undeclared()
     ticks = cascade.position_divider
     if "rate" in table.entries:
         ticks = divider(1 / cascade.sample_time, positive(table, "rate", "Hz"), table.place("rate"))
-    channels = texts(table, "channels", _USUAL)
+    injected = () if excitation is None else (_INJECTED[excitation.place],)
+    channels = texts(table, "channels", (*_USUAL, *injected))
     for channel in channels:
         Table({"channel": channel}, table.place("channels"), top.origins).choice("channel", CHANNELS)
     inner = table.table("noise")

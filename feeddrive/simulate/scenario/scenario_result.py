@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from feeddrive.errors import InputError
-from feeddrive.recording.channels import CHANNEL_UNITS
+from feeddrive.recording.channels import CHANNEL_UNITS, INJECTED
 from feeddrive.recording.recording import Recording
 from feeddrive.simulate.scenario.scenario import Scenario
 from feeddrive.typing import FloatArray
@@ -21,7 +21,7 @@ SERIES: dict[str, str] = {
 }
 """Series of a run and their SI units."""
 
-MEANS = ("motor_torque", "cutting_force")
+MEANS = ("motor_torque", "cutting_force", *INJECTED)
 """Series that are means over the sample that follows; the others are readings."""
 
 
@@ -46,7 +46,8 @@ def recorded(scenario: Scenario, time: FloatArray, series: Mapping[str, FloatArr
     """The recording of exact series: white noise added, then rounded to the sensor's resolution where asked for.
 
     Args:
-        scenario: says which channels, noise and seed; each channel has a random sequence of its own.
+        scenario: says which channels, noise and seed; each channel has a random sequence of its own, told by its place
+            in the alphabet; those injected, which are commands, stand behind the measured ones.
         time: [s], shape (n,).
         series: exact, shape (n,); late channels as they are recorded.
 
@@ -55,7 +56,7 @@ def recorded(scenario: Scenario, time: FloatArray, series: Mapping[str, FloatArr
     """
     recorder, channels = scenario.recorder, {}
     resolution = {sensor.channel: sensor.resolution for sensor in scenario.plant.sensors}
-    for place, name in enumerate(sorted(SERIES)):
+    for place, name in enumerate(sorted(SERIES, key=lambda name: (name in INJECTED, name))):
         if name not in recorder.channels:
             continue
         samples = series[name]

@@ -1,0 +1,1 @@
+"""Set-points and forces over time: motions, trajectories, excitations, cutting forces."""

@@ -1,0 +1,1 @@
+"""Hours: a servo cycle repeated while the machine warms up, and slow logs."""

@@ -27,16 +27,17 @@ from scipy.ndimage import uniform_filter1d
 
 from feeddrive.errors import InputError
 from feeddrive.plant.equations import parameter_values
+from feeddrive.plant.plant import Plant
+from feeddrive.plant.warmed import followed
 from feeddrive.recording import Recording
 from feeddrive.simulate.uniform_motion import UniformMotion, uniform_motion
 from feeddrive.thermal.bound_function import BoundFunction
 from feeddrive.thermal.full.full_model import FRONT, NUT, REAR
+from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.laws.expansion import expansion
 from feeddrive.thermal.laws.laws import FOLLOWED, INPUTS, PATHS, Laws, laws_of, values_of
-from feeddrive.thermal.plant import ThermalPlant
 from feeddrive.thermal.reduced.model import HeatModel
 from feeddrive.thermal.run.warm_up import Rows, channel_of, lagging, run
-from feeddrive.thermal.warm_plant import WarmPlant
 from feeddrive.typing import BoolArray, FloatArray, IntegerArray
 
 HEAT_STEP = 20.0
@@ -132,7 +133,7 @@ def _stroke_speeds(turned: FloatArray) -> FloatArray:
     return speed
 
 
-def thermometers(heat: ThermalPlant) -> dict[str, tuple[str, float]]:
+def thermometers(heat: Heat) -> dict[str, tuple[str, float]]:
     """Channel of each thermometer to its output of the network and its declared noise [K], 0 for none declared."""
     if heat.sensors:
         return {one.channel: (one.output, one.noise) for one in heat.sensors if one.kind == "thermometer"}
@@ -166,7 +167,7 @@ class WarmRun:
 
 
 def simulate_log(
-    plant: WarmPlant, model: HeatModel, log: WarmLog, powers: Mapping[str, FloatArray] | None = None
+    plant: Plant, model: HeatModel, log: WarmLog, powers: Mapping[str, FloatArray] | None = None
 ) -> WarmRun:
     """Temperatures, table position and torque of a machine in a log.
 
@@ -176,7 +177,7 @@ def simulate_log(
         log: of its motor.
         powers: of its motion (`friction_powers`), where they are known already.
     """
-    laws, values, cold = laws_of(plant.heat), values_of(plant.heat), float(log.ambient[0])
+    laws, values, cold = laws_of(plant.joined_heat), values_of(plant.joined_heat), float(log.ambient[0])
     each = max(int(HEAT_STEP / log.step), 1)
     powers = powers or friction_powers(plant, log)
     rows = _heat_rows(plant, model, laws, values, log, each, powers)
@@ -195,7 +196,7 @@ def simulate_log(
             read = lagging(read, cold, float(lags[i, 0]), log.step)
         channels[channel] = steady_mean(read, log.step)
     motion = _motion(plant, laws, values, log, rises, cold)
-    radius = plant.motion.chain.motor_radius
+    radius = plant.chain.motor_radius
     for name, series, elsewhere in (
         ("motor_torque", motion.torque, np.zeros(len(log.time))),
         ("table_position", motion.table_position, radius * log.angle),
@@ -208,19 +209,19 @@ def simulate_log(
 
 
 def _motion(
-    plant: WarmPlant, laws: Laws, values: FloatArray, log: WarmLog, rises: FloatArray, cold: float
+    plant: Plant, laws: Laws, values: FloatArray, log: WarmLog, rises: FloatArray, cold: float
 ) -> UniformMotion:
     """Uniform motion at its rows, friction at the temperatures there."""
     rows = log.uniform
     factors = laws.factors(rises[rows].T, cold, values).full()
-    p = np.tile(np.array(parameter_values(plant.motion))[:, None], int(rows.sum()))
-    for name, factor in plant.followed().items():
+    p = np.tile(np.array(parameter_values(plant))[:, None], int(rows.sum()))
+    for name, factor in followed(plant).items():
         p[name] *= factors[factor]
-    return uniform_motion(plant.motion, log.angle[rows], log.speed[rows], log.time[rows], p, with_powers=False)
+    return uniform_motion(plant, log.angle[rows], log.speed[rows], log.time[rows], p, with_powers=False)
 
 
 def _grown(
-    plant: WarmPlant, model: HeatModel, states: FloatArray, times: FloatArray, log: WarmLog, radius: float
+    plant: Plant, model: HeatModel, states: FloatArray, times: FloatArray, log: WarmLog, radius: float
 ) -> FloatArray:
     """Growth of screw and frame where the nut is at the rows, (n,) [m]."""
     place = plant.coupling.nut_at_zero + radius * log.angle
@@ -236,7 +237,7 @@ def _grown(
 
 
 def _heat_rows(
-    plant: WarmPlant, model: HeatModel, laws: Laws, values: FloatArray, log: WarmLog, each: int,
+    plant: Plant, model: HeatModel, laws: Laws, values: FloatArray, log: WarmLog, each: int,
     powers: Mapping[str, FloatArray],
 ) -> Rows:  # fmt: skip
     """What acts on the network, means over `each` rows of the log."""
@@ -315,7 +316,7 @@ class _Following:
         return heats
 
 
-def _winding(plant: WarmPlant, log: WarmLog) -> FloatArray:
+def _winding(plant: Plant, log: WarmLog) -> FloatArray:
     """Heat of the motor's winding at the rows [W]; none where its constant or the torque is not known."""
     constant = plant.coupling.motor_constant
     if constant is None or log.torque is None:
@@ -323,19 +324,19 @@ def _winding(plant: WarmPlant, log: WarmLog) -> FloatArray:
     return np.asarray(log.torque**2 / constant**2)
 
 
-def friction_powers(plant: WarmPlant, log: WarmLog) -> dict[str, FloatArray]:
+def friction_powers(plant: Plant, log: WarmLog) -> dict[str, FloatArray]:
     """Friction powers of the parts at the speeds of a log, with the slopes by the three factors, (k, 4) [W]."""
     signed, _ = _distinct(log.speed)
     middle = np.full(len(signed), float(np.mean(log.angle)))
     started = np.zeros(len(signed))
-    whole = np.tile(np.array(parameter_values(plant.motion))[:, None], len(signed))
+    whole = np.tile(np.array(parameter_values(plant))[:, None], len(signed))
     tables = []
     for factor in (None, 0, 1, 2):
         p = whole.copy()
-        for row, follows in plant.followed().items():
+        for row, follows in followed(plant).items():
             if follows == factor:
                 p[row] *= 1.1
-        tables.append(uniform_motion(plant.motion, middle, signed, started, p).powers)
+        tables.append(uniform_motion(plant, middle, signed, started, p).powers)
     found = {}
     for name in ("nut", "bearings", "guide", "motor"):
         first = tables[0][name]

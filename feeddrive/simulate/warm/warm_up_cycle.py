@@ -9,6 +9,7 @@ import numpy as np
 
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.warmed import warmed
 from feeddrive.servo.cascade import Feedback
 from feeddrive.servo.cascade_function import cascade_controller
 from feeddrive.simulate.controlled.controlled import (
@@ -23,14 +24,12 @@ from feeddrive.simulate.scenario.scenario import Scenario
 from feeddrive.simulate.setpoints.cutting_force import held
 from feeddrive.thermal.coupling import Changes, Coupling, Temperatures
 from feeddrive.thermal.full.full_model import FRONT, NUT, REAR, SHAFT
+from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.laws.contact_conductance import conductance_at_preload
 from feeddrive.thermal.laws.expansion import expansion
 from feeddrive.thermal.laws.laws import FOLLOWED, INPUTS, PATHS, laws_of, values_of
-from feeddrive.thermal.plant import ThermalPlant
 from feeddrive.thermal.reduced.model import AMBIENT, HeatModel, Path
 from feeddrive.thermal.rig import Travel
-from feeddrive.thermal.warm_plant import warm_plant
-from feeddrive.thermal.warmed_plant import warmed
 from feeddrive.typing import FloatArray
 
 _MOTOR = "motor"
@@ -86,7 +85,8 @@ class Cycle:
 class ServoCycle:
     """A scenario's motion, to be run again and again at other temperatures; it remembers where the drive stands."""
 
-    def __init__(self, scenario: Scenario, thermal: ThermalPlant, coupling: Coupling) -> None:
+    def __init__(self, scenario: Scenario) -> None:
+        thermal, coupling = scenario.plant.heat, scenario.plant.coupling
         self.scenario, self.coupling = scenario, coupling
         self.duration, self.count = scenario.duration, 0
         tick = scenario.cascade.sample_time
@@ -102,7 +102,7 @@ class ServoCycle:
         thermal.rig.refuse_travel(Travel(low, high))
         self.thermal = replace(thermal, rig=replace(thermal.rig, travel=Travel(low, high)))
         _refuse_unknown_body(coupling, thermal)
-        self.silent = warm_plant(scenario.plant, self.thermal, coupling).heat
+        self.silent = self.thermal.joined(coupling)
         kept = [
             stop for stop in scenario.trajectory.stops if stop.direction != 0 and stop.leave <= self.duration + tick
         ]
@@ -216,7 +216,7 @@ def _refuse_open(scenario: Scenario, position: FloatArray, velocity: FloatArray)
         raise InputError("an excitation is no part of a repeated cycle", where, "leave [excitation] out")
 
 
-def _refuse_unknown_body(coupling: Coupling, thermal: ThermalPlant) -> None:
+def _refuse_unknown_body(coupling: Coupling, thermal: Heat) -> None:
     """Refuse a body for the guide's heat that is not there."""
     bodies = [body.name for body in thermal.bodies]
     if coupling.guide_heat_to and coupling.guide_heat_to not in bodies:

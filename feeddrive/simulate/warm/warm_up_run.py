@@ -26,9 +26,7 @@ from feeddrive.errors import InputError
 from feeddrive.simulate.scenario.scenario import Scenario
 from feeddrive.simulate.warm.warm_up_cycle import Cycle, ServoCycle
 from feeddrive.simulate.warm.warm_up_result import RunEnergy, WarmUpPoint, WarmUpRun
-from feeddrive.thermal.coupling import Coupling
 from feeddrive.thermal.full.full_model import FRONT, NUT, REAR, SHAFT
-from feeddrive.thermal.plant import ThermalPlant
 from feeddrive.thermal.reduced.model import HeatModel, Path
 from feeddrive.thermal.run.ledger import with_ledger
 from feeddrive.typing import FloatArray
@@ -66,15 +64,13 @@ class MacroSteps:
 
 
 def run_warm_up(
-    scenario: Scenario, thermal: ThermalPlant, coupling: Coupling, duration: float, steps: MacroSteps | None = None,
-    progress: Progress | None = None,
-) -> WarmUpRun:  # fmt: skip
+    scenario: Scenario, duration: float, steps: MacroSteps | None = None, progress: Progress | None = None
+) -> WarmUpRun:
     """Repeat a scenario's motion for hours.
 
     Args:
-        scenario: one cycle: it must end where it began, at rest.
-        thermal: heat of the same machine; its ambient is that of the run, and the start.
-        coupling: of the two.
+        scenario: one cycle of a machine that declares heat and how it is joined to the motion: it must end where it
+            began, at rest; the ambient of its heat is that of the run, and the start.
         duration: of the run [s].
         steps: how macro steps are chosen; None for the default tolerance.
         progress: told after every macro step.
@@ -84,13 +80,13 @@ def run_warm_up(
 
     Raises:
         InputError: a scenario that is no cycle, a nut that leaves the shaft, a preload that is lost, a body that is
-            not there, a duration shorter than a cycle.
+            not there, a duration shorter than a cycle, a machine without heat.
         SimulationError: a motion that cannot be followed.
 
     Warns:
         ValidityWarning: viscosity or speed outside the range of their laws.
     """
-    cycle = ServoCycle(scenario, thermal, coupling)
+    cycle = ServoCycle(scenario)
     if not (math.isfinite(duration) and duration >= cycle.duration):
         raise InputError(
             f"{duration:g} s is shorter than the cycle", "duration", f"write {cycle.duration:.3g} s or more"

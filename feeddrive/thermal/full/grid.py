@@ -2,7 +2,7 @@
 
 Radially the nodes lie on the vertices, so that the surfaces carry nodes that own half cells; axially they lie in the
 middle of the cells (paper 002, section 2.2 and figure 3). With that the balances are those of the paper's equations
-(7) to (13), k1 and k2 in (7) put right; `feeddrive.thermal.full.node_classes` compares them.
+(7) to (13), k1 and k2 in (7) put right.
 
 | symbol | meaning | unit |
 |---|---|---|

@@ -18,7 +18,7 @@ from feeddrive.errors import ValidityWarning
 from feeddrive.thermal.full.full_model import discretise, model_of
 from feeddrive.thermal.full.grid import Cells
 from feeddrive.thermal.full.moving import lowered, ripple_loss
-from feeddrive.thermal.plant import ThermalPlant
+from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.reduced.model import HeatModel, Path
 from feeddrive.thermal.reduced.reduction import DEFAULT_ORDER, common_basis
 from feeddrive.thermal.reduced.system import HeatSystem
@@ -66,7 +66,7 @@ class MovingFamily:
 
 
 def moving_family(
-    plant: ThermalPlant, speeds: FloatArray, travel: Travel | None = None, order: int = DEFAULT_ORDER,
+    plant: Heat, speeds: FloatArray, travel: Travel | None = None, order: int = DEFAULT_ORDER,
     cells: Cells | None = None,
 ) -> MovingFamily:  # fmt: skip
     """Work out a family.

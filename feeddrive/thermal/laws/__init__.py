@@ -1,0 +1,1 @@
+"""Laws of heat: films, contact, friction, preload, expansion."""

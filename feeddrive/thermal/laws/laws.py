@@ -26,12 +26,12 @@ import numpy as np
 from feeddrive.effects.base import Value
 from feeddrive.effects.heat.base import Operation
 from feeddrive.effects.heat.bearing_heat import reference_torque
-from feeddrive.plant.symbolic_turn import SYMBOLS
+from feeddrive.symbolic_turn import SYMBOLS
 from feeddrive.thermal.coupling import viscous_share
 from feeddrive.thermal.full.full_model import END, FRONT, NUT, REAR, SHAFT, growth_name
+from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.laws.films import film_on_nut, film_on_screw
 from feeddrive.thermal.laws.friction import torque_law
-from feeddrive.thermal.plant import ThermalPlant
 from feeddrive.thermal.reduced.model import AMBIENT, Path
 from feeddrive.typing import Expression, FloatArray
 
@@ -72,17 +72,17 @@ class Laws:
     follows: bool
 
 
-def growth_places(plant: ThermalPlant) -> dict[str, float]:
+def growth_places(plant: Heat) -> dict[str, float]:
     """Growths that the network gives, and where the nut is then [m]."""
     return {growth_name(x): x for x in plant.rig.growth_positions} | {END: plant.rig.length}
 
 
-def channels(plant: ThermalPlant) -> tuple[str, ...]:
+def channels(plant: Heat) -> tuple[str, ...]:
     """Channels of sensors that may lag."""
     return tuple(dict.fromkeys(e.place for e in plant.effects if e.place_key == "channel"))
 
 
-def groups_of(plant: ThermalPlant) -> Groups:
+def groups_of(plant: Heat) -> Groups:
     """Parameters by group: those that the file declares, then those of its effects."""
     seats = {"front_film": plant.rig.front.film or 0.0, "rear_film": plant.rig.rear.film or 0.0}
     frictions = {"nut": plant.nut, "front_bearing": plant.front, "rear_bearing": plant.rear}
@@ -91,7 +91,7 @@ def groups_of(plant: ThermalPlant) -> Groups:
     return {"film": vars(plant.films), "contact": {"conductance": plant.contact, **seats}, **declared, **own}
 
 
-def values_of(plant: ThermalPlant) -> FloatArray:
+def values_of(plant: Heat) -> FloatArray:
     """Parameters of `Laws.names`."""
     found: list[float] = []
     for group in groups_of(plant).values():
@@ -100,7 +100,7 @@ def values_of(plant: ThermalPlant) -> FloatArray:
     return np.array(found)
 
 
-def laws_of(plant: ThermalPlant) -> Laws:
+def laws_of(plant: Heat) -> Laws:
     """The laws of a plant; plants that differ in values alone share them."""
     lengths = tuple(
         (name, key, len(value) if isinstance(value, tuple) else 0)
@@ -114,7 +114,7 @@ def laws_of(plant: ThermalPlant) -> Laws:
 class _Holder:
     """Carries a plant past the cache, whose key is the structure alone."""
 
-    def __init__(self, plant: ThermalPlant) -> None:
+    def __init__(self, plant: Heat) -> None:
         self.plant = plant
 
     def __eq__(self, other: object) -> bool:
@@ -130,7 +130,7 @@ def _laws(_: tuple[object, ...], holder: _Holder) -> Laws:
         return _made(holder.plant)
 
 
-def _made(plant: ThermalPlant) -> Laws:
+def _made(plant: Heat) -> Laws:
     groups, names = _symbols(groups_of(plant))
     columns = ca.vertcat(*[symbol for group in groups.values() for symbol in group.values()])
     given = {name: ca.SX.sym(name) for name in ("speed", "start", "step", "air", "cold")}
@@ -164,13 +164,13 @@ def _symbols(groups: Groups) -> tuple[dict[str, dict[str, Expression]], tuple[st
     return symbols, tuple(names)
 
 
-def _bearing(plant: ThermalPlant, groups: Mapping[str, Mapping[str, Expression]], speed: Expression) -> Expression:
+def _bearing(plant: Heat, groups: Mapping[str, Mapping[str, Expression]], speed: Expression) -> Expression:
     """Torque of the front bearing, as declared [N m]."""
     return reference_torque(speed) if plant.front is None else torque_law(speed, groups["front_bearing"])
 
 
 def _conductances(
-    plant: ThermalPlant, groups: Mapping[str, Mapping[str, Expression]], run: Operation
+    plant: Heat, groups: Mapping[str, Mapping[str, Expression]], run: Operation
 ) -> dict[Path, Expression]:
     contact = groups["contact"]
     found: dict[Path, Expression] = {
@@ -192,7 +192,7 @@ def _conductances(
 
 
 def _inputs(
-    plant: ThermalPlant, groups: Mapping[str, Mapping[str, Expression]], run: Operation, air: Expression,
+    plant: Heat, groups: Mapping[str, Mapping[str, Expression]], run: Operation, air: Expression,
     rises: Mapping[str, Expression], cold: Expression,
 ) -> dict[str, Expression]:  # fmt: skip
     load, oil, bearing_oil = _factors(plant, groups, rises, cold)
@@ -215,7 +215,7 @@ def _inputs(
 
 
 def _factors(
-    plant: ThermalPlant, groups: Mapping[str, Mapping[str, Expression]], rises: Mapping[str, Expression],
+    plant: Heat, groups: Mapping[str, Mapping[str, Expression]], rises: Mapping[str, Expression],
     cold: Expression,
 ) -> tuple[Expression, Expression, Expression]:  # fmt: skip
     """On the nut's load torque, on its viscous torque, on that of the bearings."""
@@ -236,7 +236,7 @@ def _factors(
 
 
 def _sensing(
-    plant: ThermalPlant, groups: Mapping[str, Mapping[str, Expression]], columns: Expression
+    plant: Heat, groups: Mapping[str, Mapping[str, Expression]], columns: Expression
 ) -> tuple[ca.Function, dict[str, tuple[int, ...]], tuple[str, ...]]:
     time = ca.SX.sym("time")
     frame = [

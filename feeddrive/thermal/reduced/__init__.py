@@ -1,0 +1,1 @@
+"""The reduced heat model: the full model's class with a few states."""

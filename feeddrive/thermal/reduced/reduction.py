@@ -24,7 +24,7 @@ from feeddrive.thermal.reduced.system import HeatSystem
 from feeddrive.typing import FloatArray
 
 DEFAULT_ORDER = 36
-"""Within 2 mK and 5 nm of the full model over the wide range of `ThermalPlant.limits`."""
+"""Within 2 mK and 5 nm of the full model over the wide range of `Heat.limits`."""
 
 _GATHERED = 20
 

@@ -1,0 +1,1 @@
+"""Runs of the heat model over hours, their energy balance, their summary."""

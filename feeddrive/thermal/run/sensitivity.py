@@ -22,11 +22,11 @@ import casadi as ca
 import numpy as np
 from scipy.signal import lfilter
 
-from feeddrive.plant.symbolic_turn import SYMBOLS
+from feeddrive.symbolic_turn import SYMBOLS
 from feeddrive.thermal.bound_function import BoundFunction
 from feeddrive.thermal.full.full_model import NUT
+from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.laws.laws import FOLLOWED, INPUTS, PATHS, Laws, growth_places, laws_of, values_of
-from feeddrive.thermal.plant import ThermalPlant
 from feeddrive.thermal.reduced.model import HeatModel, Path
 from feeddrive.thermal.reduced.propagators import Propagator, propagator
 from feeddrive.thermal.run.warm_up import channel_of, grouped, lagging, row_arguments
@@ -37,7 +37,7 @@ Slopes = dict[str, tuple[FloatArray, FloatArray]]
 
 
 def simulate_with_slopes(
-    plant: ThermalPlant, model: HeatModel, step: float, speeds: FloatArray, ambient: FloatArray, wanted: Sequence[str]
+    plant: Heat, model: HeatModel, step: float, speeds: FloatArray, ambient: FloatArray, wanted: Sequence[str]
 ) -> Slopes:
     """Channels as `warm_up.simulate` gives them, with their slopes.
 
@@ -213,7 +213,7 @@ class _Follower:
 
 
 def _read(
-    plant: ThermalPlant, laws: Laws, model: HeatModel, states: FloatArray, slopes: FloatArray, step: float,
+    plant: Heat, laws: Laws, model: HeatModel, states: FloatArray, slopes: FloatArray, step: float,
     first: float, values: FloatArray, columns: tuple[int, ...],
 ) -> Slopes:  # fmt: skip
     """What sensors read, from states times C^(1/2)."""

@@ -19,8 +19,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from feeddrive.thermal.full.full_model import NUT
+from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.laws.laws import FOLLOWED
-from feeddrive.thermal.plant import ThermalPlant
 from feeddrive.thermal.reduced.model import HeatModel, Path
 from feeddrive.thermal.reduced.reduction import DEFAULT_ORDER, compressed, reduce_model
 from feeddrive.thermal.reduced.system import HeatSystem
@@ -78,7 +78,7 @@ class ThermalStudy:
         energy: the balance.
     """
 
-    plant: ThermalPlant
+    plant: Heat
     duty: Duty
     series: Mapping[str, FloatArray]
     reduced: Mapping[str, FloatArray]
@@ -98,7 +98,7 @@ class ThermalStudy:
         return {name: float(np.max(np.abs(self.series[name] - self.reduced[name]))) for name in self.series}
 
 
-def study(plant: ThermalPlant, duty: Duty, within: float = 1e-6, order: int = DEFAULT_ORDER) -> ThermalStudy:
+def study(plant: Heat, duty: Duty, within: float = 1e-6, order: int = DEFAULT_ORDER) -> ThermalStudy:
     """Let a machine warm up from rest and cold.
 
     Args:

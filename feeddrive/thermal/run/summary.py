@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feeddrive.thermal.plant import ThermalPlant
+from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.reduced.model import HeatModel, Path
 
 SHARES = (0.0, 0.25, 0.5, 1.0)
@@ -42,13 +42,13 @@ class HeatRow:
     time_constants: tuple[float, ...]
 
 
-def heat_rows(plant: ThermalPlant) -> tuple[HeatRow, ...]:
+def heat_rows(plant: Heat) -> tuple[HeatRow, ...]:
     """The plant at rest and at a quarter, half and all of its highest speed."""
     model = plant.full_model()
     return tuple(_row(plant, model, share * plant.highest_speed) for share in SHARES)
 
 
-def _row(plant: ThermalPlant, model: HeatModel, speed: float) -> HeatRow:
+def _row(plant: Heat, model: HeatModel, speed: float) -> HeatRow:
     conductances = plant.at_speed(speed)
     system = model.at(conductances)
     heats = {name: float(values[0]) for name, values in plant.heats(np.array([speed])).items()}

@@ -21,8 +21,8 @@ from scipy.signal import lfilter
 from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.thermal.bound_function import BoundFunction
 from feeddrive.thermal.full.full_model import FRONT, NUT, REAR
+from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.laws.laws import FOLLOWED, INPUTS, PATHS, Laws, growth_places, laws_of, values_of
-from feeddrive.thermal.plant import ThermalPlant
 from feeddrive.thermal.reduced.model import HeatModel, Path
 from feeddrive.thermal.reduced.propagators import propagator
 from feeddrive.thermal.reduced.stepping import Stepper
@@ -150,7 +150,7 @@ def grouped(table: FloatArray) -> tuple[FloatArray, IntegerArray]:
 
 
 def simulate(
-    plant: ThermalPlant, model: HeatModel, step: float, speeds: FloatArray, ambient: FloatArray,
+    plant: Heat, model: HeatModel, step: float, speeds: FloatArray, ambient: FloatArray,
     rows: Rows | None = None,
 ) -> dict[str, FloatArray]:  # fmt: skip
     """Temperatures and growth of a machine from the speed of its screw and the air around it.
@@ -170,7 +170,7 @@ def simulate(
     return sensed(plant, model, states, step, float(ambient[0]))
 
 
-def declared_rows(plant: ThermalPlant, step: float, speeds: FloatArray, ambient: FloatArray) -> Rows:
+def declared_rows(plant: Heat, step: float, speeds: FloatArray, ambient: FloatArray) -> Rows:
     """What acts on the plant as its file says, effects among it; arguments as `simulate`.
 
     Raises:
@@ -220,9 +220,7 @@ class _Followed:
         return self._inputs[: len(HEATED)]
 
 
-def sensed(
-    plant: ThermalPlant, model: HeatModel, states: FloatArray, step: float, first: float
-) -> dict[str, FloatArray]:
+def sensed(plant: Heat, model: HeatModel, states: FloatArray, step: float, first: float) -> dict[str, FloatArray]:
     """Channels that a plant's sensors read from states (k, n), frame growth added and lags behind; as `simulate`."""
     laws, values = laws_of(plant), values_of(plant)
     time = step * np.arange(1.0, len(states) + 1)

@@ -12,8 +12,6 @@ from feeddrive.errors import InputError
 from feeddrive.files import plants_folder
 from feeddrive.plant.file.files import read_plant
 from feeddrive.plant.plant import Plant
-from feeddrive.thermal.file.files import read_thermal_plant
-from feeddrive.thermal.plant import ThermalPlant
 from tests.generator.axis import AXES
 from tests.generator.effects import Effect
 from tests.generator.examples import examples
@@ -35,10 +33,10 @@ def is_warm_up(machine: str) -> bool:
 
 
 @cache
-def declared(machine: str) -> Plant | ThermalPlant:
+def declared(machine: str) -> Plant:
     """The declared plant of a machine."""
     if is_warm_up(machine):
-        return read_thermal_plant(plants_folder() / "thermal_bench.toml")
+        return read_plant(plants_folder() / "thermal_bench.toml")
     return read_plant(plants_folder() / f"{machine}_axis.toml")
 
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from feeddrive.diagnosis.judging.judge import error_series, whole
 from feeddrive.diagnosis.likelihood.evidence import AxisEvidence, Evidence
-from feeddrive.diagnosis.likelihood.predictor import Machine
+from feeddrive.plant.plant import Plant
 from tests.generator.axis import AxisParameters
 from tests.recovery.suite.regression_terms import terms_of
 from tests.recovery.suite.truth import Errors, Prepared
@@ -50,7 +50,7 @@ def installed() -> bool:
 
 def columns(pair: Prepared, evidence: Evidence) -> dict[str, Column]:
     """The declared plant's error, channel by channel."""
-    plant: Machine = pair.problem.plant
+    plant: Plant = pair.problem.plant
     errors = error_series(pair.problem, plant, whole(evidence))
     rows = np.flatnonzero(evidence.thinned(evidence.counted))
     blocks = (rows * evidence.recording.sample_time / evidence.block).astype(int)

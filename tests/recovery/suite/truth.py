@@ -15,7 +15,6 @@ from feeddrive.diagnosis.preparation import prepared
 from feeddrive.effects.base import Effect
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
-from feeddrive.thermal.plant import ThermalPlant
 
 Errors = dict[str, float]
 """Channel to rms in the band on the recording that is judged (SI)."""
@@ -38,13 +37,13 @@ class Prepared:
         return _errors(results, "before"), _errors(results, "after")
 
 
-def prepare_pair(plant: Plant | ThermalPlant, fitted: Recording, judged: Recording) -> Prepared:
+def prepare_pair(plant: Plant, fitted: Recording, judged: Recording) -> Prepared:
     """The pair, ready for comparison."""
     problem, kept, _ = prepared(plant, [fitted], [judged], 0.75)
     return Prepared(problem, tuple(kept))
 
 
-def declared_errors(plant: Plant | ThermalPlant, judged: Recording) -> Errors:
+def declared_errors(plant: Plant, judged: Recording) -> Errors:
     """Errors of the declared plant on one recording."""
     return prepare_pair(plant, judged, judged).errors(())[0]
 

@@ -1,0 +1,118 @@
+"""Declared values that an effect says to be other: named where they are beyond their tolerances, and said once."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from feeddrive.diagnosis.calibration.calibrate import ENOUGH, PASSES, moved, recalibrated, with_kept
+from feeddrive.diagnosis.calibration.declared import CalibratedValue, as_effect, calibrated_values
+from feeddrive.diagnosis.calibration.known import TOLERANCE, known_values
+from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
+from feeddrive.diagnosis.likelihood.tolerances import BEYOND
+from feeddrive.effects.base import Effect, Value, number
+from feeddrive.effects.chain.inertia_deviation import declared_inertia
+from feeddrive.effects.friction.friction_deviation import FrictionDeviation
+from feeddrive.plant.plant import Plant
+
+SURE = 3.0
+"""Deviations by which no values within their tolerances may explain the recordings, and one beyond its does: one of 700
+by chance for each of a dozen values, where the truth is at the very end of a tolerance."""
+
+AGAINST = 2 * math.log(20.0)
+"""Twice the logarithm of the odds from which a value is refused that is not the likeliest (as `ambiguity`)."""
+
+
+def beyond_tolerance(problem: Problem, found: Fit) -> tuple[Problem, Effect] | None:
+    """The declared value that is surest to be beyond its tolerance, as an effect; None where none is asserted.
+
+    One is beyond its tolerance where no values within theirs explain the recordings, and some do that are all but it
+    within theirs. Of values that are alike to the recordings the likeliest is taken; `other_places` says the others.
+
+    Returns:
+        The problem without it among the values that are fitted, and the effect, from its likeliest value.
+    """
+    known = known_values(problem, found)
+    if known is None or problem.calibration is None:
+        return None
+    least, able = known.least(), [i for i, value in enumerate(known.values) if value.name]
+    gained = {i: least - known.least(i) for i in able}
+    most = max(gained.values(), default=0.0)
+    if most < SURE**2:
+        return None
+    alike = [i for i in able if gained[i] > most - AGAINST]
+    costs = {i: known.likeliest(i, BEYOND / known.values[i].deviation) for i in alike}
+    place = min(alike, key=lambda i: costs[i][1])
+    likeliest = np.array([known.c(i, float(u)) for i, u in enumerate(costs[place][0])])
+    there = replace(problem, calibration=replace(problem.calibration, coordinates=likeliest))
+    freed, (effect,) = said_by_effects(there, [as_effect(problem.plant, known.values[place], 0.0)])
+    return _together(freed, (*found.effects, effect))
+
+
+def _together(problem: Problem, effects: Sequence[Effect]) -> tuple[Problem, Effect]:
+    """Effects and declared values fitted in turn until neither moves: alike, each bends what the other is told by."""
+    for _ in range(PASSES):
+        before = problem = recalibrated(problem, effects)
+        effects = fit(problem, effects).effects
+        problem = problem.settled(effects)
+        if np.max(np.abs(moved(before, problem)), initial=0.0) < ENOUGH:
+            break
+    return problem, effects[-1]
+
+
+def said_by_effects(problem: Problem, effects: Sequence[Effect]) -> tuple[Problem, tuple[Effect, ...]]:
+    """Every declared value that an effect of a set says to be other is said by it alone.
+
+    Value and effect would be one unknown twice, each free to take back what the other says.
+
+    Returns:
+        The problem without these values among those that are fitted, and the effects with what they were fitted to:
+        together the machine that it was.
+    """
+    known, plant = problem.calibration, problem.plant
+    if known is None or not known.values:
+        return problem, tuple(effects)
+    result, kept = list(effects), [True] * len(known.values)
+    for i, (value, coordinate) in enumerate(zip(known.values, known.coordinates, strict=True)):
+        at = [n for n, e in enumerate(result) if value.name and _is_said_by(value, e)]
+        if at:
+            result[at[-1]] = _joined(result[at[-1]], as_effect(plant, value, float(coordinate)))
+            kept[i] = False
+    return (problem if all(kept) else with_kept(problem, kept)), tuple(result)
+
+
+def _is_said_by(value: CalibratedValue, effect: Effect) -> bool:
+    place = str(effect.port) if isinstance(effect, FrictionDeviation) else effect.place
+    return (effect.name, place) == (value.name, value.place)
+
+
+def _joined(one: Effect, other: Effect) -> Effect:
+    """Two deviations of a declared value as one: factors multiply, masses and inertias add."""
+    joined: dict[str, Value] = {}
+    for key in other.values:
+        first, second = number(one.values[key]), number(other.values[key])
+        joined[key] = first * second if key.endswith("factor") else first + second
+    return one.with_values(**joined)
+
+
+def is_within_tolerance(effect: Effect, plant: Plant) -> bool | None:
+    """Whether an effect puts a declared value no further than its tolerance; None where it is about none."""
+    about = [value for value in calibrated_values(plant) if value.name and _is_said_by(value, effect)]
+    if not about:
+        return None
+    return all(abs(_coordinate(plant, value, effect)) <= TOLERANCE for value in about)
+
+
+def _coordinate(plant: Plant, value: CalibratedValue, effect: Effect) -> float:
+    """Logarithm of a value over the declared one, over its deviation, with an effect in; minus infinity below zero."""
+    if isinstance(effect, FrictionDeviation):
+        factor = number(effect.values["viscous_factor" if value.key.endswith("viscous") else "coulomb_factor"])
+    elif "factor" in effect.values:
+        factor = number(effect.values["factor"])
+    else:
+        declared = declared_inertia(plant.chain.values, value.place) if "inertia" in effect.values else value.declared
+        factor = 1 + number(next(iter(effect.values.values()))) / declared
+    return math.log(factor) / value.deviation if factor > 0 else -math.inf

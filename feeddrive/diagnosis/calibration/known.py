@@ -1,0 +1,181 @@
+"""What recordings tell of declared values by themselves, and what that leaves of one while the others keep theirs.
+
+    chi²(u) = |A u - b|²,   A = S^-1/2 H,   b = S^-1/2 K' r
+    T(V) = least of chi² over u within the tolerances, the values V free of theirs
+    interval of value i: the u_i that chi² <= T({i}) + 1.96² reaches while all others are within their tolerances
+
+| symbol | meaning | unit |
+|---|---|---|
+| u | values, in the coordinates of their own effect, over their deviation | 1 |
+| K, r | slopes with u less what the effects' own slopes explain, and the residual at u = 0, over the noise | 1 |
+| H, S | K'K, and the covariance of K' r by the colour of the residual | 1 |
+
+What a stiffness does is in proportion to its compliance, what a mass or a friction does to itself: f^p is linear in u,
+p = -1 or 1, f the value over the declared one. Tolerances are ends here, not deviations: values alike to the recordings
+(nut and bearing where the far end slides) share what is missing, and each may have all of it that the others' ends
+allow. So a value is beyond its tolerance where no values within theirs explain the recordings, and an interval
+holds the truth whichever of those that are alike is the one. T ends at two deviations, that is at a factor of one plus
+the tolerance either way; intervals at what a tolerance of 20 % is read as, from 80 to 120 %, which is a little more.
+Source: Lawson and Hanson, Solving Least Squares Problems (1974), chapter 23 (ends); Venzon and Moolgavkar, Appl.
+Statist. 37 (1988) 87 (intervals by profile).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from scipy.optimize import brentq, lsq_linear
+
+from feeddrive.diagnosis.calibration.declared import FARTHEST, CalibratedValue
+from feeddrive.diagnosis.certainty.noise_colour import score_covariance
+from feeddrive.diagnosis.likelihood.fit import Fit, Problem, linear_step
+from feeddrive.typing import FloatArray
+
+TOLERANCE = 2.0
+"""Deviations of a coordinate that a tolerance is, by definition (`tolerances`)."""
+
+NORMAL_95 = 1.96
+
+MOST = 1024.0
+"""Deviations beyond which a value is not told at all."""
+
+
+@dataclass(frozen=True)
+class Known:
+    """Declared values as the recordings tell of them.
+
+    Attributes:
+        values: that are fitted.
+        at: coordinates c at which the slopes were taken, (k,).
+        slopes, told: A, (k, k), and b, (k,).
+    """
+
+    values: tuple[CalibratedValue, ...]
+    at: FloatArray
+    slopes: FloatArray
+    told: FloatArray
+
+    @cached_property
+    def ends(self) -> FloatArray:
+        """Both ends of every tolerance as u, two deviations, (2, k)."""
+        return np.array([[self.u(i, way * TOLERANCE) for i in range(len(self.values))] for way in (-1, 1)])
+
+    @cached_property
+    def read_ends(self) -> FloatArray:
+        """Both ends of every tolerance as people read it, as u, (2, k)."""
+        low = [self.u(i, math.log(_least_share(one.tolerance)) / one.deviation) for i, one in enumerate(self.values)]
+        return np.array([low, self.ends[1]])
+
+    def u(self, place: int, coordinate: float) -> float:
+        """The coordinate in which the effect of a value is linear, at c."""
+        power, deviation = _power(self.values[place]), self.values[place].deviation
+        return float(self.at[place]) + math.expm1(power * deviation * (coordinate - self.at[place])) / power / deviation
+
+    def c(self, place: int, u: float) -> float:
+        """c at that coordinate; the farthest where no machine has it."""
+        power, deviation = _power(self.values[place]), self.values[place].deviation
+        grown = 1 + power * deviation * (u - float(self.at[place]))
+        far = FARTHEST / deviation
+        if grown <= math.exp(-2 * FARTHEST):
+            return -power * far
+        return min(max(float(self.at[place]) + math.log(grown) / power / deviation, -far), far)
+
+    @cached_property
+    def mean(self) -> FloatArray:
+        """Most likely u under the tolerances as deviations, (k,)."""
+        return self.covariance @ self.slopes.T @ self.told
+
+    @cached_property
+    def covariance(self) -> FloatArray:
+        """Of u under the tolerances as deviations, (k, k)."""
+        return np.linalg.inv(self.slopes.T @ self.slopes + np.eye(len(self.told)))
+
+    def likeliest(self, place: int, deviation: float) -> tuple[FloatArray, float]:
+        """Most likely u, (k,), where one value has another deviation [of its own], and twice the negative logarithm of
+        the evidence of that."""
+        prior = np.ones(len(self.told))
+        prior[place] = deviation**-2
+        normal = self.slopes.T @ self.slopes + np.diag(prior)
+        u = np.linalg.solve(normal, self.slopes.T @ self.told)
+        left = self.slopes @ u - self.told
+        cost = float(left @ left + prior @ u**2 + np.linalg.slogdet(normal)[1] - np.sum(np.log(prior)))
+        return u, cost
+
+    def least(self, *free: int) -> float:
+        """T of the values at the places that are free."""
+        return _least(self.slopes, self.told, *_freed(self.ends, *free))[0]
+
+    def interval(self, place: int) -> tuple[float, float]:
+        """Ends of the 95 % interval of a value as c, all others within their tolerances."""
+        others = np.arange(len(self.told)) != place
+        low, high = self.read_ends[:, others]
+        least, best = _least(self.slopes, self.told, *_freed(self.read_ends, place))
+
+        def excess(u: float) -> float:
+            told = self.told - self.slopes[:, place] * u
+            return _least(self.slopes[:, others], told, low, high)[0] - least - NORMAL_95**2
+
+        ends = []
+        for way in (-1.0, 1.0):
+            far = way
+            while excess(best[place] + far) < 0 and abs(far) < MOST:
+                far *= 2
+            ends.append(best[place] + (brentq(lambda step: excess(best[place] + step), 0.0, far, xtol=1e-3)
+                        if abs(far) < MOST else far))  # fmt: skip
+        return self.c(place, ends[0]), self.c(place, ends[1])
+
+
+def _freed(ends: FloatArray, *free: int) -> FloatArray:
+    ends = ends.copy()
+    ends[:, list(free)] = [[-np.inf], [np.inf]]
+    return ends
+
+
+def _least(slopes: FloatArray, told: FloatArray, low: FloatArray, high: FloatArray) -> tuple[float, FloatArray]:
+    """The least chi² between ends, and where."""
+    if not slopes.shape[1]:
+        return float(told @ told), np.zeros(0)
+    solved = lsq_linear(slopes, told, (low, high), method="bvls")
+    return 2 * float(solved.cost), solved.x
+
+
+def _least_share(tolerance: float) -> float:
+    """Least value over the declared one: one less the tolerance, up to a half; more can only be meant as a factor."""
+    return max(1 - tolerance, min(0.5, 1 / (1 + tolerance)))
+
+
+def _power(value: CalibratedValue) -> int:
+    return -1 if value.key.endswith("stiffness") else 1
+
+
+def known_values(problem: Problem, found: Fit) -> Known | None:
+    """What the recordings tell of the declared values beside a fitted set; None where none is fitted."""
+    known, whitened = problem.calibration, problem.whitener
+    if known is None or whitened is None:
+        return None
+    columns, rows = whitened.columns, [e.fit_rows for e in problem.evidence]
+    residual = problem.unwhitened(found.effects)
+    left = residual - columns @ (whitened.most_likely(residual) - known.coordinates)
+    own = _own_slopes(problem, found)
+    if own.size:
+        columns = columns - own @ np.column_stack([linear_step(own, column) for column in columns.T])
+    score = score_covariance(problem.evidence, rows, left, columns)
+    scale = np.sqrt(np.maximum(np.diag(score), np.finfo(float).tiny))
+    sizes, directions = np.linalg.eigh(score / np.outer(scale, scale))
+    usable = sizes > 1e-10
+    half = (directions[:, usable] / np.sqrt(sizes[usable])).T / scale
+    told = half @ (columns.T @ (residual + whitened.offset))
+    empty = len(known.values) - len(half)  # a direction that no row tells of
+    slopes = np.vstack([half @ (columns.T @ columns), np.zeros((empty, len(known.values)))])
+    return Known(known.values, known.coordinates, slopes, np.concatenate([told, np.zeros(empty)]))
+
+
+def _own_slopes(problem: Problem, found: Fit) -> FloatArray:
+    """Slopes of the effects that were found, not whitened, (m, k)."""
+    if not found.effects:
+        return np.zeros((0, 0))
+    bare = replace(problem, plant=problem.machine(), calibration=None)
+    return bare.jacobian(found.effects, [True] * len(found.effects), bare.predicted(found.effects))

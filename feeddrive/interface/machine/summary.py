@@ -1,0 +1,288 @@
+"""Summary of a machine: values with their sources, inertias, stiffness, friction, modes, life."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from feeddrive.interface.machine.heat_summary import HeatSummary
+from feeddrive.interface.shown import Listing, Shown, finite, write_figures, write_json
+from feeddrive.plant.analysis.modes import Modes
+from feeddrive.plant.analysis.rated_life import LifeRow
+from feeddrive.plant.analysis.stiffness_budget import StiffnessBudget
+from feeddrive.plant.analysis.summary import Summary as Figures
+from feeddrive.plant.plant import Plant
+from feeddrive.report.words.chain_words import chain_remark
+from feeddrive.units.quantity import format_quantity
+
+if TYPE_CHECKING:
+    from feeddrive.report.figures.drawing import ReportFigure
+
+_KNOWN = ("motor", "screw", "axial", "table")
+"""Coordinates of the modes that people know; `record` has all."""
+
+_LIFE = "rated life of the ball screw, survived by 90 %"
+
+_HOUR, _KILOMETRE, _MILLION = 3600.0, 1e3, 1e6
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Stiffness(Shown):
+    """Static stiffness at the table with the motor held, and whose compliance it is.
+
+    Attributes:
+        axis_name: of the machine.
+        position: of the table [m].
+        budget: everything that was computed, SI.
+        plant: of which it is the answer; drawn where it is described by parts.
+    """
+
+    axis_name: str
+    position: float
+    budget: StiffnessBudget
+    plant: Plant
+
+    def __float__(self) -> float:
+        """Combined stiffness [N/m]."""
+        return self.budget.total
+
+    @property
+    def total(self) -> float:
+        """Combined stiffness, motor held [N/m]."""
+        return self.budget.total
+
+    def listing(self) -> Listing:
+        """One row per part, then axial, torsional and combined."""
+        budget = self.budget
+        found = [(one.part, one.deformation, 1 / one.compliance, one.share) for one in budget.parts]
+        found += [
+            ("axial stiffness", "", budget.axial, budget.axial_share),
+            ("torsional stiffness at the table", "", budget.torsional, budget.torsional_share),
+            ("combined stiffness, motor held", "", budget.total, 1.0),
+        ]
+        rows = [
+            [f"{part}, {how}" if how else part, format_quantity(k, "N/m"), f"{share:.1%}" if how else f"{share:.0%}"]
+            for part, how, k, share in found
+        ]
+        names = ("part", "deformation", "stiffness [N/m]", "share")
+        records = [dict(zip(names, one, strict=True)) for one in found]
+        at = f", table at {format_quantity(self.position, 'm')}" if self.plant.chain.varies else ""
+        title = f"{self.axis_name}: stiffness, motor held{at}"
+        return Listing(title, ("part", "felt at the table", "share of compliance"), rows, records)
+
+    def _figures(self) -> Sequence[ReportFigure]:
+        from feeddrive.report.figures.figure_stiffness import stiffness_figures
+
+        return stiffness_figures(self.plant, self.position)
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Life(Shown):
+    """Rated life of the ball screw, survived by 90 %, by preload alone and at the declared axial load.
+
+    Attributes:
+        axis_name: of the machine.
+        rows: one per load; none where no dynamic rating is declared.
+    """
+
+    axis_name: str
+    rows: Sequence[LifeRow]
+
+    def listing(self) -> Listing:
+        """One row per load."""
+        records = [
+            {
+                "force [N]": one.force,
+                "nut + [N]": one.nut_loads[0],
+                "nut − [N]": one.nut_loads[1],
+                "revolutions": one.revolutions,
+                "travel [m]": one.travel,
+                "time [s]": one.time,
+            }
+            for one in self.rows
+        ]
+        rows = [
+            [
+                format_quantity(one.force, "N") if one.force else "preload alone",
+                *(format_quantity(load, "N") for load in one.nut_loads),
+                _digits(one.revolutions / _MILLION),
+                f"{_digits(one.travel / _KILOMETRE)} km",
+                "" if one.time is None else f"{_digits(one.time / _HOUR)} h",
+            ]
+            for one in self.rows
+        ]
+        headings = ("axial force", "load of nut +", "of nut −", "10⁶ rev", "travel", "at greatest velocity")
+        title = f"{self.axis_name}: {_LIFE}"
+        if not self.rows:
+            title += " (not known: ball_screw.dynamic_rating is not declared)"
+        return Listing(title, headings, rows, records)
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Summary(Shown):
+    """Values with their sources, inertias, stiffness budget, friction, modes and rated life of a machine, and its heat.
+
+    Attributes:
+        plant: the machine.
+        figures: everything that was computed, SI.
+        life: rows of the rated life.
+    """
+
+    plant: Plant
+    figures: Figures
+    life: Sequence[LifeRow]
+
+    def listing(self) -> Listing:
+        """The declared values."""
+        return self.tables()[0]
+
+    def tables(self) -> tuple[Listing, ...]:
+        """Every table; those without rows are left out."""
+        plant, found = self.plant, self.figures
+        at = f", table at {format_quantity(found.position, 'm')}" if plant.chain.varies else ""
+        values = [
+            [key, ", ".join(format_quantity(one, unit) for one in _several(value)), source]
+            for key, value, unit, source in self._values()
+        ]
+        records = [{"value": key, "quantity": v, "unit": unit, "source": s} for key, v, unit, s in self._values()]
+        parts = [[key, format_quantity(one.value, one.unit), self._source(key)] for key, one in plant.data.items()]
+        tables = [
+            Listing(f"{plant.name}, {plant.chain.structure}", ("value", "quantity", "source"), values, records),
+            Listing("Parts as declared", ("part", "quantity", "source"), parts),
+            Listing(f"Inertia{at}", ("moves with", "at the motor", "at the table", "share"), self._inertias()),
+            Listing(
+                "What constant motion takes in + and in − direction; signs are those of the axis",
+                ("speed", "force +", "force −", "torque +", "torque −"),
+                self._friction(),
+            ),
+            self._modes(at),
+            replace(Life(plant.name, self.life).listing(), title=_LIFE.capitalize()),
+        ]
+        if found.stiffness is not None:
+            stiffness = Stiffness(plant.name, found.position, found.stiffness, plant).listing()
+            tables.insert(3, replace(stiffness, title=f"Stiffness, motor held{at}"))
+        heat = HeatSummary(plant.heat).tables() if plant.has_heat else ()
+        return (*(one for one in tables if one.rows), *heat)
+
+    def record(self) -> dict[str, Any]:
+        """Everything as plain values, SI; what is declared about heat under `heat`."""
+        plant, found = self.plant, self.figures
+        return {
+            "format": "feeddrive-show/1",
+            "name": plant.name,
+            "structure": plant.chain.structure,
+            "values": {
+                key: {"value": value, "unit": unit, "source": source} for key, value, unit, source in self._values()
+            },
+            "parts": {
+                key: {"value": one.value, "unit": one.unit, "source": self._source(key)}
+                for key, one in plant.data.items()
+            },
+            "position": found.position,
+            "inertia_at_motor": found.inertia_at_motor,
+            "mass_at_table": found.mass_at_table,
+            "inertias": [asdict(row) for row in found.inertias],
+            "stiffness": asdict(found.stiffness) if found.stiffness else None,
+            "friction": [asdict(row) for row in found.friction],
+            "life": [asdict(row) for row in self.life],
+            "modes": {
+                "coordinates": list(found.modes.coordinates),
+                "braked": _modes_record(found.modes.braked),
+                "free": _modes_record(found.modes.free),
+                "chain_valid_to": finite(found.modes.chain_valid_to),
+            },
+            **({"heat": HeatSummary(plant.heat).declared()} if plant.has_heat else {}),
+        }
+
+    def save(self, folder: str | Path) -> Path:
+        """Write `show.json`, and the figures of the stiffness of a machine that is described by parts.
+
+        Raises:
+            InputError: the folder cannot be written.
+        """
+        place = Path(folder)
+        write_json(self.record(), place / "show.json")
+        write_figures(self._figures(), place)
+        return place
+
+    def _figures(self) -> Sequence[ReportFigure]:
+        if self.plant.drive is None or not self.plant.chain.varies:
+            return ()
+        from feeddrive.report.figures.figure_stiffness import stiffness_figures
+
+        return stiffness_figures(self.plant, self.figures.position)
+
+    def _source(self, key: str) -> str:
+        return self.plant.origins.get(key, "")
+
+    def _values(self) -> list[tuple[str, Any, str, str]]:
+        """Key, SI value, unit and source of every value of chain and effects."""
+        plant = self.plant
+        rows: list[tuple[str, Any, str, str]] = [
+            (f"{one.section}.{one.section_key}", plant.chain.values[one.key], one.unit, self._source(one.key))
+            for one in plant.chain.known_values
+        ]
+        if math.isfinite(plant.torque_limit):
+            rows.append(("motor.torque_limit", plant.torque_limit, "N m", self._source("torque_limit")))
+        for effect in plant.motion_effects:
+            for parameter in (one for one in effect.parameters if one.key in effect.values):
+                key = f"{effect.label}.{parameter.key}"
+                rows.append((key, effect.values[parameter.key], parameter.unit, self._source(key)))
+        return rows
+
+    def _inertias(self) -> list[list[str]]:
+        found = self.figures
+        shown = [(one.coordinate.replace("_", " "), one.at_motor, one.at_table, one.share) for one in found.inertias]
+        shown.append(("all", found.inertia_at_motor, found.mass_at_table, 1.0))
+        return [
+            [name, format_quantity(motor, "kg m^2"), format_quantity(table, "kg"), f"{share:.0%}"]
+            for name, motor, table, share in shown
+        ]
+
+    def _friction(self) -> list[list[str]]:
+        units = ("m/s", "N", "N", "N m", "N m")
+        return [
+            [
+                format_quantity(value, unit)
+                for value, unit in zip(
+                    (row.speed, row.force_forward, row.force_backward, row.torque_forward, row.torque_backward),
+                    units,
+                    strict=True,
+                )
+            ]
+            for row in self.figures.friction
+        ]
+
+    def _modes(self, at: str) -> Listing:
+        """Modes by the coordinates that people know."""
+        found = self.figures.modes
+        kept = [i for i, name in enumerate(found.coordinates) if name in _KNOWN]
+        rows = [
+            [motor, format_quantity(frequency, "Hz"), f"{damping:.2%}", *(f"{part:+.2f}" for part in shape)]
+            for motor, modes in (("held", found.braked), ("free", found.free))
+            for frequency, damping, shape in zip(
+                modes.frequencies, modes.damping, modes.shapes.T[:, kept] + 0.0, strict=False
+            )
+        ]
+        headings = ("motor is", "frequency", "damping", *(found.coordinates[i] for i in kept))
+        return Listing(f"Modes, in table travel{at}", headings, rows, caption=chain_remark(found.chain_valid_to))
+
+
+def _modes_record(modes: Modes) -> dict[str, Any]:
+    return {
+        "frequencies": modes.frequencies.tolist(),
+        "damping": modes.damping.tolist(),
+        "shapes": modes.shapes.T.tolist(),
+    }
+
+
+def _several(value: Any) -> tuple[float, ...]:
+    return value if isinstance(value, tuple) else (value,)
+
+
+def _digits(value: float) -> str:
+    """Three digits and no power of ten, which nobody reads in hours and kilometres."""
+    return f"{float(f'{value:.3g}'):.15g}"

@@ -1,0 +1,1 @@
+"""Machines in motion: controllers, scenarios, sweeps, warm-up."""

@@ -1,0 +1,1 @@
+"""What a plant file declares about heat, and how it is joined to the motion."""

@@ -1,0 +1,82 @@
+"""What recordings leave of declared values that are alike: two springs in series of which only the sum is measured."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from feeddrive.diagnosis.calibration.declared import CalibratedValue
+from feeddrive.diagnosis.calibration.known import Known
+
+SHARE = 0.20
+"""Tolerance of either spring."""
+DEVIATION = 0.5 * math.log1p(SHARE)
+NUT, BEARING = 1.5e9, 0.8e9
+SURE_TO = 0.002
+"""Standard deviation of the measured compliance, of the declared one's."""
+
+
+def known(measured: float, at: float = 0.0) -> Known:
+    """Two springs whose compliance is `measured` times that declared, the slopes taken at c = `at`."""
+    values = tuple(
+        CalibratedValue(key, key, "N/m", stiffness, DEVIATION, "stiffness_deviation", key.partition("_")[0])
+        for key, stiffness in (("nut_stiffness", NUT), ("bearing_stiffness", BEARING))
+    )
+    compliance = np.array([1 / NUT, 1 / BEARING])
+    there, whole = compliance * math.exp(-DEVIATION * at), compliance.sum()
+    # compliance = there * (1 - deviation * (u - at)), over its standard deviation
+    row, noise = -there * DEVIATION, SURE_TO * whole
+    told = (measured * whole - (there * (1 + DEVIATION * at)).sum()) / noise
+    return Known(values, np.full(2, at), np.array([row / noise, [0.0, 0.0]]), np.array([told, 0.0]))
+
+
+def of(nut: float, bearing: float) -> float:
+    """Compliance over that declared."""
+    return (1 / (nut * NUT) + 1 / (bearing * BEARING)) / (1 / NUT + 1 / BEARING)
+
+
+@pytest.mark.parametrize("at", [0.0, -1.0])
+def test_within_both_tolerances_nothing_is_beyond(at: float) -> None:
+    assert known(of(0.84, 1.0), at).least() == pytest.approx(0.0, abs=1e-6)
+    assert known(of(0.84, 0.84), at).least() == pytest.approx(0.0, abs=1e-6)
+
+
+def test_beyond_both_tolerances_either_may_be() -> None:
+    found = known(of(0.5, 1.0))
+    most = of(1 / (1 + SHARE), 1 / (1 + SHARE))
+    assert found.least() == pytest.approx(((of(0.5, 1.0) - most) / SURE_TO) ** 2, rel=1e-6)
+    assert found.least(0) == pytest.approx(0.0, abs=1e-6)
+    assert found.least(1) == pytest.approx(0.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("at", [0.0, -1.0])
+@pytest.mark.parametrize(("nut", "bearing"), [(0.5, 1.0), (0.8, 1.0), (1.0, 0.9), (0.84, 0.84)])
+def test_an_interval_is_what_the_others_tolerance_leaves(nut: float, bearing: float, at: float) -> None:
+    """Ends in closed form: the other spring at an end of its tolerance, the sum 1.96 deviations away."""
+    found = known(of(nut, bearing), at)
+    for place, declared, other, beside in ((0, NUT, BEARING, bearing), (1, BEARING, NUT, nut)):
+        ends = [found.values[place].factor(c) for c in found.interval(place)]
+        whole = 1 / NUT + 1 / BEARING
+        expected = [
+            1 / (declared * ((of(nut, bearing) + way * 1.96 * SURE_TO) * whole - 1 / (1 + way * SHARE) / other))
+            for way in (1, -1)
+        ]
+        # the search for an end stops within a thousandth of a deviation
+        np.testing.assert_allclose(ends, expected, rtol=3e-4)
+        # the truth is in it while the other keeps its tolerance
+        assert ends[0] < (nut, bearing)[place] < ends[1] or beside == 0.5
+
+
+def test_the_likeliest_machine_leaves_the_others_as_declared() -> None:
+    found = known(of(0.5, 1.0))
+    u, _ = found.likeliest(0, 10.0)
+    assert found.values[0].factor(found.c(0, float(u[0]))) == pytest.approx(0.5, rel=0.03)
+    assert abs(u[1]) < 0.2
+
+
+def test_coordinates_go_there_and_back() -> None:
+    found = known(1.0, -1.0)
+    for c in (-3.0, -1.0, 0.0, 2.0):
+        assert found.c(0, found.u(0, c)) == pytest.approx(c, abs=1e-12)
