@@ -16,8 +16,8 @@ from typing import Any
 from feeddrive.errors import InputError, printable
 from feeddrive.files import write_text_atomically
 from feeddrive.interface.axis import load
-from feeddrive.interface.shown import Listing, Shown
 from feeddrive.interface.measured.watching import PLACE, watch
+from feeddrive.interface.shown import Listing, Shown
 from feeddrive.simulate.sweep.sweep_dask import client_of, refuse_unfit
 
 OWN_PLANT = "plant.toml"
