@@ -24,7 +24,7 @@ from feeddrive.errors import InputError
 from feeddrive.typing import FloatArray
 
 GLITCH_SPAN = math.radians(30.0)
-"""Of the angle after a reversal in which its glitch is looked for."""
+"""Angle after a reversal in which its glitch is looked for."""
 
 
 @dataclass(frozen=True)

@@ -18,13 +18,13 @@ from feeddrive.recording.checks.flaws import resolution
 from feeddrive.typing import FloatArray
 
 ROUNDED = 0.6
-"""Of a resolution, by which a rounded value departs: half of it, and what the scale between the two loses."""
+"""Share of a resolution, by which a rounded value departs: half of it, and what the scale between the two loses."""
 
 WIDE = 1000.0
 """Range over resolution from which a copy is told from two sensors that see next to nothing."""
 
 DIGITS = 1e-9
-"""Of the largest value: what ten significant digits in a file leave. No transmission gives so little."""
+"""Share of the largest value: what ten significant digits in a file leave. No transmission gives so little."""
 
 SIZES = 3
 """Different steps that show a grid: rest and one speed, to and fro, make two at most, whatever resolves them."""
