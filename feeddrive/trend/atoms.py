@@ -22,8 +22,8 @@ FEWEST_AFTER = 2
 """Recordings that a jump or a slope needs on either side: one alone cannot be told from an odd recording."""
 
 POWERS = (1.0, 1.5, 2.0)
-"""Of slopes: even wear; what it moves is seldom linear in it (compliance goes with 1 / stiffness), and a line through a
-curve that steepens begins too late."""
+"""How slopes rise: wear is even, but what it moves is seldom linear in it (compliance goes with 1 / stiffness), and a
+line through a curve that steepens begins too late."""
 
 SETTLING_DATES = 24
 TIME_CONSTANTS = 10

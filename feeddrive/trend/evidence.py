@@ -7,6 +7,19 @@
 S0 is the whitened sum of squares about the level, R^2 the share of it that the courses take. The prior of b holds as
 much information as one value (Zellner's g-prior, g = n; R. E. Kass and L. Wasserman, JASA 90, 1995): no size has to
 be set. Source of the closed form: F. Liang et al., Mixtures of g priors, JASA 103 (2008), eq. (5).
+
+The noise e is the scatter from file to file, and what wanders with the days:
+
+    K = (1 - nu) diag(w) + nu exp(-|t_i - t_j| / tau)
+
+| symbol | meaning |
+|---|---|
+| w | relative variance of a value: 1, more where its recording tells less |
+| nu | share of the variance that wanders: lubrication, temperature of the hall |
+| tau | time within which it forgets |
+
+Neither nu nor tau is known: every model of a series is judged over all of a grid of them, and the size of K is
+integrated out. A series that wanders is thereby not taken for one that changes.
 """
 
 from __future__ import annotations
@@ -16,14 +29,59 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy.linalg import cholesky, solve_triangular
 from scipy.special import logsumexp
 
 from feeddrive.trend.atoms import Atom, candidates, courses
-from feeddrive.trend.noise import Noise, noise_of
 from feeddrive.typing import FloatArray
 
 LEAST_LEFT = 1e-12
-"""Of a candidate's or the values' squared length that others leave: less is rounding."""
+"""Share of a candidate's or the values' squared length that others leave: less is rounding."""
+
+
+SHARES = (0.3, 0.6, 0.9)
+MEMORIES = (1.0, 3.0, 10.0, 30.0, 100.0)
+"""What the wandering part may be: shares, and memories in usual distances of the recordings, in half-decades."""
+
+
+@dataclass(frozen=True, eq=False)
+class Noise:
+    """All settings of the grid, h of them.
+
+    Attributes:
+        whitening: inverse of the lower Cholesky factor of each K, (h, n, n).
+        log_determinant: of each K, (h,).
+        log_prior: of each setting, (h,): a machine that does not wander is as likely as one that does in any way.
+    """
+
+    whitening: FloatArray
+    log_determinant: FloatArray
+    log_prior: FloatArray
+
+    def white(self, columns: FloatArray) -> FloatArray:
+        """Columns, (n, k), as they are where the noise is white and of size one, (h, n, k)."""
+        found: FloatArray = self.whitening @ columns
+        return found
+
+
+def noise_of(time: FloatArray, variance: FloatArray) -> Noise:
+    """The settings of the grid.
+
+    Args:
+        time: of the recordings, ascending, (n,).
+        variance: relative, (n,).
+    """
+    usual = float(np.median(np.diff(time)))
+    apart = np.abs(time[:, None] - time[None, :]) / usual
+    settings = [(0.0, 1.0), *((share, memory) for share in SHARES for memory in MEMORIES)]
+    inverses, logs = [], []
+    for share, memory in settings:
+        wandering = share * np.exp(-apart / memory) if share else 0.0
+        factor = cholesky(np.diag((1 - share) * variance) + wandering, lower=True)
+        inverses.append(solve_triangular(factor, np.eye(len(time)), lower=True))
+        logs.append(2 * float(np.sum(np.log(np.diag(factor)))))
+    prior = np.log([0.5, *([0.5 / (len(settings) - 1)] * (len(settings) - 1))])
+    return Noise(np.array(inverses), np.array(logs), prior)
 
 
 @dataclass(frozen=True, eq=False)

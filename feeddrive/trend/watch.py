@@ -31,7 +31,7 @@ from feeddrive.trend.checkpoint import (
     load_checkpoint,
     save_checkpoint,
 )
-from feeddrive.trend.events import Change, Event, events_of
+from feeddrive.trend.events import Change, Event, Growth, events_of, growth_of
 from feeddrive.trend.evidence import Series, Timeline
 from feeddrive.trend.folder import UNFINISHED, Source, opened, sources
 from feeddrive.trend.limits import Limit, limit_of
@@ -39,7 +39,6 @@ from feeddrive.trend.pooling import Pooled, pool
 from feeddrive.trend.quantities import Quantity, means_of, prior_widths, quantities_of
 from feeddrive.trend.regressors import TERMS, grid_for, linear_pass
 from feeddrive.trend.stamps import stamp_of
-from feeddrive.trend.warm_growth import Growth, growth_of
 from feeddrive.typing import FloatArray
 
 SAVED_EVERY = 60.0

@@ -10,8 +10,7 @@ from scipy.signal import lfilter
 
 from feeddrive.trend.atoms import JUMP, ODD, SETTLING, SLOPE, Atom
 from feeddrive.trend.change_points import ASSERTED, Course, course_of
-from feeddrive.trend.evidence import Series, Timeline
-from feeddrive.trend.noise import noise_of
+from feeddrive.trend.evidence import Series, Timeline, noise_of
 
 COUNT = 120
 

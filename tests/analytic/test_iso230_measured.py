@@ -79,6 +79,63 @@ def test_all_layouts_of_a_positioning_table_say_the_same(tmp_path: Path) -> None
     assert fd.iso230(written(tmp_path, positions)).figures_si() == pytest.approx(wide, rel=1e-9)
 
 
+def laser_file(ends: str = "\n") -> str:
+    """The same test as a laser's program writes it: every run its way, up and down in turn, targets in mm."""
+    rows, number = [], 0
+    for run in range(3):
+        for side in (UP, DOWN):
+            number += 1
+            order = range(3) if side is UP else (2, 1, 0)
+            rows += [f"{number:4d}{place + 1:4d}{side[place][run]:12.4f}" for place in order]
+    lines = ["HEADER::", "File type: LINEAR", "Owner: RENISHAW", "Version no: 2", "", "TARGET DATA::",
+             "Filetype: LINEAR", "Target-count: 3", "Targets :", "  0.0000  100.0000", "  200.0000", "Flags: 0 0",
+             "", "USER-TEXT::", "Machine: M1", "Date: 2026-03-01", "Axis: X", "", "RUNS::", "Run-count: 6", "",
+             "DEVIATIONS::", "Run Target Data:", *rows, "", "ENVIRONMENT::", "Air temp: 20.1"]  # fmt: skip
+    return ends.join([*lines, ""])
+
+
+@pytest.mark.parametrize("ends", ["\n", "\r\n"])
+def test_file_of_a_laser(tmp_path: Path, ends: str) -> None:
+    path = tmp_path / "x.rtl"
+    path.write_bytes(laser_file(ends).encode())
+    assert fd.iso230(path).figures_si() == pytest.approx(fd.iso230(written(tmp_path, TABLE)).figures_si(), rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("File type: LINEAR", "File type: ANGULAR", "test of angular"),
+        ("Target-count: 3", "Target-count: 4", "4 are declared"),
+        ("   1   2      1.4000", "   1   9      1.4000", "there is no target 9"),
+        ("   1   2      1.4000", "   1   2", "is not run, target, deviation"),
+        ("   1   2      1.4000", "   1   1      1.4000", "in no order"),
+        ("Run Target Data:", "Data:", "deviations are missing"),
+    ],
+)
+def test_damage_of_a_laser_file_is_one_line(tmp_path: Path, old: str, new: str, said: str) -> None:
+    assert old in laser_file()
+    with pytest.raises(fd.InputError, match=said):
+        fd.iso230(written(tmp_path, laser_file().replace(old, new, 1), "x.rtl"))
+
+
+@pytest.mark.parametrize(
+    "heads",
+    [
+        "Target position (mm);Run 1 forward (µm);Run 1 reverse (µm);Run 2 forward (µm);Run 2 reverse (µm);"
+        "Run 3 forward (µm);Run 3 reverse (µm)",
+        "Soll [mm];1 ↑ [µm];1 ↓ [µm];2 ↑ [µm];2 ↓ [µm];3 ↑ [µm];3 ↓ [µm]",
+        "Nominal [mm];+ 1 [µm];- 1 [µm];+ 2 [µm];- 2 [µm];+ 3 [µm];- 3 [µm]",
+    ],
+)
+def test_other_words_for_the_columns_of_a_table(tmp_path: Path, heads: str) -> None:
+    rows = [
+        ";".join([str(place), *(str(row[run]) for run in range(3) for row in (up, down))]).replace(".", ",")
+        for place, up, down in zip((0, 100, 200), UP, DOWN, strict=True)
+    ]
+    found = fd.iso230(written(tmp_path, "\n".join([heads, *rows, ""]))).figures_si()
+    assert found == pytest.approx(fd.iso230(written(tmp_path, TABLE, "other.csv")).figures_si(), rel=1e-12)
+
+
 def test_one_direction_alone(tmp_path: Path) -> None:
     text = "target [mm],up 1 [µm],up 2 [µm]\n0,0,0.2\n50,1,1.4\n"
     found = fd.iso230(written(tmp_path, text)).figures_si()

@@ -17,6 +17,7 @@ from feeddrive.interface.quantities import Quantity, si
 from feeddrive.interface.shown import Listing, Shown
 from feeddrive.metrology.circular import Circular, circular
 from feeddrive.metrology.measured.forms import circle_test, drift_test, linear_test, part_of
+from feeddrive.metrology.measured.laser_file import is_laser_file
 from feeddrive.metrology.measured.measurements import CircleTest, DriftTest, LinearTest, refuse_radius
 from feeddrive.metrology.measured.plant_share import PlantShare, plant_share
 from feeddrive.metrology.measured.readings import Readings, read_readings
@@ -31,6 +32,7 @@ from feeddrive.metrology.measured.standing import (
 from feeddrive.metrology.positioning import EDITION
 from feeddrive.recording import Recording
 from feeddrive.recording.channels import CHANNEL_UNITS
+from feeddrive.recording.files.opening import first_bytes, head_of
 from feeddrive.units.quantity import format_quantity
 
 if TYPE_CHECKING:
@@ -174,6 +176,8 @@ class _Wishes:
 
 def _table(path: Path, decimal: str | None) -> Readings | None:
     """The table of a file; None where it holds channels over time, or is no table of numbers at all."""
+    if path.is_file() and is_laser_file(head_of(first_bytes(path))):
+        return read_readings(path, decimal)
     if path.suffix.lower() not in (".csv", ".gz", ".txt", ""):
         return None
     try:
@@ -188,11 +192,12 @@ def _table(path: Path, decimal: str | None) -> Readings | None:
 
 def _looks_like_table(path: Path) -> bool:
     """Whether the first line that is no remark names columns of a table of readings."""
-    from feeddrive.recording.files.opening import first_bytes, head_of
-
     lines = (line for line in head_of(first_bytes(path)).split("\n") if line.strip() and not line.startswith("#"))
     head = next(lines, "").lower()
-    return any(word in head for word in ("target", "angle [", "radial", "at 0", "x ["))
+    return any(
+        word in head
+        for word in ("target", "nominal", "soll", "zielposition", "angle [", "winkel", "radial", "at 0", "x [")
+    )
 
 
 def _of_table(readings: Readings, wishes: _Wishes, plant: Axis | None) -> Iso230:

@@ -16,14 +16,31 @@ from pathlib import Path
 import numpy as np
 
 from feeddrive.errors import InputError, quoted
+from feeddrive.metrology.measured.laser_file import is_laser_file, laser_columns
 from feeddrive.recording.files.csv_file import Layout, find_table
-from feeddrive.recording.files.opening import first_bytes, head_of
+from feeddrive.recording.files.opening import decode, first_bytes, head_of, open_file
 from feeddrive.recording.files.text_blocks import TextFile
 from feeddrive.typing import FloatArray
 from feeddrive.units.quantity import parse, unit_conversion
 
-_HEADING = re.compile(r"(?P<name>[^\[\]]*?)\s*(?:\[(?P<unit>[^\[\]]*)\])?")
+_HEADING = re.compile(r"(?P<name>[^\[\]()]*?)\s*(?:[\[(](?P<unit>[^\[\]()]*)[\])])?")
 _REMARK = re.compile(r"#\s*(?P<key>[A-Za-z_ ]+?)\s*=\s*(?P<value>[^,;\t]+)")
+
+
+_SIDES = {"up": "up", "forward": "up", "fwd": "up", "vor": "up", "vorwärts": "up", "+": "up", "↑": "up",
+          "down": "down", "backward": "down", "reverse": "down", "rev": "down", "bwd": "down", "zurück": "down",
+          "rückwärts": "down", "-": "down", "↓": "down"}  # fmt: skip
+_RUN = re.compile(
+    r"(?:(?:run|lauf) ?)?(?P<before>\d*) ?(?P<side>" + "|".join(map(re.escape, sorted(_SIDES, key=len, reverse=True)))
+    + r") ?(?P<behind>\d*)"
+)  # fmt: skip
+_SPELLINGS = {
+    "nominal": "target", "nominal position": "target", "target position": "target", "soll": "target",
+    "sollposition": "target", "zielposition": "target", "actual position": "position", "measured position": "position",
+    "istposition": "position", "error": "deviation", "abweichung": "deviation", "deviation error": "deviation",
+    "richtung": "direction", "lauf": "run", "zeit": "time", "winkel": "angle", "radius deviation": "radial",
+}  # fmt: skip
+"""Words of lasers' programs and of people for the names that `forms` knows."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +93,11 @@ def read_readings(path: Path, decimal: str | None = None) -> Readings:
         InputError: the file cannot be read as a table of numbers; a heading comes twice; a number is not finite.
     """
     where = str(path)
-    remarks = _remarks(head_of(first_bytes(path)))
+    head = head_of(first_bytes(path))
+    if is_laser_file(head):
+        content = open_file(path)
+        return Readings(where, laser_columns(decode(content)[0], where), {}, content.sha256)
+    remarks = _remarks(head)
     source = TextFile(path)
     table = find_table(source.blocks(), Layout(), where).numbers(decimal)
     columns: dict[str, tuple[str, FloatArray]] = {}
@@ -96,7 +117,11 @@ def read_readings(path: Path, decimal: str | None = None) -> Readings:
 
 def plain_name(written: str) -> str:
     """A column's name in lower case, `_` and blanks alike."""
-    return " ".join(written.lower().replace("_", " ").split())
+    name = " ".join(written.lower().replace("_", " ").split())
+    run = _RUN.fullmatch(name)
+    if run is not None and (run["before"] or run["behind"]):
+        return f"{_SIDES[run['side']]} {run['before'] or run['behind']}"
+    return _SPELLINGS.get(name, name)
 
 
 def _remarks(head: str) -> dict[str, str]:

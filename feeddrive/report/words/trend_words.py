@@ -9,10 +9,9 @@ import numpy as np
 
 from feeddrive.trend.atoms import JUMP, ODD, SETTLING, SLOPE
 from feeddrive.trend.change_points import Found
-from feeddrive.trend.events import Change, Event
+from feeddrive.trend.events import Change, Event, Settles
 from feeddrive.trend.limits import Limit
 from feeddrive.trend.quantities import Quantity
-from feeddrive.trend.warm_growth import Settles
 from feeddrive.trend.watch import Trend
 from feeddrive.units.quantity import format_quantity
 
