@@ -47,6 +47,7 @@ class Search:
         rounds: the same as fitted, the best first.
         impossible: candidate to why the recordings cannot show it.
         near: effects that may come beside those found, the likeliest first.
+        before: what the search began with.
     """
 
     problem: Problem
@@ -55,6 +56,7 @@ class Search:
     rounds: tuple[tuple[Attempt, ...], ...]
     impossible: dict[str, str]
     near: tuple[Near, ...] = ()
+    before: tuple[tuple[Problem, Fit], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -98,6 +100,7 @@ def search(
     impossible: dict[str, str] = {**denied}
     met: set[tuple[str, ...]] = set()
     near: tuple[Near, ...] = ()
+    before = start.before if start is not None else ((problem, found),)
     while len(rounds) < MOST_ROUNDS:
         said(f"round {len(rounds) + 1}: {len(found.effects)} effects so far")
         now = one_round(scene_of(problem, found.effects), found, impossible, denied)
@@ -124,7 +127,7 @@ def search(
     if small:
         found = fit(problem, [one for one in found.effects if not any(one is other for other in small)])
         impossible |= dict.fromkeys((one.name for one in small), SMALL)
-    return Search(problem, found, tuple(trials), tuple(rounds), impossible, near)
+    return Search(problem, found, tuple(trials), tuple(rounds), impossible, near, before)
 
 
 def _likelier(problem: Problem, found: Fit, now: Round) -> tuple[_Taken | None, tuple[Near, ...]]:
