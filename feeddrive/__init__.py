@@ -28,6 +28,7 @@ _HOMES = {
     "Effect": "effects.base",
     "Explained": "interface.measured.numbers",
     "ExplainedResponse": "interface.measured.responses",
+    "Fleet": "interface.measured.fleet",
     "HeatSummary": "interface.machine.heat_summary",
     "InputError": "errors",
     "Inspected": "interface.measured.inspection",
@@ -39,6 +40,7 @@ _HOMES = {
     "Motion": "interface.runs.motion",
     "Parts": "interface.machine.drafts",
     "Recording": "recording.recording",
+    "Repeated": "interface.runs.cycles",
     "Run": "interface.runs.scenario",
     "Servo": "interface.servo",
     "Stiffness": "interface.machine.summary",
@@ -64,6 +66,7 @@ _HOMES = {
     "load": "interface.axis",
     "move": "interface.runs.motion",
     "read": "interface.measured.reading",
+    "repeat": "interface.runs.cycles",
     "run": "interface.runs.scenario",
     "sampled": "interface.runs.controllers",
     "schedule": "interface.runs.controllers",
@@ -74,6 +77,7 @@ _HOMES = {
     "tune": "interface.servo",
     "warm_up": "interface.runs.warm_up",
     "watch": "interface.measured.watching",
+    "watch_fleet": "interface.measured.fleet",
     "with_load": "interface.runs.controllers",
 }
 

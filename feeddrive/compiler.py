@@ -96,9 +96,15 @@ def run_compiler(command: Sequence[str], folder: Path) -> None:
     """
     # A session of its own: what the compiler has started itself is ended with it.
     started = subprocess.Popen(
-        command, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
-        errors="replace", start_new_session=True,
-    )  # fmt: skip
+        command,
+        cwd=folder,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+        errors="replace",
+        start_new_session=True,
+    )
     try:
         _, said = started.communicate(timeout=COMPILE_TIME)
     except BaseException as error:

@@ -49,10 +49,16 @@ def run(request: Request, as_json: bool, out: Path | None) -> None:
         source = read(request.source, request.mapping)
     with warnings_as_lines(), Console(stderr=True).status("simulating"):
         done = compensate(
-            source, request.form, every=request.every or None, reference=request.reference or None,
-            stroke=request.ends if request.ends[0] else None, axis=request.axis,
-            controller=request.controller or None, lead=request.lead or None, resolution=request.resolution or None,
-        )  # fmt: skip
+            source,
+            request.form,
+            every=request.every or None,
+            reference=request.reference or None,
+            stroke=request.ends if request.ends[0] else None,
+            axis=request.axis,
+            controller=request.controller or None,
+            lead=request.lead or None,
+            resolution=request.resolution or None,
+        )
         if request.figure is not None:
             write_bytes_atomically(request.figure, picture(done))
         if out is not None:

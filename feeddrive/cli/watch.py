@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 from rich.console import Console
@@ -12,6 +12,7 @@ from rich.console import Console
 from feeddrive.cli.output import JsonOption, escaped, table, warnings_as_lines
 from feeddrive.errors import InputError, printable
 from feeddrive.interface.axis import load
+from feeddrive.interface.measured.fleet import OVERVIEW, Fleet, watch_fleet
 from feeddrive.interface.measured.watching import watch
 from feeddrive.report.words.trend_words import shown_quantities
 
@@ -36,28 +37,40 @@ def command(
         typer.Option(help="What a quantity may move by: 'play=10 µm', 'coulomb=20 %'; again for others."),
     ] = None,
     search: Annotated[bool, typer.Option(help="Diagnose what is before and after each change; takes minutes.")] = False,
+    each: Annotated[
+        bool, typer.Option(help="Every folder in FOLDER is an axis of its own; a plant.toml in it is its plant.")
+    ] = False,
+    scheduler: Annotated[
+        str, typer.Option(metavar="ADDRESS", help="Dask scheduler that follows the axes of --each, tcp://host:8786.")
+    ] = "",
     as_json: JsonOption = False,
 ) -> None:
     """Say what changed on an axis, since when, at what odds; what is new in the folder costs seconds.
 
     Writes trend.html, trend.json, trend.csv and the figures, and keeps what it knows there for the next time.
     """
-    limits = dict(map(_limit, limit or ()))
+    if scheduler and not each:
+        raise InputError("a cluster follows several axes", "--scheduler", "say --each, with a folder for each axis")
+    options: dict[str, Any] = {
+        "map": mapping,
+        "decimal": decimal or None,
+        "stamp": stamp,
+        "every": every or None,
+        "first": first,
+        "absolute": tuple(absolute or ()),
+        "limits": dict(map(_limit, limit or ())),
+        "search": search,
+    }
     with warnings_as_lines(), Console(stderr=True).status("looking into the folder") as status:
-        found = watch(
-            folder,
-            load(plant),
-            out=out,
-            map=mapping,
-            decimal=decimal or None,
-            stamp=stamp,
-            every=every or None,
-            first=first,
-            absolute=tuple(absolute or ()),
-            limits=limits,
-            search=search,
-            progress=lambda text: status.update(printable(text)),
-        )
+
+        def progress(text: str) -> None:
+            status.update(printable(text))
+
+        if each:
+            fleet = watch_fleet(folder, plant, out=out, scheduler=scheduler, progress=progress, **options)
+            _print_fleet(fleet, as_json)
+            return
+        found = watch(folder, load(plant), out=out, progress=progress, **options)
         place = found.save()
     if as_json:
         print(escaped(json.dumps(found.record(), indent=2, ensure_ascii=False)))
@@ -80,3 +93,14 @@ def _limit(text: str) -> tuple[str, str]:
     if not equals or not name.strip() or not value.strip():
         raise InputError(f'"{text}" is no limit', "--limit", "write it as 'play=10 µm' or 'coulomb=20 %'")
     return name.strip(), value.strip()
+
+
+def _print_fleet(fleet: Fleet, as_json: bool) -> None:
+    if as_json:
+        print(escaped((fleet.out / OVERVIEW).read_text(encoding="utf-8")), end="")
+        return
+    console = Console(soft_wrap=True, highlight=False)
+    listing = fleet.listing()
+    rows = [[printable(cell) for cell in row] for row in listing.rows]
+    console.print(table(listing.title, listing.headings, rows), markup=False)
+    console.print(f"pages: {printable(str(fleet.out))}, trend.html in the folder of each axis", markup=False)

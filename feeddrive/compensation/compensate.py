@@ -18,7 +18,7 @@ from feeddrive.compensation.plant_deviations import PlantDeviations, plant_devia
 from feeddrive.compensation.prediction import Applied, Figures, best_reversal, figures, motions, sticking
 from feeddrive.compensation.recorded_deviations import RecordedDeviations
 from feeddrive.compensation.repair import repaired
-from feeddrive.compensation.table import CompensationTable, Deviations, fitted, grid
+from feeddrive.compensation.table import CompensationTable, Deviations, fitted, grid, stepped
 from feeddrive.errors import InputError
 from feeddrive.plant.file.entries import Origins, Table
 from feeddrive.plant.plant import DeclaredCascade, Plant
@@ -33,7 +33,7 @@ from feeddrive.units.quantity import format_quantity
 POINTS_PER_PERIOD = 16
 """Wished for per period of a lead error: straight pieces of least squares then leave 0.8 % of a sine, 8 leave 3 %."""
 
-_NICE = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)
+_NICE = (1.0, 1.2, 1.5, 1.6, 2.0, 2.5, 3.0, 3.2, 4.0, 5.0, 6.0, 8.0)
 _USUAL_RATE, _POSITION_RATE, _BANDWIDTH, _DEAD_TIME = 8000.0, 2000.0, 1000.0, 125e-6
 """Of a drive that nobody has declared: those of `feeddrive tune`."""
 
@@ -114,7 +114,7 @@ class Compensated:
         inside = (self.known.positions >= self.table.positions[0]) & (self.known.positions <= self.table.positions[-1])
         places = self.known.positions[inside]
         rest = [
-            one[inside] - self.table.at(places, reverse)
+            one[inside] - self.table.at(places, reverse, self.control.stepwise)
             for one, reverse in ((self.known.forward, False), (self.known.reverse, True))
         ]
         return float(max(np.max(np.abs(one)) for one in rest))
@@ -177,10 +177,11 @@ def compensate_plant(
         InputError: as `plant_table`; no controller that keeps the usual margins.
     """
     made = plant_table(plant, wishes, cascade, unsure_of_play, where)
-    assert made.lost is not None
+    lost = made.lost
+    assert lost is not None
     loop = cascade_of(plant, cascade)
-    test = motions(_stroke(plant, wishes, where), made.lost)
-    moved = sticking(plant, made.lost)
+    test = motions(_stroke(plant, wishes, where), lost)
+    moved = sticking(plant, lost)
     renewed = repaired(moved)
     applied, usual = best_reversal(moved, loop, test, Applied(made.control, made.table, _limits(plant)))
     made = replace(made, control=applied.control)
@@ -190,7 +191,7 @@ def compensate_plant(
     )  # fmt: skip
     if not beside:
         return replace(made, prediction=prediction)
-    friction = friction_values(moved, loop, test.circle, made.lost, applied) if made.lost.torque > 0 else None
+    friction = friction_values(moved, loop, test.circle, lost, applied) if lost.torque > 0 else None
     return replace(made, prediction=prediction, friction=friction, cogging=cogging_map(plant, loop))
 
 
@@ -289,7 +290,7 @@ def _table(
     step = every if every is not None else _step(wanted, width, found.shortest)
     points = grid(stroke, step, reference)
     _refuse_too_many(wanted, points, width)
-    return as_held(wanted, fitted(known, points, reference, step))
+    return as_held(wanted, (stepped if wanted.stepwise else fitted)(known, points, reference, step))
 
 
 def _refuse_too_many(wanted: Control, points: Sequence[float] | np.ndarray, width: float) -> None:

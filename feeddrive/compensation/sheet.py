@@ -80,6 +80,16 @@ def left(done: Compensated) -> list[str]:
         lines.append(difference_words(done.measured))
         lines.append(f"Single samples scatter by {micrometres(done.measured.scatter)} about what is known.")
     lines.append(f"By its points and its rounding the table leaves up to {micrometres(done.left_by_table)} of the map.")
+    if done.control.stepwise:
+        jump = max(float(np.max(np.abs(np.diff(one)))) for one in (done.table.forward, done.table.reverse))
+        if jump > 4 * done.control.resolution:
+            cause = (
+                f"the distance of the points, {format_quantity(done.table.step, 'm')} ({done.control.most_points - 1} "
+                "stretches are all there are): a shorter stroke, or less lead error, leaves less"
+            )
+        else:
+            cause = "its detection unit: a finer one leaves less"
+        lines.append(f"The control puts its values out in jumps, of {micrometres(jump)} at most here, from {cause}.")
     if done.table.step > done.shortest / 4:
         lines.append(
             f"Points every {format_quantity(done.table.step, 'm')} do not hold the periodic error of period "
@@ -122,8 +132,9 @@ def _reversal_words(done: Compensated, usual: float) -> str:
     return (
         f"The play goes over within {within}: chosen for the least contour error on the circle of "
         f"{1e3 * circle.radius:.3g} mm at {60 * circle.limits.velocity:.3g} m/min, "
-        f"{micrometres(done.prediction.after.contour)} in place of {micrometres(usual)}. Quicker throws the table across, slower leaves it behind; the best time "
-        "goes with the square root of play and radius, and with 1 / feed."
+        f"{micrometres(done.prediction.after.contour)} in place of {micrometres(usual)}. Quicker throws the table "
+        "across, slower leaves it behind; the best time goes with the square root of play and of radius, and with 1 / "
+        "feed."
     )
 
 

@@ -192,9 +192,10 @@ class Effect:
             for number in value if isinstance(value, tuple) else (value,):
                 if not parameter.minimum <= number <= parameter.maximum:
                     raise InputError(
-                        f"{key} = {format_quantity(number, parameter.unit)} is outside its range", cls.name,
+                        f"{key} = {format_quantity(number, parameter.unit)} is outside its range",
+                        cls.name,
                         f"use {_span(parameter)}",
-                    )  # fmt: skip
+                    )
             result[key] = value
         return result
 

@@ -105,9 +105,13 @@ def rested(machine: Machine, states: FloatArray, own: FloatArray) -> Position:
 
 
 def run_machine(
-    machine: Machine, plant: Plant, feed: Feed, start: Position, tolerance: float = TOLERANCE,
+    machine: Machine,
+    plant: Plant,
+    feed: Feed,
+    start: Position,
+    tolerance: float = TOLERANCE,
     along: Along | None = None,
-) -> Outcome:  # fmt: skip
+) -> Outcome:
     """All samples of a feed.
 
     Args:
@@ -230,9 +234,10 @@ def _refuse_failure(plant: Plant, feed: Feed, stop: Stop, seen: FloatArray, repo
         )
     shortest = float(feed.spans.min()) / 2**DEEPEST
     raise SimulationError(
-        f"the motion cannot be followed after {time:.6g} s, not even with steps of {shortest:.2g} s", plant.name,
+        f"the motion cannot be followed after {time:.6g} s, not even with steps of {shortest:.2g} s",
+        plant.name,
         f"check the values of {_steepest(plant)}",
-    )  # fmt: skip
+    )
 
 
 def _steepest(plant: Plant) -> str:
@@ -246,6 +251,13 @@ def _steepest(plant: Plant) -> str:
 def _told(report: FloatArray, samples: int, tolerance: float) -> StepReport:
     steps, refused, sweeps, over, _, excess, finest, last, _ = report
     return StepReport(
-        samples, int(steps), int(refused), int(sweeps), int(finest), float(last), int(over),
-        float(excess * tolerance) if over else 0.0, tolerance,
-    )  # fmt: skip
+        samples,
+        int(steps),
+        int(refused),
+        int(sweeps),
+        int(finest),
+        float(last),
+        int(over),
+        float(excess * tolerance) if over else 0.0,
+        tolerance,
+    )

@@ -41,8 +41,11 @@ def mat_bytes(model: LinearModel) -> bytes:
     content["coordinate_names"] = _cells([row.name for row in model.states[: len(plant.chain.coordinates)]])
     content["point"] = {"table_position": model.position, "table_velocity": model.velocity}
     content |= {"plant": plant.name, "feeddrive_version": __version__}
-    notes = (*(f"included: {line}" for line in included(plant)),
-             *(f"left out: {line}" for line in left_out(plant)), *linear_notes(plant))  # fmt: skip
+    notes = (
+        *(f"included: {line}" for line in included(plant)),
+        *(f"left out: {line}" for line in left_out(plant)),
+        *linear_notes(plant),
+    )
     content["notes"] = _cells(notes)
     buffer = io.BytesIO()
     savemat(buffer, content, oned_as="column")

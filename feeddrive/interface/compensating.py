@@ -95,19 +95,29 @@ class Compensation(Shown):
             return _heat_listing(self.done)
         rows = sheet.predicted_rows(self.done)
         if rows:
-            shown = [[name, *("" if one is None else format_quantity(one, "m") for one in values)]
-                     for name, values in rows]  # fmt: skip
-            records = [dict(zip(("figure", "before [m]", "after repair [m]", "after compensation [m]"),
-                                [name, *values], strict=True)) for name, values in rows]  # fmt: skip
+            shown = [
+                [name, *("" if one is None else format_quantity(one, "m") for one in values)] for name, values in rows
+            ]
+            records = [
+                dict(
+                    zip(
+                        ("figure", "before [m]", "after repair [m]", "after compensation [m]"),
+                        [name, *values],
+                        strict=True,
+                    )
+                )
+                for name, values in rows
+            ]
             headings = ("predicted", "before", "after repair", "after compensation")
             return Listing(f"{self.done.name}: {self.done.control.title}", headings, shown, records)
         table = self.done.table
         points = list(zip(table.positions.tolist(), table.forward.tolist(), table.reverse.tolist(), strict=True))
         return Listing(
-            f"{self.done.name}: {self.done.control.title}", ("position", "along +", "along -"),
+            f"{self.done.name}: {self.done.control.title}",
+            ("position", "along +", "along -"),
             [[format_quantity(one, "m") for one in point] for point in points],
             [dict(zip(("position [m]", "forward [m]", "reverse [m]"), point, strict=True)) for point in points],
-        )  # fmt: skip
+        )
 
     def __repr__(self) -> str:
         """The table and what is left."""
@@ -165,9 +175,13 @@ def compensate(
     if form not in FORMS:
         raise InputError(f'no form "{form}"', "form", nearest(str(form), FORMS))
     wishes = Wishes(
-        form, _positive(every, "every"), None if reference is None else si(reference, "m", "reference"),
-        _ends(stroke), checked_axis(axis), _positive(resolution, "resolution"),
-    )  # fmt: skip
+        form,
+        _positive(every, "every"),
+        None if reference is None else si(reference, "m", "reference"),
+        _ends(stroke),
+        checked_axis(axis),
+        _positive(resolution, "resolution"),
+    )
     travel = _positive(lead, "lead")
     found, unsure, where = _opened(source)
     if isinstance(found, Recording):

@@ -94,8 +94,12 @@ def keys(path: str = "") -> Keys:
         known = (*section.keys, *section.sections, *section.kinds)
         raise InputError(f'no key or section "{step}"', ".".join([first, *steps[:place]]), nearest_choice(step, known))
     below = {**section.sections, **section.kinds}
-    return Keys(section.path, section.meaning, tuple(section.keys.values()),
-                {f"{path}.{name}": one.meaning for name, one in below.items()})  # fmt: skip
+    return Keys(
+        section.path,
+        section.meaning,
+        tuple(section.keys.values()),
+        {f"{path}.{name}": one.meaning for name, one in below.items()},
+    )
 
 
 def every_section() -> tuple[Section, ...]:

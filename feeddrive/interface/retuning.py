@@ -104,10 +104,17 @@ class Retuned(Shown):
 
 
 _FIGURES = {
-    "velocity loop, phase margin": "deg", "velocity loop, gain margin": "dB", "position loop, phase margin": "deg",
-    "position loop, gain margin": "dB", "velocity loop, bandwidth": "Hz", "position loop, bandwidth": "Hz",
-    "step, overshoot": "1", "step, settling to 2 %": "s", "circle, deviation": "m", "circle, largest glitch": "m",
-}  # fmt: skip
+    "velocity loop, phase margin": "deg",
+    "velocity loop, gain margin": "dB",
+    "position loop, phase margin": "deg",
+    "position loop, gain margin": "dB",
+    "velocity loop, bandwidth": "Hz",
+    "position loop, bandwidth": "Hz",
+    "step, overshoot": "1",
+    "step, settling to 2 %": "s",
+    "circle, deviation": "m",
+    "circle, largest glitch": "m",
+}
 
 
 def compare(plant: Plant, present: Cascade, recommended: Cascade, trials: Sequence[Any]) -> Retuned:
@@ -174,9 +181,16 @@ def _filter(one: Filter) -> str:
 def _figures_of(one: LoopTrial) -> dict[str, float | None]:
     velocity, position = one.reached.velocity, one.reached.position
     values = (
-        velocity.phase, velocity.gain, position.phase, position.gain, *one.bandwidths, overshoot(one.step),
-        settling(one.step), deviation(one.circle), glitch(one.circle),
-    )  # fmt: skip
+        velocity.phase,
+        velocity.gain,
+        position.phase,
+        position.gain,
+        *one.bandwidths,
+        overshoot(one.step),
+        settling(one.step),
+        deviation(one.circle),
+        glitch(one.circle),
+    )
     kept = values if one.stable else (math.nan,) * len(values)
     return {key: float(value) if math.isfinite(value) else None for key, value in zip(_FIGURES, kept, strict=True)}
 

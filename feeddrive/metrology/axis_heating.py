@@ -79,9 +79,7 @@ def axis_heating(times: FloatArray, error: FloatArray, positions: FloatArray, st
     if not _HOUR <= stop <= times[-1]:
         told = f"the axis stops after {stop / 60:.4g} min of {times[-1] / 60:.4g} min"
         raise InputError(told, "stop", "heat for an hour at least, within the test")
-    targets = tuple(
-        _target(times, column, float(x), stop) for column, x in zip(error.T, positions, strict=True)
-    )  # fmt: skip
+    targets = tuple(_target(times, column, float(x), stop) for column, x in zip(error.T, positions, strict=True))
     last = error[np.searchsorted(times, stop * (1 + 1e-12), side="right") - 1]
     return AxisHeating(targets, float((last[-1] - last[0]) / (positions[-1] - positions[0])))
 

@@ -74,9 +74,15 @@ def circular(angle: FloatArray, position: FloatArray, radius: float) -> Circular
     radial = np.hypot(position - centre, second) - radius
     reversals = [_glitch(angle, rest, math.atan2(b, a), side) for side in (1.0, -1.0)]
     return Circular(
-        angle, radial, float(np.ptp(radial)), float(radial.max()), float(radial.min()),
-        float(math.hypot(a, b) / radius), float(-math.atan2(b, a)), (reversals[0], reversals[1]),
-    )  # fmt: skip
+        angle,
+        radial,
+        float(np.ptp(radial)),
+        float(radial.max()),
+        float(radial.min()),
+        float(math.hypot(a, b) / radius),
+        float(-math.atan2(b, a)),
+        (reversals[0], reversals[1]),
+    )
 
 
 def _glitch(angle: FloatArray, rest: FloatArray, lead: float, side: float) -> float:
@@ -142,9 +148,16 @@ def circular_path(x: FloatArray, y: FloatArray, nominal: float) -> CircularPath:
     after = [np.mod(direction * (angle - quarter * math.pi / 2), 2 * math.pi) < GLITCH_SPAN for quarter in range(4)]
     glitches = [float(rest[one][np.argmax(np.abs(rest[one]))]) if one.any() else math.nan for one in after]
     return CircularPath(
-        direction, angle, radial, float(np.ptp(radial)), float(radial.max()), float(radial.min()), radius, centre,
+        direction,
+        angle,
+        radial,
+        float(np.ptp(radial)),
+        float(radial.max()),
+        float(radial.min()),
+        radius,
+        centre,
         (glitches[0], glitches[1], glitches[2], glitches[3]),
-    )  # fmt: skip
+    )
 
 
 def least_squares_circle(x: FloatArray, y: FloatArray) -> tuple[tuple[float, float], float]:

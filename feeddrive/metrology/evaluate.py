@@ -22,10 +22,16 @@ from feeddrive.simulate.setpoints.waveforms import Multisine, Prbs, Sweep, Wavef
 from feeddrive.typing import BoolArray, FloatArray, IntegerArray
 
 Figure = (
-    Following | tuple[Settling, ...] | Positioning | Circular | tuple[FrictionPoint, ...] | ForceLoop | TorqueLoop
+    Following
+    | tuple[Settling, ...]
+    | Positioning
+    | Circular
+    | tuple[FrictionPoint, ...]
+    | ForceLoop
+    | TorqueLoop
     | StepResponse
     | Response
-)  # fmt: skip
+)
 
 _CONSTANT = 1e-9
 """Set acceleration below which a velocity counts as constant [m/s^2]."""
@@ -58,10 +64,12 @@ def as_json(evaluated: Evaluated) -> dict[str, Any]:
         content |= {k: v for k, v in _plain(asdict(figure)).items() if k not in ("angle", "radial")}
     elif isinstance(figure, Response):
         content |= {
-            "frequency": _plain(figure.frequency), "magnitude": _plain(np.abs(figure.response)),
-            "phase": _plain(np.angle(figure.response)), "coherence": _plain(figure.coherence),
+            "frequency": _plain(figure.frequency),
+            "magnitude": _plain(np.abs(figure.response)),
+            "phase": _plain(np.angle(figure.response)),
+            "coherence": _plain(figure.coherence),
             "averages": figure.averages,
-        }  # fmt: skip
+        }
     else:
         content |= _plain(asdict(figure))
     if isinstance(figure, Positioning):

@@ -34,8 +34,15 @@ def linear_response(result: ScenarioResult, given: str, output: str, frequency: 
     mean = float(np.mean(result.series["table_velocity"]))
     velocity = mean if abs(mean) > 1e-3 else MOVING
     if given == "motor_torque" and output in OUTPUTS:
-        alone = replace(scenario.cascade, sample_time=scenario.sample_time, current_lag=0.0, dead_time=0.0,
-                        torque_filters=(), speed_filters=(), tracking_time=1.0)  # fmt: skip
+        alone = replace(
+            scenario.cascade,
+            sample_time=scenario.sample_time,
+            current_lag=0.0,
+            dead_time=0.0,
+            torque_filters=(),
+            speed_filters=(),
+            tracking_time=1.0,
+        )
         machine = sampled_plant(scenario.plant, alone, velocity)
         return _transfer(machine.a, machine.b[:, 0], machine.c[OUTPUTS.index(output)], frequency, scenario.sample_time)
     if (given, output) == ("speed_command", "motor_speed") and not scenario.cascade.position_gain:

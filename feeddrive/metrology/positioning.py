@@ -106,7 +106,12 @@ def positioning(target: FloatArray, up: FloatArray, down: FloatArray) -> Positio
     means = np.stack([one.mean, other.mean])
     spread = 2 * np.stack([s_up, s_down])
     return Positioning(
-        target, one.mean, other.mean, s_up, s_down, reversal,
+        target,
+        one.mean,
+        other.mean,
+        s_up,
+        s_down,
+        reversal,
         reversal_value=float(np.max(np.abs(reversal))),
         mean_reversal=float(np.mean(reversal)),
         repeatability_up=one.repeatability,
@@ -119,4 +124,4 @@ def positioning(target: FloatArray, up: FloatArray, down: FloatArray) -> Positio
         accuracy=float((means + spread).max() - (means - spread).min()),
         accuracy_up=one.accuracy,
         accuracy_down=other.accuracy,
-    )  # fmt: skip
+    )

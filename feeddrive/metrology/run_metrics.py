@@ -25,16 +25,25 @@ _UNITS: dict[type, dict[str, str]] = {
     Following: {"maximum": "m", "rms": "m", "mean": "m"},
     Settling: {"time": "s", "overshoot": "m", "deviation": "m"},
     Positioning: {
-        "accuracy": "m", "repeatability": "m", "reversal_value": "m", "systematic": "m", "mean_range": "m",
-        "mean_reversal": "m", "accuracy_up": "m", "accuracy_down": "m", "repeatability_up": "m",
-        "repeatability_down": "m", "systematic_up": "m", "systematic_down": "m",
+        "accuracy": "m",
+        "repeatability": "m",
+        "reversal_value": "m",
+        "systematic": "m",
+        "mean_range": "m",
+        "mean_reversal": "m",
+        "accuracy_up": "m",
+        "accuracy_down": "m",
+        "repeatability_up": "m",
+        "repeatability_down": "m",
+        "systematic_up": "m",
+        "systematic_down": "m",
     },
     Circular: {"deviation": "m", "radial_maximum": "m", "radial_minimum": "m", "gain": "1", "lag": "rad"},
     FrictionPoint: {"torque": "N m", "velocity": "m/s", "spread": "N m", "force": "N"},
     ForceLoop: {"stiffness": "N/m", "width": "m", "work": "J", "displacement": "m"},
     TorqueLoop: {"friction": "N m", "reversal": "m", "offset": "N m", "force": "N", "stroke": "m"},
     StepResponse: {"settling": "s", "overshoot": "1", "rise": "s"},
-}  # fmt: skip
+}
 """Figure to its numbers and their SI units."""
 
 

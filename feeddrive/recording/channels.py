@@ -44,12 +44,23 @@ MOTION_AND_TORQUE = (
 _OPEN_NAMES = ((re.compile(r"[a-z0-9_]+_temperature"), "degC"), (re.compile(r"table_growth_[a-z0-9_]+"), "m"))
 _HEADING = re.compile(r"(?P<name>[^\[\]]*?)\s*(?:\[(?P<unit>[^\[\]]*)\])?")
 _COMMON_NAMES = {
-    "t": "time", "torque": "motor_torque", "current": "motor_current", "position": "table_position",
-    "angle": "motor_angle", "speed": "motor_speed", "velocity": "table_velocity", "force": "cutting_force",
-    "excitation": "injected_torque", "injection": "injected_torque",
-    "reference": "setpoint", "command": "setpoint", "scale": "table_position", "encoder": "motor_angle",
-    "temperature": "nut_temperature", "growth": "table_growth_1",
-}  # fmt: skip
+    "t": "time",
+    "torque": "motor_torque",
+    "current": "motor_current",
+    "position": "table_position",
+    "angle": "motor_angle",
+    "speed": "motor_speed",
+    "velocity": "table_velocity",
+    "force": "cutting_force",
+    "excitation": "injected_torque",
+    "injection": "injected_torque",
+    "reference": "setpoint",
+    "command": "setpoint",
+    "scale": "table_position",
+    "encoder": "motor_angle",
+    "temperature": "nut_temperature",
+    "growth": "table_growth_1",
+}
 
 
 @dataclass(frozen=True)

@@ -102,13 +102,26 @@ def read_response(content: FileContent) -> FrequencyResponse:
             raise InputError(f"there is no column {name} [{unit or '...'}]", where, "add it, or correct its unit")
     sides = _SIDES.search(text)
     if sides is None:
-        raise InputError("the file does not say from which channel to which", where,
-                         "write above the header: # from = motor_torque, to = motor_speed")  # fmt: skip
+        raise InputError(
+            "the file does not say from which channel to which",
+            where,
+            "write above the header: # from = motor_torque, to = motor_speed",
+        )
     frequency, (unit, magnitude), phase = columns["frequency"][1], columns["magnitude"], columns["phase"][1]
     coherence = columns["coherence"][1] if "coherence" in columns else np.full_like(frequency, np.nan)
     values = (magnitude * np.exp(1j * np.radians(phase))).astype(np.complex128)
-    return FrequencyResponse(content.path.name, sides[1], sides[2], unit, frequency.copy(), values, coherence.copy(),
-                             (*said, *table.notes), where, content.sha256)  # fmt: skip
+    return FrequencyResponse(
+        content.path.name,
+        sides[1],
+        sides[2],
+        unit,
+        frequency.copy(),
+        values,
+        coherence.copy(),
+        (*said, *table.notes),
+        where,
+        content.sha256,
+    )
 
 
 def write_response(response: FrequencyResponse, path: Path) -> None:

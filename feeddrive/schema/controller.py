@@ -32,19 +32,30 @@ FILTER = Section(
     keyed(_FILTER_KIND, _AT),
     kinds={
         "PT1": _filter("PT1", "lag of first order", _of_filter("frequency", "Hz", "corner frequency")),
-        "PT2": _filter("PT2", "low-pass of second order", _of_filter("frequency", "Hz", "corner frequency"),
-                       _of_filter("damping", "1", "damping ratio")),
-        "notch": _filter("notch", "notch", _of_filter("frequency", "Hz", "its middle"),
-                         _of_filter("bandwidth", "Hz", "width at -3 dB"),
-                         _of_filter("depth", "dB", "attenuation at its middle")),
-        "biquad": _filter("biquad", "zeros and poles of second order",
-                          _of_filter("zero_frequency", "Hz", "of the zeros"),
-                          _of_filter("zero_damping", "1", "damping ratio of the zeros"),
-                          _of_filter("pole_frequency", "Hz", "of the poles"),
-                          _of_filter("pole_damping", "1", "damping ratio of the poles")),
+        "PT2": _filter(
+            "PT2",
+            "low-pass of second order",
+            _of_filter("frequency", "Hz", "corner frequency"),
+            _of_filter("damping", "1", "damping ratio"),
+        ),
+        "notch": _filter(
+            "notch",
+            "notch",
+            _of_filter("frequency", "Hz", "its middle"),
+            _of_filter("bandwidth", "Hz", "width at -3 dB"),
+            _of_filter("depth", "dB", "attenuation at its middle"),
+        ),
+        "biquad": _filter(
+            "biquad",
+            "zeros and poles of second order",
+            _of_filter("zero_frequency", "Hz", "of the zeros"),
+            _of_filter("zero_damping", "1", "damping ratio of the zeros"),
+            _of_filter("pole_frequency", "Hz", "of the poles"),
+            _of_filter("pole_damping", "1", "damping ratio of the poles"),
+        ),
     },
     listed=True,
-)  # fmt: skip
+)
 
 FEED_FORWARD = Section(
     "controller.feed_forward",
@@ -69,21 +80,24 @@ _KEYS = keyed(
     _above_zero("velocity_gain", "N m s/rad", "K_p; needed where the velocity loop is closed"),
     _above_zero("reset_time", "s", "T_n of the velocity loop; no integrator if left out"),
     _above_zero("tracking_time", "s", "of the anti-windup; the reset time if left out"),
-    Key("position_feedback", "which position is controlled", kind=Kind.TEXT, choices=("motor", "table"),
-        default="motor"),
+    Key(
+        "position_feedback", "which position is controlled", kind=Kind.TEXT, choices=("motor", "table"), default="motor"
+    ),
     _above_zero("current_bandwidth", "Hz", "-3 dB of the closed current loop; no lag if left out"),
     Key("dead_time", "between command and torque", "s", minimum=0.0, default="0 s"),
     _above_zero("torque_limit", "N m", "at most that of the motor; that of the motor if left out"),
     _above_zero("current_limit", "A", "with torque_constant another torque limit"),
     _above_zero("torque_constant", "N m/A", "of the motor, with current_limit"),
     _above_zero("speed_limit", "rad/s", "of the speed command; none if left out"),
-    Key("balancing_time", "time constant by which the position loop's set-point waits", "s", minimum=0.0,
-        default="0 s"),
+    Key(
+        "balancing_time", "time constant by which the position loop's set-point waits", "s", minimum=0.0, default="0 s"
+    ),
     Key("torque_offset", "added to the torque command", "N m", default="0 N m"),
-    Key("mode", "which loops are closed", kind=Kind.TEXT, choices=("position", "velocity", "torque"),
-        default="position"),
+    Key(
+        "mode", "which loops are closed", kind=Kind.TEXT, choices=("position", "velocity", "torque"), default="position"
+    ),
     Key("allow_unstable", "whether an unstable loop may run", kind=Kind.SWITCH, default="false"),
-)  # fmt: skip
+)
 
 CONTROLLER = Section(
     "controller", "a cascade of position and velocity loop", _KEYS, {"feed_forward": FEED_FORWARD, "filter": FILTER}
@@ -107,11 +121,18 @@ DECLARED_CONTROLLER = Section(
                 _above_zero("velocity_gain", "V s/m", "output per error of velocity", required=True),
                 _above_zero("output_limit", "V", "of the output", required=True),
                 _above_zero("torque_per_output", "N m/V", "motor torque per output", required=True),
-                Key("velocity_samples", "velocity from the position over so many samples; 0 for velocity itself", "1",
-                    Kind.WHOLE, 0, 64, default="0"),
+                Key(
+                    "velocity_samples",
+                    "velocity from the position over so many samples; 0 for velocity itself",
+                    "1",
+                    Kind.WHOLE,
+                    0,
+                    64,
+                    default="0",
+                ),
             ),
         ),
         "cascade": replace(CONTROLLER, path="plant.controller.cascade"),
     },
-)  # fmt: skip
+)
 """[controller] of a plant file."""

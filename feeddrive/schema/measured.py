@@ -12,20 +12,29 @@ _NUMBER = Section(
     "measured.measured",
     "one measured number",
     keyed(
-        Key("quantity", "what was measured", kind=Kind.TEXT, required=True,
-            choices=("axial_stiffness", "natural_frequency", "drag_torque", "lost_motion", "inertia_at_motor")),
+        Key(
+            "quantity",
+            "what was measured",
+            kind=Kind.TEXT,
+            required=True,
+            choices=("axial_stiffness", "natural_frequency", "drag_torque", "lost_motion", "inertia_at_motor"),
+        ),
         Key("value", "measured, in the unit of its quantity", minimum=0.0, open_ends=True, required=True),
         Key("at", "table position; the middle of the stroke if left out", "m"),
-        Key("tolerance", "two standard deviations, as a share or in the unit of the value; a usual one if left out",
-            kind=Kind.TEXT),
-        Key("motor", "held by its brake or free", kind=Kind.TEXT, choices=("held", "free"), default="held",
-            when=_MODES),
+        Key(
+            "tolerance",
+            "two standard deviations, as a share or in the unit of the value; a usual one if left out",
+            kind=Kind.TEXT,
+        ),
+        Key(
+            "motor", "held by its brake or free", kind=Kind.TEXT, choices=("held", "free"), default="held", when=_MODES
+        ),
         Key("mode", "counted from 1", "1", Kind.WHOLE, 1, 100, default="1", when=_MODES),
         Key("velocity", "of the table", "m/s", minimum=0.0, open_ends=True, default="1 mm/s", when=_MOVING),
         SOURCE,
     ),
     listed=True,
-)  # fmt: skip
+)
 
 MEASURED = Section(
     "measured",

@@ -34,15 +34,31 @@ from feeddrive.servo.margins import GROWTH, Margins, frequency_response, margins
 from feeddrive.typing import FloatArray
 
 _LOOP_UNITS = UNITS | {
-    "position": "m", "velocity": "m/s", "acceleration": "m/s^2", "speed_excitation": "rad/s",
-    "torque_excitation": "N m", "measured_position": "m", "measured_speed": "rad/s", "speed_command": "rad/s",
-    "position_error": "m", "unlimited_torque": "N m",
-}  # fmt: skip
+    "position": "m",
+    "velocity": "m/s",
+    "acceleration": "m/s^2",
+    "speed_excitation": "rad/s",
+    "torque_excitation": "N m",
+    "measured_position": "m",
+    "measured_speed": "rad/s",
+    "speed_command": "rad/s",
+    "position_error": "m",
+    "unlimited_torque": "N m",
+}
 GIVEN = (*REFERENCES, INPUTS[1])
 """What a closed loop may be driven by: references of the cascade, cutting force."""
 
-SHOWN = ("motor_angle", "motor_speed", "table_position", "table_velocity", "position_error", "speed_command",
-         "measured_speed", "unlimited_torque", "measured_position")  # fmt: skip
+SHOWN = (
+    "motor_angle",
+    "motor_speed",
+    "table_position",
+    "table_velocity",
+    "position_error",
+    "speed_command",
+    "measured_speed",
+    "unlimited_torque",
+    "measured_position",
+)
 """What of a closed loop may be looked at."""
 
 

@@ -28,10 +28,13 @@ def family_content(family: Family) -> dict[str, Any]:
 def margins_content(margins: Margins) -> dict[str, Any]:
     """Margins of a loop; None where one does not exist."""
     return {
-        "gain_db": finite(margins.gain), "gain_frequency": finite(margins.gain_frequency),
-        "phase_deg": finite(margins.phase), "phase_frequency": finite(margins.phase_frequency),
-        "sensitivity_peak": finite(margins.sensitivity), "stable": margins.stable,
-    }  # fmt: skip
+        "gain_db": finite(margins.gain),
+        "gain_frequency": finite(margins.gain_frequency),
+        "phase_deg": finite(margins.phase),
+        "phase_frequency": finite(margins.phase_frequency),
+        "sensitivity_peak": finite(margins.sensitivity),
+        "stable": margins.stable,
+    }
 
 
 def measured_content(frequency: FloatArray, values: ComplexArray, coherence: FloatArray) -> dict[str, Any]:

@@ -5,7 +5,7 @@ The simulation runs the function, the linear loop differentiates it, the export 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import casadi as ca
 
@@ -13,8 +13,11 @@ from feeddrive.errors import InputError
 from feeddrive.typing import FloatArray
 
 MEASUREMENTS: dict[str, str] = {
-    "motor_angle": "rad", "motor_speed": "rad/s", "table_position": "m", "table_velocity": "m/s",
-}  # fmt: skip
+    "motor_angle": "rad",
+    "motor_speed": "rad/s",
+    "table_position": "m",
+    "table_velocity": "m/s",
+}
 """What a controller may measure, with its SI unit: readings of the plant at the instant of the tick."""
 
 
@@ -61,7 +64,3 @@ class SampledController:
             raise InputError(f"unknown measurement {unknown[0]!r}", name, f"known are {', '.join(MEASUREMENTS)}")
         if not self.sample_time > 0:
             raise InputError(f"sample time {self.sample_time:g} s is not positive", name)
-
-    def with_parameters(self, parameters: FloatArray) -> SampledController:
-        """The same controller with other values, shape (np,), and the same function."""
-        return replace(self, parameters=parameters)

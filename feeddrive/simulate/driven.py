@@ -142,9 +142,17 @@ def simulate_driven(plant: Plant, motion: MotorMotion, tolerance: float = TOLERA
     at = motion.samples
     phi, screw_speed, x, velocity, torque, force = shown
     return LoadMotion(
-        motion.time[at], motion.angle[at], motion.speed[at], phi, screw_speed, x, velocity, torque, force,
+        motion.time[at],
+        motion.angle[at],
+        motion.speed[at],
+        phi,
+        screw_speed,
+        x,
+        velocity,
+        torque,
+        force,
         joined(reports),
-    )  # fmt: skip
+    )
 
 
 def _fed(motion: MotorMotion, sample: int, count: int) -> FloatArray:
@@ -164,9 +172,17 @@ def unfollowed(motion: MotorMotion) -> LoadMotion:
     nothing = np.full(len(motion.time[at]), np.nan)
     report = StepReport(0, 0, 0, 0, 0, np.inf, 0, np.inf, np.inf)
     return LoadMotion(
-        motion.time[at], motion.angle[at], motion.speed[at], nothing, nothing, nothing, nothing, nothing, nothing,
+        motion.time[at],
+        motion.angle[at],
+        motion.speed[at],
+        nothing,
+        nothing,
+        nothing,
+        nothing,
+        nothing,
+        nothing,
         report,
-    )  # fmt: skip
+    )
 
 
 @per_structure

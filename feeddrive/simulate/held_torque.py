@@ -62,9 +62,13 @@ class TorqueRun:
 
 
 def simulate_torque(
-    plant: Plant, time: FloatArray, torque: FloatArray, initial_position: float = 0.0, initial_velocity: float = 0.0,
+    plant: Plant,
+    time: FloatArray,
+    torque: FloatArray,
+    initial_position: float = 0.0,
+    initial_velocity: float = 0.0,
     tolerance: float = TOLERANCE,
-) -> TorqueRun:  # fmt: skip
+) -> TorqueRun:
     """Motion of the plant under a motor torque held over every sample; before the start its first value acts.
 
     Args:
@@ -93,9 +97,15 @@ def held(fed: Expression, readings: Expression, settings: Expression) -> tuple[E
 
 
 def run_samples(
-    plant: Plant, command: Command, settings: FloatArray, time: FloatArray, fed: FloatArray, start: FloatArray,
-    torque_before: float, tolerance: float = TOLERANCE,
-) -> SampledRun:  # fmt: skip
+    plant: Plant,
+    command: Command,
+    settings: FloatArray,
+    time: FloatArray,
+    fed: FloatArray,
+    start: FloatArray,
+    torque_before: float,
+    tolerance: float = TOLERANCE,
+) -> SampledRun:
     """The plant under a command, sample by sample.
 
     Args:

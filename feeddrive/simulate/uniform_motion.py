@@ -53,9 +53,13 @@ class UniformMotion:
 
 
 def uniform_motion(
-    plant: Plant, angle: FloatArray, speed: FloatArray, time: FloatArray, values: FloatArray | None = None,
+    plant: Plant,
+    angle: FloatArray,
+    speed: FloatArray,
+    time: FloatArray,
+    values: FloatArray | None = None,
     with_powers: bool = True,
-) -> UniformMotion:  # fmt: skip
+) -> UniformMotion:
     """Uniform motion at k rows.
 
     Args:

@@ -181,16 +181,34 @@ def _temperature(name: str) -> Conversion:
 
 def _kind(si_unit: str) -> str:
     kinds = {
-        "m": "a length", "rad": "an angle", "rad/s": "a rotational speed", "Hz": "a frequency", "s": "a time",
-        "N m": "a torque", "N": "a force", "A": "a current", "degC": "a temperature", "1": "a pure number",
-        "m/s": "a velocity", "kg": "a mass", "kg m^2": "an inertia", "N/m": "a stiffness", "W": "a power",
-    }  # fmt: skip
+        "m": "a length",
+        "rad": "an angle",
+        "rad/s": "a rotational speed",
+        "Hz": "a frequency",
+        "s": "a time",
+        "N m": "a torque",
+        "N": "a force",
+        "A": "a current",
+        "degC": "a temperature",
+        "1": "a pure number",
+        "m/s": "a velocity",
+        "kg": "a mass",
+        "kg m^2": "an inertia",
+        "N/m": "a stiffness",
+        "W": "a power",
+    }
     return kinds.get(si_unit, f"what is in {si_unit}")
 
 
 def _needed(si_unit: str) -> str:
     units = {
-        "m": "m, mm or µm", "rad": "rad, deg or rev", "rad/s": "rad/s, deg/s or rev/min", "Hz": "Hz, kHz or 1/s",
-        "m/s": "m/s, mm/s or m/min", "N/m": "N/m or N/µm", "1": "no unit", "degC": "degC or K",
-    }  # fmt: skip
+        "m": "m, mm or µm",
+        "rad": "rad, deg or rev",
+        "rad/s": "rad/s, deg/s or rev/min",
+        "Hz": "Hz, kHz or 1/s",
+        "m/s": "m/s, mm/s or m/min",
+        "N/m": "N/m or N/µm",
+        "1": "no unit",
+        "degC": "degC or K",
+    }
     return f"it needs {units.get(si_unit, si_unit)}"

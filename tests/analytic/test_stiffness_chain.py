@@ -4,11 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
-from feeddrive.diagnosis.stiffness.candidates import DriveAt
-from feeddrive.diagnosis.stiffness.gap import explain_both
 from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.parts.bearings.supports import ScrewSupports, Support
 from feeddrive.parts.motor import HoldingBrake, Motor
@@ -65,25 +62,6 @@ def test_one_bearing_at_a_time_is_a_single_end(position: float) -> None:
         assert found == pytest.approx(held_frequency(paper_drive(), position), rel=1e-12)
     assert found <= held_frequency(paper_drive(), position) * (1 + 1e-12)
     assert found < held_frequency(paper_drive(both_ends=True), position)
-
-
-def test_explanations_with_the_chain_survive_finite_elements() -> None:
-    """185 Hz by the chain is 185 Hz by finite elements, to the chain's accuracy."""
-    start = DriveAt(paper_drive(0.7, 0.0), AT_NUT)
-    checked = 0
-    for one in explain_both(start, 191e6, 185.0, held_frequency):
-        drive, guides = one.dynamic.state.drive, one.dynamic.state.guide_stiffness
-        if guides or drive.screw.root_diameter:
-            continue  # the elements have none of these
-        assert drive.coupling is not None
-        nut = 1.0 / (1.0 / drive.nut.axial_stiffness + 1.0 / (drive.housing_stiffness or np.inf))
-        fem = ScrewDrive(
-            length=drive.screw.length, nut=nut, bearing=drive.supports.near.axial_stiffness, table=drive.table_mass,
-            coupling=drive.coupling.torsional_stiffness, coupling_inertia=drive.coupling.inertia,
-        )  # fmt: skip
-        assert frequencies(fem, one.dynamic.state.position, count=1)[0] == pytest.approx(185.0, rel=1.5e-3)
-        checked += 1
-    assert checked >= 8
 
 
 def test_what_has_no_held_frequency_is_refused() -> None:

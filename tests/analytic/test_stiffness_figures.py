@@ -7,15 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from feeddrive.diagnosis.stiffness.candidates import DriveAt
-from feeddrive.diagnosis.stiffness.gap import explain_stiffness
 from feeddrive.errors import InputError
 from feeddrive.files import plants_folder
 from feeddrive.parts.combined_stiffness import combined_stiffness, stiffness_along
 from feeddrive.plant.file.files import read_plant
 from feeddrive.report.figures.drawing import ReportFigure, render
 from feeddrive.report.figures.figure_stiffness import participation_figure, stiffness_position_figure
-from feeddrive.report.figures.figure_stiffness_gap import stiffness_gap_figure
 from tests.analytic.stiffness_cases import AT_NUT, paper_drive
 
 POSITIONS = np.linspace(0.1, 1.1, 11)
@@ -52,18 +49,6 @@ def test_too_many_drives_are_refused() -> None:
         stiffness_position_figure({str(i): paper_drive() for i in range(5)}, POSITIONS)
     with pytest.raises(InputError, match="0 drives in one figure"):
         stiffness_position_figure({}, POSITIONS)
-
-
-def test_only_the_diameter_has_a_line_of_its_own() -> None:
-    """Every other single change adds the same compliance wherever the nut stands."""
-    start = DriveAt(paper_drive(), AT_NUT)
-    entry = stiffness_gap_figure(start, explain_stiffness(start, 191e6), 185.0, np.linspace(0.7, 1.5, 3))
-    labels = [str(line.get_label()).replace("\n", " ") for line in entry.figure.axes[1].get_lines()]
-    assert labels == [
-        "housing and bracket, bearing, nut, screw under load, coupling",
-        "diameter that carries",
-        "measured",
-    ]
 
 
 @pytest.mark.parametrize("housing", [None, 3e9])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import warnings
 from pathlib import Path
 
 import pytest
@@ -59,3 +60,75 @@ def test_what_cannot_be_is_one_line(
     assert main(["watch", str(folder), "--plant", str(folder.parent / "plant.toml"), *words]) == 2
     told = capsys.readouterr()
     assert told.err.startswith("error: ") and told.err.count("\n") == 1 and said in told.err
+
+
+@pytest.fixture
+def fleet(folder: Path) -> Path:
+    """Three axes in a folder of folders: one as it was, one whose plant is its own, one without a usable recording."""
+    place = folder.parent / "axes"
+    for name, numbers in (("X1", (1, 2)), ("Y1", (3, 4))):
+        (place / name).mkdir(parents=True)
+        for number in numbers:
+            recording = machine.recording(machine.State(seed=number, start=0.4 * number), seconds=4.0)
+            write_recording(place / name / f"{name}_2026-01-0{number}.csv", recording)
+    (place / "Y1" / "plant.toml").write_text(machine.PLANT.replace('"120.0 kg"', '"125 kg"'), encoding="utf-8")
+    (place / "Z1").mkdir()
+    (place / "Z1" / "z_2026-01-01.csv").write_text("time [s],table_position [m]\n0,spindle\n", encoding="utf-8")
+    return place
+
+
+def test_axes_of_a_folder_each_by_itself(fleet: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    plant = str(fleet.parent / "plant.toml")
+    assert main(["watch", str(fleet), "--plant", plant, "--each", "--json"]) == 0
+    axes = {one["axis"]: one for one in json.loads(capsys.readouterr().out)["axes"]}
+    assert list(axes) == ["Z1", "X1", "Y1"]  # what needs a person first
+    assert axes["X1"]["recordings"] == 2 and axes["X1"]["newest"] == "2026-01-02T00:00:00"
+    assert not axes["Z1"]["usable"] and "no recording can be used" in axes["Z1"]["verdict"]
+    alone = fleet.parent / "alone"
+    assert main(["watch", str(fleet / "X1"), "--plant", plant, "--out", str(alone)]) == 0
+    _same(alone, fleet.parent / "axes_watch" / "X1")
+    capsys.readouterr()
+    assert main(["watch", str(fleet), "--plant", plant, "--each"]) == 0
+    shown = " ".join(capsys.readouterr().out.split())
+    assert "3 axes, 0 changed" in shown and "trend.html in the folder of each axis" in shown
+
+
+def _same(one: Path, other: Path) -> None:
+    """The results of two runs but for the time that they took."""
+    assert (one / "trend.csv").read_bytes() == (other / "trend.csv").read_bytes()
+    contents = [json.loads((place / "trend.json").read_text(encoding="utf-8")) for place in (one, other)]
+    for content in contents:
+        del content["seconds"]
+    assert contents[0] == contents[1]
+
+
+def test_a_dask_cluster_gives_the_same_numbers(fleet: Path) -> None:
+    distributed = pytest.importorskip("distributed", reason="Dask is not installed: pip install 'feeddrive[dask]'")
+    plant = str(fleet.parent / "plant.toml")
+    assert main(["watch", str(fleet), "--plant", plant, "--each", "--out", str(fleet.parent / "here")]) == 0
+    with (
+        warnings.catch_warnings(action="ignore"),  # Dask's own
+        distributed.LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=None) as cluster,
+    ):
+        there = ["--scheduler", cluster.scheduler_address, "--out", str(fleet.parent / "there")]
+        assert main(["watch", str(fleet), "--plant", plant, "--each", *there]) == 0
+    for name in ("X1", "Y1"):
+        _same(fleet.parent / "here" / name, fleet.parent / "there" / name)
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--scheduler", "tcp://127.0.0.1:8786"], "say --each"),
+        (["--each", "--scheduler", "here"], "is not an address"),
+        (["--each"], "there is no folder in it"),
+    ],
+)
+def test_what_cannot_be_of_a_fleet(
+    folder: Path, capsys: pytest.CaptureFixture[str], words: list[str], said: str
+) -> None:
+    place = folder
+    if "--scheduler" in words and "--each" in words:
+        (folder / "X1").mkdir()
+    assert main(["watch", str(place), "--plant", str(folder.parent / "plant.toml"), *words]) == 2
+    assert said in capsys.readouterr().err

@@ -19,7 +19,7 @@ def test_scenario_prints_course_and_energy_and_writes_its_figure(tmp_path: Path)
         capture_output=True, encoding="utf-8", env=environment, check=False,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
-    open_share = re.search(r"not accounted for: ([+-][\d.]+) %", done.stdout)
+    open_share = re.search(r"not accounted for +([+-][\d.]+) %", done.stdout)
     assert open_share is not None
     assert abs(float(open_share[1])) < 0.02
     errors = [float(text) for text in re.findall(r"([\d.]+) µm", done.stdout)]

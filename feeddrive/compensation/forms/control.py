@@ -28,20 +28,26 @@ class Reversal:
         spread: time over which it does so evenly [s].
         cycles: position cycles over which it does so evenly, in place of a time.
         ramped: whether the whole value follows with half of the axis' limits of velocity and acceleration.
+        smooth: whether by sin^2 in place of evenly.
         longest: time to which it may be set [s]; 0 where the control has no such setting.
+        most_cycles: to which it may be set, where it counts cycles.
         setting: table, name of the axis and this reversal to the line that says how to set it.
     """
 
     spread: float = 0.0
     cycles: int = 0
     ramped: bool = False
+    smooth: bool = False
     longest: float = 0.0
+    most_cycles: int = 0
     setting: Callable[[CompensationTable, str, Reversal], str] | None = None
 
     def over(self, time: float, cycle: float) -> Reversal:
         """Set to a time [s], at a position cycle [s]."""
         time = min(time, self.longest)
-        return replace(self, cycles=max(1, round(time / cycle))) if self.cycles else replace(self, spread=time)
+        if not self.cycles:
+            return replace(self, spread=time)
+        return replace(self, cycles=min(max(1, round(time / cycle)), self.most_cycles))
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,7 @@ from feeddrive import __version__
 from feeddrive.diagnosis.calibration.calibrated_result import calibrated_record
 from feeddrive.diagnosis.calibration.plant_text import with_calibrated_values
 from feeddrive.diagnosis.judging.result import ChannelResult, Diagnosis, EffectResult, ErrorFigures, ParameterResult
+from feeddrive.diagnosis.numbers.rows import numbers_beside
 from feeddrive.diagnosis.recordings.change_outputs import changes_record
 from feeddrive.diagnosis.simulated.simulation_record import simulation_record
 from feeddrive.diagnosis.suspicion.quality import is_recorders, quality_record
@@ -65,6 +66,11 @@ def diagnosis_record(diagnosis: Diagnosis) -> dict[str, Any]:
         "channels": [_channel(channel) for channel in diagnosis.channels],
         "effects": [_effect(effect) for effect in diagnosis.effects],
         "calibrated": calibrated_record(diagnosis.calibrated),
+        "possible": [
+            {"name": one.name, "odds": one.odds, "instead_of": one.instead_of, "settles": one.settles}
+            for one in diagnosis.possible
+        ],
+        "measured": numbers_beside(diagnosis.measured),
         "quality": quality_record(diagnosis.quality),
         "refused": [{"name": refused.name, "reason": refused.reason} for refused in diagnosis.refused],
         "ambiguous": [list(names) for names in diagnosis.ambiguous],
@@ -126,6 +132,7 @@ def _effect(effect: EffectResult) -> dict[str, Any]:
         "carries": bool(effect.carries),
         "evidence": effect.evidence,
         "reading": effect.reading,
+        "odds": effect.odds,
     }
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import ClassVar
 
 import numpy as np
 
@@ -34,8 +33,6 @@ class AxisPredictor(Predictor[AxisEvidence]):
         scaled: fitted recordings whose torque is known but for its scale, which every plant sets for itself.
         declared_scale: that their torque was brought to [N m per unit of the channel].
     """
-
-    retries: ClassVar[int] = 1
 
     scaled: tuple[AxisEvidence, ...] = ()
     declared_scale: float = 1.0

@@ -96,9 +96,13 @@ class GuideFriction(FrictionEffect):
 
 
 def guide_effect(
-    guide: BallGuide, coefficients: GuideCoefficients, carriages: int, load_per_carriage: float = 0.0,
-    seal_drag: float = 0.0, smoothing_velocity: float = 0.5e-3,
-) -> GuideFriction:  # fmt: skip
+    guide: BallGuide,
+    coefficients: GuideCoefficients,
+    carriages: int,
+    load_per_carriage: float = 0.0,
+    seal_drag: float = 0.0,
+    smoothing_velocity: float = 0.5e-3,
+) -> GuideFriction:
     """Friction of a table on ball guides: rolling, slip and seals as Coulomb level, the oil film as power of speed.
 
     The power law leaves the film's force by less than 0.03 % from 1 mm/s to 2 m/s.

@@ -42,9 +42,15 @@ class Pull:
 
 
 def node_forces(
-    plant: Plant, symbols: Symbols, q: Expression, rate: Expression, z: Expression, time: Expression,
-    reference: Expression, pull: Pull,
-) -> Forces:  # fmt: skip
+    plant: Plant,
+    symbols: Symbols,
+    q: Expression,
+    rate: Expression,
+    z: Expression,
+    time: Expression,
+    reference: Expression,
+    pull: Pull,
+) -> Forces:
     """Forces on the coordinates beyond the linear chain at `reference`, and the rates of the bristles.
 
     Args:

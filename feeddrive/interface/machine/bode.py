@@ -164,8 +164,9 @@ def bode(
     cases = cases_of(plant, places, quantities(payload, "kg", "payload"), point.linearised_at)
     ends = quantities(frequencies, "Hz", "frequencies")
     if len(ends) != 2:
-        raise InputError(f'"{", ".join(map(str, frequencies))}" is not two frequencies', "frequencies",
-                         'write e.g. "1 Hz,2 kHz"')  # fmt: skip
+        raise InputError(
+            f'"{", ".join(map(str, frequencies))}" is not two frequencies', "frequencies", 'write e.g. "1 Hz,2 kHz"'
+        )
     low, high = ends
     refuse_no_range(low, high)
     valid_to = min(resolved_modes(plant, case.position).chain_valid_to for case in cases)

@@ -197,9 +197,21 @@ def draft(
     if isinstance(carriages, bool) or not isinstance(carriages, int) or not 1 <= carriages <= 1000:
         raise InputError(f"{carriages!r} is no number of carriages", "--carriages", "write a whole number, such as 4")
     wishes = Wishes(
-        screw, motor, _size(mass, "kg", "mass"), _size(stroke, "m", "stroke"), _size(length, "m", "length"), guide,
-        carriages, _size(preload, "N", "preload"), supports, bearing, coupling, orientation, structure, name,
-    )  # fmt: skip
+        screw,
+        motor,
+        _size(mass, "kg", "mass"),
+        _size(stroke, "m", "stroke"),
+        _size(length, "m", "length"),
+        guide,
+        carriages,
+        _size(preload, "N", "preload"),
+        supports,
+        bearing,
+        coupling,
+        orientation,
+        structure,
+        name,
+    )
     if '"' in name or not name.isprintable() or not name.strip():
         raise InputError(f"{name!r} is no name", "--name", "write letters without quotation marks")
     made = drafted(wishes)

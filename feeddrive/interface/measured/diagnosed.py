@@ -12,6 +12,7 @@ from feeddrive.diagnosis.calibration.plant_text import with_calibrated_values
 from feeddrive.diagnosis.diagnose import diagnose as find_what_lacks
 from feeddrive.diagnosis.judging.result import Diagnosis
 from feeddrive.diagnosis.likelihood.outputs import diagnosis_json, diagnosis_record, write_outputs
+from feeddrive.diagnosis.numbers.measured_file import read_measured_numbers
 from feeddrive.diagnosis.suspicion.quality import is_recorders, quality_lines
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
@@ -22,6 +23,7 @@ from feeddrive.plant.file.effect_text import plant_text_with_effects
 from feeddrive.recording.recording import Recording
 from feeddrive.report.certainty import experiment_sentences
 from feeddrive.report.pages.section_calibrated import calibrated_lines
+from feeddrive.report.pages.section_measured import measured_lines
 from feeddrive.report.parameters import parameter_text
 from feeddrive.report.records import used_sentence
 from feeddrive.report.simulated import simulation_lines
@@ -57,8 +59,15 @@ class Effects(Shown):
             for key, parameter in one.parameters.items():
                 shown = parameter_text(key, parameter)
                 rows.append([one.name, shown.name, shown.value, shown.interval])
-                records.append({"effect": one.name, "parameter": key, "value": parameter.value,
-                                "unit": parameter.unit, "ci95": parameter.ci95})  # fmt: skip
+                records.append(
+                    {
+                        "effect": one.name,
+                        "parameter": key,
+                        "value": parameter.value,
+                        "unit": parameter.unit,
+                        "ci95": parameter.ci95,
+                    }
+                )
         title = "Effects that the axis lacks" if rows else "No effect is missing"
         return Listing(title, ("effect", "value of", "value", "95 % interval"), rows, records)
 
@@ -72,15 +81,28 @@ class Errors(Shown):
     def listing(self) -> Listing:
         """One row per channel."""
         rows = [
-            [one.name, error_text(one.before.rms, one.unit), error_text(one.after.rms, one.unit),
-             share_text(one.before.relative), share_text(one.after.relative), error_text(one.noise_rms, one.unit)]
+            [
+                one.name,
+                error_text(one.before.rms, one.unit),
+                error_text(one.after.rms, one.unit),
+                share_text(one.before.relative),
+                share_text(one.after.relative),
+                error_text(one.noise_rms, one.unit),
+            ]
             for one in self._diagnosis.channels
-        ]  # fmt: skip
+        ]
         records = [
-            {"channel": one.name, "unit": one.unit, "before rms": one.before.rms, "after rms": one.after.rms,
-             "before relative": one.before.relative, "after relative": one.after.relative, "noise rms": one.noise_rms}
+            {
+                "channel": one.name,
+                "unit": one.unit,
+                "before rms": one.before.rms,
+                "after rms": one.after.rms,
+                "before relative": one.before.relative,
+                "after relative": one.after.relative,
+                "noise rms": one.noise_rms,
+            }
             for one in self._diagnosis.channels
-        ]  # fmt: skip
+        ]
         headings = ("channel", "error before", "after", "relative before", "after", "sensor noise")
         return Listing("Errors on data not fitted", headings, rows, records)
 
@@ -119,8 +141,7 @@ class Diagnosed(Shown):
         found = self.diagnosis
         lines = [used_sentence(found)]
         lines += [f"{one.name}: {one.evidence} {one.reading}" for one in found.effects]
-        lines += quality_lines(found.quality)
-        lines += calibrated_lines(found)
+        lines += [*quality_lines(found.quality), *calibrated_lines(found), *measured_lines(found)]
         lines += [f"since the earlier diagnosis: {sentence}" for sentence in found.kept.since]
         lines += [
             f"cannot be told apart by these recordings: {', '.join(one.names)}: {one.reason}" for one in found.alike
@@ -164,7 +185,7 @@ class Diagnosed(Shown):
         """
         from feeddrive.report.pages.html import write_report
 
-        write_report(self.diagnosis, Path(path), todo=self._actions())
+        write_report(self.diagnosis, Path(path), todo=self._actions(), bench=self._bench())
         return Path(path)
 
     def save(self, folder: str | Path) -> Path:
@@ -180,12 +201,18 @@ class Diagnosed(Shown):
         pictures = render_figures(self.diagnosis)
         write_outputs(self.diagnosis, self.found, self.axis.text, place)
         save_figures(self.diagnosis, place, pictures)
-        write_report(self.diagnosis, place / "report.html", pictures, todo=self._actions())
+        write_report(self.diagnosis, place / "report.html", pictures, todo=self._actions(), bench=self._bench())
         return place
 
     def _actions(self) -> Actions:
         """What to do, with a prediction where a table helps."""
         return actions(self.diagnosis, self.plant.plant)
+
+    def _bench(self) -> str:
+        """The page for the tab of the report."""
+        from feeddrive.interface.benching import bench_of_diagnosis  # which takes a diagnosis
+
+        return bench_of_diagnosis(self.plant.plant, self.diagnosis)
 
     def listing(self) -> Listing:
         """The effects, or where there are none the errors."""
@@ -204,6 +231,7 @@ def diagnose(
     validate: Given | Sequence[Given] | None = None,
     split: float = 0.75,
     simulate: bool = False,
+    measured: str | Path | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> Diagnosed:
     """Find what an axis lacks.
@@ -214,6 +242,7 @@ def diagnose(
         validate: to judge on; the last part of each fitted one if left out.
         split: share that is fitted then.
         simulate: also simulate the closed loop where a controller is declared.
+        measured: TOML file of numbers that were measured beside, `[[measured]]`: a stiffness, a natural frequency.
         progress: called with a word for what is being done.
 
     Raises:
@@ -222,7 +251,9 @@ def diagnose(
     fitted, judged = _several(recording, "recording"), _several(validate, "validate")
     if not fitted:
         raise InputError("no recording is given", "recording", "give fd.read(...), or the path of a file")
-    result, effects = find_what_lacks(axis.plant, fitted, judged, split, simulate, progress or (lambda _: None), ())
+    numbers = read_measured_numbers(Path(measured), axis.plant) if measured is not None else ()
+    said = progress or (lambda _: None)
+    result, effects = find_what_lacks(axis.plant, fitted, judged, split, simulate, said, (), numbers)
     return Diagnosed(axis, result, tuple(effects))
 
 

@@ -256,10 +256,14 @@ def inspect(
     """
     where = str(path)
     wishes = Wishes(
-        axis or None, _positive(lead, "m", "lead", "10 mm"), _chosen(channels or {}),
-        _positive(rate, "Hz", "rate", "1 kHz"), _part(part), _positive(sample_time, "s", "sample_time", "1 ms"),
+        axis or None,
+        _positive(lead, "m", "lead", "10 mm"),
+        _chosen(channels or {}),
+        _positive(rate, "Hz", "rate", "1 kHz"),
+        _part(part),
+        _positive(sample_time, "s", "sample_time", "1 ms"),
         tuple(columns),
-    )  # fmt: skip
+    )
     content = open_file(Path(path))
     known = None if map is None else read_mapping(Path(map))
     if known is not None and known.sample_time is not None and wishes.sample_time is None:

@@ -91,9 +91,11 @@ class Iso230(Shown):
     def record(self) -> dict[str, Any]:
         """Plain values for JSON, SI."""
         content: dict[str, Any] = {
-            "format": "feeddrive-iso230/1", "name": self.name, "standard": STANDARDS[self.part],
+            "format": "feeddrive-iso230/1",
+            "name": self.name,
+            "standard": STANDARDS[self.part],
             "figures": {key: {"value": _finite(v), "unit": unit_of(key)} for key, v in self.figures_si().items()},
-        }  # fmt: skip
+        }
         if isinstance(self.test, LinearTest):
             content["targets"] = _target_records(self.test)
         if self.share is not None:
@@ -247,8 +249,14 @@ def _linear_figures(test: LinearTest) -> dict[str, float]:
     both = test.both
     found: dict[str, float] = {}
     if both is not None:
-        found = {"A": both.accuracy, "E": both.systematic, "M": both.mean_range, "R": both.repeatability,
-                 "B": both.reversal_value, "mean B": both.mean_reversal}  # fmt: skip
+        found = {
+            "A": both.accuracy,
+            "E": both.systematic,
+            "M": both.mean_range,
+            "R": both.repeatability,
+            "B": both.reversal_value,
+            "mean B": both.mean_reversal,
+        }
     for name, side in test.sides.items():
         arrow = "↑" if name == "up" else "↓"
         found |= {f"A{arrow}": side.accuracy, f"E{arrow}": side.systematic, f"R{arrow}": side.repeatability}
@@ -261,17 +269,26 @@ def _drift_figures(test: DriftTest) -> dict[str, float]:
     for one in heating.targets:
         at = format_quantity(one.position, "m")
         found |= {
-            f"range at {at}, first hour": one.first_hour, f"range at {at}, heating": one.heating,
-            f"range at {at}, whole test": one.whole, f"largest at {at}": one.largest,
+            f"range at {at}, first hour": one.first_hour,
+            f"range at {at}, heating": one.heating,
+            f"range at {at}, whole test": one.whole,
+            f"largest at {at}": one.largest,
             f"settled at {at} after": one.settling,
-        }  # fmt: skip
+        }
     return {**found, "slope at the stop": heating.slope}
 
 
 def _circle_figures(test: CircleTest | Circular) -> dict[str, float]:
     if isinstance(test, Circular):
-        return {"G": test.deviation, "F max": test.radial_maximum, "F min": test.radial_minimum, "gain": test.gain,
-                "lag": test.lag, "glitch at +": test.glitch[0], "glitch at -": test.glitch[1]}  # fmt: skip
+        return {
+            "G": test.deviation,
+            "F max": test.radial_maximum,
+            "F min": test.radial_minimum,
+            "gain": test.gain,
+            "lag": test.lag,
+            "glitch at +": test.glitch[0],
+            "glitch at -": test.glitch[1],
+        }
     found: dict[str, float] = {}
     both = test.bidirectional
     if both is not None:

@@ -66,10 +66,14 @@ class Explained(Shown):
             for one in singles
         ]
         rows = [
-            [one.value.words, "rigid" if one.value.missing else format_quantity(one.value.value, one.value.unit),
-             value_text(one.value, one.value.number(one.coordinate)), "yes" if one.meets else "no"]
+            [
+                one.value.words,
+                "rigid" if one.value.missing else format_quantity(one.value.value, one.value.unit),
+                value_text(one.value, one.value.number(one.coordinate)),
+                "yes" if one.meets else "no",
+            ]
             for one in singles
-        ]  # fmt: skip
+        ]
         title = f"{self.axis.name}: each value alone made to meet the numbers"
         return Listing(title, ("value", "declared", "would be", "meets all numbers"), rows, records)
 

@@ -60,8 +60,16 @@ class ExplainedResponse(Shown):
             for number in one.parameters:
                 shown = [format_quantity(value, number.unit) for value in (number.value, *number.interval)]
                 rows.append([one.words, number.key, shown[0], f"[{shown[1]}, {shown[2]}]", f"{one.log_odds:.1f}"])
-                records.append({"name": one.name, "key": number.key, "value": number.value, "unit": number.unit,
-                                "ci95": number.interval, "log_odds": one.log_odds})  # fmt: skip
+                records.append(
+                    {
+                        "name": one.name,
+                        "key": number.key,
+                        "value": number.value,
+                        "unit": number.unit,
+                        "ci95": number.interval,
+                        "log_odds": one.log_odds,
+                    }
+                )
         title = f"{self.axis.name}: other than declared" if rows else f"{self.axis.name}: nothing other than declared"
         return Listing(title, ("found", "key", "value", "95 % interval", "log odds"), rows, records)
 

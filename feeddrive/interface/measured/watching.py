@@ -91,7 +91,9 @@ class Watched(Shown):
         """Plain values for JSON, SI."""
         trend = self.trend
         return {
-            "format": "feeddrive-watch/1", "plant": trend.plant, "title": self._title,
+            "format": "feeddrive-watch/1",
+            "plant": trend.plant,
+            "title": self._title,
             "recordings": [
                 {"file": one.key, "date": trend.when(float(day)).isoformat()}
                 for one, day in zip(trend.used, trend.days, strict=True)
@@ -104,10 +106,14 @@ class Watched(Shown):
             "quantities": [_record(trend, one.name) for one in trend.quantities],
             "events": [_event(trend, event, self.searched.get(i, "")) for i, event in enumerate(trend.events)],
             "odd": [{"quantity": name, "file": trend.used[i].key} for name, i in trend.odd],
-            "growth": _growth(trend), "notes": list(trend.notes),
-            "seconds": {"reading": round(trend.seconds[0], 3), "all": round(trend.seconds[1], 3),
-                        "new_files": trend.fresh},
-        }  # fmt: skip
+            "growth": _growth(trend),
+            "notes": list(trend.notes),
+            "seconds": {
+                "reading": round(trend.seconds[0], 3),
+                "all": round(trend.seconds[1], 3),
+                "new_files": trend.fresh,
+            },
+        }
 
     def save(self) -> Path:
         """Write `trend.html`, `trend.json`, `trend.csv` and the figures beside the checkpoint.
@@ -170,9 +176,14 @@ def watch(
         raise InputError("the plant declares heat alone", plant.name, "declare the motion of the axis")
     target = Path(out) if out is not None else place.parent / f"{place.name or 'folder'}{PLACE}"
     options = Options(
-        None if map is None else Path(map), decimal, stamp, read_moment(first, "first") if first else None,
-        None if every is None else _distance(every), _absolute(absolute, plant), dict(limits or {}),
-    )  # fmt: skip
+        None if map is None else Path(map),
+        decimal,
+        stamp,
+        read_moment(first, "first") if first else None,
+        None if every is None else _distance(every),
+        _absolute(absolute, plant),
+        dict(limits or {}),
+    )
     trend, kept = follow(plant.plant, plant.text, plant.entries, place, target, options, said)
     unknown = set(options.limits or {}) - {one.name for one in trend.quantities if one.watched}
     if unknown:
@@ -206,21 +217,35 @@ def _record(trend: Trend, name: str) -> dict[str, Any]:
     """One quantity for JSON."""
     quantity = next(one for one in trend.quantities if one.name == name)
     course, limit = trend.courses.get(name), trend.limits.get(name)
-    record: dict[str, Any] = {"name": name, "words": quantity.words, "unit": quantity.unit,
-                              "values": [_finite(value) for value in quantity.values]}  # fmt: skip
+    record: dict[str, Any] = {
+        "name": name,
+        "words": quantity.words,
+        "unit": quantity.unit,
+        "values": [_finite(value) for value in quantity.values],
+    }
     if course is not None:
         here = np.isfinite(quantity.values)
-        record |= {"scatter": course.scatter, "course": [float(v) for v in course.fitted],
-                   "course_sd": [float(v) for v in course.band], "shown": int(here.sum())}  # fmt: skip
+        record |= {
+            "scatter": course.scatter,
+            "course": [float(v) for v in course.fitted],
+            "course_sd": [float(v) for v in course.band],
+            "shown": int(here.sum()),
+        }
         record["changes"] = [
-            {"kind": one.atom.kind, "date": trend.when(one.atom.date).isoformat(),
-             "dates95": [trend.when(day).isoformat() for day in one.dates], "odds": one.odds, "size": one.size,
-             "size_sd": one.deviation, "size_per": "day" if one.atom.kind == "slope" else "",
-             "power": one.atom.power,
-             "time_constant_s": 86400 * one.atom.time_constant or None,
-             "time_constant95_s": [86400 * edge for edge in one.time_constants] if one.atom.time_constant else None}
+            {
+                "kind": one.atom.kind,
+                "date": trend.when(one.atom.date).isoformat(),
+                "dates95": [trend.when(day).isoformat() for day in one.dates],
+                "odds": one.odds,
+                "size": one.size,
+                "size_sd": one.deviation,
+                "size_per": "day" if one.atom.kind == "slope" else "",
+                "power": one.atom.power,
+                "time_constant_s": 86400 * one.atom.time_constant or None,
+                "time_constant95_s": [86400 * edge for edge in one.time_constants] if one.atom.time_constant else None,
+            }
             for one in course.found
-        ]  # fmt: skip
+        ]
     if limit is not None:
         record["limit"] = _limit(trend, limit)
     return record
@@ -228,19 +253,24 @@ def _record(trend: Trend, name: str) -> dict[str, Any]:
 
 def _limit(trend: Trend, limit: Limit) -> dict[str, Any]:
     return {
-        "low": _finite(limit.low), "high": _finite(limit.high), "origin": limit.origin,
+        "low": _finite(limit.low),
+        "high": _finite(limit.high),
+        "origin": limit.origin,
         "left_at": None if limit.left is None else trend.used[limit.left].key,
         "reached": None if limit.reached is None else trend.when(limit.reached).isoformat(),
-    }  # fmt: skip
+    }
 
 
 def _event(trend: Trend, event: Event, searched: str) -> dict[str, Any]:
     return {
-        "kind": event.kind, "date": trend.when(event.day).isoformat(),
-        "dates95": [trend.when(day).isoformat() for day in event.dates], "causes": list(event.causes),
+        "kind": event.kind,
+        "date": trend.when(event.day).isoformat(),
+        "dates95": [trend.when(day).isoformat() for day in event.dates],
+        "causes": list(event.causes),
         "quantities": [change.quantity.name for change in event.changes],
-        "odds": max(change.found.odds for change in event.changes), "searched": searched or None,
-    }  # fmt: skip
+        "odds": max(change.found.odds for change in event.changes),
+        "searched": searched or None,
+    }
 
 
 def _growth(trend: Trend) -> dict[str, Any] | None:
@@ -250,9 +280,13 @@ def _growth(trend: Trend) -> dict[str, Any] | None:
     content: dict[str, Any] = {}
     for name, one in (("offset", growth.offset), ("slope", growth.slope)):
         if one is not None:
-            content[name] = {"growth": one.growth, "sd": one.deviation, "unit": "m" if name == "offset" else "m/m",
-                             "time_constant_s": 86400 * one.time_constant,
-                             "time_constant95_s": [86400 * edge for edge in one.interval]}  # fmt: skip
+            content[name] = {
+                "growth": one.growth,
+                "sd": one.deviation,
+                "unit": "m" if name == "offset" else "m/m",
+                "time_constant_s": 86400 * one.time_constant,
+                "time_constant95_s": [86400 * edge for edge in one.interval],
+            }
     if growth.fixed_point is not None:
         content["fixed_point"] = {"value": growth.fixed_point[0], "sd": growth.fixed_point[1], "unit": "m"}
     return content

@@ -84,11 +84,19 @@ class Controller:
 
 
 def cascade(
-    axis: Axis, servo: Servo | str | None = None, *, velocity_gain: Quantity | None = None,
-    reset_time: Quantity | None = None, position_gain: Quantity | None = None, velocity_rate: Quantity = "8 kHz",
-    position_rate: Quantity = "2 kHz", current_bandwidth: Quantity = "1 kHz", dead_time: Quantity = "125 us",
-    feedback: str | None = None, feed_forward: bool = True,
-) -> Controller:  # fmt: skip
+    axis: Axis,
+    servo: Servo | str | None = None,
+    *,
+    velocity_gain: Quantity | None = None,
+    reset_time: Quantity | None = None,
+    position_gain: Quantity | None = None,
+    velocity_rate: Quantity = "8 kHz",
+    position_rate: Quantity = "2 kHz",
+    current_bandwidth: Quantity = "1 kHz",
+    dead_time: Quantity = "125 us",
+    feedback: str | None = None,
+    feed_forward: bool = True,
+) -> Controller:
     """The usual cascade: gains as given, or those of a tuned servo or a controller file, changed where given.
 
     Args:
@@ -167,9 +175,13 @@ def schedule(axis: Axis, servo: Servo, positions: Sequence[Quantity]) -> tuple[C
 
 
 def sampled(
-    axis: Axis, rate: Quantity = "4 kHz", *, current_bandwidth: Quantity = "1 kHz", dead_time: Quantity | None = None,
+    axis: Axis,
+    rate: Quantity = "4 kHz",
+    *,
+    current_bandwidth: Quantity = "1 kHz",
+    dead_time: Quantity | None = None,
     at: str = "",
-) -> control.StateSpace:  # fmt: skip
+) -> control.StateSpace:
     """The axis and its current loop as a drive sees them: sampled exactly, torque held over a tick.
 
     Args:
@@ -215,9 +227,15 @@ def with_load(machine: control.StateSpace) -> control.StateSpace:
 
 
 def state_feedback(
-    axis: Axis, gain: FloatArray, observer: FloatArray, rate: Quantity = "4 kHz", *,
-    current_bandwidth: Quantity = "1 kHz", dead_time: Quantity | None = None, at: str = "",
-) -> Controller:  # fmt: skip
+    axis: Axis,
+    gain: FloatArray,
+    observer: FloatArray,
+    rate: Quantity = "4 kHz",
+    *,
+    current_bandwidth: Quantity = "1 kHz",
+    dead_time: Quantity | None = None,
+    at: str = "",
+) -> Controller:
     """State feedback with an observer of the state and of the force on the table.
 
     Args:

@@ -31,15 +31,22 @@ Course = Quantity | Callable[[FloatArray], FloatArray] | FloatArray
 """A value over time: a quantity that stays, samples in SI, or what gives them from the times [s]."""
 
 UNITS = {
-    "position": "m", "velocity": "m/s", "acceleration": "m/s^2", "speed_excitation": "rad/s",
+    "position": "m",
+    "velocity": "m/s",
+    "acceleration": "m/s^2",
+    "speed_excitation": "rad/s",
     "torque_excitation": "N m",
-}  # fmt: skip
+}
 """Of what a controller may be fed."""
 
 SERIES = {
-    "command": "N m", "motor_torque": "N m", "motor_angle": "rad", "motor_speed": "rad/s", "table_position": "m",
+    "command": "N m",
+    "motor_torque": "N m",
+    "motor_angle": "rad",
+    "motor_speed": "rad/s",
+    "table_position": "m",
     "table_velocity": "m/s",
-}  # fmt: skip
+}
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -116,10 +123,17 @@ class Motion(Shown):
 
 
 def move(
-    axis: Axis, controller: Controller | None = None, *, duration: Quantity, torque: Course | None = None,
-    rate: Quantity = "4 kHz", force: Course = 0.0, start: Quantity = 0.0, moving: Quantity = 0.0,
+    axis: Axis,
+    controller: Controller | None = None,
+    *,
+    duration: Quantity,
+    torque: Course | None = None,
+    rate: Quantity = "4 kHz",
+    force: Course = 0.0,
+    start: Quantity = 0.0,
+    moving: Quantity = 0.0,
     **references: Course,
-) -> Motion:  # fmt: skip
+) -> Motion:
     """Run the nonlinear axis under a controller that is fed anything, or under a torque.
 
     Args:
@@ -154,8 +168,12 @@ def move(
         assert torque is not None
         given = steady_motion(axis.plant, speed, place).torque + _course(torque, time, "N m", "torque")
         driven = simulate_torque(axis.plant, time, given, place, speed)
-        named = {"motor_torque": driven.torque, "motor_angle": driven.motor_angle, "table_position": driven.position,
-                 "table_velocity": driven.velocity}  # fmt: skip
+        named = {
+            "motor_torque": driven.torque,
+            "motor_angle": driven.motor_angle,
+            "table_position": driven.position,
+            "table_velocity": driven.velocity,
+        }
         return Motion(axis.name, time, named, tick)
     fed, tick = controller.sampled.references, controller.sampled.sample_time
     unknown = [name for name in references if name not in fed]
@@ -168,12 +186,21 @@ def move(
     sampled = controller.starting_at(place)
     begin = resting_state(axis.plant, sampled, controller.torque_loop, place, speed)
     run = simulate_controlled(
-        axis.plant, sampled, np.column_stack(columns), _course(force, time, "N", "force"),
-        controller.torque_loop, begin,
-    )  # fmt: skip
-    shown = {"command": run.command, "motor_torque": run.torque, "motor_angle": run.motor_angle,
-             "motor_speed": run.motor_speed, "table_position": run.table_position,
-             "table_velocity": run.table_velocity}  # fmt: skip
+        axis.plant,
+        sampled,
+        np.column_stack(columns),
+        _course(force, time, "N", "force"),
+        controller.torque_loop,
+        begin,
+    )
+    shown = {
+        "command": run.command,
+        "motor_torque": run.torque,
+        "motor_angle": run.motor_angle,
+        "motor_speed": run.motor_speed,
+        "table_position": run.table_position,
+        "table_velocity": run.table_velocity,
+    }
     return Motion(axis.name, run.time, {**shown, **run.signals}, tick)
 
 

@@ -70,10 +70,15 @@ class WarmUp(Shown):
             for name, one in self.study.warm_up.items()
         ]
         rows = [
-            [name, *(format_quantity(value, unit) for value, unit in
-                     ((one.final, "m"), (one.time, "s"), (one.rise_time, "s")))]
+            [
+                name,
+                *(
+                    format_quantity(value, unit)
+                    for value, unit in ((one.final, "m"), (one.time, "s"), (one.rise_time, "s"))
+                ),
+            ]
             for name, one in self.study.warm_up.items()
-        ]  # fmt: skip
+        ]
         headings = ("growth", "settles at", f"within {format_quantity(self.study.within, 'm')} after", "63 % after")
         return Listing(f"{self.study.plant.name}: warm-up", headings, rows, records)
 

@@ -97,7 +97,7 @@ def plant_share(test: LinearTest, plant: Plant) -> PlantShare:
             )
     return PlantShare(
         _share(test, zero), _share(test, alone), _share(test, test.less(up, down)), without, up, down, _creeps(plant)
-    )  # fmt: skip
+    )
 
 
 def _creeps(plant: Plant) -> bool:

@@ -51,8 +51,10 @@ def mapped_columns(variables: Mapping[str, Any], mapping: FileMapping, where: st
 
 
 def _channel(variables: Mapping[str, Any], variable: Variable, where: str) -> FloatArray:
-    factors = [_vector(_find(variables, name, where), variable.column, f'{where}, variable "{name}"')
-               for name in variable.names]  # fmt: skip
+    factors = [
+        _vector(_find(variables, name, where), variable.column, f'{where}, variable "{name}"')
+        for name in variable.names
+    ]
     longest = max(factor.size for factor in factors)
     product: FloatArray = np.full(longest if len(factors) > 1 else 1, variable.factor)
     with np.errstate(all="ignore"):  # a number beyond all bounds is refused where its row is known

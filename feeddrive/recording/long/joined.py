@@ -58,7 +58,8 @@ def shortened(recording: Recording, radius: float) -> Recording:
 def clock(recording: Recording) -> FloatArray:
     """Time of the samples since the first, (n,) [s]: even, but where stretches are joined."""
     if any(one.kind == JOINED for one in recording.flaws):
-        return recording.time - recording.time[0]
+        since: FloatArray = recording.time - recording.time[0]
+        return since
     return np.arange(len(recording), dtype=np.float64) * recording.sample_time
 
 
@@ -142,7 +143,9 @@ def _bridge(before: FloatArray, after: FloatArray, step: float, fastest: float, 
             [1, 1, 1, 1, 1, 1], [0, 1, 2, 3, 4, 5], [0, 0, 2, 6, 12, 20]]  # fmt: skip
     scales = np.array([1.0, total, total**2])
     right = np.concatenate([np.array(end) * scales for end in ends])
-    return np.polynomial.polynomial.polyval(np.arange(1, count) / count, np.linalg.solve(np.array(rows, float), right))
+    terms = np.linalg.solve(np.array(rows, float), right)
+    found: FloatArray = np.polynomial.polynomial.polyval(np.arange(1, count) / count, terms)
+    return found
 
 
 def _between(

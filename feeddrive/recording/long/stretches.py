@@ -84,12 +84,14 @@ def _grams(position: FloatArray, sample_time: float, length: int, count: int) ->
     ], axis=-1)  # fmt: skip
     size = np.sqrt(np.mean(columns**2, axis=(0, 1)))
     columns = columns / np.where(size > 0, size, 1.0)
-    return np.einsum("wri,wrj->wij", columns, columns, optimize=True)
+    found: FloatArray = np.einsum("wri,wrj->wij", columns, columns, optimize=True)
+    return found
 
 
 def _hats(share: FloatArray, count: int) -> FloatArray:
     """Hats over 0 to 1, (..., count)."""
-    return np.clip(1 - np.abs(share[..., None] * (count - 1) - np.arange(count)), 0.0, None)
+    found: FloatArray = np.clip(1 - np.abs(share[..., None] * (count - 1) - np.arange(count)), 0.0, None)
+    return found
 
 
 def _greedy(gram: FloatArray, most: int) -> list[int]:

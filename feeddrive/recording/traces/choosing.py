@@ -156,8 +156,11 @@ def _inferred(
     one = part_read(parts, part, where)[1]
     whole = {signal.name: signal for signal in signals} | {signal.name: signal for signal, _ in taken.values()}
     inside = {name: cut(signal, one) for name, signal in whole.items()}
-    findings, found = infer({channel: (inside[signal.name], told) for channel, (signal, told) in taken.items()},
-                            [inside[signal.name] for signal in signals], fixed)  # fmt: skip
+    findings, found = infer(
+        {channel: (inside[signal.name], told) for channel, (signal, told) in taken.items()},
+        [inside[signal.name] for signal in signals],
+        fixed,
+    )
     return findings, {channel: (whole[signal.name], told) for channel, (signal, told) in found.items()}
 
 

@@ -28,8 +28,13 @@ def mapping_text(choice: Choice, wishes: Wishes, sample_time: float, described: 
     if wishes.part is not None:
         lines.append(f"part = {wishes.part}")
     for pick in choice.picks:
-        lines += ["", f"# {_comment(pick.reason)}", f"[channels.{pick.channel}]",
-                  f"variable = {_quoted(pick.signal.name)}", *_scale(pick)]  # fmt: skip
+        lines += [
+            "",
+            f"# {_comment(pick.reason)}",
+            f"[channels.{pick.channel}]",
+            f"variable = {_quoted(pick.signal.name)}",
+            *_scale(pick),
+        ]
     return "\n".join((*lines, ""))
 
 

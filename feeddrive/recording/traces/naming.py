@@ -15,11 +15,32 @@ from feeddrive.recording.traces.trace import Signal
 from feeddrive.units.quantity import Conversion, unit_conversion
 
 _SPELLINGS = {
-    "ampere": "A", "amp": "A", "amps": "A", "nm": "N m", "n.m": "N m", "n·m": "N m", "1/min": "rev/min",
-    "min-1": "rev/min", "min^-1": "rev/min", "u/min": "rev/min", "rpm": "rev/min", "r/min": "rev/min",
-    "grad": "deg", "degree": "deg", "degrees": "deg", "°": "deg", "grad/s": "deg/s", "°/s": "deg/s",
-    "mm/sec": "mm/s", "sec": "s", "inch": "in", "inch/min": "in/min", "inches": "in", "rad/sec": "rad/s", "u": "rev",
-}  # fmt: skip
+    "ampere": "A",
+    "amp": "A",
+    "amps": "A",
+    "nm": "N m",
+    "n.m": "N m",
+    "n·m": "N m",
+    "1/min": "rev/min",
+    "min-1": "rev/min",
+    "min^-1": "rev/min",
+    "u/min": "rev/min",
+    "rpm": "rev/min",
+    "r/min": "rev/min",
+    "grad": "deg",
+    "degree": "deg",
+    "degrees": "deg",
+    "°": "deg",
+    "grad/s": "deg/s",
+    "°/s": "deg/s",
+    "mm/sec": "mm/s",
+    "sec": "s",
+    "inch": "in",
+    "inch/min": "in/min",
+    "inches": "in",
+    "rad/sec": "rad/s",
+    "u": "rev",
+}
 """Units as controls write them, in small letters -> as feeddrive reads them."""
 
 _LENGTH, _ANGLE, _VELOCITY, _SPEED = "m", "rad", "m/s", "rad/s"
@@ -116,25 +137,47 @@ _RULES = (
     _rule(r"^joint \d+ motor pos cmd$", "setpoint", "", "position set-point of the joint's motor", 1),
     # Any program: role and quantity in either order
     _rule(rf"\b{_NOMINAL} ?{_POSITION}\b|\b{_POSITION} ?{_NOMINAL}\b", "setpoint", "", "position set-point", 6),
-    _rule(r"\b(?:linear (?:scale|encoder)|direct encoder|encoder 2|load (?:pos|position))\b",
-          "table_position", "", "encoder of the table", 3),
+    _rule(
+        r"\b(?:linear (?:scale|encoder)|direct encoder|encoder 2|load (?:pos|position))\b",
+        "table_position",
+        "",
+        "encoder of the table",
+        3,
+    ),
     _rule(rf"\b(?:table|axis|load|carriage) ?{_POSITION}\b", "table_position", "", "position of the table", 4),
-    _rule(rf"\bmotor ?(?:angle|{_POSITION}|encoder)(?: {_ACTUAL})?\b", "motor_angle table_position", "",
-          "motor angle", 4),
+    _rule(
+        rf"\bmotor ?(?:angle|{_POSITION}|encoder)(?: {_ACTUAL})?\b", "motor_angle table_position", "", "motor angle", 4
+    ),
     _rule(rf"\b{_ACTUAL} ?{_POSITION}\b|\b{_POSITION} ?{_ACTUAL}\b", _SIDES, "", "actual position", 5),
     _rule(rf"^(?:{_POSITION}|s|x)$", _SIDES, "", "position", 8),
     _rule(rf"\bmotor ?{_ROTARY}(?: {_ACTUAL})?\b", "motor_speed table_velocity", "", "motor speed", 4),
-    _rule(rf"\b{_ACTUAL} ?{_SPEED_WORD}\b|\b{_SPEED_WORD} ?{_ACTUAL}\b", "table_velocity motor_speed", "",
-          "actual velocity", 5),
-    _rule(r"\b(?:table|axis|load|carriage) ?(?:velo|velocity|speed)\b", "table_velocity", "",
-          "velocity of the table", 4),
-    _rule(rf"\b(?:motor|{_ACTUAL}) ?(?:torque|drehmoment|moment)\b|\b(?:torque|drehmoment|moment) ?{_ACTUAL}\b",
-          "motor_torque motor_torque_share", "", "actual torque", 4),
+    _rule(
+        rf"\b{_ACTUAL} ?{_SPEED_WORD}\b|\b{_SPEED_WORD} ?{_ACTUAL}\b",
+        "table_velocity motor_speed",
+        "",
+        "actual velocity",
+        5,
+    ),
+    _rule(
+        r"\b(?:table|axis|load|carriage) ?(?:velo|velocity|speed)\b", "table_velocity", "", "velocity of the table", 4
+    ),
+    _rule(
+        rf"\b(?:motor|{_ACTUAL}) ?(?:torque|drehmoment|moment)\b|\b(?:torque|drehmoment|moment) ?{_ACTUAL}\b",
+        "motor_torque motor_torque_share",
+        "",
+        "actual torque",
+        4,
+    ),
     _rule(r"^(?:torque|drehmoment|motor_torque)$", "motor_torque motor_torque_share", "", "torque", 6),
-    _rule(rf"\b(?:motor|torque|{_ACTUAL}) ?(?:curr(?:ent)?|strom)\b|\b(?:curr(?:ent)?|strom) ?{_ACTUAL}\b|\bi ?q\b",
-          "motor_current", "", "actual current", 4),
+    _rule(
+        rf"\b(?:motor|torque|{_ACTUAL}) ?(?:curr(?:ent)?|strom)\b|\b(?:curr(?:ent)?|strom) ?{_ACTUAL}\b|\bi ?q\b",
+        "motor_current",
+        "",
+        "actual current",
+        4,
+    ),
     _rule(r"^(?:current|curr|strom|i)$", "motor_current", "", "current", 6),
-)  # fmt: skip
+)
 _NOT_MEASURED = re.compile(
     r"\b(?:ffw|feed ?forward|vorsteuer\w*|limit|max|min|error|err|diff|dev|deviation|window|enable|factor|offset|raw"
     r"|load)\b"

@@ -5,13 +5,12 @@ from __future__ import annotations
 import difflib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 
 from feeddrive.errors import InputError
 from feeddrive.recording.files.mapping import FileMapping, Hold, Variable
-from feeddrive.recording.files.opening import FileContent, decode, first_bytes, head_of, is_hdf5, open_file
+from feeddrive.recording.files.opening import FileContent, decode, head_of, is_hdf5
 from feeddrive.recording.formats import (
     halscope,
     hdf5_file,
@@ -35,14 +34,18 @@ _Reader = Callable[[str, str, Wishes], Trace]
 _TEXTS: tuple[tuple[Callable[[str], bool], _Reader], ...] = (
     (twincat.recognises, lambda text, where, wishes: twincat.read(text, where)),
     (sinumerik_edge.recognises, lambda text, where, wishes: sinumerik_edge.read(text, where, wishes.sample_time)),
-    (sinumerik_edge.recognises_table,
-     lambda text, where, wishes: sinumerik_edge.read_table(text, where, wishes.sample_time)),
+    (
+        sinumerik_edge.recognises_table,
+        lambda text, where, wishes: sinumerik_edge.read_table(text, where, wishes.sample_time),
+    ),
     (tncscope.recognises, lambda text, where, wishes: tncscope.read(text, where)),
     (sinumerik_trace.recognises, lambda text, where, wishes: sinumerik_trace.read(text, where)),
     (halscope.recognises, lambda text, where, wishes: halscope.read(text, where)),
-    (halscope.recognises_sampler,
-     lambda text, where, wishes: halscope.read_sampler(text, where, wishes.sample_time, wishes.columns)),
-)  # fmt: skip
+    (
+        halscope.recognises_sampler,
+        lambda text, where, wishes: halscope.read_sampler(text, where, wishes.sample_time, wishes.columns),
+    ),
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,21 +121,6 @@ def _mean_step(signal: Signal) -> float:
     return float(signal.time[-1] - signal.time[0]) / (signal.time.size - 1)
 
 
-def read_frequency_response(path: Path) -> FrequencyResponse | None:
-    """Read a file that holds a frequency response; None if it holds anything else.
-
-    Raises:
-        InputError: the file cannot be opened, or is a damaged frequency response.
-    """
-    head = head_of(first_bytes(path))
-    if recognises_response(head):
-        return read_response(open_file(path))
-    if not sinumerik_frf.recognises(head):
-        return None
-    content = open_file(path)
-    return sinumerik_frf.read(content, decode(content)[0])
-
-
 def _binary(content: FileContent, wishes: Wishes) -> Trace | None:
     """Read a file of a binary format; None if it is none of them."""
     data = content.data
@@ -179,8 +167,10 @@ def _on_grid(
     notes = []
     if len(parts) > 1:
         longest = "" if wishes.part else ", the longest"
-        notes.append(f"lost stretches leave {len(parts)} parts; part {number}{longest} is read: {part.start:.6g} s to "
-                     f"{part.stop:.6g} s; another by --part")  # fmt: skip
+        notes.append(
+            f"lost stretches leave {len(parts)} parts; part {number}{longest} is read: {part.start:.6g} s to "
+            f"{part.stop:.6g} s; another by --part"
+        )
     time, channels, said = on_one_grid(series, part, wishes.rate, where)
     return time, channels, (*notes, *said)
 
@@ -277,8 +267,10 @@ def _timing_notes(signals: Sequence[Signal]) -> list[str]:
         if lost:
             first = lost[0]
             many = f", and {len(lost) - 1} more" if len(lost) > 1 else ""
-            notes.append(f"{first[1]} samples are missing behind row {first[0] + 1} of {signal.name}, at "
-                         f"{signal.time[first[0]]:.6g} s{many}")  # fmt: skip
+            notes.append(
+                f"{first[1]} samples are missing behind row {first[0] + 1} of {signal.name}, at "
+                f"{signal.time[first[0]]:.6g} s{many}"
+            )
         if signal.time[0] < 0.0:
             notes.append(f"{signal.name} begins at {signal.time[0] * 1e3:.6g} ms, before zero")
     notes += _clocks(signals)

@@ -73,9 +73,15 @@ def dress(axes: Axes, x_label: str, y_label: str, title: str = "") -> None:
 def legend_above(axes: Axes, columns: int = 4) -> None:
     """One line of legend over the axes at the right, clear of the data."""
     axes.legend(
-        loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=columns, fontsize=8.5, frameon=False, borderaxespad=0.1,
-        handlelength=1.6, columnspacing=1.4,
-    )  # fmt: skip
+        loc="lower right",
+        bbox_to_anchor=(1.0, 1.0),
+        ncols=columns,
+        fontsize=8.5,
+        frameon=False,
+        borderaxespad=0.1,
+        handlelength=1.6,
+        columnspacing=1.4,
+    )
 
 
 def render(entry: ReportFigure) -> RenderedFigure:

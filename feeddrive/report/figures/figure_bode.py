@@ -78,8 +78,15 @@ def _mark(axes: Axes, curve: Curve, colour: Any, labelled: bool) -> None:
         height = one.decibel + magnitude_unit(curve.response.unit)[1]
         axes.plot(one.frequency, height, marker=marker, color=colour, markersize=5, linestyle="none")
         if labelled:
-            axes.annotate(f"{one.frequency:.4g} Hz", (one.frequency, height), xytext=(0, shift), fontsize=8,
-                          textcoords="offset points", ha="center", va=side)  # fmt: skip
+            axes.annotate(
+                f"{one.frequency:.4g} Hz",
+                (one.frequency, height),
+                xytext=(0, shift),
+                fontsize=8,
+                textcoords="offset points",
+                ha="center",
+                va=side,
+            )
     if labelled and curve.seen:
         axes.margins(y=0.14)
 
@@ -111,8 +118,15 @@ def _gain_margin(axes: Axes, curve: Curve) -> None:
     if margins is None or not np.isfinite(margins.gain_frequency):
         return
     axes.plot([margins.gain_frequency] * 2, [0.0, -margins.gain], color=MEASURED, linewidth=1.6)
-    axes.annotate(f"{margins.gain:.1f} dB", (margins.gain_frequency, 0.0), xytext=(4, 3), fontsize=8,
-                  textcoords="offset points", ha="left", va="bottom")  # fmt: skip
+    axes.annotate(
+        f"{margins.gain:.1f} dB",
+        (margins.gain_frequency, 0.0),
+        xytext=(4, 3),
+        fontsize=8,
+        textcoords="offset points",
+        ha="left",
+        va="bottom",
+    )
 
 
 def _phase_margin(axes: Axes, curve: Curve) -> None:
@@ -123,9 +137,17 @@ def _phase_margin(axes: Axes, curve: Curve) -> None:
     edge = -180.0 if phase <= 0 else 180.0
     end = edge + (margins.phase if phase <= 0 else -margins.phase)
     axes.plot([margins.phase_frequency] * 2, [edge, end], color=MEASURED, linewidth=1.6)
-    axes.annotate(f"{margins.phase:.0f}° at {margins.phase_frequency:.0f} Hz", (margins.phase_frequency, end),
-                  xytext=(0, 4), fontsize=8, textcoords="offset points", ha="center", va="bottom", zorder=5,
-                  bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0, "alpha": 0.85})  # fmt: skip
+    axes.annotate(
+        f"{margins.phase:.0f}° at {margins.phase_frequency:.0f} Hz",
+        (margins.phase_frequency, end),
+        xytext=(0, 4),
+        fontsize=8,
+        textcoords="offset points",
+        ha="center",
+        va="bottom",
+        zorder=5,
+        bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0, "alpha": 0.85},
+    )
 
 
 def _draw_measured(panels: list[Axes], measured: Measured, more: float) -> None:

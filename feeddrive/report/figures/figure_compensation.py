@@ -54,8 +54,9 @@ def deviation_figure(done: Compensated) -> ReportFigure:
         p = done.prediction.after.positioning
         offset = 0.5 * float(np.mean(p.mean_up + p.mean_down))
         for mean, style, label in ((p.mean_up, "o-", "left, along +"), (p.mean_down, "o--", "left, along −")):
-            axes.plot(1e3 * p.target, 1e6 * (mean - offset), style, color=AFTER, markersize=3, linewidth=1.0,
-                      label=label)  # fmt: skip
+            axes.plot(
+                1e3 * p.target, 1e6 * (mean - offset), style, color=AFTER, markersize=3, linewidth=1.0, label=label
+            )
         before = done.prediction.before.positioning
         caption += (
             f" ISO 230-2, simulated: A {micrometres(before.accuracy)} before, {micrometres(p.accuracy)} after; "

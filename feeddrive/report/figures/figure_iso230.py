@@ -71,8 +71,13 @@ def _linear(test: LinearTest) -> ReportFigure:
     legend_above(axes, 5)
     found: tuple[tuple[str, float], ...]
     if both is not None:
-        found = (("A", both.accuracy), ("E", both.systematic), ("M", both.mean_range), ("B", both.reversal_value),
-                 ("R", both.repeatability))  # fmt: skip
+        found = (
+            ("A", both.accuracy),
+            ("E", both.systematic),
+            ("M", both.mean_range),
+            ("B", both.reversal_value),
+            ("R", both.repeatability),
+        )
     else:
         (side,) = test.sides.values()
         found = (("A", side.accuracy), ("E", side.systematic), ("R", side.repeatability))
@@ -87,8 +92,9 @@ def _span(axes: Axes, low: float, high: float, name: str) -> None:
     for level in (low, high):
         axes.axhline(level, color=NOISE, linewidth=0.8)
     ends = {"arrowstyle": "<->", "color": MEASURED, "linewidth": 0.9}
-    axes.annotate("", (1.015, low), (1.015, high), xycoords=axes.get_yaxis_transform(), arrowprops=ends,
-                  annotation_clip=False)  # fmt: skip
+    axes.annotate(
+        "", (1.015, low), (1.015, high), xycoords=axes.get_yaxis_transform(), arrowprops=ends, annotation_clip=False
+    )
     axes.text(1.03, 0.5 * (low + high), name, transform=axes.get_yaxis_transform(), fontsize=9, va="center")
 
 
@@ -103,8 +109,14 @@ def _explained(test: LinearTest, share: PlantShare) -> ReportFigure:
         if name in sides:
             measured = 1e6 * sides[name].mean
             axes.plot(1e3 * test.target, measured, "o", color=colour, markersize=4, label=f"measured {label}")
-            axes.plot(1e3 * test.target, 1e6 * (predicted[name] + zero), "-", color=colour, linewidth=1.2,
-                      label=f"plant {label}")  # fmt: skip
+            axes.plot(
+                1e3 * test.target,
+                1e6 * (predicted[name] + zero),
+                "-",
+                color=colour,
+                linewidth=1.2,
+                label=f"plant {label}",
+            )
     dress(axes, "target [mm]", "mean deviation [µm]")
     legend_above(axes, 4)
     whole, left = micrometres(share.measured.systematic), micrometres(share.left.systematic)
@@ -134,9 +146,11 @@ def _drift(test: DriftTest) -> ReportFigure:
         legend_above(rows[1, 0], 4)
     heating = test.heating
     worst = max(heating.targets, key=lambda one: one.heating)
-    text = (f"Largest range while heating {micrometres(worst.heating)} at {1e3 * worst.position:.5g} mm, "
-            f"{micrometres(worst.first_hour)} in the first hour (dotted); slope at the stop "
-            f"{1e6 * heating.slope:.3g} µm/m")  # fmt: skip
+    text = (
+        f"Largest range while heating {micrometres(worst.heating)} at {1e3 * worst.position:.5g} mm, "
+        f"{micrometres(worst.first_hour)} in the first hour (dotted); slope at the stop "
+        f"{1e6 * heating.slope:.3g} µm/m"
+    )
     return ReportFigure("drift", "Drift of an axis that warms itself", text, figure)
 
 
@@ -152,8 +166,10 @@ def _circle(test: CircleTest) -> ReportFigure:
         label, colour = words[one.direction]
         _magnified(left, one.angle, one.radial, largest, colour)
         _over_angle(right, one.angle, one.radial, colour, label)
-        told.append(f"{label}: G {micrometres(one.deviation)}, F {micrometres(one.radial_minimum)} to "
-                    f"{micrometres(one.radial_maximum)}")  # fmt: skip
+        told.append(
+            f"{label}: G {micrometres(one.deviation)}, F {micrometres(one.radial_minimum)} to "
+            f"{micrometres(one.radial_maximum)}"
+        )
     _rim(left, largest)
     dress(right, "angle [°]", "radial deviation [µm]", "ISO 230-4:2022")
     legend_above(right, 2)
@@ -171,9 +187,11 @@ def _one_axis(test: Circular) -> ReportFigure:
     _over_angle(right, test.angle, test.radial, AFTER, "one axis")
     _rim(left, largest)
     dress(right, "angle [°], the axis reverses at 90° and 270°", "radial deviation [µm]", "ISO 230-4:2022")
-    text = (f"G {micrometres(test.deviation)}, quadrant glitches {micrometres(test.glitch[0])} at + and "
-            f"{micrometres(test.glitch[1])} at −, positive outwards; the second axis is ideal, of the same gain and "
-            "lag")  # fmt: skip
+    text = (
+        f"G {micrometres(test.deviation)}, quadrant glitches {micrometres(test.glitch[0])} at + and "
+        f"{micrometres(test.glitch[1])} at −, positive outwards; the second axis is ideal, of the same gain and "
+        "lag"
+    )
     return ReportFigure("circle", "Circular test of one axis", text, figure)
 
 

@@ -20,8 +20,10 @@ def response_figure(response: FrequencyResponse) -> ReportFigure:
     panels = list(figure.subplots(len(heights), 1, sharex=True, height_ratios=heights))
     phase = degrees(shown.values)
     jumps = np.flatnonzero(np.abs(np.diff(phase)) > 180) + 1
-    curves = ((shown.frequency, decibel(shown.values)),
-              (np.insert(shown.frequency, jumps, shown.frequency[jumps]), np.insert(phase, jumps, np.nan)))  # fmt: skip
+    curves = (
+        (shown.frequency, decibel(shown.values)),
+        (np.insert(shown.frequency, jumps, shown.frequency[jumps]), np.insert(phase, jumps, np.nan)),
+    )
     sure = np.where(shown.coherence > _COHERENT, 1.0, np.nan) if known else np.ones_like(shown.frequency)
     for panel, (frequency, values) in zip(panels, curves, strict=False):
         panel.plot(frequency, values, color=MEASURED, linewidth=0.8, alpha=0.35 if known else 1.0)

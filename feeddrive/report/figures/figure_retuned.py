@@ -21,15 +21,21 @@ def step_figure(before: Sequence[LoopTrial], after: Sequence[LoopTrial]) -> Repo
     for some, (colour, name) in zip((before, after), _LOOKS, strict=True):
         for place, one in enumerate(ran.step for ran in some if ran.step is not None):
             series = one.result.series
-            axes.plot(1e3 * one.result.time, 1e6 * (series["table_position"] - series["setpoint"][0]), color=colour,
-                      lw=1.0, label=name if not place else None)  # fmt: skip
+            axes.plot(
+                1e3 * one.result.time,
+                1e6 * (series["table_position"] - series["setpoint"][0]),
+                color=colour,
+                lw=1.0,
+                label=name if not place else None,
+            )
             drawn = True
     if not drawn:
         return None
     dress(axes, "time [ms]", "table position [µm]", "Step of the position")
     axes.legend(fontsize=8, frameon=False)
-    return ReportFigure("retuned_step", "Step of the position", "Every position and payload; friction and limits act.",
-                        figure)  # fmt: skip
+    return ReportFigure(
+        "retuned_step", "Step of the position", "Every position and payload; friction and limits act.", figure
+    )
 
 
 def circle_figure(before: Sequence[LoopTrial], after: Sequence[LoopTrial]) -> ReportFigure | None:

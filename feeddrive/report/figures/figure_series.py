@@ -119,8 +119,9 @@ def _short(name: str) -> str:
 def _signal_lines(axes: Axes, picture: _Picture, part: slice, with_predictions: bool) -> None:
     """Measured signal and, on request, the predictions over it."""
     factor = picture.signal.factor
-    axes.plot(*envelope(picture.time[part], picture.series.measured[part] * factor), color=MEASURED, lw=1.4,
-              label="measured")  # fmt: skip
+    axes.plot(
+        *envelope(picture.time[part], picture.series.measured[part] * factor), color=MEASURED, lw=1.4, label="measured"
+    )
     if with_predictions:
         for label, colour, residual in picture.residuals:
             predicted = (picture.series.measured - residual)[part] * factor

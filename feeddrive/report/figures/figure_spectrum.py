@@ -110,9 +110,7 @@ def _order_panel(axes: Axes, channel: ChannelResult, curves: list[Curve]) -> Non
         axes.loglog(spectrum.abscissa, spectrum.amplitude, color=colour, lw=1.1, label=label)
     peak = _peak(curves[0][2])
     if peak is not None:
-        axes.annotate(
-            f"order {significant(peak[0])}", peak, xytext=(6, 2), textcoords="offset points", fontsize=8.5
-        )  # fmt: skip
+        axes.annotate(f"order {significant(peak[0])}", peak, xytext=(6, 2), textcoords="offset points", fontsize=8.5)
     ticks = [tick for tick in _ORDER_TICKS if tick >= curves[0][2].abscissa[0]]
     axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
     axes.set_xticks([], minor=True)

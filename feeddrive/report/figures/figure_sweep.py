@@ -125,8 +125,15 @@ def _curves(table: SweepTable, metrics: Sequence[str]) -> Figure:
     panels = figure.subplots(len(metrics), 1, sharex=True, squeeze=False)[:, 0]
     for axes, name in zip(panels, metrics, strict=True):
         values, label = _scaled(table, name)
-        axes.plot(places[order], values[order], marker=mark or ("." if not line else ""), ls=line, color=AFTER, ms=4,
-                  clip_on=False)  # fmt: skip
+        axes.plot(
+            places[order],
+            values[order],
+            marker=mark or ("." if not line else ""),
+            ls=line,
+            color=AFTER,
+            ms=4,
+            clip_on=False,
+        )
         _crosses(axes, places[_failed(table)])
         _labelled(axes, _name(one) if axes is panels[-1] else "", label)
         _from_zero(axes, values)

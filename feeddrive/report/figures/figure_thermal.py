@@ -134,8 +134,12 @@ def field_figure(found: ThermalStudy) -> ReportFigure:
     axes.set_ylim(0, 1.18e3 * found.plant.rig.nut.outer_radius)
     factor, label = time_axis(found.duty.duration)
     when = f"{factor * found.duty.duration:.4g} {label[6:-1]}"
-    dress(axes, "distance from the front (fixed) end [mm]", "radius [mm]",
-          f"after {when}; hottest {span[1]:.1f} °C, coldest {span[0]:.1f} °C; radii are stretched")  # fmt: skip
+    dress(
+        axes,
+        "distance from the front (fixed) end [mm]",
+        "radius [mm]",
+        f"after {when}; hottest {span[1]:.1f} °C, coldest {span[0]:.1f} °C; radii are stretched",
+    )
     axes.grid(False)
     caption = f"Field after {when}, from {span[0]:.1f} to {span[1]:.1f} °C, the nut averaged over its travel."
     return ReportFigure("thermal_field", "Temperature in shaft and nut", caption, figure)
@@ -151,8 +155,9 @@ def _cylinder(axes: Axes, body: Cylinder, values: FloatArray, at: float, span: t
     shades = colormaps[_MAP].resampled(_SHADES)
     mesh = axes.pcolormesh(places, 1e3 * body.radii, wide, shading="gouraud", cmap=shades, vmin=span[0], vmax=span[1])
     low, high = 1e3 * body.radii[0], 1e3 * body.radii[-1]
-    axes.plot([places[0], places[-1], places[-1], places[0], places[0]], [low, low, high, high, low], color="#555555",
-              lw=0.8)  # fmt: skip
+    axes.plot(
+        [places[0], places[-1], places[-1], places[0], places[0]], [low, low, high, high, low], color="#555555", lw=0.8
+    )
     return mesh
 
 

@@ -22,7 +22,7 @@ _WINDOW = 600.0
 
 def axis_heating_figure(
     times: FloatArray, positions: FloatArray, error: FloatArray, temperatures: Mapping[str, FloatArray], stop: float
-) -> ReportFigure:  # fmt: skip
+) -> ReportFigure:
     """Error at both ends and in the middle of the travel, and temperatures, over time.
 
     Args:
@@ -58,7 +58,7 @@ def axis_heating_figure(
 
 def compensation_figure(
     times: FloatArray, positions: FloatArray, error: FloatArray, compensations: Mapping[str, FloatArray], stop: float
-) -> ReportFigure:  # fmt: skip
+) -> ReportFigure:
     """Rms over the stroke without and with each compensation, and what is left at the far end, over time.
 
     Args:
@@ -94,7 +94,7 @@ def compensation_figure(
 
 def stroke_figure(
     times: FloatArray, positions: FloatArray, error: FloatArray, estimate: FloatArray, moments: Sequence[float]
-) -> ReportFigure:  # fmt: skip
+) -> ReportFigure:
     """True and estimated error along the stroke at some moments.
 
     Args:
@@ -147,9 +147,14 @@ def _mark_stop(axes: Axes, stop: float, text: str) -> None:
     axes.set_xlim(left=0.0)
     if text:
         axes.annotate(
-            text, (stop / _HOUR, 0.06), xycoords=("data", "axes fraction"), xytext=(4, 0), textcoords="offset points",
-            fontsize=8.5, color="#555555",
-        )  # fmt: skip
+            text,
+            (stop / _HOUR, 0.06),
+            xycoords=("data", "axes fraction"),
+            xytext=(4, 0),
+            textcoords="offset points",
+            fontsize=8.5,
+            color="#555555",
+        )
 
 
 def _refuse_misfit(times: FloatArray, positions: FloatArray, series: Mapping[str, FloatArray]) -> None:

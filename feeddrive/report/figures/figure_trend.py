@@ -43,8 +43,10 @@ def _figure(trend: Trend, part: list[Quantity], number: int) -> ReportFigure:
     for axes, quantity in zip(rows[:, 0], part, strict=True):
         _panel(axes, trend, quantity, times)
     rows[-1, 0].set_xlabel(label, fontsize=9)
-    text = ("Dots: one recording each. Line: what was found, with its 95 % band. Dashed: dates of changes, shaded "
-            "where they may lie. Grey lines: limits.")  # fmt: skip
+    text = (
+        "Dots: one recording each. Line: what was found, with its 95 % band. Dashed: dates of changes, shaded "
+        "where they may lie. Grey lines: limits."
+    )
     title = "Over the recordings" if number == 1 else "Over the recordings, continued"
     return ReportFigure(f"trend_{number}", title, text, figure)
 

@@ -68,9 +68,16 @@ def _panel(axes: Axes, one: Dependence) -> None:
     )
     axes.plot(over.factor * at, up.factor * values, color=AFTER, lw=1.6, label="term")
     axes.errorbar(
-        over.factor * centre, up.factor * mean, yerr=up.factor * spread, fmt=".", color=MEASURED, ecolor=NOISE,
-        ms=4.5, elinewidth=0.8, label="judged data",
-    )  # fmt: skip
+        over.factor * centre,
+        up.factor * mean,
+        yerr=up.factor * spread,
+        fmt=".",
+        color=MEASURED,
+        ecolor=NOISE,
+        ms=4.5,
+        elinewidth=0.8,
+        label="judged data",
+    )
     if _spreads(one):
         axes.set_xscale("symlog", linthresh=float(over.factor * max(centre[0], 1e-9)))
     dress(axes, axis_label(_over(one), over.unit), axis_label(_of(one), up.unit))

@@ -25,8 +25,12 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _GREEN, _PINK = "#009e73", "#cc79a7"
-_PARTS = {NUT: ("nut", BEFORE), SHAFT: ("shaft at the nut", AFTER), FRONT: ("front bearing", _GREEN),
-          REAR: ("rear bearing", _PINK)}  # fmt: skip
+_PARTS = {
+    NUT: ("nut", BEFORE),
+    SHAFT: ("shaft at the nut", AFTER),
+    FRONT: ("front bearing", _GREEN),
+    REAR: ("rear bearing", _PINK),
+}
 
 
 def warm_axis_figure(run: WarmUpRun) -> ReportFigure:

@@ -59,11 +59,13 @@ def _welch(stretches: list[FloatArray], step: float) -> Spectrum | None:
     segment = min(longest, max(256, round(_SEGMENT_SECONDS / step)))
     if segment < 32:
         return None
-    pieces = np.array([
-        stretch[first : first + segment]
-        for stretch in stretches
-        for first in range(0, stretch.size - segment + 1, segment // 2)
-    ])  # fmt: skip
+    pieces = np.array(
+        [
+            stretch[first : first + segment]
+            for stretch in stretches
+            for first in range(0, stretch.size - segment + 1, segment // 2)
+        ]
+    )
     window = np.hanning(segment)
     lines = np.fft.rfft((pieces - pieces.mean(axis=1, keepdims=True)) * window)
     density = 2.0 * step * np.mean(np.abs(lines) ** 2, axis=0) / np.sum(window**2)

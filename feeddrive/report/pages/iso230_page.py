@@ -93,10 +93,11 @@ def _column(values: FloatArray) -> list[str]:
 def _shares(share: PlantShare) -> str:
     heads = [words(""), *map(number, ("E", "M", "B", "explains"))]
     rows = [
-        _row("measured", share.measured, False), _row("the plant alone", share.predicted, False),
+        _row("measured", share.measured, False),
+        _row("the plant alone", share.predicted, False),
         _row("left of the measurement", share.left, True),
         *(_row(f"left if the plant had no {name.replace('_', ' ')}", one, True) for name, one in share.without.items()),
-    ]  # fmt: skip
+    ]
     return table(heads, rows)
 
 
@@ -138,8 +139,10 @@ def _method(found: Evaluated230) -> list[str]:
         ]
     lines = ["Radial deviations are about the least-squares centre; F is against the nominal radius."]
     if isinstance(found.test, CircleTest):
-        lines.append("A glitch is the largest deviation within 30° after a reversal, less centre, radius, gains and "
-                     "squareness; positive outwards.")  # fmt: skip
+        lines.append(
+            "A glitch is the largest deviation within 30° after a reversal, less centre, radius, gains and "
+            "squareness; positive outwards."
+        )
         if found.test.nominal is None:
             lines.append("No nominal radius was given: F is against the mean radius of the paths.")
     return lines

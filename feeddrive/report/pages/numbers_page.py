@@ -65,39 +65,58 @@ def _numbers(result: NumbersResult) -> str:
         unit = one.kind.unit
         shown = [format_quantity(value, unit) for value in (one.value, 2 * one.deviation, declared, after)]
         errors = [f"{100 * (value / one.value - 1):+.1f} %" for value in (declared, after)]
-        rows.append([words(one.name.replace("_", " ")), number(shown[0]), number(f"± {shown[1]}"), number(shown[2]),
-                     number(errors[0]), number(shown[3]), number(errors[1])])  # fmt: skip
+        rows.append(
+            [
+                words(one.name.replace("_", " ")),
+                number(shown[0]),
+                number(f"± {shown[1]}"),
+                number(shown[2]),
+                number(errors[0]),
+                number(shown[3]),
+                number(errors[1]),
+            ]
+        )
     return table(_heads("number", "measured", "tolerance", "declared", "error", "most likely", "error"), rows)
 
 
 def _singles(result: NumbersResult) -> str:
     rows = [
-        [words(one.value.words), number(value_text(one.value, None if one.value.missing else one.value.value)),
-         number(value_text(one.value, one.value.number(one.coordinate))), number("yes" if one.meets else "no"),
-         words(one.value.settled_by)]
+        [
+            words(one.value.words),
+            number(value_text(one.value, None if one.value.missing else one.value.value)),
+            number(value_text(one.value, one.value.number(one.coordinate))),
+            number("yes" if one.meets else "no"),
+            words(one.value.settled_by),
+        ]
         for one in result.singles
-    ]  # fmt: skip
+    ]
     heads = [*_heads("value", "declared", "would be", "meets all numbers"), words("what would single it out")]
     return table(heads, rows)
 
 
 def _calibrated(result: NumbersResult) -> str:
     rows = [
-        [words(one.value.words), number(f"± {100 * math.expm1(2 * one.spread_before):.2g} %"),
-         number(f"{100 * (one.factor - 1):+.1f} %"),
-         number(f"[{100 * (one.interval[0] - 1):+.1f}, {100 * (one.interval[1] - 1):+.1f}] %")]
+        [
+            words(one.value.words),
+            number(f"± {100 * math.expm1(2 * one.spread_before):.2g} %"),
+            number(f"{100 * (one.factor - 1):+.1f} %"),
+            number(f"[{100 * (one.interval[0] - 1):+.1f}, {100 * (one.interval[1] - 1):+.1f}] %"),
+        ]
         for one in result.calibrated
-    ]  # fmt: skip
+    ]
     return table(_heads("value", "tolerance", "moved by", "95 % interval"), rows)
 
 
 def _sets(result: NumbersResult) -> str:
     values = result.problem.values
     rows = [
-        [words(" and ".join(values[place].words for place in one.beyond) or "none"), number(f"{one.probability:.1%}"),
-         number(odds_text(one.probability))]
+        [
+            words(" and ".join(values[place].words for place in one.beyond) or "none"),
+            number(f"{one.probability:.1%}"),
+            number(odds_text(one.probability)),
+        ]
         for one in result.sets[:_SETS]
-    ]  # fmt: skip
+    ]
     return table(_heads("beyond its tolerance", "probability", "odds"), rows)
 
 

@@ -50,10 +50,13 @@ _TRIED = "Change of the log evidence, the price of one more name included; above
 
 def _calibrated(result: ResponseResult) -> str:
     rows = [
-        [words(name), number(f"{100 * (factor - 1):+.2g} %"),
-         number(f"[{100 * (low - 1):+.2g}, {100 * (high - 1):+.2g}] %")]
+        [
+            words(name),
+            number(f"{100 * (factor - 1):+.2g} %"),
+            number(f"[{100 * (low - 1):+.2g}, {100 * (high - 1):+.2g}] %"),
+        ]
         for name, factor, (low, high) in result.calibrated_values
-    ]  # fmt: skip
+    ]
     return table([words("value"), number("moved by"), number("95 % interval")], rows) if rows else ""
 
 

@@ -17,8 +17,13 @@ _NOTE = (
 
 def calibrated_section(diagnosis: Diagnosis) -> str:
     """A table of the calibrated values; nothing where all were taken as exact."""
-    heads = [words("Declared value"), number("declared"), number("tolerance"), number("calibrated"),
-             number("95 % interval")]  # fmt: skip
+    heads = [
+        words("Declared value"),
+        number("declared"),
+        number("tolerance"),
+        number("calibrated"),
+        number("95 % interval"),
+    ]
     rows = [[words(shown[0]), *map(number, shown[1:])] for shown in map(_shown, diagnosis.calibrated)]
     return section("Declared values, calibrated", table(heads, rows), paragraph(_NOTE, "note")) if rows else ""
 

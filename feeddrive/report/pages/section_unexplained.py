@@ -14,8 +14,14 @@ def unexplained_section(diagnosis: Diagnosis, pictures: str = "") -> str:
     if not diagnosis.unexplained:
         return section("What is unexplained", paragraph("Nothing above the sensor noise."))
     channels = {channel.name: channel for channel in diagnosis.channels}
-    heads = [words("Channel"), number("share of the signal's square"), number("left"), number("noise floor"),
-             number("of it above the noise"), words("Depends on")]  # fmt: skip
+    heads = [
+        words("Channel"),
+        number("share of the signal's square"),
+        number("left"),
+        number("noise floor"),
+        number("of it above the noise"),
+        words("Depends on"),
+    ]
     rows = [_row(name, one, channels.get(name)) for name, one in diagnosis.unexplained.items()]
     said = [f"{plain(name)}: {one.statement}" for name, one in diagnosis.unexplained.items() if one.statement]
     note = (
@@ -24,9 +30,13 @@ def unexplained_section(diagnosis: Diagnosis, pictures: str = "") -> str:
         "unexplained square that a curve over this variable takes away."
     )
     return section(
-        "What is unexplained", table(heads, rows), bullets(said) if said else "", pictures, _carried(diagnosis),
+        "What is unexplained",
+        table(heads, rows),
+        bullets(said) if said else "",
+        pictures,
+        _carried(diagnosis),
         paragraph(note, "note"),
-    )  # fmt: skip
+    )
 
 
 def _row(name: str, one: Unexplained, channel: ChannelResult | None) -> list[Cell]:
@@ -59,11 +69,20 @@ def _carried(diagnosis: Diagnosis) -> str:
     found = [one for left in diagnosis.unexplained.values() for one in left.carried]
     if not found:
         return ""
-    heads = [words("Carried in plant_after.toml"), words("Over"), words("Channel"), number("explains"),
-             number("rms without it"), number("with it")]  # fmt: skip
+    heads = [
+        words("Carried in plant_after.toml"),
+        words("Over"),
+        words("Channel"),
+        number("explains"),
+        number("rms without it"),
+        number("with it"),
+    ]
     rows = [row for one in found for row in _carried_rows(one, units)]
-    return table(heads, rows) + paragraph("These are tables of what was seen, not laws: they hold over the range "
-                                          "that was recorded and are constant outside it.", "note")  # fmt: skip
+    return table(heads, rows) + paragraph(
+        "These are tables of what was seen, not laws: they hold over the range "
+        "that was recorded and are constant outside it.",
+        "note",
+    )
 
 
 def _carried_rows(one: Carried, units: dict[str, str]) -> list[list[Cell]]:

@@ -75,8 +75,12 @@ def _errors(channel: ChannelResult, figures: ErrorFigures, scale: Scale) -> list
     noise = channel.noise_rms if channel.noise_rms > 0.0 else math.nan
     shown = [with_unit(significant(one * scale.factor), scale.unit) for one in (figures.rms, figures.max)]
     noise_text = with_unit(significant(noise * scale.factor), scale.unit) if math.isfinite(noise) else DASH
-    return [*map(number, shown), number(share_text(figures.relative)), number(noise_text),
-            number(significant(figures.rms / noise))]  # fmt: skip
+    return [
+        *map(number, shown),
+        number(share_text(figures.relative)),
+        number(noise_text),
+        number(significant(figures.rms / noise)),
+    ]
 
 
 def effects_section(diagnosis: Diagnosis) -> str:
@@ -84,8 +88,14 @@ def effects_section(diagnosis: Diagnosis) -> str:
     if not diagnosis.effects:
         return section("Effects found", paragraph("None: no effect was added to the declared plant."))
     channels = [channel.name for channel in diagnosis.channels]
-    heads = [words("Effect"), words("Parameter"), number("value"), number("95 % interval"), words("Error without it"),
-             words("Carries over")]  # fmt: skip
+    heads = [
+        words("Effect"),
+        words("Parameter"),
+        number("value"),
+        number("95 % interval"),
+        words("Error without it"),
+        words("Carries over"),
+    ]
     rows = [row for effect in diagnosis.effects for row in _effect_rows(effect, channels)]
     stories = "".join(_story(effect) for effect in diagnosis.effects)
     note = paragraph(

@@ -79,8 +79,14 @@ def _verdict(trend: Trend, searched: Mapping[int, str]) -> str:
 
 
 def _quantities(trend: Trend) -> str:
-    heads = [words("quantity"), number("at first"), number("at last"), number("one file"), words("what it did"),
-             words("limits")]  # fmt: skip
+    heads = [
+        words("quantity"),
+        number("at first"),
+        number("at last"),
+        number("one file"),
+        words("what it did"),
+        words("limits"),
+    ]
     rows = (
         [words(name), number(first), number(last), number(scatter), words(did), words(limit)]
         for name, first, last, scatter, did, limit in quantity_rows(trend)
@@ -91,10 +97,14 @@ def _quantities(trend: Trend) -> str:
 def _changes(trend: Trend, searched: Mapping[int, str]) -> str:
     heads = [words("what"), words("date, 95 %"), number("odds"), words("full search")]
     rows = [
-        [words(event_sentence(trend, event)), words(" to ".join(date_words(trend, day) for day in event.dates)),
-         number(odds_words(max(one.found.odds for one in event.changes))), words(searched.get(i, "not asked for"))]
+        [
+            words(event_sentence(trend, event)),
+            words(" to ".join(date_words(trend, day) for day in event.dates)),
+            number(odds_words(max(one.found.odds for one in event.changes))),
+            words(searched.get(i, "not asked for")),
+        ]
         for i, event in enumerate(trend.events)
-    ]  # fmt: skip
+    ]
     return table(heads, rows) if rows else paragraph("None.")
 
 

@@ -29,9 +29,15 @@ _ERROR: dict[str, Scale] = {
     "degC": Scale(1.0, "K"),
 }
 _SPELLINGS = {
-    "kg m²": "kg m^2", "kg*m^2": "kg m^2", "kg*m**2": "kg m^2", "N*m": "N m", "Nm": "N m",
-    "°C": "degC", "": "1", "dimensionless": "1",
-}  # fmt: skip
+    "kg m²": "kg m^2",
+    "kg*m^2": "kg m^2",
+    "kg*m**2": "kg m^2",
+    "N*m": "N m",
+    "Nm": "N m",
+    "°C": "degC",
+    "": "1",
+    "dimensionless": "1",
+}
 
 
 def unit_name(unit: str) -> str:

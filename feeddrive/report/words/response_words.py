@@ -41,8 +41,9 @@ def _possible(result: ResponseResult) -> str:
     texts = [f"Possible: {found_text(one)}." for one in result.found if not one.asserted]
     texts += [
         f"{one.words.capitalize()} cannot be told from {joined(list(one.rivals[:2]))} by this response."
-        for one in result.found if one.rivals
-    ]  # fmt: skip
+        for one in result.found
+        if one.rivals
+    ]
     return " ".join(texts)
 
 

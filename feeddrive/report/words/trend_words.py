@@ -104,8 +104,16 @@ def quantity_rows(trend: Trend) -> list[list[str]]:
         first, last = (here[0], here[-1]) if course is None else (course.fitted[0], course.fitted[-1])
         scatter = "" if course is None else f"± {size_words(1.96 * course.scatter, quantity.unit)}"
         did = "" if course is None else "; ".join(_dated(trend, quantity, one) for one in course.found) or "steady"
-        rows.append([quantity.words, size_words(float(first), quantity.unit), size_words(float(last), quantity.unit),
-                     scatter, did, limit_words(trend, quantity, limit)])  # fmt: skip
+        rows.append(
+            [
+                quantity.words,
+                size_words(float(first), quantity.unit),
+                size_words(float(last), quantity.unit),
+                scatter,
+                did,
+                limit_words(trend, quantity, limit),
+            ]
+        )
     return rows
 
 

@@ -104,10 +104,15 @@ class ControlledRun:
 
 
 def simulate_controlled(
-    plant: Plant, controller: SampledController, reference: FloatArray, load: FloatArray | None = None,
-    torque_loop: TorqueLoop | None = None, start: ControlledState | None = None, quantised: bool = True,
+    plant: Plant,
+    controller: SampledController,
+    reference: FloatArray,
+    load: FloatArray | None = None,
+    torque_loop: TorqueLoop | None = None,
+    start: ControlledState | None = None,
+    quantised: bool = True,
     tolerance: float = TOLERANCE,
-) -> ControlledRun:  # fmt: skip
+) -> ControlledRun:
     """The plant under a sampled controller.
 
     Args:
@@ -141,9 +146,12 @@ def simulate_controlled(
 
 
 def resting_state(
-    plant: Plant, controller: SampledController, torque_loop: TorqueLoop | None = None, position: float = 0.0,
+    plant: Plant,
+    controller: SampledController,
+    torque_loop: TorqueLoop | None = None,
+    position: float = 0.0,
     velocity: float = 0.0,
-) -> ControlledState:  # fmt: skip
+) -> ControlledState:
     """The state before tick 0: no stretch, no torque, the controller at its initial state.
 
     Args:
@@ -194,9 +202,13 @@ def _refuse_foreign(machine: Machine, start: ControlledState, plant: Plant) -> N
 
 
 def told_run(
-    plant: Plant, controller: SampledController, time: FloatArray, seen: FloatArray, end: ControlledState,
+    plant: Plant,
+    controller: SampledController,
+    time: FloatArray,
+    seen: FloatArray,
+    end: ControlledState,
     report: StepReport,
-) -> ControlledRun:  # fmt: skip
+) -> ControlledRun:
     names = state_names(plant)
     count = 2 * len(plant.chain.coordinates) + bristle_count(plant)
     signals = dict(zip(controller.signals, seen[:, 6 + count :].T, strict=True))
@@ -204,6 +216,4 @@ def told_run(
     if plant.effects_of(DriveEffect):
         warn_beyond_top(plant, torque)
     states = seen[:, 6 : 6 + count]
-    return ControlledRun(
-        time, command, torque, angle, speed, position, velocity, signals, states, names, end, report
-    )  # fmt: skip
+    return ControlledRun(time, command, torque, angle, speed, position, velocity, signals, states, names, end, report)

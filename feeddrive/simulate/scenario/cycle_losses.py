@@ -91,9 +91,18 @@ def cycle_losses(plant: Plant, run: ControlledRun, loop: TorqueLoop, load: Float
     torque = motor_torque(plant, run, loop)
     work, squared = float(acting_torques(plant, torque) @ np.diff(run.motor_angle)), float(torque**2 @ step)
     return CycleLosses(
-        float(np.sum(step)), work, works["nut"], works["bearings"], works["guide"], works["motor"], works["damping"],
-        works["sources"], pushed, float(table[-1, -1] - table[-1, 0]), squared,
-    )  # fmt: skip
+        float(np.sum(step)),
+        work,
+        works["nut"],
+        works["bearings"],
+        works["guide"],
+        works["motor"],
+        works["damping"],
+        works["sources"],
+        pushed,
+        float(table[-1, -1] - table[-1, 0]),
+        squared,
+    )
 
 
 def motor_torque(plant: Plant, run: ControlledRun, loop: TorqueLoop) -> FloatArray:

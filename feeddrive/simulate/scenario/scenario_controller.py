@@ -51,9 +51,13 @@ from feeddrive.simulate.scenario.scenario_values import boolean, optional, posit
 FORMAT = "feeddrive-controller/1"
 _MODES = ("position", "velocity", "torque")
 _FORWARD_UNITS = {
-    "speed": "1", "torque": "1", "inertia": "kg m^2", "coulomb": "N m", "smoothing_speed": "rad/s",
+    "speed": "1",
+    "torque": "1",
+    "inertia": "kg m^2",
+    "coulomb": "N m",
+    "smoothing_speed": "rad/s",
     "viscous": "N m s/rad",
-}  # fmt: skip
+}
 _FILTERS: dict[str, tuple[Callable[..., Filter], dict[str, str]]] = {
     "PT1": (pt1, {"frequency": "Hz"}),
     "PT2": (pt2, {"frequency": "Hz", "damping": "1"}),

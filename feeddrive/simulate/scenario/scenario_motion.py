@@ -211,11 +211,17 @@ def _recorded_force(table: Table, folder: Path) -> Force:
 
 def _milling(table: Table, _: Path) -> Force:
     return Milling(
-        whole(table, "teeth", None, MOST_TEETH), positive(table, "spindle_speed", "rad/s"),
-        positive(table, "depth", "m"), positive(table, "feed_per_tooth", "m"), positive(table, "tangential", "Pa"),
-        optional(table, "radial", "Pa", 0.0), optional(table, "entry", "rad", 0.0),
-        optional(table, "exit", "rad", math.pi), optional(table, "start", "s", 0.0), _end(table),
-    )  # fmt: skip
+        whole(table, "teeth", None, MOST_TEETH),
+        positive(table, "spindle_speed", "rad/s"),
+        positive(table, "depth", "m"),
+        positive(table, "feed_per_tooth", "m"),
+        positive(table, "tangential", "Pa"),
+        optional(table, "radial", "Pa", 0.0),
+        optional(table, "entry", "rad", 0.0),
+        optional(table, "exit", "rad", math.pi),
+        optional(table, "start", "s", 0.0),
+        _end(table),
+    )
 
 
 _FORCES: dict[str, Callable[[Table, Path], Force]] = {

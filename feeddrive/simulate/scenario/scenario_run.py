@@ -43,9 +43,18 @@ CHECKPOINT_SHARE = 0.05
 """Of the time that writing checkpoints may take: large ones are written more seldom."""
 
 _DAMAGE = (
-    ValueError, KeyError, OSError, EOFError, TypeError, AttributeError, MemoryError, NotImplementedError, SyntaxError,
-    BadZipFile, zlib.error,
-)  # fmt: skip
+    ValueError,
+    KeyError,
+    OSError,
+    EOFError,
+    TypeError,
+    AttributeError,
+    MemoryError,
+    NotImplementedError,
+    SyntaxError,
+    BadZipFile,
+    zlib.error,
+)
 """What numpy and zipfile raise where bytes of an archive were lost or changed."""
 
 Progress = Callable[[float], None]
@@ -131,9 +140,12 @@ def _further(scenario: Scenario, done: _Done, count: int) -> _Done:
     run = simulate_controlled(scenario.plant, controller, reference, load, loop, done.state)
     means, under_way = done.torque.means(loop, tick, run.command)
     readings = {
-        "motor_torque": means, "motor_angle": run.motor_angle, "motor_speed": run.motor_speed,
-        "table_position": run.table_position, "table_velocity": run.table_velocity,
-    }  # fmt: skip
+        "motor_torque": means,
+        "motor_angle": run.motor_angle,
+        "motor_speed": run.motor_speed,
+        "table_position": run.table_position,
+        "table_velocity": run.table_velocity,
+    }
     at_start = {name: float(values[0]) for name, values in readings.items()}
     late, held_on = (done.late or LateChannels.at_rest(scenario.plant, tick, at_start)).read(readings)
     series = {**readings, "setpoint": motion.position, "cutting_force": load}
@@ -213,8 +225,12 @@ def _refuse_other_shapes(scenario: Scenario, found: Mapping[str, FloatArray], wh
     """Refuse a checkpoint whose arrays are not those that a run of this scenario writes."""
     start = _start(scenario)
     late = LateChannels.at_rest(scenario.plant, scenario.cascade.sample_time, dict.fromkeys(SERIES, 0.0))
-    shapes = {"state": start.state.vector.shape, "torque": start.torque.state.shape, "late": late.vector.shape,
-              "rows": (len(found["rows"]), len(_columns(scenario)))}  # fmt: skip
+    shapes = {
+        "state": start.state.vector.shape,
+        "torque": start.torque.state.shape,
+        "late": late.vector.shape,
+        "rows": (len(found["rows"]), len(_columns(scenario))),
+    }
     same = all(found[name].dtype == np.float64 and found[name].shape == shape for name, shape in shapes.items())
     if not same or not np.isfinite(found["state"]).all() or found["state"][3] != start.state.vector[3]:
         raise InputError("is a checkpoint that was changed or damaged", where, mend)

@@ -48,8 +48,11 @@ class Limits:
     def __post_init__(self) -> None:
         for key in ("velocity", "acceleration", "jerk"):
             if not (getattr(self, key) > 0 and math.isfinite(getattr(self, key))):
-                raise InputError(f"the limit {getattr(self, key):g} is not above zero", f"{self.where}.{key}",
-                                 "no move is possible; write a positive limit")  # fmt: skip
+                raise InputError(
+                    f"the limit {getattr(self, key):g} is not above zero",
+                    f"{self.where}.{key}",
+                    "no move is possible; write a positive limit",
+                )
 
 
 def phases(distance: float, limits: Limits) -> tuple[float, float, float]:

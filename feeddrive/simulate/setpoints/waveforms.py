@@ -129,8 +129,9 @@ class Multisine:
         for i, w in enumerate(2 * math.pi * self.frequencies, 1):
             phase = -math.pi * i * (i - 1) / count
             sine, cosine = np.sin(w * time + phase), np.cos(w * time + phase)
-            for total, term in zip(sums, ((sine - math.sin(phase)) / w, cosine, -w * sine, -(w**2) * cosine),
-                                   strict=True):  # fmt: skip
+            for total, term in zip(
+                sums, ((sine - math.sin(phase)) / w, cosine, -w * sine, -(w**2) * cosine), strict=True
+            ):
                 total += term
         return sums[0], sums[1], sums[2], sums[3]
 

@@ -50,9 +50,13 @@ class Sweep:
 
 
 def run_sweep(
-    design: Design, measure: Measure, folder: Path, workers: Workers, told: Told | None = None,
+    design: Design,
+    measure: Measure,
+    folder: Path,
+    workers: Workers,
+    told: Told | None = None,
     needed: Sequence[str] = (),
-) -> Sweep:  # fmt: skip
+) -> Sweep:
     """All runs of a sweep, or those that an earlier start has left.
 
     Args:

@@ -32,9 +32,9 @@ def on_cluster(address: str) -> Workers:
 
     @contextmanager
     def opened(_: Measure) -> Iterator[Work]:
-        client = _client(address)
+        client = client_of(address)
         try:
-            _refuse_unfit(client, address)
+            refuse_unfit(client, address)
             yield lambda units: _as_finished(client, units, address)
         finally:
             client.close()
@@ -42,7 +42,12 @@ def on_cluster(address: str) -> Workers:
     return opened
 
 
-def _client(address: str) -> Any:
+def client_of(address: str) -> Any:
+    """A client of a Dask scheduler.
+
+    Raises:
+        InputError: not an address, Dask is not installed, or nothing answers.
+    """
     where = f"--scheduler {address}"
     if not re.fullmatch(r"(\w+://)?\S+:\d+", address):
         raise InputError("is not an address", where, _EXAMPLE)
@@ -63,7 +68,7 @@ def _version_here() -> str:
     return __version__
 
 
-def _refuse_unfit(client: Any, address: str) -> None:
+def refuse_unfit(client: Any, address: str) -> None:
     """Refuse a cluster without workers, or whose workers have no or another feeddrive."""
     where = f"--scheduler {address}"
     try:

@@ -52,9 +52,12 @@ class Design:
 
 
 def make_design(
-    path: Path, settings: Mapping[str, str], parameters: tuple[Parameter, ...], samples: int | None = None,
+    path: Path,
+    settings: Mapping[str, str],
+    parameters: tuple[Parameter, ...],
+    samples: int | None = None,
     seed: int = 0,
-) -> Design:  # fmt: skip
+) -> Design:
     """The runs of a sweep, after a look at the ends of every range.
 
     Args:

@@ -59,8 +59,13 @@ def write_cut(folder: Path, design: Design, cut: Cut) -> None:
     Raises:
         InputError: it cannot be written.
     """
-    content = {"format": SWEEP_FORMAT, "digest": design.digest, "scenario": str(design.path), "runs": cut.runs,
-               "unit_size": cut.size}  # fmt: skip
+    content = {
+        "format": SWEEP_FORMAT,
+        "digest": design.digest,
+        "scenario": str(design.path),
+        "runs": cut.runs,
+        "unit_size": cut.size,
+    }
     write_text_atomically(folder / _PLAN, json.dumps(content, indent=2) + "\n")
 
 

@@ -103,10 +103,12 @@ def _is_run(run: Mapping[str, Any]) -> bool:
     told, metrics = run.get("warnings"), run.get("metrics")
     return (
         isinstance(run.get("reason"), str)
-        and isinstance(told, list) and all(isinstance(line, str) for line in told)
-        and isinstance(metrics, dict) and all(map(_is_metric, metrics.values()))
+        and isinstance(told, list)
+        and all(isinstance(line, str) for line in told)
+        and isinstance(metrics, dict)
+        and all(map(_is_metric, metrics.values()))
         and bool(metrics) != bool(run["reason"])
-    )  # fmt: skip
+    )
 
 
 def _is_metric(pair: Any) -> bool:

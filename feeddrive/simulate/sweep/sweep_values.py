@@ -140,5 +140,7 @@ def _quantities(items: list[str], key: str) -> tuple[str, tuple[float | int, ...
     if unit != "1":
         return unit, tuple(number for number, _ in pairs)
     # counts stay whole numbers, as keys such as `trajectory.runs` need them
-    return unit, tuple(int(number) if re.fullmatch(r'"?[+-]?\d+"?', item.strip()) else number
-                       for item, (number, _) in zip(items, pairs, strict=True))  # fmt: skip
+    return unit, tuple(
+        int(number) if re.fullmatch(r'"?[+-]?\d+"?', item.strip()) else number
+        for item, (number, _) in zip(items, pairs, strict=True)
+    )

@@ -1,1 +1,0 @@
-"""Which change of a drive explains a measured stiffness and a measured natural frequency."""
