@@ -102,7 +102,7 @@ def test_bench_is_a_tab_that_is_there_only_where_there_is_one() -> None:
 
 def test_nothing_found_is_nothing_to_do() -> None:
     assert actions_section(_diagnosis(), None) == ""
-    assert actions_section(_diagnosis(), actions(_diagnosis(), None)) == ""
+    assert actions_section(_diagnosis(), actions(_diagnosis(), fd.load("bench_axis").plant)) == ""
 
 
 def test_what_is_not_confirmed_and_not_predicted_is_said() -> None:

@@ -26,7 +26,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feeddrive.diagnosis.calibration.beyond import SURE as BEYOND_SURELY
-from feeddrive.diagnosis.calibration.calibrate import calibrated_list
+from feeddrive.diagnosis.calibration.calibrate import calibrated, calibrated_list
 from feeddrive.diagnosis.calibration.known import known_values
 from feeddrive.diagnosis.certainty.noise_colour import score_covariance
 from feeddrive.diagnosis.finding.search import Search
@@ -115,19 +115,24 @@ def scaled(factor: float, ci95: tuple[float, float]) -> Quality:
 def beyond_its_constant(problem: Problem, found: Fit) -> tuple[Quality, ...]:
     """A torque of another scale than the tolerance of its constant allows; it was fitted and is judged so."""
     known = known_values(problem, found)
-    constant = (
-        [i for i, value in enumerate(known.values) if value.key == "torque_constant"] if known is not None else []
-    )
-    if known is None or not constant or known.least() - known.least(constant[0]) < BEYOND_SURELY**2:
+    if known is None:
         return ()
-    one = calibrated_list(problem, found)[constant[0]]
-    declared = one.value.declared
-    return (scaled(declared / one.number, (declared / one.ci95[1], declared / one.ci95[0])),)
+    for place, one in enumerate(calibrated_list(problem, found)):
+        if one.value.key == "torque_constant" and known.least() - known.least(place) > BEYOND_SURELY**2:
+            declared = one.value.declared
+            return (scaled(declared / one.number, (declared / one.ci95[1], declared / one.ci95[0])),)
+    return ()
 
 
 def suspected(found: Search) -> Suspect | None:
     """The fault of the recorder that is worth a search of the mended recordings; None where none is."""
-    asked = [*_asked(*found.begun), *_asked(found.problem, found.fit)] if found.begun is not None else []
+    if found.begun is None:
+        return None
+    problem, empty = found.begun
+    if empty.effects:  # it went on from another search
+        problem = calibrated(replace(problem, calibration=None))
+        empty = fit(problem, ())
+    asked = [*_asked(problem, empty), *_asked(found.problem, found.fit)]
     first = max((trial.gain for trial in found.trials if trial.round == 1), default=0.0)
     alone, beside = asked[: len(asked) // 2], asked[len(asked) // 2 :]
     able = [one for one in alone if one.comparison.gain > first - max(LEAST_GAIN, 2 * one.comparison.standard_error)]
@@ -143,11 +148,11 @@ def again(problem: Problem, kind: str) -> Suspect | None:
 def is_better(fault: Suspect, mended: Search, found: Search) -> bool:
     """Whether a fault and what was found beside it say as much as what was found without it, or more with no more.
 
-    As much is what chance does for the values that are spared: of each, less than is asked of any effect.
+    As much is what chance does for the effects that are spared: for each, less than is asked of any.
     """
     before, after = (one.fit.squared_error / max(len(one.fit.residual), 1) for one in (found, mended))
-    spared = len(found.fit.coordinates) - len(mended.fit.coordinates) - 1
-    if spared > 0:
+    if len(mended.fit.coordinates) + 1 < len(found.fit.coordinates):
+        spared = max(1, len(found.fit.effects) - len(mended.fit.effects))
         return after <= (1 + spared * fault.comparison.least) * before
     return len(mended.fit.effects) <= len(found.fit.effects) and after < before / SAME_ERROR
 
