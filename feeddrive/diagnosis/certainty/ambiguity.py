@@ -14,6 +14,7 @@ from math import log
 
 import numpy as np
 
+from feeddrive.diagnosis.calibration.calibrate import recalibrated
 from feeddrive.diagnosis.certainty.certainty_result import Ambiguity
 from feeddrive.diagnosis.certainty.imitations import imitations_of
 from feeddrive.diagnosis.certainty.rival_odds import Residuals, odds_and_distance
@@ -23,10 +24,11 @@ from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging.judge import Judged
 from feeddrive.diagnosis.likelihood.coordinates import LOGARITHMIC
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
-from feeddrive.effects.base import Effect
+from feeddrive.effects.base import Effect, number
 from feeddrive.effects.chain.stiffness_deviation import PARTS, StiffnessDeviation, parts_of
 from feeddrive.errors import InputError
 from feeddrive.plant.analysis.stiffness_budget import participation
+from feeddrive.plant.plant import Plant
 
 SAME_ERROR = 1.05
 """Ratio of validation errors (rms) within which two effects count as the same."""
@@ -48,6 +50,9 @@ PLACED = ("inertia_deviation", "channel_delay", "stiffness_deviation")
 
 NEAR_END = 0.02
 """Share of an end of a parameter's range within which it is said to stand there."""
+
+AGAIN = 2
+"""Times that declared values and a stiffness elsewhere are fitted in turn."""
 
 ITERATIONS = 12
 """Steps of that fit at most; it starts from values that were fitted in the round of the search, others with it."""
@@ -135,7 +140,7 @@ def other_places(found: Search, judged: Sequence[Judged]) -> tuple[str, ...]:
     for index, effect in placed:
         taken = {e.place for e in found.fit.effects if e.name == effect.name}
         tried = [
-            _in_place(found, judged, index, type(effect).of(None, place, **effect.values), mine)
+            _in_place(found, judged, index, _elsewhere(effect, place, found.problem.plant), mine)
             for place in _possible(effect, found)
             if place not in taken
         ]
@@ -144,6 +149,17 @@ def other_places(found: Search, judged: Sequence[Judged]) -> tuple[str, ...]:
             where = f"{effect.place_key} = {joined(alike)} does as well as {effect.place}"
             told.append(f"{effect.name}: {where}; these recordings cannot tell{_shares(effect, alike, found)}")
     return tuple(told)
+
+
+def _elsewhere(effect: Effect, place: str, plant: Plant) -> Effect:
+    """An effect at another place; a stiffness there begins where the table gives way as much as here."""
+    moved = type(effect).of(None, place, **effect.values)
+    if not isinstance(effect, StiffnessDeviation) or not {effect.place, place} <= set(PARTS):
+        return moved
+    here, there = (participation(plant, PARTS[part], plant.middle) for part in (effect.place, place))
+    softer = 1 + (1 / number(effect.values["factor"]) - 1) * here / there
+    ends = effect.parameter("factor")
+    return moved.with_values(factor=min(max(1 / max(softer, 1 / ends.maximum), ends.minimum), ends.maximum))
 
 
 def _shares(effect: Effect, alike: Sequence[str], found: Search) -> str:
@@ -181,8 +197,8 @@ def _near(found: Search, place: int) -> list[Attempt]:
     """Candidates that came near when the effect was taken, and those that its signature names, the best first."""
     effect = found.fit.effects[place]
     present = {e.name for e in found.fit.effects}
-    for number, attempts in enumerate(found.rounds):
-        taken = next((t for t in found.trials if t.round == number + 1 and t.taken), None)
+    for turn, attempts in enumerate(found.rounds):
+        taken = next((t for t in found.trials if t.round == turn + 1 and t.taken), None)
         if taken is None or effect.name not in taken.name.split(" with "):
             continue
         # one that gains more and scatters too much to be taken may yet be what it is
@@ -201,14 +217,18 @@ def _is_free(found: Search, effect: Effect) -> bool:
 
 
 def _in_place(found: Search, judged: Sequence[Judged], place: int, rival: Effect, mine: Residuals) -> Rival | None:
-    """A rival in the place of an effect, all refitted; None where the plant cannot hold or follow it."""
-    effects = [*found.fit.effects]
+    """A rival in the place of an effect, all refitted; None where the plant cannot hold or follow it.
+
+    A stiffness elsewhere is another machine for the declared values as well: they get their slopes beside it.
+    """
+    effects, problem = [*found.fit.effects], found.problem
     effects[place] = rival
     try:
-        swapped = fit(found.problem, effects, iterations=ITERATIONS)
-        its = Residuals.of(
-            found.problem, swapped, [(j.with_effects(found.problem, swapped.effects), j) for j in judged]
-        )
+        for _ in range(AGAIN if isinstance(rival, StiffnessDeviation) else 0):
+            problem = recalibrated(problem, effects)
+            effects = [*fit(problem, effects, iterations=ITERATIONS).effects]
+        swapped = fit(problem, effects, iterations=ITERATIONS)
+        its = Residuals.of(problem, swapped, [(j.with_effects(problem, swapped.effects), j) for j in judged])
     except InputError:
         return None
     if not np.all(np.isfinite(its.fitted)):
