@@ -1,6 +1,6 @@
 """The thermal model's reductions beside the full model and the explicit moving nut: errors, times, ratios.
 
-Run with OPENBLAS_NUM_THREADS=1; about two minutes on one core.
+Run with OPENBLAS_NUM_THREADS=1; about four minutes on one core.
 """
 
 from __future__ import annotations
@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 import os
 import time
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -38,6 +39,7 @@ def main() -> None:
     """Print the tables."""
     _orders()
     _parametric()
+    _every_speed()
     _moving()
     _paper_grid()
 
@@ -78,6 +80,34 @@ def _parametric() -> None:
         error = reduction_error(full.at(g), small.at(g), WORKING)
         print(f"  {speed:5d} rev/min, 900 N: {error.largest(growth=False) * 1e3:.2f} mK, "
               f"{error.largest(growth=True) * 1e9:.2f} nm")  # fmt: skip
+
+
+def _every_speed() -> None:
+    """One reduced model for all speeds beside the full one in compiled C, 180 min reported once a minute."""
+    full = full_model(BENCH.rig)
+    small = reduce_model([full], BENCH.limits())[0]
+    grids = [discretise(BENCH.rig, cells) for cells in (Cells(), Cells.of_paper(BENCH.rig))]
+    print(f"parametric, order {small.order}; full: {' and '.join(str(parts.nodes) for parts in grids)} nodes (the "
+          "default grid and the paper's), processor time")  # fmt: skip
+    print("rev/min | mK | nm | full s | reduced ms | times faster")
+    for speed in (20, 50, 100, 250, 500, 1000, 1500):
+        ω = speed * RPM
+        g, heat = BENCH.at_speed(ω), float(BENCH.heats(np.array([ω]))["nut"][0])
+        error = reduction_error(full.at(g), small.at(g), WORKING)
+        took = []
+        for parts in grids:
+            began = time.process_time()
+            run_explicitly(parts, g, {"nut": heat}, BENCH.feed(ω), HOURS)
+            took.append(time.process_time() - began)
+        ran = min(_once(lambda g=g, heat=heat: small.at(g).step_response("nut", heat, 180, 60.0)) for _ in range(30))
+        print(f"{speed:5d} | {error.largest(growth=False) * 1e3:.2f} | {error.largest(growth=True) * 1e9:.2f} | "
+              f"{took[0]:.2f}, {took[1]:.2f} | {ran * 1e3:.3f} | {took[0] / ran:.0f}, {took[1] / ran:.0f}")  # fmt: skip
+
+
+def _once(call: Callable[[], object]) -> float:
+    began = time.perf_counter()
+    call()
+    return time.perf_counter() - began
 
 
 def _moving() -> None:

@@ -8,6 +8,9 @@ from __future__ import annotations
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Generic, TypeVar
+
+Held = TypeVar("Held")
 
 
 class SymbolicTurn:
@@ -61,3 +64,16 @@ class SymbolicTurn:
 
 SYMBOLS = SymbolicTurn()
 """The one turn of this process."""
+
+
+class Holder(Generic[Held]):
+    """Carries what expressions are made from past a cache whose key is its structure alone."""
+
+    def __init__(self, held: Held) -> None:
+        self.held = held
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Holder)
+
+    def __hash__(self) -> int:
+        return 0

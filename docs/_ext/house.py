@@ -11,6 +11,7 @@ from collections import Counter
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
+from textwrap import shorten
 
 FLOORS = {
     "quantity": 'Units at the border: "20 mm" in, 0.020 m inside',
@@ -32,7 +33,9 @@ FLOORS = {
 }
 """What happens on each floor; a folder that is not named here says it by the first line of its `__init__.py`."""
 
-ROW, LEFT, TEXT, SIZES, GRID = 30, 16, 118, 560, 700
+ROW, LEFT, TEXT, SIZES, GRID = 30, 16, 128, 560, 700
+LETTERS = 62
+"""Letters of a floor's words that fit beside its size."""
 
 
 @dataclass(frozen=True)
@@ -122,7 +125,7 @@ def _drawn(floor: Floor, number: int, floors: list[Floor]) -> list[str]:
     parts = [
         f'<rect x="8" y="{y}" width="{SIZES + 104}" height="{ROW - 2}" fill="{shade}" stroke="#9db4c2"/>',
         _text(LEFT, middle, floor.name, 'font-size="13" font-weight="bold" fill="#123"'),
-        _text(TEXT, middle, floor.words, 'font-size="11" fill="#223"'),
+        _text(TEXT, middle, shorten(floor.words, LETTERS, placeholder=" …"), 'font-size="11" fill="#223"'),
         _text(SIZES + 104, middle, size, 'font-size="10" text-anchor="end" fill="#556"'),
     ]
     for column, below in enumerate(floors):

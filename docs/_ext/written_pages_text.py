@@ -20,8 +20,8 @@ EFFECTS = "plant.effect."
 GROUPS = {
     "An axis": ("load", "Axis", "effect", "Effect", "list_plants", "list_effects", "list_scenarios"),
     "Under its controller": ("tune", "Servo", "run", "Run", "sweep", "Sweep"),
-    "Recordings": ("read", "Recording", "diagnose", "Diagnosed", "explain", "Explained", "ExplainedResponse"),
-    "Answers of an axis": ("Modes", "Stiffness", "Check", "Life", "Bode"),
+    "Recordings": ("read", "Recording", "diagnose", "Diagnosed", "explain", "Explained"),
+    "Answers of an axis": ("Modes", "Stiffness", "Check", "Life", "UsedLife", "Bode"),
     "Heat": ("warm_up", "WarmUp"),
     "Units and errors": ("si", "InputError", "ValidityWarning"),
 }

@@ -27,6 +27,7 @@ from feeddrive.servo.filters import Filter, notch
 from feeddrive.servo.frequency_response import grid
 from feeddrive.servo.margins import GROWTH
 from feeddrive.simulate.setpoints.trial_motions import HEIGHT, RADIUS, STEP_AT, Trial, circle_about, step_at
+from feeddrive.tuning.reasons import current_loop_lines
 
 _SCRIPTS = ("linear.js", "loop.js", "engine.js", "bench.js", "drawing.js", "page.js")
 _LOWEST, _HIGHEST = 1.0, 4000.0
@@ -219,19 +220,10 @@ def _controller_head(cascade: Cascade) -> list[str]:
         f'velocity_rate = "{1 / cascade.sample_time!r} Hz"',
         f'position_rate = "{1 / (cascade.sample_time * cascade.position_divider)!r} Hz"',
         f'position_feedback = "{cascade.feedback}"',
+        *current_loop_lines(cascade),
     ]
-    if cascade.current_lag:
-        lines.append(f'current_bandwidth = "{1 / (2 * math.pi * cascade.current_lag)!r} Hz"')
-    if cascade.dead_time:
-        lines.append(f'dead_time = "{cascade.dead_time!r} s"')
-    if math.isfinite(cascade.torque_limit):
-        lines.append(f'torque_limit = "{cascade.torque_limit!r} N m"')
-    if math.isfinite(cascade.speed_limit):
-        lines.append(f'speed_limit = "{cascade.speed_limit!r} rad/s"')
     if cascade.balancing_time:
         lines.append(f'balancing_time = "{cascade.balancing_time!r} s"')
-    if cascade.torque_offset:
-        lines.append(f'torque_offset = "{cascade.torque_offset!r} N m"')
     if cascade.tracking_time != cascade.reset_time and math.isfinite(cascade.tracking_time):
         lines.append(f'tracking_time = "{cascade.tracking_time!r} s"')
     return lines

@@ -42,6 +42,9 @@ def command(
     split: Annotated[
         float | None, typer.Option("--split", help="Share fitted where no --validate is given; 0.75 if left out.")
     ] = None,
+    measured: Annotated[
+        Path | None, typer.Option("--measured", help="File of numbers that were measured beside the recordings.")
+    ] = None,
     mapping: Annotated[Path | None, typer.Option("--map", help="Mapping of a foreign file to channels.")] = None,
     decimal: Annotated[str | None, typer.Option("--decimal", help="Decimal sign of CSV files: '.' or ','.")] = None,
     simulate: Annotated[
@@ -57,12 +60,14 @@ def command(
 ) -> None:
     """Find what a machine's model lacks, from recordings of it, and report the error before and after."""
     if earlier is None and _are_no_recordings(arguments[1:]):
+        if measured is not None:
+            raise InputError("is for numbers beside recordings", "--measured", "name the file behind the plant")
         _explain(arguments[0], arguments[1], at, controller, out, as_json)
         return
     if controller is not None:
         what = "is for a frequency response, and recordings over time are given"
         raise InputError(what, "--controller", "leave it out; declare the controller in the plant file for --simulate")
-    options = Options(out, tuple(validate or ()), split, mapping, decimal, simulate)
+    options = Options(out, tuple(validate or ()), split, mapping, decimal, simulate, measured)
     job = first_job(arguments, options) if earlier is None else continued_job(arguments, earlier, options)
     diagnose_and_print(job, as_json)
 

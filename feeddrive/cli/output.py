@@ -40,7 +40,7 @@ _LONGEST_NAME = 32
 """Letters of a name that a table never breaks; paths are longer."""
 
 _WIDTH = 120
-"""Of tables in a file, and in a pipe whose reader names no width in COLUMNS; in letters."""
+"""Width of tables in a file, and in a pipe whose reader names no width in COLUMNS; in letters."""
 
 
 def table(title: str, headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Table:

@@ -39,7 +39,7 @@ _NARROWEST = 60
 _DEVIATION, _STATUS, _PLACE, _GAP, _INDENT = 9, 12, 13, 2, 4
 _NUMBERS = HEADINGS.index("deviation")
 _SHARES = (0.17, 0.38, 0.2, 0.25)
-"""Of the width beside deviation and status: place, quantity, printed, computed."""
+"""Shares of the width beside deviation and status: place, quantity, printed, computed."""
 
 
 _LEGEND = """\

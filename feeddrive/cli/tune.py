@@ -39,7 +39,11 @@ def command(
     ] = None,
 ) -> None:
     """Recommend K_p, T_n, filters and K_v that keep margins over all positions and payloads, and say why."""
-    from feeddrive.cli.tuning import Drive, Wanted, run
+    from feeddrive.cli.tuning import Wanted, run
 
-    drive = Drive(scenario, velocity_rate, position_rate, current_bandwidth, dead_time, feedback)
-    run(Wanted(plant, margin_phase, margin_gain, positions, payload, velocity, drive, form, present), as_json, out)
+    asked = {
+        "phase": margin_phase, "gain": margin_gain, "velocity": velocity, "drive": scenario,
+        "velocity_rate": velocity_rate, "position_rate": position_rate, "current_bandwidth": current_bandwidth,
+        "dead_time": dead_time, "feedback": feedback,
+    }  # fmt: skip
+    run(Wanted(plant, asked, positions, payload, form, present), as_json, out)

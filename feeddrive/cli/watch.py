@@ -52,18 +52,25 @@ def command(
     if scheduler and not each:
         raise InputError("a cluster follows several axes", "--scheduler", "say --each, with a folder for each axis")
     options: dict[str, Any] = {
-        "map": mapping, "decimal": decimal or None, "stamp": stamp, "every": every or None, "first": first,
-        "absolute": tuple(absolute or ()), "limits": dict(map(_limit, limit or ())), "search": search,
-    }  # fmt: skip
+        "map": mapping,
+        "decimal": decimal or None,
+        "stamp": stamp,
+        "every": every or None,
+        "first": first,
+        "absolute": tuple(absolute or ()),
+        "limits": dict(map(_limit, limit or ())),
+        "search": search,
+    }
     with warnings_as_lines(), Console(stderr=True).status("looking into the folder") as status:
 
-        def said(text: str) -> None:
+        def progress(text: str) -> None:
             status.update(printable(text))
 
         if each:
-            _tell_fleet(watch_fleet(folder, plant, out=out, scheduler=scheduler, progress=said, **options), as_json)
+            fleet = watch_fleet(folder, plant, out=out, scheduler=scheduler, progress=progress, **options)
+            _print_fleet(fleet, as_json)
             return
-        found = watch(folder, load(plant), out=out, progress=said, **options)
+        found = watch(folder, load(plant), out=out, progress=progress, **options)
         place = found.save()
     if as_json:
         print(escaped(json.dumps(found.record(), indent=2, ensure_ascii=False)))
@@ -81,7 +88,14 @@ def command(
     console.print(f"page: {printable(str((place / 'trend.html').resolve()))}", markup=False)
 
 
-def _tell_fleet(fleet: Fleet, as_json: bool) -> None:
+def _limit(text: str) -> tuple[str, str]:
+    name, equals, value = text.partition("=")
+    if not equals or not name.strip() or not value.strip():
+        raise InputError(f'"{text}" is no limit', "--limit", "write it as 'play=10 µm' or 'coulomb=20 %'")
+    return name.strip(), value.strip()
+
+
+def _print_fleet(fleet: Fleet, as_json: bool) -> None:
     if as_json:
         print(escaped((fleet.out / OVERVIEW).read_text(encoding="utf-8")), end="")
         return
@@ -90,10 +104,3 @@ def _tell_fleet(fleet: Fleet, as_json: bool) -> None:
     rows = [[printable(cell) for cell in row] for row in listing.rows]
     console.print(table(listing.title, listing.headings, rows), markup=False)
     console.print(f"pages: {printable(str(fleet.out))}, trend.html in the folder of each axis", markup=False)
-
-
-def _limit(text: str) -> tuple[str, str]:
-    name, equals, value = text.partition("=")
-    if not equals or not name.strip() or not value.strip():
-        raise InputError(f'"{text}" is no limit', "--limit", "write it as 'play=10 µm' or 'coulomb=20 %'")
-    return name.strip(), value.strip()

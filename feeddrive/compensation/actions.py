@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import cast
 
 import numpy as np
 
@@ -12,6 +14,7 @@ from feeddrive.compensation.cures import cure, in_order
 from feeddrive.diagnosis.judging.result import Diagnosis
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
+from feeddrive.units.quantity import format_quantity
 
 FORM = "csv"
 """In which the figures are predicted: both directions, no rounding that tells; a control's own limits come on top."""
@@ -30,11 +33,13 @@ class Actions:
         effects: names in the order in which a person goes through them.
         predicted: figures before, after repair, after compensation; None where no table helps.
         why_not: why nothing is predicted, where a table was asked for; empty where it was not.
+        set_to: effect to the value to set for it, in words, where it is one value.
     """
 
     effects: tuple[str, ...]
     predicted: Compensated | None = None
     why_not: str = ""
+    set_to: Mapping[str, str] = field(default_factory=dict)
 
 
 def actions(diagnosis: Diagnosis, after: Plant) -> Actions:
@@ -47,17 +52,40 @@ def actions(diagnosis: Diagnosis, after: Plant) -> Actions:
     names = in_order([one.name for one in diagnosis.effects])
     carried = [one.name for left in diagnosis.unexplained.values() for one in left.carried]
     wanted = [name for name in (*names, *carried) if cure(name).form == "table"]
+    values = values_to_set(after) if names and after.has_motion else {}
     if not wanted or not after.has_motion:
-        return Actions(tuple(names))
+        return Actions(tuple(names), set_to=values)
     stroke = after.stroke or recorded_stroke(diagnosis)
     if stroke is None:
-        return Actions(tuple(names), None, "no stroke is declared, and none was recorded")
+        return Actions(tuple(names), None, "no stroke is declared, and none was recorded", values)
     try:
         unsure = unsure_of_play([(one.name, one.carries) for one in diagnosis.effects], diagnosis.ambiguous)
         done = compensate_plant(after, Wishes(FORM, stroke=stroke), None, unsure, diagnosis.plant, beside=False)
     except InputError as error:
-        return Actions(tuple(names), None, str(error))
-    return Actions(tuple(names), done)
+        return Actions(tuple(names), None, str(error), values)
+    return Actions(tuple(names), done, "", values)
+
+
+def values_to_set(after: Plant) -> dict[str, str]:
+    """Effects that one value in plant file, drive or control takes care of, to that value.
+
+    Args:
+        after: the machine with what was found.
+    """
+    radius, found = after.chain.motor_radius, {}
+    for one in after.effects:
+        if one.name == "lead_error_cumulative":
+            lead = 2e3 * math.pi * radius
+            found[one.name] = (
+                f"{lead * (1 + cast(float, one.values['slope'])):.7g} mm per revolution, not {lead:.7g} mm"
+            )
+        elif one.name == "payload":
+            found[one.name] = f"moving mass {format_quantity(after.chain_values()['table_mass'], 'kg')}"
+        elif one.name == "constant_force":
+            found[one.name] = f"torque offset {format_quantity(radius * cast(float, one.values['force']), 'N m')}"
+        elif one.name == "backlash":
+            found[one.name] = f"until then, backlash value {format_quantity(cast(float, one.values['width']), 'm')}"
+    return found
 
 
 def unsure_of_play(effects: Iterable[tuple[str, bool]], ambiguous: Iterable[Sequence[str]]) -> str:

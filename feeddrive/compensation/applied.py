@@ -11,8 +11,8 @@
 
 Straight between points and constant beyond, as everywhere in this program (`CompensationTable.at`), or, where a control
 puts whole increments out in the middle between two points, the nearest point. At a stand-still the last direction
-holds. A control goes over to the other direction at once, evenly over a time, or lets the whole value follow under
-limits of velocity and acceleration.
+holds. A control goes over to the other direction at once, evenly or by sin^2 over a time, or lets the whole value
+follow under limits of velocity and acceleration.
 """
 
 from __future__ import annotations
@@ -50,6 +50,8 @@ def motor_setpoint(
         limits: of the axis.
     """
     share = _share_of_reverse(velocity, _spread(control, cycle), cycle)
+    if control.reversal.smooth:
+        share = np.sin(0.5 * math.pi * share) ** 2
     if control.side is Side.ACTUAL:
         # The table's slope is 0.1 at most: five rounds leave 1e-5 of its value.
         at = position
@@ -63,10 +65,7 @@ def motor_setpoint(
 
 
 def _value(control: Control, table: CompensationTable, at: FloatArray, share: FloatArray) -> FloatArray:
-    if control.stepwise:
-        middles = 0.5 * (table.positions[1:] + table.positions[:-1])
-        at = table.positions[np.searchsorted(middles, at, side="right")]
-    forward, reverse = table.at(at), table.at(at, reverse=True)
+    forward, reverse = (table.at(at, way, control.stepwise) for way in (False, True))
     return np.asarray(forward + share * (reverse - forward))
 
 

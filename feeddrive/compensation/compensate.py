@@ -3,22 +3,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from feeddrive.compensation.applied import AxisLimits
 from feeddrive.compensation.cogging import CoggingMap, cogging_map
+from feeddrive.compensation.cures import repaired
 from feeddrive.compensation.forms.catalogue import as_held, control
 from feeddrive.compensation.forms.control import Control
 from feeddrive.compensation.friction_values import FrictionValues, friction_values
 from feeddrive.compensation.lost_motion import LostMotion, lost_motion, refuse_wind_up, resting_words, without_play
-from feeddrive.compensation.plant_deviations import PlantDeviations, plant_deviations
+from feeddrive.compensation.plant_deviations import plant_deviations
+from feeddrive.compensation.points import table_for
 from feeddrive.compensation.prediction import Applied, Figures, best_reversal, figures, motions, sticking
 from feeddrive.compensation.recorded_deviations import RecordedDeviations
-from feeddrive.compensation.repair import repaired
-from feeddrive.compensation.table import CompensationTable, Deviations, fitted, grid
+from feeddrive.compensation.table import CompensationTable, Deviations, fitted
 from feeddrive.errors import InputError
 from feeddrive.plant.file.entries import Origins, Table
 from feeddrive.plant.plant import DeclaredCascade, Plant
@@ -30,10 +30,6 @@ from feeddrive.tuning.demand import Demand, cases_of
 from feeddrive.tuning.recommendation import recommend
 from feeddrive.units.quantity import format_quantity
 
-POINTS_PER_PERIOD = 16
-"""Wished for per period of a lead error: straight pieces of least squares then leave 0.8 % of a sine, 8 leave 3 %."""
-
-_NICE = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)
 _USUAL_RATE, _POSITION_RATE, _BANDWIDTH, _DEAD_TIME = 8000.0, 2000.0, 1000.0, 125e-6
 """Of a drive that nobody has declared: those of `feeddrive tune`."""
 
@@ -114,7 +110,7 @@ class Compensated:
         inside = (self.known.positions >= self.table.positions[0]) & (self.known.positions <= self.table.positions[-1])
         places = self.known.positions[inside]
         rest = [
-            one[inside] - self.table.at(places, reverse)
+            one[inside] - self.table.at(places, reverse, self.control.stepwise)
             for one, reverse in ((self.known.forward, False), (self.known.reverse, True))
         ]
         return float(max(np.max(np.abs(one)) for one in rest))
@@ -153,7 +149,7 @@ def plant_table(
         raise InputError(f"no table is written: {unsure_of_play}", place, "record the experiment that tells them apart")
     if not has_lead:
         refuse_wind_up(lost, place, wanted.resolution)
-    table = _table(wanted, known, stroke, reference, wishes.every, found)
+    table = table_for(wanted, known, stroke, reference, wishes.every, found.shortest)
     return Compensated(
         plant.name, wishes, wanted, table, known.zeroed(reference), lost, found.of_time, tuple(refused), found.shortest
     )  # fmt: skip
@@ -177,10 +173,11 @@ def compensate_plant(
         InputError: as `plant_table`; no controller that keeps the usual margins.
     """
     made = plant_table(plant, wishes, cascade, unsure_of_play, where)
-    assert made.lost is not None
+    lost = made.lost
+    assert lost is not None
     loop = cascade_of(plant, cascade)
-    test = motions(_stroke(plant, wishes, where), made.lost)
-    moved = sticking(plant, made.lost)
+    test = motions(_stroke(plant, wishes, where), lost)
+    moved = sticking(plant, lost)
     renewed = repaired(moved)
     applied, usual = best_reversal(moved, loop, test, Applied(made.control, made.table, _limits(plant)))
     made = replace(made, control=applied.control)
@@ -190,7 +187,7 @@ def compensate_plant(
     )  # fmt: skip
     if not beside:
         return replace(made, prediction=prediction)
-    friction = friction_values(moved, loop, test.circle, made.lost, applied) if made.lost.torque > 0 else None
+    friction = friction_values(moved, loop, test.circle, lost, applied) if lost.torque > 0 else None
     return replace(made, prediction=prediction, friction=friction, cogging=cogging_map(plant, loop))
 
 
@@ -217,8 +214,7 @@ def compensate_recording(name: str, found: RecordedDeviations, wishes: Wishes, s
         inside = (found.known.positions >= stroke[0]) & (found.known.positions <= stroke[1])
         table = as_held(wanted, fitted(found.known, found.known.positions[inside], reference))
     else:
-        plain = PlantDeviations(found.known, shortest, ())
-        table = _table(wanted, found.known, stroke, reference, every, plain)
+        table = table_for(wanted, found.known, stroke, reference, every, shortest)
     return Compensated(name, wishes, wanted, table, found.known.zeroed(reference), shortest=shortest, measured=found)
 
 
@@ -279,40 +275,3 @@ def _limits(plant: Plant) -> AxisLimits:
     found = [plant.data.get(f"table.{key}") for key in ("max_velocity", "max_acceleration")]
     velocity, acceleration = (None if one is None else one.value for one in found)
     return AxisLimits(velocity or usual.velocity, acceleration or usual.acceleration)
-
-
-def _table(
-    wanted: Control, known: Deviations, stroke: tuple[float, float], reference: float, every: float | None,
-    found: PlantDeviations,
-) -> CompensationTable:  # fmt: skip
-    width = max(stroke[1], reference) - min(stroke[0], reference)
-    step = every if every is not None else _step(wanted, width, found.shortest)
-    points = grid(stroke, step, reference)
-    _refuse_too_many(wanted, points, width)
-    return as_held(wanted, fitted(known, points, reference, step))
-
-
-def _refuse_too_many(wanted: Control, points: Sequence[float] | np.ndarray, width: float) -> None:
-    if len(points) > wanted.most_points:
-        least = format_quantity(nice_above(width / (wanted.most_points - 2)), "m")
-        what = f"{len(points)} points, and {wanted.title} takes {wanted.most_points}"
-        raise InputError(what, wanted.name, f"write --every {least} or more, or a shorter stroke")
-
-
-def _step(wanted: Control, width: float, shortest: float) -> float:
-    """The distance of points for the shortest period, as the control's points allow; 25 pieces where none is known."""
-    least = nice_above(width / (wanted.usual_points - 2))
-    wished = shortest / POINTS_PER_PERIOD if math.isfinite(shortest) else width / 25
-    return min(max(least, nice_below(wished)), nice_below(width))
-
-
-def nice_above(length: float) -> float:
-    """The next round length that is not smaller [m]."""
-    power = 10.0 ** math.floor(math.log10(length))
-    return next(one * power for one in (*_NICE, 10.0) if one * power >= length * (1 - 1e-9))
-
-
-def nice_below(length: float) -> float:
-    """The next round length that is not larger [m]."""
-    power = 10.0 ** math.floor(math.log10(length))
-    return next(one * power for one in reversed((*_NICE, 10.0)) if one * power <= length * (1 + 1e-9))

@@ -6,7 +6,9 @@ next month), then values that are simply wrong, then what the control may compen
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+
+from feeddrive.plant.plant import Plant
 
 REPAIR, SET, COMPENSATE, WATCH = "repair", "set", "compensate", "watch"
 
@@ -83,3 +85,13 @@ ORDER = (REPAIR, SET, COMPENSATE, WATCH)
 def in_order(effects: list[str]) -> list[str]:
     """Effects as a person goes through them: repairs, settings, compensations, what is only watched."""
     return sorted(dict.fromkeys(effects), key=lambda one: ORDER.index(cure(one).kind))
+
+
+WORN = ("backlash", "preload_loss")
+"""Effects that a new preload of the nut takes away; lead errors stay, they are the screw's own."""
+
+
+def repaired(plant: Plant) -> Plant | None:
+    """The plant with the preload renewed; None where none of it is lost."""
+    kept = tuple(one for one in plant.effects if one.name not in WORN)
+    return None if len(kept) == len(plant.effects) else replace(plant, effects=kept)

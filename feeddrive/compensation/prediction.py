@@ -131,7 +131,7 @@ def best_reversal(
 ) -> tuple[Applied, float | None]:  # fmt: skip
     """The time within which the play goes over that leaves the least contour error, for controls that let it be set.
 
-    At a quadrant the axis of the circle leaves its turning point with a = v^2 / R, and crosses a play w by itself within
+    At a quadrant the axis of the circle leaves its turning point with a = v^2 / R, and crosses a play w by itself in
     t = sqrt(2 w / a). A value that goes over much more quickly drives the nut through the play and throws the table;
     one that takes longer leaves the table behind. The best time lies below t.
 

@@ -9,13 +9,12 @@ from typing import Any
 import numpy as np
 
 from feeddrive import __version__
-from feeddrive.compensation.compensate import POINTS_PER_PERIOD, Compensated
-from feeddrive.compensation.forms import sinumerik_temp
+from feeddrive.compensation.compensate import Compensated
 from feeddrive.compensation.forms.control import checked_axis, plain_line
 from feeddrive.compensation.lost_motion import CURE, NOTICED, flank_words, wind_up_words
+from feeddrive.compensation.points import POINTS_PER_PERIOD
 from feeddrive.compensation.prediction import Figures
 from feeddrive.compensation.recorded_deviations import difference_words
-from feeddrive.compensation.temperature import HeatTable
 from feeddrive.metrology.circular import Circular
 from feeddrive.units.quantity import format_quantity
 
@@ -80,6 +79,16 @@ def left(done: Compensated) -> list[str]:
         lines.append(difference_words(done.measured))
         lines.append(f"Single samples scatter by {micrometres(done.measured.scatter)} about what is known.")
     lines.append(f"By its points and its rounding the table leaves up to {micrometres(done.left_by_table)} of the map.")
+    if done.control.stepwise:
+        jump = max(float(np.max(np.abs(np.diff(one)))) for one in (done.table.forward, done.table.reverse))
+        if jump > 4 * done.control.resolution:
+            cause = (
+                f"the distance of the points, {format_quantity(done.table.step, 'm')} ({done.control.most_points - 1} "
+                "stretches are all there are): a shorter stroke, or less lead error, leaves less"
+            )
+        else:
+            cause = "its detection unit: a finer one leaves less"
+        lines.append(f"The control puts its values out in jumps, of {micrometres(jump)} at most here, from {cause}.")
     if done.table.step > done.shortest / 4:
         lines.append(
             f"Points every {format_quantity(done.table.step, 'm')} do not hold the periodic error of period "
@@ -122,8 +131,9 @@ def _reversal_words(done: Compensated, usual: float) -> str:
     return (
         f"The play goes over within {within}: chosen for the least contour error on the circle of "
         f"{1e3 * circle.radius:.3g} mm at {60 * circle.limits.velocity:.3g} m/min, "
-        f"{micrometres(done.prediction.after.contour)} in place of {micrometres(usual)}. Quicker throws the table across, slower leaves it behind; the best time "
-        "goes with the square root of play and radius, and with 1 / feed."
+        f"{micrometres(done.prediction.after.contour)} in place of {micrometres(usual)}. Quicker throws the table "
+        "across, slower leaves it behind; the best time goes with the square root of play and of radius, and with 1 / "
+        "feed."
     )
 
 
@@ -218,52 +228,6 @@ def _shown(label: str, value: float) -> str:
     return f"{label} {micrometres(value)}"
 
 
-def heat_sections(done: HeatTable, axis: str) -> list[Section]:
-    """The sheet of a temperature compensation."""
-    one = done.left
-    ranked = ", ".join(f"{name} {share:.0%}" for name, share in done.ranking.items())
-    steepest = float(np.max(np.abs(done.table.slopes)))
-    recorded = done.sensor.endswith("_temperature")
-    counted = "the recording" if recorded else "[thermal] of the plant file"
-    return [
-        ("Table", [
-            f"SINUMERIK temperature compensation, axis {axis} of {plain_line(done.name)}, over {done.sensor}; "
-            f"tan beta up to {1e6 * steepest:.3g} um/m.",
-            f"Positions count as in {counted}; P0 = {1e3 * done.table.reference:.6g} mm.",
-        ]),
-        ("Sign", [sinumerik_temp.SIGN_RULE, f"Source: {sinumerik_temp.SOURCE}"]),
-        ("Check of one point", heat_check(axis)),
-        ("Load", sinumerik_temp.load(axis, done.sensor, done.table.reference)),
-        ("Predicted from the recording" if recorded else "Predicted by simulation", [
-            f"{done.judged}: rms {micrometres(one.rms_before)} to {micrometres(one.rms_after)}, largest "
-            f"{micrometres(one.largest_before)} to {micrometres(one.largest_after)}.",
-        ]),
-        ("What is left", [
-            f"Share of the rms error that a table over each sensor leaves: {ranked}.",
-            "What one temperature does not tell: screw and nut warm and cool along different ways.",
-        ]),
-    ]  # fmt: skip
-
-
-def heat_check(axis: str) -> list[str]:
-    """One measurement that shows the sign."""
-    return [
-        f"Check: with tan beta 0 write SD43900 $SA_TEMP_COMP_ABS_VALUE[{axis}] = 0.1 by hand: the axis must move by "
-        "0.1 mm to -. If it moves to +, the sign of all values is the other one."
-    ]
-
-
-def heat_text(done: HeatTable, axis: str) -> str:
-    """The file for PLC and control."""
-    name = checked_axis(axis)
-    lines = [
-        f"SINUMERIK temperature compensation, axis {name} of {plain_line(done.name)}, feeddrive {__version__}",
-        f"Sign: {sinumerik_temp.SIGN_RULE}", f"Source: {sinumerik_temp.SOURCE}", *heat_check(name),
-        *sinumerik_temp.load(name, done.sensor, done.table.reference),
-    ]  # fmt: skip
-    return sinumerik_temp.text(done.table, lines)
-
-
 def sheet_text(found: Sequence[Section]) -> str:
     """The sheet as plain text."""
     blocks = ["\n".join([title, "-" * len(title), *(f"* {line}" for line in lines)]) for title, lines in found]
@@ -292,15 +256,3 @@ def record(done: Compensated) -> dict[str, Any]:
         content["friction"] = {"torque": friction.torque, "turning_speed": friction.turning, "pulse": friction.pulse,
                                "pulse_time": friction.time, "share": friction.share}  # fmt: skip
     return content
-
-
-def heat_record(done: HeatTable, axis: str) -> dict[str, Any]:
-    """Everything of a temperature compensation as plain values, SI, for JSON."""
-    table, one = done.table, done.left
-    return {
-        "form": "sinumerik-temp", "axis": axis, "machine": done.name, "sensor": done.sensor,
-        "reference": table.reference, "temperatures": table.temperatures.tolist(), "K0": table.offsets.tolist(),
-        "tan_beta": table.slopes.tolist(), "judged": done.judged, "ranking": dict(done.ranking),
-        "predicted": {"rms_before": one.rms_before, "rms_after": one.rms_after,
-                      "largest_before": one.largest_before, "largest_after": one.largest_after},
-    }  # fmt: skip

@@ -115,8 +115,11 @@ class CompensationTable:
         """Mean of reverse less forward [m]: the play that the table takes away."""
         return float(np.mean(self.reverse - self.forward))
 
-    def at(self, positions: FloatArray, reverse: bool = False) -> FloatArray:
-        """Deviation that the table holds at positions [m], one direction."""
+    def at(self, positions: FloatArray, reverse: bool = False, stepwise: bool = False) -> FloatArray:
+        """Deviation that the table holds at positions [m], one direction; with `stepwise` that of the nearest point."""
+        if stepwise:
+            middles = 0.5 * (self.positions[1:] + self.positions[:-1])
+            positions = self.positions[np.searchsorted(middles, positions, side="right")]
         return np.interp(positions, self.positions, self.reverse if reverse else self.forward)
 
     def rounded(self, resolution: float) -> CompensationTable:
@@ -160,6 +163,25 @@ def fitted(deviations: Deviations, positions: FloatArray, reference: float, step
     places = np.unique(np.concatenate([*inner, positions[-1:], _within(deviations.positions, positions)]))
     values = [np.interp(places, deviations.positions, one) for one in (deviations.forward, deviations.reverse)]
     forward, reverse = (straight_pieces(places, one, positions, np.gradient(places)) for one in values)
+    offset = 0.5 * float(np.interp(reference, positions, forward) + np.interp(reference, positions, reverse))
+    return CompensationTable(positions, forward - offset, reverse - offset, reference, step)
+
+
+def stepped(deviations: Deviations, positions: FloatArray, reference: float, step: float = 0.0) -> CompensationTable:
+    """The table for a control that holds the value of a point up to the middle between two; otherwise as `fitted`.
+
+    Each value lies midway between the largest and the least deviation of its stretch: nothing leaves less there.
+    """
+    middles = 0.5 * (positions[1:] + positions[:-1])
+    inner = [np.linspace(a, b, PER_INTERVAL + 1) for a, b in pairwise(positions.tolist())]
+    places = np.unique(np.concatenate([*inner, middles, _within(deviations.positions, positions)]))
+    values = [np.interp(places, deviations.positions, one) for one in (deviations.forward, deviations.reverse)]
+    ends = np.searchsorted(places, middles)
+    first, last = np.concatenate([[0], ends]), np.concatenate([ends, [len(places) - 1]])
+    forward, reverse = (
+        np.array([0.5 * (np.max(one[a : b + 1]) + np.min(one[a : b + 1])) for a, b in zip(first, last, strict=True)])
+        for one in values
+    )
     offset = 0.5 * float(np.interp(reference, positions, forward) + np.interp(reference, positions, reverse))
     return CompensationTable(positions, forward - offset, reverse - offset, reference, step)
 

@@ -74,54 +74,54 @@ class HeatTable:
     after: FloatArray
 
 
-def heat_table(plant: Heat, reference: float | None = None) -> HeatTable:
+def heat_table(heat: Heat, reference: float | None = None) -> HeatTable:
     """The table of a machine that declares heat.
 
     Args:
-        plant: the machine, with what a diagnosis found.
+        heat: the machine, with what a diagnosis found.
         reference: P0, a position of the nut [m]; the low end of the travel if left out.
 
     Raises:
         InputError: a nut that does not travel, or sensors that hardly get warm.
     """
-    travel = plant.rig.travel
+    travel = heat.rig.travel
     if not travel.high > travel.low:
-        raise InputError("the nut does not travel", plant.name, "declare travel in [thermal] from low to high")
+        raise InputError("the nut does not travel", heat.name, "declare travel in [thermal] from low to high")
     p0 = travel.low if reference is None else reference
-    reduced, rows, top = compensation_model(plant), round(_HOURS * 3600 / STEP), plant.highest_speed
-    fitted = [_tried(plant, reduced, np.repeat([share * top, 0.0], rows)) for share in FITTED_SPEEDS]
+    reduced, rows, top = compensation_model(heat), round(_HOURS * 3600 / STEP), heat.highest_speed
+    fitted = [_tried(heat, reduced, np.repeat([share * top, 0.0], rows)) for share in FITTED_SPEEDS]
     duty = random_duty(np.random.default_rng(_SEED), 2 * rows, top * np.array([0.3, 0.6, 0.9]), 90)
-    chosen_on = _tried(plant, reduced, duty)
+    chosen_on = _tried(heat, reduced, duty)
     tables: dict[str, LineTable] = {}
     ranking: dict[str, float] = {}
-    for place in mountable_places(plant):
-        readings = np.concatenate([_reading(plant, one, place) for one in fitted])
+    for place in mountable_places(heat):
+        readings = np.concatenate([_reading(heat, one, place) for one in fitted])
         if float(np.ptp(readings)) <= 0.5:
             continue
         errors = np.vstack([one.error for one in fitted])
         tables[place] = line_table(readings, errors, fitted[0].positions, p0, _POINTS)
-        ranking[place] = _share(_left(plant, tables[place], chosen_on, place)[0])
+        ranking[place] = _share(_left(heat, tables[place], chosen_on, place)[0])
     if not tables:
-        raise InputError("no sensor gets half a kelvin warm", plant.name, "there is nothing to compensate")
+        raise InputError("no sensor gets half a kelvin warm", heat.name, "there is nothing to compensate")
     best = min(ranking, key=lambda place: ranking[place])
-    judged = _tried(plant, plant.full_model(), np.repeat([JUDGED_SPEED * top, 0.0], rows))
-    left, after = _left(plant, tables[best], judged, best)
+    judged = _tried(heat, heat.full_model(), np.repeat([JUDGED_SPEED * top, 0.0], rows))
+    left, after = _left(heat, tables[best], judged, best)
     words = f"warm-up and cool-down of {_HOURS} h each at {JUDGED_SPEED:g} of the highest speed, not fitted"
     ordered = dict(sorted(ranking.items(), key=lambda one: one[1]))
-    return HeatTable(plant.name, best, tables[best], left, words, ordered, judged.times, judged.positions,
+    return HeatTable(heat.name, best, tables[best], left, words, ordered, judged.times, judged.positions,
                      judged.error, after)  # fmt: skip
 
 
-def _tried(plant: Heat, model: HeatModel, speeds: FloatArray) -> TriedMachine:
-    return tried_machine(plant, model, STEP, speeds, np.full(len(speeds), plant.ambient))
+def _tried(heat: Heat, model: HeatModel, speeds: FloatArray) -> TriedMachine:
+    return tried_machine(heat, model, STEP, speeds, np.full(len(speeds), heat.ambient))
 
 
-def _reading(plant: Heat, machine: TriedMachine, place: str) -> FloatArray:
-    return np.asarray(plant.ambient + lagged(machine.rises[place], STEP, Sensor(place).lag))
+def _reading(heat: Heat, machine: TriedMachine, place: str) -> FloatArray:
+    return np.asarray(heat.ambient + lagged(machine.rises[place], STEP, Sensor(place).lag))
 
 
-def _left(plant: Heat, table: LineTable, machine: TriedMachine, place: str) -> tuple[LeftOver, FloatArray]:
-    told = table.line(_reading(plant, machine, place)).at(machine.positions)
+def _left(heat: Heat, table: LineTable, machine: TriedMachine, place: str) -> tuple[LeftOver, FloatArray]:
+    told = table.line(_reading(heat, machine, place)).at(machine.positions)
     return left_over(machine.error, told), np.asarray(machine.error - told)
 
 

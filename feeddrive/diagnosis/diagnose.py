@@ -8,13 +8,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feeddrive.blas_threads import one_thread
+from feeddrive.diagnosis.calibration.calibrate import calibrated
 from feeddrive.diagnosis.calibration.calibrated_result import calibrated_results, known_together
 from feeddrive.diagnosis.certainty.ambiguity import Rival, ambiguous_sets, other_places, rivals_of
 from feeddrive.diagnosis.certainty.correlation import correlation
+from feeddrive.diagnosis.certainty.inclusion import odds_for, possible_effects
 from feeddrive.diagnosis.certainty.next_experiment import next_experiments
 from feeddrive.diagnosis.certainty.preferred import with_the_preferred
 from feeddrive.diagnosis.certainty.uncertainty import certainty, intervals
-from feeddrive.diagnosis.finding.search import Search
+from feeddrive.diagnosis.finding.search import Search, search
 from feeddrive.diagnosis.judging.effect_results import effect_results, refused_effects
 from feeddrive.diagnosis.judging.judge import Judged, channel_results, judged_recordings, prepared_for_judging, share_of
 from feeddrive.diagnosis.judging.result import (
@@ -25,9 +27,11 @@ from feeddrive.diagnosis.judging.veto import without_denied
 from feeddrive.diagnosis.ledger.entry import kept_of
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.fit import Problem
+from feeddrive.diagnosis.numbers.measured_file import MeasuredNumber
+from feeddrive.diagnosis.numbers.rows import MeasuredRows, NumberResult, number_results, refuse_ungiven
 from feeddrive.diagnosis.preparation import Shown, informative, prepared, shown
 from feeddrive.diagnosis.recordings.compared import compared_recordings, last_state, machine_as_last, with_carrying
-from feeddrive.diagnosis.recordings.recordings import without_shifts
+from feeddrive.diagnosis.recordings.recordings import is_shift, without_shifts
 from feeddrive.diagnosis.recordings.rehoming import rehomed_plant
 from feeddrive.diagnosis.recordings.search import Searched, search_recordings
 from feeddrive.diagnosis.simulated.loop_evidence import refuse_unfit_loop
@@ -35,7 +39,10 @@ from feeddrive.diagnosis.simulated.refinement import Refinement, refined
 from feeddrive.diagnosis.starts.needs import WITHOUT_TORQUE
 from feeddrive.diagnosis.suspicion.logged import declared_hold, declared_sentence, hold_of, may_be_logged, open_lag
 from feeddrive.diagnosis.suspicion.logged import sentence as held_for
+from feeddrive.diagnosis.suspicion.logged_rows import with_recorder_that_holds
+from feeddrive.diagnosis.suspicion.quality import Quality, flawed, read_otherwise
 from feeddrive.diagnosis.suspicion.recording_faults import refuse_faulty
+from feeddrive.diagnosis.suspicion.suspects import Suspect, again, beyond_its_constant, is_better, suspected
 from feeddrive.diagnosis.suspicion.torque_channel import without_torque_sentence
 from feeddrive.diagnosis.unexplained.instead import without_stand_ins
 from feeddrive.diagnosis.unexplained.unexplained import explain_rest
@@ -56,6 +63,7 @@ def diagnose(
     simulate: bool = False,
     said: Said = lambda text: None,
     start: Sequence[Effect] = (),
+    measured: Sequence[MeasuredNumber] = (),
 ) -> tuple[Diagnosis, tuple[Effect, ...]]:
     """Find what the plant lacks.
 
@@ -67,6 +75,7 @@ def diagnose(
         simulate: simulate the closed loop and refine what was found in it, where the controller is declared.
         said: told what is going on.
         start: effects found earlier, asked again before others are searched.
+        measured: numbers (a stiffness, a frequency, a drag torque, a lost motion) beside recordings of motion.
 
     Returns:
         The diagnosis, and the effects to add to the plant: the named ones, then tables of what no name explains.
@@ -83,13 +92,26 @@ def diagnose(
     if in_the_loop:
         refuse_unfit_loop(plant, every)
     declared = declared_hold(plant, every) if in_motion else None
-    begun = _begun(plant, recordings, validation, split, declared, declared_sentence)
+    if measured and not in_motion:
+        mend = "diagnose the numbers alone, or beside a recording of motion and torque"
+        raise InputError("measured numbers beside recordings of heat", plant.name, mend)
+    begun = _begun(plant, recordings, validation, split, declared, declared_sentence, measured)
     settled = _settled(begun.problem, begun.judged, in_the_loop, said, start)
     hold = _logged_hold(settled.searched.search, every) if declared is None else declared
     if hold is not None and declared is None:
         said("the torque is logged more slowly than the drive holds it: again")
-        begun = _begun(plant, recordings, validation, split, hold, held_for)
+        begun = _begun(plant, recordings, validation, split, hold, held_for, measured)
         settled = _settled(begun.problem, begun.judged, in_the_loop, said, start)
+    said("asking whether it is the recorder")
+    begun, settled, (recordings, validation) = _without_fault(
+        begun,
+        settled,
+        (recordings, validation),
+        lambda files: _begun(
+            plant, *files, split, hold, declared_sentence if declared is not None else held_for, measured
+        ),
+        lambda one: _settled(one.problem, one.judged, in_the_loop, said, start),
+    )
     searched, judged, refinement = settled.searched, settled.judged, settled.refinement
     found = searched.search
     said("looking at what is left")
@@ -106,7 +128,8 @@ def diagnose(
         fit=_stamps(recordings),
         validate=_stamps(validation or recordings),
         channels=channel_results(found.problem, rest.judged),
-        effects=with_carrying(effect_results(found, shares, spans), compared),
+        effects=with_carrying(effect_results(found, shares, spans, odds_for(found, settled.rivals)), compared),
+        possible=possible_effects(found, settled.rivals),
         refused=refused_effects(found),
         ambiguous=tuple(one.names for one in alike),
         rehomed=settled.rehomed,
@@ -115,7 +138,14 @@ def diagnose(
         recordings=judged_recordings(found.problem, rest.judged),
         simulation=refinement.reported(rest.judged if rest.effects else judged),
         changes=compared.changes,
+        quality=(
+            *begun.quality,
+            *beyond_its_constant(found.problem, found.fit),
+            *read_otherwise(effects, plant),
+            *flawed((*recordings, *validation)),
+        ),
         calibrated=calibrated_results(found.problem, found.fit),
+        measured=_numbers_met(found),
         kept=kept_of(found, known),
         alike=alike,
         next_experiments=next_experiments(found, settled.rivals, spans),
@@ -133,6 +163,14 @@ def diagnose(
     return result, (*effects, *rest.effects)
 
 
+def _numbers_met(found: Search) -> tuple[NumberResult, ...]:
+    """The measured numbers beside what the declared plant gives, and the plant with what was found."""
+    problem = found.problem.settled(found.fit.effects)
+    if not len(problem.numbers):
+        return ()
+    return number_results(problem.numbers, problem.plant, problem.machine(found.fit.effects))
+
+
 def _logged_hold(found: Search, recordings: Sequence[Recording]) -> float | None:
     if not may_be_logged(recordings):
         return None
@@ -142,21 +180,25 @@ def _logged_hold(found: Search, recordings: Sequence[Recording]) -> float | None
 
 @dataclass(frozen=True)
 class _Begun:
-    """The problem, the recordings judged on, and what is to be said of them."""
+    """The problem, the recordings judged on, what is to be said of them, and what was mended of them."""
 
     problem: Problem
     judged: list[Evidence]
     told: tuple[str, ...]
+    quality: tuple[Quality, ...]
 
 
 def _begun(
     plant: Plant, recordings: Sequence[Recording], validation: Sequence[Recording],
-    split: float, hold: float | None, sentence: Callable[[float, float], str],
+    split: float, hold: float | None, sentence: Callable[[float, float], str], measured: Sequence[MeasuredNumber],
 ) -> _Begun:  # fmt: skip
     problem, judged, told = prepared(plant, recordings, validation, split, hold)
+    problem = replace(problem, numbers=MeasuredRows(tuple(measured)))
+    refuse_ungiven(problem.numbers, plant)
     refuse_faulty(problem, (*problem.evidence, *judged))
     also = () if hold is None else (sentence(hold, recordings[0].sample_time),)
-    return _Begun(problem, judged, (*told, *also))
+    problem, judged, quality = with_recorder_that_holds(problem, judged)
+    return _Begun(problem, judged, (*told, *also), quality)
 
 
 @dataclass(frozen=True)
@@ -191,7 +233,13 @@ def _settled(
     def judge(other: Search) -> list[Judged]:
         return _judged(other, evidence)[0]
 
-    found, judged = without_denied(found, judged, judge)
+    kept, judged = without_denied(found, judged, judge)
+    if kept is not found and not any(is_shift(effect) for effect in kept.fit.effects):
+        said("searching again without the names that are denied")
+        again = search(kept.problem, said, kept)
+        if len(again.fit.effects) > len(kept.fit.effects):
+            kept, judged = without_denied(again, judge(again), judge)
+    found = kept
     preferred, rivals = with_the_preferred(found, rivals_of(found, judged))
     if preferred is not found:
         kept, judged = without_denied(preferred, judge(preferred), judge)
@@ -204,6 +252,36 @@ def _settled(
         refinement = refined(found, refinement.outcome, lambda other: _judged(other, evidence))
         found, (judged, rehomed) = refinement.found, refinement.outcome
     return _Settled(replace(searched, search=found), rivals, judged, rehomed, refinement)
+
+
+Files = tuple[Sequence[Recording], Sequence[Recording]]
+"""Recordings to fit and to judge on."""
+
+
+def _without_fault(
+    begun: _Begun, settled: _Settled, files: Files,
+    begin: Callable[[Files], _Begun], settle: Callable[[_Begun], _Settled],
+) -> tuple[_Begun, _Settled, Files]:  # fmt: skip
+    """What was found, in the recordings as mended where a fault of the recorder says more than what was found in them.
+
+    A fault is read from slopes, so that what is left of it in the mended recordings is mended as well.
+    """
+    fault = suspected(settled.searched.search)
+    if fault is None:
+        return begun, settled, files
+    left: Suspect | None = fault
+    for _ in range(2):
+        mended = tuple([fault.mended(recording) for recording in part] for part in files)
+        other = begin((mended[0], mended[1]))
+        left = again(calibrated(other.problem), fault.kind)
+        if left is None or abs(left.size) < left.deviation:
+            break
+        fault = replace(fault, size=fault.size + left.size, deviation=left.deviation)
+    again_settled = settle(other)
+    if not is_better(fault, again_settled.searched.search, settled.searched.search):
+        return begun, settled, files
+    told = replace(other, quality=(*other.quality, fault.said(mended[0])))
+    return told, again_settled, (mended[0], mended[1])
 
 
 def _judged(found: Search, evidence: Sequence[Evidence]) -> tuple[list[Judged], tuple[str, ...]]:

@@ -200,7 +200,7 @@ class Effect:
         return result
 
     def with_values(self, **values: Value) -> Self:
-        """The same effect with some values replaced, not checked against the range (fits may touch its edge)."""
+        """A copy with some values replaced, not checked against the range (fits may touch its edge)."""
         return replace(self, values={**self.values, **values})
 
     @classmethod

@@ -92,7 +92,7 @@ class LateChannels:
         return np.concatenate([np.zeros(0), *self.before.values()])
 
     def resumed(self, vector: FloatArray) -> LateChannels:
-        """The same channels holding what `vector` says."""
+        """Channels like these that hold what `vector` says."""
         held, at = {}, 0
         for name, values in self.before.items():
             held[name] = vector[at : at + len(values)]

@@ -17,7 +17,7 @@ from feeddrive.export.model import Model, slopes_of
 from feeddrive.typing import FloatArray
 
 ALLOWED = 1e-12
-"""Of full scale."""
+"""Error over full scale."""
 
 POINTS = 8
 _SEED = 7  # any number will do; the same export gives the same file

@@ -23,10 +23,10 @@ from feeddrive.symbolic_turn import SYMBOLS
 from feeddrive.typing import Expression, FloatArray
 
 HYSTERESIS = 1e-8
-"""Of an indicator, over its change with the nominal change of the states: 0.01 pm of a stretch, far above rounding."""
+"""Hysteresis of an indicator over its change with the nominal change of the states: 0.01 pm, far above rounding."""
 
 _LEAST = 1e-14
-"""Of an indicator that states do not change at the start; against 0."""
+"""Least hysteresis, of an indicator that states do not change at the start; against 0."""
 
 
 @dataclass(frozen=True)

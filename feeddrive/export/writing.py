@@ -61,11 +61,11 @@ def write_export(plant: Plant, form: Form, point: Point, folder: Path) -> tuple[
     return tuple(folder / name for name in files)
 
 
-def write_heat_export(plant: Heat, form: Form, velocity: float, folder: Path) -> tuple[Path, ...]:
+def write_heat_export(heat: Heat, form: Form, velocity: float, folder: Path) -> tuple[Path, ...]:
     """Write the heat of a machine in one form: a state space, CasADi, C or FMU; else as `write_export`.
 
     Args:
-        plant: the machine.
+        heat: the machine.
         form: which.
         velocity: of the table, about which is linearised [m/s].
         folder: where to; made if it is not there.
@@ -74,10 +74,10 @@ def write_heat_export(plant: Heat, form: Form, velocity: float, folder: Path) ->
         InputError: a form that heat is not written in, or a file that cannot be written.
     """
     if form is Form.SS:
-        name = identifier_of(f"{plant.name} heat")
-        files = {f"{name}_ss.py": heat_python_text(plant, abs(velocity) / plant.lead).encode()}
+        name = identifier_of(f"{heat.name} heat")
+        files = {f"{name}_ss.py": heat_python_text(heat, abs(velocity) / heat.lead).encode()}
     elif form in _NONLINEAR:
-        files = _NONLINEAR[form](heat_model_of(plant))
+        files = _NONLINEAR[form](heat_model_of(heat))
     else:
         raise InputError(f"heat is not written as {form}", "--to", "take ss, casadi, c or fmu")
     for file, data in files.items():

@@ -16,7 +16,7 @@ from feeddrive.errors import InputError
 from feeddrive.files import find_plant, write_text_atomically
 from feeddrive.interface.machine.check import Check
 from feeddrive.interface.machine.modes import Modes
-from feeddrive.interface.machine.summary import Life, Stiffness, Summary
+from feeddrive.interface.machine.summary import Life, Stiffness, Summary, UsedLife
 from feeddrive.interface.quantities import Quantity, quantities, si
 from feeddrive.plant.analysis.lumping import lump
 from feeddrive.plant.analysis.mode_map import mode_map
@@ -119,7 +119,7 @@ class Axis:
 
     @cached_property
     def plant(self) -> Plant:
-        """The machine: chain, effects and drive, and its heat where it is declared."""
+        """The machine with chain, effects and drive, and its heat where it is declared."""
         return plant_from_entries(self.entries, self.path).with_effects(*self.added)
 
     @property
@@ -153,7 +153,7 @@ class Axis:
 
     @property
     def travel_per_turn(self) -> float:
-        """Table travel per turn of the motor: the lead, behind its transmission [m]."""
+        """Table travel per turn of the motor, which is the lead behind its transmission [m]."""
         return 2 * math.pi * self.plant.chain.motor_radius
 
     def refuse_unusable(self) -> None:
@@ -302,6 +302,26 @@ class Axis:
     def life(self) -> Life:
         """Rated life of the ball screw, survived by 90 %."""
         return Life(self.name, rated_life(self.plant))
+
+    def used_life(self, recording: Recording | str | Path) -> UsedLife:
+        """What a recorded motion has taken of the life of each nut of the ball screw.
+
+        Args:
+            recording: with the motor angle; a cutting force counts where it was recorded.
+
+        Raises:
+            InputError: a recording without motor angle.
+        """
+        from feeddrive.diagnosis.likelihood.band import comparison_band
+        from feeddrive.interface.measured.reading import as_recording
+        from feeddrive.simulate.used_life import used_life
+
+        rec = as_recording(recording, "recording")
+        if "motor_angle" not in rec:
+            raise InputError("no channel motor_angle", rec.name, "record it: its revolutions are what wears the nuts")
+        angle = comparison_band(self.plant, 1 / rec.sample_time).filter(rec["motor_angle"])
+        force = rec.channels.get("cutting_force")
+        return UsedLife(rec.name, used_life(self.plant, rec.time, angle, force))
 
     def linear(self, at: str = "") -> control.StateSpace:
         """The axis linearised exactly about a steady motion, states, inputs and outputs named, SI.

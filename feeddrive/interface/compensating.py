@@ -14,6 +14,7 @@ from feeddrive.compensation.actions import unsure_of_play
 from feeddrive.compensation.compensate import Compensated, Wishes, compensate_plant, compensate_recording
 from feeddrive.compensation.forms.catalogue import FORMS, HEAT
 from feeddrive.compensation.forms.control import checked_axis
+from feeddrive.compensation.heat import heat_sheet
 from feeddrive.compensation.recorded_deviations import recorded_deviations
 from feeddrive.compensation.temperature import HeatTable, heat_table, recorded_heat_table
 from feeddrive.errors import InputError
@@ -50,7 +51,7 @@ class Compensation(Shown):
     @property
     def text(self) -> str:
         """The file for the control."""
-        return sheet.heat_text(self.done, self.axis) if isinstance(self.done, HeatTable) else sheet.text(self.done)
+        return heat_sheet.heat_text(self.done, self.axis) if isinstance(self.done, HeatTable) else sheet.text(self.done)
 
     @property
     def sheet_text(self) -> str:
@@ -73,7 +74,7 @@ class Compensation(Shown):
     def record(self) -> dict[str, Any]:
         """Everything as plain values, SI."""
         if isinstance(self.done, HeatTable):
-            return sheet.heat_record(self.done, self.axis)
+            return heat_sheet.heat_record(self.done, self.axis)
         return sheet.record(self.done)
 
     def save(self, path: str | Path) -> Path:
@@ -125,7 +126,7 @@ class Compensation(Shown):
 
     def _sections(self) -> Sequence[sheet.Section]:
         if isinstance(self.done, HeatTable):
-            return sheet.heat_sections(self.done, self.axis)
+            return heat_sheet.heat_sections(self.done, self.axis)
         return sheet.sections(self.done)
 
     def _figures(self) -> Sequence[ReportFigure]:

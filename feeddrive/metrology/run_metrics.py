@@ -88,7 +88,7 @@ def _of_figure(stem: str, figure: Figure) -> Iterator[tuple[str, Metric]]:
 
 
 def _worst(stem: str, points: list[Settling]) -> Iterator[tuple[str, Metric]]:
-    """The longest settling, infinite if one never settles, and the largest overshoot."""
+    """Worst of all arrivals: the longest settling, infinite if one never settles, and the largest overshoot."""
     yield f"{stem}.time", Metric(max(point.time for point in points), "s")
     yield f"{stem}.overshoot", Metric(max(point.overshoot for point in points), "m")
 

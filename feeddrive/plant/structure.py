@@ -12,26 +12,13 @@ import casadi as ca
 from feeddrive.effects.base import Effect
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.symbols import Symbols
-from feeddrive.symbolic_turn import SYMBOLS
+from feeddrive.symbolic_turn import SYMBOLS, Holder
 
 Options = TypeVarTuple("Options")
 Machine = TypeVar("Machine")
 
 
 _CACHES: list[Callable[[], None]] = []
-
-
-class _Holder:
-    """Carries a plant past the cache, whose key is the structure alone."""
-
-    def __init__(self, plant: Plant) -> None:
-        self.plant = plant
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Holder)
-
-    def __hash__(self) -> int:
-        return 0
 
 
 def per_structure(build: Callable[[Plant, *Options], Machine]) -> Callable[[Plant, *Options], Machine]:
@@ -45,14 +32,14 @@ def per_structure(build: Callable[[Plant, *Options], Machine]) -> Callable[[Plan
     """
 
     @lru_cache(maxsize=256)
-    def cached(key: tuple[object, ...], holder: _Holder, options: tuple[*Options]) -> Machine:
+    def cached(key: tuple[object, ...], holder: Holder[Plant], options: tuple[*Options]) -> Machine:
         with SYMBOLS.taken():
-            return build(holder.plant, *options)
+            return build(holder.held, *options)
 
     _CACHES.append(cached.cache_clear)
 
     def machine(plant: Plant, *options: *Options) -> Machine:
-        return cached(structure_key(plant), _Holder(plant), options)
+        return cached(structure_key(plant), Holder(plant), options)
 
     return machine
 

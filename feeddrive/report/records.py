@@ -8,6 +8,7 @@ import numpy as np
 
 from feeddrive import __version__
 from feeddrive.diagnosis.judging.result import ChannelSeries, Diagnosis, FileStamp, JudgedRecording, Trial
+from feeddrive.diagnosis.suspicion.quality import quality_lines
 from feeddrive.report.pages.markup import Cell, bullets, catalogue_name, number, paragraph, section, table, text, words
 from feeddrive.report.words.people import fixed, share_text, significant, with_unit
 from feeddrive.report.words.words import effect_words, plain
@@ -84,7 +85,8 @@ def recordings_section(diagnosis: Diagnosis) -> str:
     """The judged recordings with what was left out, notes and re-homed effects."""
     heads = [words("Judged recording"), number("duration"), number("samples"), words("Channels, part used")]
     rows = [_recording_row(recording) for recording in diagnosis.recordings]
-    notes = bullets(diagnosis.notes) if diagnosis.notes else ""
+    said = (*quality_lines(diagnosis.quality), *diagnosis.notes)
+    notes = bullets(said) if said else ""
     return section("The recordings", table(heads, rows) if rows else "", notes, _rehomed(diagnosis.rehomed))
 
 

@@ -14,7 +14,7 @@ from feeddrive.errors import InputError
 from feeddrive.reproduce.row import Paper, Row, Status
 
 FIELDS = ("paper", "place", "quantity", "unit", "printed", "computed", "deviation", "status", "reason", "law")
-"""Of a row in JSON and CSV."""
+"""Keys of a row in JSON and CSV."""
 
 
 def find_papers(number: str | None) -> tuple[Paper, ...]:

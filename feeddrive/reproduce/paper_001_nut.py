@@ -125,7 +125,7 @@ def _rating_at(ratio: float) -> Rating:
 
 
 def _zone_rating_at(ratio: float) -> Rating:
-    """The same where every point of the screw counts with its own cycles."""
+    """Rating where every point of the screw counts with its own cycles."""
     track = specimen_track()
     return rating_along_screw(track, specimen_loads(), ratio * track.loaded_length, specimen_material())
 

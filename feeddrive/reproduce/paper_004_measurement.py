@@ -6,9 +6,8 @@ from dataclasses import replace
 
 from feeddrive.parts.combined_stiffness import combined_stiffness
 from feeddrive.parts.screw.screw_drive import BallScrewDrive
-from feeddrive.reproduce.paper_004_candidates import DriveAt
+from feeddrive.plant.analysis.held_frequency import held_frequency
 from feeddrive.reproduce.paper_004_drive import FORCE_LENGTH, MODULI, TORQUE_LENGTH, paper_drive
-from feeddrive.reproduce.paper_004_gap import explain_stiffness, frequency_of
 from feeddrive.reproduce.row import Paper, Row, claim, not_possible, number
 
 _STIFFNESS, _FREQUENCY = 191e6, 185.0
@@ -46,24 +45,24 @@ def measurement_rows(drive: BallScrewDrive) -> tuple[Row, ...]:
 
 def _static_row(drive: BallScrewDrive) -> Row:
     found = combined_stiffness(drive, FORCE_LENGTH)
-    single = len(explain_stiffness(DriveAt(drive, FORCE_LENGTH), _STIFFNESS))
-    missing = 1e6 / _STIFFNESS - 1e6 / found.total
+    missing = 1.0 / _STIFFNESS - 1.0 / found.total
     reason = (
-        f"computed {found.total / 1e6:.1f}; {missing * 1e3:.2f} nm/N are missing and {single} changes each give them"
+        f"computed {found.total / 1e6:.1f}; {missing * 1e9:.2f} nm/N are missing, as a housing of "
+        f"{1e-6 / missing:.0f} N/µm would give, or a bearing, nut, coupling or screw a little softer"
     )
     return not_possible(_PAPER, "Fig. 6", "measured static stiffness", "N/µm", "191", reason)
 
 
 def _dynamic_row(drive: BallScrewDrive) -> Row:
     """The measured stiffness with the screw's own mass, over the lengths that the screw may have."""
-    softer = explain_stiffness(DriveAt(drive, FORCE_LENGTH), _STIFFNESS)[0].state
-    screw = softer.drive.screw
-    states = [replace(softer, drive=replace(softer.drive, screw=replace(screw, length=length))) for length in _LENGTHS]
-    high, low = (frequency_of(state) for state in states)
+    housing = 1.0 / (1.0 / _STIFFNESS - 1.0 / combined_stiffness(drive, FORCE_LENGTH).total)
+    softer = replace(drive, housing_stiffness=housing)
+    lengths = [replace(softer, screw=replace(drive.screw, length=length)) for length in _LENGTHS]
+    high, low = (held_frequency(one, FORCE_LENGTH) for one in lengths)
     assumption = "measured stiffness; screw's own mass, its length of 0.7 to 1.5 m is not printed"
     return claim(
         _PAPER, "Fig. 7", "measured natural frequency", "185", f"{low:.1f} to {high:.1f}",
-        low <= _FREQUENCY <= high, law=frequency_of, unit="Hz", assumption=assumption,
+        low <= _FREQUENCY <= high, law=held_frequency, unit="Hz", assumption=assumption,
     )  # fmt: skip
 
 

@@ -17,16 +17,16 @@ from feeddrive.parts.screw.load_distribution import LoadDistribution, NutBody, l
 from feeddrive.parts.screw.screw_contact import BallTrack
 
 PRELOAD = 13.5e3
-"""Of the test [N]."""
+"""Preload in the test [N]."""
 
 STROKE = 0.288
-"""Of the test, one way [m]."""
+"""Stroke of the test, one way [m]."""
 
 RATED_LIFE = 300e3
 """L10, conclusion 5 [rev]."""
 
 FIRST_FAILURE, LAST_FAILURE = 230e3, 500e3
-"""Of ten specimens [rev]."""
+"""First and last failure of ten specimens [rev]."""
 
 SPECIMENS = 10
 FIRST_OPENED, OPENED_EVERY = 200e3, 30e3

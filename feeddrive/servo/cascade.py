@@ -36,7 +36,7 @@ from feeddrive.errors import InputError
 from feeddrive.servo.filters import Filter
 
 _MOST_TICKS = 1000
-"""Of dead time, each of which is a state of the loop, and per position tick."""
+"""Most ticks of dead time, each of which is a state of the loop, and of one position tick."""
 
 KV_UNIT = 1000.0 / 60.0
 """1/s per (m/min)/mm."""

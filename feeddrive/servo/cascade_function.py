@@ -16,7 +16,7 @@ from feeddrive.symbolic_turn import SYMBOLS
 from feeddrive.typing import Expression, FloatArray
 
 REFERENCES = ("position", "velocity", "acceleration", "speed_excitation", "torque_excitation")
-"""Of the table [m, m/s, m/s^2]; added to the speed set-point [rad/s] and to the torque command [N m]."""
+"""References: of the table [m, m/s, m/s^2]; added to the speed set-point [rad/s] and to the torque command [N m]."""
 
 SIGNALS = ("position_error", "speed_command", "measured_speed", "unlimited_torque")
 """x_b - x at the last position tick [m], F_s w_set [rad/s], w [rad/s], T_raw [N m]."""

@@ -29,7 +29,7 @@ from feeddrive.errors import InputError
 from feeddrive.typing import FloatArray
 
 _HIGHEST = 0.45
-"""Of the sample rate: nearer to its half, prewarping bends the filter beyond recognition."""
+"""Highest frequency of a filter over the sample rate: nearer to its half, prewarping bends it beyond use."""
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ A free position has an eigenvalue of 1, known to about 1e-7 after rounding, whic
 """
 
 POINTS = 20_000
-"""Of the grid; crossings are interpolated between them."""
+"""Points of the grid; crossings are interpolated between them."""
 
 _MANY_STATES = 60
 """States from which on the triangular form is quicker; a dead time of many ticks makes one of each."""

@@ -35,7 +35,7 @@ _SAME = 0.1
 
 
 class Kind(StrEnum):
-    """Of an extremum."""
+    """Peak or dip."""
 
     RESONANCE = "resonance"
     ANTI_RESONANCE = "anti-resonance"

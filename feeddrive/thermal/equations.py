@@ -70,20 +70,20 @@ class HeatEquations:
 
 
 @SYMBOLS.taken()
-def heat_equations(plant: Heat, model: HeatModel | None = None) -> HeatEquations:
+def heat_equations(heat: Heat, model: HeatModel | None = None) -> HeatEquations:
     """The equations of a plant.
 
     Args:
-        plant: what the file declares, effects among it.
+        heat: what the file declares, effects among it.
         model: its reduced model without the bodies of effects; None to reduce it for the range of `limits`.
 
     Raises:
         InputError: a full model, which is too large.
     """
     if model is None:
-        model = reduce_model([replace(plant, effects=()).full_model()], plant.limits())[0]
+        model = reduce_model([replace(heat, effects=()).full_model()], heat.limits())[0]
     refuse_unless(isinstance(model.conduction, np.ndarray), "a full model is too large", "thermal", "reduce it first")
-    laws, n = laws_of(plant), model.order
+    laws, n = laws_of(heat), model.order
     lagged = [(channel, i) for channel, rows in laws.lagging.items() for i in rows]
     time, u = (ca.SX.sym(name, size) for name, size in (("time", 1), ("u", 2)))
     x, p = ca.SX.sym("x", n + len(laws.bodies) + len(lagged)), ca.SX.sym("p", len(laws.names) + 1)
@@ -101,7 +101,7 @@ def heat_equations(plant: Heat, model: HeatModel | None = None) -> HeatEquations
         taken = bodies[2 * i] * (port.T @ network - x[n + i])
         flow -= port * taken
         rates.append(taken / bodies[2 * i + 1])
-    shown = _shown(plant, model, network, frame)
+    shown = _shown(heat, model, network, frame)
     follows: dict[str, Expression] = {}
     for k, (channel, i) in enumerate(lagged):
         state = x[n + len(laws.bodies) + k]
@@ -113,25 +113,25 @@ def heat_equations(plant: Heat, model: HeatModel | None = None) -> HeatEquations
     xdot = ca.vertcat(flow / ca.DM(model.capacity), *rates)
     function = ca.Function("heat_ode", [time, x, u, p], [ca.densify(xdot), ca.vertcat(*y)],
                            ["time", "x", "u", "p"], ["xdot", "y"])  # fmt: skip
-    sizes = {f"network_{i + 1}": float(np.sqrt(np.sum(plant.full_model().capacity))) for i in range(n)}
+    sizes = {f"network_{i + 1}": float(np.sqrt(np.sum(heat.full_model().capacity))) for i in range(n)}
     sizes |= {f"{label}_rise": 1.0 for label in laws.bodies}
     sizes |= {f"{channel}_lag_{i + 1}": 1e-6 if channel.startswith("table_growth") else 1.0 for channel, i in lagged}
     outputs = {channel: "m" if channel.startswith("table_growth") else "degC" for channel in read}
-    named = dict(zip((*laws.names, START), (*values_of(plant), plant.ambient), strict=True))
-    return HeatEquations(function, sizes, outputs, {key: (_unit(plant, key), float(v)) for key, v in named.items()})
+    named = dict(zip((*laws.names, START), (*values_of(heat), heat.ambient), strict=True))
+    return HeatEquations(function, sizes, outputs, {key: (_unit(heat, key), float(v)) for key, v in named.items()})
 
 
-def linear_heat(plant: Heat, speed: float, model: HeatModel | None = None) -> control.StateSpace:
+def linear_heat(heat: Heat, speed: float, model: HeatModel | None = None) -> control.StateSpace:
     """The equations linearised at a speed of the screw [rad/s], cold and at the temperature of the start.
 
     Inputs and outputs are deviations, with their names, SI.
     """
-    equations = heat_equations(plant, model)
+    equations = heat_equations(heat, model)
     with SYMBOLS.taken():
         arguments = [ca.SX.sym(of, equations.function.size1_in(of)) for of in equations.function.name_in()]
         slopes = [ca.jacobian(of, to) for of in equations.function(*arguments) for to in arguments[1:3]]
         taken = ca.Function("heat_slopes", arguments, slopes)
-    at = taken(0.0, np.zeros(len(equations.states)), [speed, plant.ambient], equations.values)
+    at = taken(0.0, np.zeros(len(equations.states)), [speed, heat.ambient], equations.values)
     return control.ss(*(one.full() for one in at), states=list(equations.states), inputs=list(HEAT_INPUTS),
                       outputs=list(equations.outputs))  # fmt: skip
 
@@ -150,10 +150,10 @@ def _flow(model: HeatModel, x: Expression, g: Expression, given: dict[str, Expre
     return flow
 
 
-def _shown(plant: Heat, model: HeatModel, x: Expression, frame: Expression) -> dict[str, Expression]:
+def _shown(heat: Heat, model: HeatModel, x: Expression, frame: Expression) -> dict[str, Expression]:
     """Channel to its rise or growth, without lags; those of the plant's sensors, or all."""
-    named = {sensor.output: sensor.channel for sensor in plant.sensors}
-    moved = dict(zip(growth_places(plant), ca.vertsplit(frame), strict=True))
+    named = {sensor.output: sensor.channel for sensor in heat.sensors}
+    moved = dict(zip(growth_places(heat), ca.vertsplit(frame), strict=True))
     return {
         named.get(name, channel_of(name)): ca.DM(row).T @ x + moved.get(name, 0.0)
         for name, row in model.readings.items()
@@ -161,11 +161,11 @@ def _shown(plant: Heat, model: HeatModel, x: Expression, frame: Expression) -> d
     }
 
 
-def _unit(plant: Heat, name: str) -> str:
+def _unit(heat: Heat, name: str) -> str:
     """Unit of a parameter."""
     group, _, key = name.partition(".")
     key = key.partition("[")[0]
     if group in _UNITS:
         return _UNITS[group][key]
-    effect = next(one for one in plant.effects if one.label == group)
+    effect = next(one for one in heat.effects if one.label == group)
     return effect.parameter(key).unit

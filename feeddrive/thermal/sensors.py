@@ -1,4 +1,4 @@
-"""Sensors of a thermal plant: which channel of a recording is read where."""
+"""Sensors of heat: which channel of a recording is read where."""
 
 from __future__ import annotations
 

@@ -98,7 +98,7 @@ def controller_text(found: Recommendation, name: str) -> str:
         f'velocity_gain = "{_exact(cascade.velocity_gain)} N m s/rad"    # K_p',
         f'reset_time = "{_exact(1e3 * cascade.reset_time)} ms"    # T_n',
         f'position_feedback = "{cascade.feedback}"',
-        *_current_loop(cascade),
+        *current_loop_lines(cascade),
         "",
         "[feed_forward]",
         "speed = 1.0",
@@ -194,7 +194,8 @@ def _filter_lines(choice: FilterChoice) -> list[str]:
     return [*head, f'bandwidth = "{_exact(choice.bandwidth)} Hz"', f'depth = "{depth}"']
 
 
-def _current_loop(cascade: Cascade) -> list[str]:
+def current_loop_lines(cascade: Cascade) -> list[str]:
+    """Lines of a controller file for lag, dead time and limits, those that are there."""
     lines = []
     if cascade.current_lag:
         lines.append(f'current_bandwidth = "{_exact(1 / (2 * math.pi * cascade.current_lag))} Hz"')
@@ -214,4 +215,4 @@ def _kv(cascade: Cascade) -> str:
 
 
 def _exact(value: float) -> str:
-    return f"{value:.10g}"
+    return f"{value:.14g}"

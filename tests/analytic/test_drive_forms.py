@@ -56,7 +56,7 @@ def test_what_is_written_reads_back_as_the_loop(form: str, servo: Servo, tmp_pat
         steps = line.typed / line.parameter.resolution
         assert steps == pytest.approx(round(steps), abs=1e-6) and line.parameter.source
         assert f"{line.parameter.name} " in typed.text and line.text in typed.text
-    assert "they hold at: table at 0 mm, at 3 m/min and at rest" in typed.text
+    assert "they hold at: table at 0 mm, at 3 m/min, at rest without friction and at rest with" in typed.text
 
 
 @pytest.mark.slow
@@ -171,7 +171,7 @@ def test_a_file_that_is_wrong_is_told_in_one_line(lines: str, message: str, tmp_
 def test_unknown_and_unpublished_forms_are_refused(servo: Servo) -> None:
     with pytest.raises(InputError, match="did you mean"):
         servo.to_drive("sinamic")
-    with pytest.raises(InputError, match="not published"):
+    with pytest.raises(InputError, match="in no public page"):
         servo.to_drive("fanuc")
 
 

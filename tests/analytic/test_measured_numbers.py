@@ -15,7 +15,7 @@ from feeddrive.diagnosis.numbers.measurable import MEASURABLE, Setting
 from feeddrive.diagnosis.numbers.measured_file import read_measured_numbers
 from feeddrive.diagnosis.numbers.next_number import mixed, next_numbers
 from feeddrive.diagnosis.numbers.numbers_result import diagnose_numbers
-from feeddrive.diagnosis.numbers.plant_text import with_written_values
+from feeddrive.diagnosis.plant_text import with_written_values
 
 HEAD = 'format = "feeddrive-measured/1"\n'
 
@@ -121,6 +121,8 @@ def test_the_paper_is_explained_within_tolerances() -> None:
     assert not any(one.meets for one in result.singles)
     assert "nothing has to be other than declared" in found.verdict
     assert result.further[0].information > 2.0
+    after = [one.kind.of(found.plant.plant, one.setting) for one in result.problem.measured]
+    assert after == pytest.approx(list(result.after), rel=1e-9)  # the plant that is written is the one that was told
 
 
 def test_further_number_narrows_what_is_open(tmp_path: Path) -> None:

@@ -21,6 +21,7 @@ from feeddrive.diagnosis.judging.result import (
     FileStamp,
     JudgedRecording,
     ParameterResult,
+    PossibleEffect,
     RefusedEffect,
     Trial,
     Unexplained,
@@ -363,3 +364,12 @@ def test_no_figure_reaches_a_window(found: Diagnosis) -> None:
 
     list(report_figures(found))
     assert matplotlib.pyplot.get_fignums() == []
+
+
+def test_possible_names_are_told_with_their_odds_and_what_settles_them_and_no_headline_holds_them() -> None:
+    near = PossibleEffect("payload", 0.25, "", "a recording of the same motion 1.4 times as long")
+    rival = PossibleEffect("backlash", 0.5, "stribeck", "an experiment")
+    sentences = verdict_sentences(dataclasses.replace(examples.diagnosis(), possible=(near, rival)))
+    (told,) = [one for one in sentences if one.startswith("Possible")]
+    assert "(odds 1 to 4)" in told and told.endswith("1.4 times as long settles it.")
+    assert words(near.name) not in sentences[0] and "payload" not in sentences[0]

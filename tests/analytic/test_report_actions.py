@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from html import unescape
 
 import numpy as np
 
 import feeddrive as fd
-from feeddrive.compensation.actions import Actions, actions, recorded_stroke
+from feeddrive.compensation.actions import Actions, actions, recorded_stroke, values_to_set
 from feeddrive.compensation.compensate import Prediction, Wishes, plant_table
 from feeddrive.compensation.cures import CURES, ORDER, cure, in_order
 from feeddrive.compensation.prediction import Figures
 from feeddrive.diagnosis.judging.result import Diagnosis, EffectResult, ParameterResult
 from feeddrive.effects.catalogue import EFFECTS, THERMAL_EFFECTS
+from feeddrive.interface.benching import bench_of_diagnosis
 from feeddrive.metrology.circular import circular
 from feeddrive.metrology.positioning import positioning
+from feeddrive.report.pages.html import report_page
 from feeddrive.report.pages.section_actions import actions_section
 from tests.analytic.report_examples import recording
 
@@ -54,7 +57,7 @@ def test_worn_parts_come_first_then_settings_then_tables() -> None:
     page = actions_section(_diagnosis(*EFFECTS_FOUND), _predicted())
     places = [page.index(words) for words in ("1. Look at", "2. Set", "3. Compensate", "Predicted")]
     assert places == sorted(places)
-    assert "feeddrive compensate FOLDER --form linuxcnc" in page
+    assert "feeddrive compensate FOLDER (of this report) --form linuxcnc" in page
 
 
 def test_figures_stand_before_after_repair_and_after_compensation() -> None:
@@ -63,6 +66,38 @@ def test_figures_stand_before_after_repair_and_after_compensation() -> None:
     shown = [cell.split(">")[-1] for cell in row.split("</td>")[1:4]]
     assert [text.replace("\N{NO-BREAK SPACE}", " ") for text in shown] == ["7.50 µm", "0.00100 µm", "0.400 µm"]
     assert "wind-up" in page
+
+
+def test_values_to_set_are_those_of_the_machine() -> None:
+    """By hand: a lead of 20 mm longer by 40 um/m, 100 kg of table with 20 kg on it, 200 N through 20 mm / 2 pi."""
+    machine = fd.load("bench_axis")
+    mass = machine.plant.chain_values()["table_mass"]
+    found = values_to_set(machine.with_effects(
+        fd.effect("lead_error_cumulative", slope="40 um/m"), fd.effect("payload", mass="20 kg"),
+        fd.effect("constant_force", force="200 N"), fd.effect("backlash", width="7.5 um"),
+    ).plant)  # fmt: skip
+    assert found["lead_error_cumulative"] == "20.0008 mm per revolution, not 20 mm"
+    assert found["payload"] == f"moving mass {mass + 20:.4g} kg"
+    assert found["constant_force"].startswith("torque offset 0.636")
+    assert found["backlash"].endswith("7.5 \N{MICRO SIGN}m")
+    page = actions_section(_diagnosis(*EFFECTS_FOUND), replace(_predicted(), set_to=found))
+    assert "20.0008 mm per revolution" in page and "Next experiment" in page
+
+
+def test_bench_is_a_tab_that_is_there_only_where_there_is_one() -> None:
+    found = _diagnosis(*EFFECTS_FOUND)
+    alone = report_page(found, ())
+    assert "<iframe" not in alone and 'id="tab-bench"' not in alone
+    axis = fd.load("bench_axis").with_effects(fd.effect("backlash", width="7.5 um"))
+    bench = bench_of_diagnosis(axis.plant, found)
+    both = report_page(found, (), bench=bench)
+    assert both.count("<iframe") == 1 and "<script" not in both  # scripts stand in the frame alone, escaped
+    inside = unescape(both[both.index("srcdoc=") + 8 : both.index('"></iframe>')])
+    assert inside == bench and "default-src 'none'" in inside
+    # nothing found, a rigid machine, heat alone: no bench
+    assert bench_of_diagnosis(axis.plant, _diagnosis()) == ""
+    assert bench_of_diagnosis(fd.load("emps").plant, found) == ""
+    assert bench_of_diagnosis(fd.load("thermal_bench").plant, found) == ""
 
 
 def test_nothing_found_is_nothing_to_do() -> None:

@@ -1,21 +1,17 @@
-"""The screw's own mass in the first mode: bounds, limits, finite elements; and what explains a measured gap."""
+"""The screw's own mass in the first mode: bounds, limits, finite elements."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import astuple, replace
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from feeddrive.errors import InputError
-from feeddrive.parts.combined_stiffness import combined_stiffness, natural_frequency
+from feeddrive.parts.combined_stiffness import combined_stiffness
 from feeddrive.parts.motor import HoldingBrake
 from feeddrive.parts.screw.screw_drive import BallScrewDrive
 from feeddrive.parts.screw.transmission import Transmission
-from feeddrive.reproduce.paper_004_candidates import DriveAt
-from feeddrive.reproduce.paper_004_gap import explain_frequency, explain_stiffness, frequency_of
 from tests.analytic.rayleigh import added_mass, rayleigh_frequency
 from tests.analytic.screw_fem import ScrewDrive, frequencies
 from tests.analytic.stiffness_cases import AT_NUT, drives, paper_drive
@@ -99,33 +95,3 @@ def test_wheels_swing_with_the_springs_before_them() -> None:
     screw_wheel = motor_wheel + torque / 20_000.0
     expected = 1e-3 * 4.0 * motor_wheel**2 + 8e-3 * screw_wheel**2
     assert added_mass(drive, AT_NUT).hubs == pytest.approx(expected, rel=1e-10)  # rounding
-
-
-def test_another_frequency_model_is_used() -> None:
-    """With the table's mass alone, 185 Hz at 191 N/µm needs 141.4 kg."""
-
-    def massless(drive: BallScrewDrive, position: float) -> float:
-        return natural_frequency(combined_stiffness(drive, position).total, drive.table_mass)
-
-    softer = explain_stiffness(DriveAt(paper_drive(), AT_NUT), 191e6)[0].state
-    (mass,) = [one for one in explain_frequency(softer, 185.0, massless) if one.candidate.name == "table mass"]
-    assert mass.value == pytest.approx(191e6 / (2.0 * math.pi * 185.0) ** 2, rel=1e-9)
-
-
-def test_sticking_guides_stiffen() -> None:
-    """The sign of guides that carry part of the force: never softer, never slower."""
-    start = DriveAt(paper_drive(), AT_NUT)
-    assert frequency_of(replace(start, guide_stiffness=5e6)) > frequency_of(start)
-
-
-def test_nothing_to_explain_is_said() -> None:
-    start = DriveAt(paper_drive(), AT_NUT)
-    with pytest.raises(InputError, match="not below the declared"):
-        explain_stiffness(start, 203e6)
-    with pytest.raises(InputError, match="not a frequency"):
-        explain_frequency(start, -1.0)
-
-
-def test_drive_without_coupling_has_fewer_candidates() -> None:
-    bare = DriveAt(replace(paper_drive(), coupling=None), AT_NUT)
-    assert all("coupling" not in one.candidate.name for one in explain_stiffness(bare, 191e6))

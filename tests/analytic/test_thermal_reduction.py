@@ -105,6 +105,15 @@ def test_full_and_reduced_answer_the_same_methods() -> None:
     np.testing.assert_allclose(shown[5:], truth[5:], atol=0.01)
 
 
+def test_a_step_of_a_reduced_system_is_its_simulation() -> None:
+    system = compressed(FULL.at(conductances(500)))
+    given = np.zeros((50, len(system.input_names)))
+    given[:, system.column("front")] = 2.0
+    # both exact; rounding of rates over ten decades
+    stepped = system.outputs(system.simulate(given, 10.0))
+    np.testing.assert_allclose(system.step_response("front", 2.0, 50, 10.0), stepped, rtol=1e-8, atol=1e-12)
+
+
 def test_network_reads_well_and_is_near_the_full_model() -> None:
     g = conductances(500)
     net = network(BENCH.rig, g, 12)

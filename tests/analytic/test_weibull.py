@@ -20,7 +20,7 @@ from feeddrive.parts.life.weibull import (
     median_ranks,
     rank_fit,
 )
-from feeddrive.parts.life.weibull_interval import complete_slope_interval, life_interval, slope_interval
+from feeddrive.parts.life.weibull_interval import complete_slope_interval
 
 LAW = WeibullLaw(560e3, 3.6)
 
@@ -134,30 +134,6 @@ def test_exact_slope_interval_covers() -> None:
     assert held / 200 == pytest.approx(0.9, abs=0.085)
 
 
-def test_intervals_narrow_with_the_sample_and_hold_the_estimate() -> None:
-    lives = np.random.default_rng(2).weibull(2.0, 60)
-    small, large = life_sample(lives[:15]), life_sample(lives)
-    for interval_of in (slope_interval, life_interval):
-        narrow, wide = interval_of(large), interval_of(small)
-        assert wide.low < wide.estimate < wide.high
-        assert math.log(narrow.high / narrow.low) < math.log(wide.high / wide.low)
-    # The ends of the likelihood-ratio interval tend to estimate (1 +/- 1.645 * 0.78 / sqrt(n)).
-    slope = slope_interval(large)
-    assert slope.high / slope.estimate == pytest.approx(1.0 + 1.645 * 0.78 / math.sqrt(60), abs=0.02)
-
-
-def test_interval_ends_lie_on_the_likelihood_ratio() -> None:
-    sample = life_sample([1.0, 2.0, 3.5, 4.0], [4.0, 4.0])
-    best = likelihood_fit(sample)
-    interval = slope_interval(sample, 0.95)
-    top = log_likelihood(best, sample)
-    for end in (interval.low, interval.high):
-        scales = best.scale * np.exp(np.linspace(-2.0, 2.0, 40001))
-        held = max(log_likelihood(WeibullLaw(float(scale), end), sample) for scale in scales[::50])
-        # 3.841 is the 95 % point of chi-square with one degree; the grid of scales is 0.5 % wide, a loss below 1e-3.
-        assert 2.0 * (top - held) == pytest.approx(3.8415, abs=4e-3)
-
-
 @pytest.mark.parametrize(
     ("failed", "suspended", "found"),
     [
@@ -193,21 +169,9 @@ def test_one_life_and_specimens_that_outlived_it_have_a_slope() -> None:
     assert 0.5 < fitted.slope < 5.0
 
 
-def test_interval_of_few_failures_among_many_is_that_of_the_best_scales() -> None:
-    """With 2 failures of 1000 the scale moves by powers of ten with the slope; the profile must follow it."""
-    sample = life_sample([100.0, 200.0], [1000.0] * 998)
-    interval = slope_interval(sample)
-    top = log_likelihood(likelihood_fit(sample), sample)
-    for end in (interval.low, interval.high):
-        scales = np.exp(np.linspace(math.log(1e3), math.log(1e3) + 80.0, 4001))
-        best = max(log_likelihood(WeibullLaw(float(scale), end), sample) for scale in scales)
-        # 2.7055 is the 90 % point of chi-square with one degree; steps of 2 % of the scale lose less than 1e-3.
-        assert 2.0 * (top - best) == pytest.approx(2.7055, abs=2e-3)
-
-
 def test_levels_and_counts_outside_their_range_are_refused() -> None:
     with pytest.raises(InputError, match="level"):
-        slope_interval(life_sample([1.0, 2.0, 3.0]), 1.0)
+        complete_slope_interval(3.6, 10, 1.0)
     with pytest.raises(InputError, match="specimens"):
         complete_slope_interval(3.6, 2)
     with pytest.raises(InputError, match="scale"):

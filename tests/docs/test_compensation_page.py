@@ -25,7 +25,7 @@ def test_page_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pyte
     monkeypatch.chdir(tmp_path)
     names: dict[str, object] = {}
     steps = re.findall(r"```python\n(.*?)```|^    (feeddrive [^\n]*)$", PAGE, re.DOTALL | re.MULTILINE)
-    assert len(steps) == 8
+    assert len(steps) == 9
     for block, line in steps:
         if block:
             exec(compile(block, "docs/compensation.md", "exec"), names)
@@ -46,4 +46,10 @@ def test_page_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pyte
     report = (tmp_path / "diagnosis" / "report.html").read_text(encoding="utf-8")
     for words in ("What to do", "after repair", "after compensation", "1. Look at"):
         assert words in report
+    assert 'id="tab-bench"' in report
     (tmp_path / "circle.png").stat()
+    # 2.4 um in place of 4.8 um and of 7.1 um before, within 13 ms: what the page prints
+    words = (tmp_path / "enc_comp.ini.txt").read_text(encoding="utf-8")
+    ((within, after, usual),) = re.findall(r"goes over within ([\d.]+) ms.* ([\d.]+) um in place of ([\d.]+) um", words)
+    assert (round(float(within)), round(float(after), 1), round(float(usual), 1)) == (13, 2.4, 4.8)
+    assert "<!DOCTYPE html>" in (tmp_path / "bench.html").read_text(encoding="utf-8")

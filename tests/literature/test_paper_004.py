@@ -9,10 +9,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+import feeddrive as fd
 from feeddrive.parts.bearings.supports import check_position
 from feeddrive.parts.combined_stiffness import (
     Deformation,
@@ -23,15 +25,8 @@ from feeddrive.parts.combined_stiffness import (
 )
 from feeddrive.parts.screw.ball_screw import ScrewShaft
 from feeddrive.parts.screw.screw_drive import BallScrewDrive
-from feeddrive.parts.screw.wedge import (
-    self_locking,
-    self_locking_lead,
-    wedge_back_driving_efficiency,
-    wedge_efficiency,
-)
+from feeddrive.parts.screw.wedge import self_locking, self_locking_lead, wedge_back_driving_efficiency, wedge_efficiency
 from feeddrive.reproduce.paper_004 import rows
-from feeddrive.reproduce.paper_004_candidates import DriveAt
-from feeddrive.reproduce.paper_004_gap import explain_frequency, explain_stiffness
 from feeddrive.reproduce.row import Row, Status
 from tests.analytic.rayleigh import added_mass, rayleigh_frequency
 from tests.analytic.screw_fem import ScrewDrive, frequencies
@@ -126,17 +121,17 @@ def test_rotary_inertia_of_the_screw_at_the_table() -> None:
     assert DRIVE.screw.inertia / r**2 == pytest.approx(254.0, abs=0.5)
 
 
-def _single(name: str, measured: float = 191e6) -> float:
-    (found,) = [one for one in explain_stiffness(DriveAt(DRIVE, AT_NUT), measured) if one.candidate.name == name]
-    return found.value
-
-
-def test_single_changes_that_give_191() -> None:
-    assert _single("housing and bracket stiffness") / 1e6 == pytest.approx(3293.0, abs=0.5)
-    assert _single("bearing stiffness") / 1e6 == pytest.approx(631.0, abs=0.5)
-    assert _single("coupling stiffness") == pytest.approx(14_900.0, abs=50.0)
-    assert _single("diameter that carries") * 1e3 == pytest.approx(38.0, abs=0.05)
-    assert (_single("screw under load") - AT_NUT) * 1e3 == pytest.approx(71.0, abs=0.5)
+def test_single_changes_that_give_191(tmp_path: Path) -> None:
+    """Each declared value alone made to meet the measured stiffness, against the same worked out by hand."""
+    path = tmp_path / "stiffness.toml"
+    path.write_text('[[measured]]\nquantity = "axial_stiffness"\nvalue = "191 N/µm"\nat = "464 mm"\n', encoding="utf-8")
+    singles = fd.explain(fd.load("kimm_testbed"), path).result.singles
+    found = {one.value.key: one.value.number(one.coordinate) for one in singles}
+    # the numbers by hand have no mass of the coupling's spring and 0.02 % less in the screw's rigidity
+    assert found["support.housing_stiffness"] == pytest.approx(3293e6, rel=0.01)
+    assert found["bearing.near.axial_stiffness"] == pytest.approx(631e6, rel=2e-3)
+    assert found["coupling.torsional_stiffness"] == pytest.approx(14_900.0, rel=5e-3)
+    assert found["ball_screw.diameter"] == pytest.approx(38.0e-3, abs=0.05e-3)
     assert 1e6 / 191e6 - 1e6 / FOUND.total == pytest.approx(3.0e-4, abs=0.05e-4)
 
 
@@ -193,24 +188,11 @@ def _elements(drive: BallScrewDrive, position: float) -> float:
     return float(frequencies(fem, position, count=1)[0])
 
 
-def _bracket(length: float, inertia: float) -> DriveAt:
-    start = DriveAt(paper_drive(length, inertia), AT_NUT)
-    (found,) = [one for one in explain_stiffness(start, 191e6) if one.candidate.name.startswith("housing")]
-    return found.state
-
-
 @pytest.mark.parametrize(("length", "inertia", "frequency"), [(0.9, 0.0, 185.1), (1.2, 0.0, 182.9), (1.2, 3e-3, 181.2)])
 def test_frequency_from_the_measured_stiffness(length: float, inertia: float, frequency: float) -> None:
-    state = _bracket(length, inertia)
-    assert _elements(state.drive, state.position) == pytest.approx(frequency, abs=0.05)
-
-
-@pytest.mark.parametrize(("inertia", "guides"), [(0.0, 4.4), (3e-3, 8.2)])
-def test_sticking_guides_that_close_both_gaps(inertia: float, guides: float) -> None:
-    found = explain_frequency(_bracket(1.2, inertia), 185.0, _elements)
-    (value,) = [one.value for one in found if one.candidate.name == "guides that stick"]
-    # One mode with its stiffness raised: the shape changes with it by a few per cent of the guides' stiffness.
-    assert value / 1e6 == pytest.approx(guides, rel=0.05)
+    drive = paper_drive(length, inertia)
+    housing = 1.0 / (1.0 / 191e6 - 1.0 / combined_stiffness(drive, AT_NUT).total)
+    assert _elements(replace(drive, housing_stiffness=housing), AT_NUT) == pytest.approx(frequency, abs=0.05)
 
 
 @pytest.mark.parametrize(("lead", "expected"), [

@@ -198,8 +198,6 @@ CORRUPTIONS: dict[str, Callable[[Channels], Channels]] = {
 
 LIKE_AN_EFFECT = {
     "position recorded 3 ms late": ("channel_delay",),
-    "torque held for 5 ms": ("channel_delay",),
     "torque with an offset of 1 N m": ("constant_force",),
 }
-"""What a law of the catalogue does to a recording too: the name is right, the fault lies in the recorder. What is held
-for 5 ms is 2.5 ms old on the mean."""
+"""What a law of the catalogue does to a recording too: the name is right, the fault lies in the recorder."""

@@ -48,18 +48,18 @@ class Truth:
     seed: int = 1
 
 
-def rigid_run(name: str, truth: Truth, seconds: float = 12.0, slow: float = 1.0) -> Recording:
-    """A recording; `slow` stretches its motion in time, for another mix of speeds."""
-    time = np.arange(round(seconds / STEP)) * STEP
+def rigid_run(name: str, truth: Truth, seconds: float = 12.0, slow: float = 1.0, step: float = STEP) -> Recording:
+    """A recording with a row every `step` [s]; `slow` stretches its motion in time, for another mix of speeds."""
+    time = np.arange(round(seconds / step)) * step
     position, _, _ = _motion(time, slow)
-    _, speed, acceleration = _motion(time + 0.5 * STEP, slow)
-    middle, _, _ = _motion(time + 0.5 * STEP, slow)
+    _, speed, acceleration = _motion(time + 0.5 * step, slow)
+    middle, _, _ = _motion(time + 0.5 * step, slow)
     r = LEAD / (2 * math.pi)
     friction = truth.coulomb * COULOMB * np.tanh(speed / SMOOTH) + truth.viscous * VISCOUS * speed
     torque = r * ((MASS + truth.mass) * acceleration + friction + truth.force)
     torque += truth.ripple * np.sin(3 * middle / r)
     torque += NOISE * np.random.default_rng(truth.seed).standard_normal(len(time))
-    return Recording(name, time, {"motor_torque": torque, "motor_angle": position / r}, STEP)
+    return Recording(name, time, {"motor_torque": torque, "motor_angle": position / r}, step)
 
 
 def _motion(time: np.ndarray, slow: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

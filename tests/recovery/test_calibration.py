@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from feeddrive.diagnosis.calibration.plant_text import with_calibrated_values
 from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.judging.result import Diagnosis
+from feeddrive.diagnosis.plant_text import with_calibrated_values
 from feeddrive.plant.file.files import read_plant
 from tests.generator.axis import BENCH
 from tests.generator.pair import recording_pair

@@ -88,10 +88,27 @@ def test_written_file_takes_the_planted_errors_away(form: str) -> None:
     spread = np.ptp(left_over)  # the datum is nobody's: ISO 230-2 judges the range
     before = [error(float(p), way) for p in np.linspace(0.011, 0.389, 97) for way in (1.0, -1.0)]
     assert np.ptp(before) > 15e-6
-    # FANUC puts increments out in jumps: half a jump either way, of 1.5 um 2 pi 3.2 / 20 at most between points
-    assert spread < (0.10 if form != "fanuc-parameters" else 0.16) * np.ptp(before)
-    if form != "fanuc-parameters":
+    assert spread < 0.10 * np.ptp(before)
+    if form != "fanuc-parameters":  # it puts increments out in jumps, see below
         assert spread < 0.3e-6  # the periodic part too: 10 % of its 3 um
+
+
+@pytest.mark.parametrize(("length", "unit"), [(0.4, 1e-7), (0.2, 1e-7), (0.4, 1e-8), (0.4, 1e-6)])
+def test_distance_of_points_is_what_fanuc_leaves(length: float, unit: float) -> None:
+    """Jumps of the steepest slope times the distance of the points, and roundings, which tell where they are 1 um."""
+    made = plant_table(planted().plant, Wishes("fanuc-parameters", stroke=(0.0, length), resolution=unit))
+    axis = read.read_fanuc(text(made))
+    axis.unit = 1e3 * unit
+    left_over = []
+    for p in np.linspace(0.011, length - 0.011, 397):
+        for way in (1.0, -1.0):
+            told = p + 1e-3 * (axis.pulses(1e3 * p, 0.0) + way * axis.parameters[1851] * axis.unit / 2)
+            left_over.append(told + error(told, way) - p)
+    jump = (SLOPE + AMPLITUDE * 2 * np.pi / PITCH) * made.table.step
+    rounding = unit * axis.parameters[3623] + unit  # of the sum, and of the play
+    assert 0.7 * jump < np.ptp(left_over) < jump + 2 * rounding
+    told = next(line for line in left(made) if "in jumps" in line)
+    assert ("detection unit" in told) is (unit == 1e-6)
 
 
 @pytest.mark.slow
@@ -131,7 +148,10 @@ def test_prediction_in_every_form(form: str) -> None:
     made = compensate_plant(planted().plant, wishes, beside=form == "sinumerik-enc")
     assert made.prediction is not None
     before, after = made.prediction.before.positioning, made.prediction.after.positioning
-    assert after.accuracy < (0.1 if form != "fanuc-parameters" else 0.16) * before.accuracy
+    # FANUC leaves its jumps, 7 % of the planted error, beside the wind-up of friction, which was not planted
+    assert made.prediction.repaired is not None
+    beside = made.prediction.repaired.positioning.reversal_value if made.control.stepwise else 0.0
+    assert after.accuracy - beside < 0.1 * before.accuracy
     assert len(predicted_rows(made)) == 6
     if made.friction is not None:
         # what is told to be best is no worse than nothing

@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
-from feeddrive.compensation.table import CompensationTable
+from feeddrive.compensation.table import STEEPEST, CompensationTable
 from feeddrive.errors import InputError
 from feeddrive.units.quantity import format_quantity
 
@@ -28,20 +28,26 @@ class Reversal:
         spread: time over which it does so evenly [s].
         cycles: position cycles over which it does so evenly, in place of a time.
         ramped: whether the whole value follows with half of the axis' limits of velocity and acceleration.
+        smooth: whether by sin^2 in place of evenly.
         longest: time to which it may be set [s]; 0 where the control has no such setting.
+        most_cycles: to which it may be set, where it counts cycles.
         setting: table, name of the axis and this reversal to the line that says how to set it.
     """
 
     spread: float = 0.0
     cycles: int = 0
     ramped: bool = False
+    smooth: bool = False
     longest: float = 0.0
+    most_cycles: int = 0
     setting: Callable[[CompensationTable, str, Reversal], str] | None = None
 
     def over(self, time: float, cycle: float) -> Reversal:
         """Set to a time [s], at a position cycle [s]."""
         time = min(time, self.longest)
-        return replace(self, cycles=max(1, round(time / cycle))) if self.cycles else replace(self, spread=time)
+        if not self.cycles:
+            return replace(self, spread=time)
+        return replace(self, cycles=min(max(1, round(time / cycle)), self.most_cycles))
 
 
 @dataclass(frozen=True)
@@ -56,14 +62,14 @@ class Control:
         resolution: of a value [m].
         most_points: that the control takes.
         usual_points: that smaller controls of the family take, and that are chosen where nobody asks for more.
+        load: what to do with the file, and which settings it needs.
+        write: table, lines for the head and name of the axis to the text of the file.
         steepest: change of the value per length that the control allows [m/m].
         side: where the value is put in.
         reversal: how it changes direction.
-        stepwise: whether the value jumps in the middle between two points, in place of a straight line.
         directions: whether the table holds both directions; else play is a value of its own.
         comments: whether the format allows them.
-        load: what to do with the file, and which settings it needs.
-        write: table, lines for the head and name of the axis to the text of the file.
+        stepwise: whether the value jumps in the middle between two points, in place of a straight line.
     """
 
     name: str
@@ -73,13 +79,13 @@ class Control:
     resolution: float
     most_points: int
     usual_points: int
-    steepest: float
-    side: Side
-    reversal: Reversal
-    directions: bool
-    comments: bool
     load: Callable[[CompensationTable, str], tuple[str, ...]]
     write: Callable[[CompensationTable, Sequence[str], str], str]
+    steepest: float = STEEPEST
+    side: Side = Side.SETPOINT
+    reversal: Reversal = Reversal()
+    directions: bool = True
+    comments: bool = True
     stepwise: bool = False
 
     def loading(self, table: CompensationTable, axis: str) -> tuple[str, ...]:

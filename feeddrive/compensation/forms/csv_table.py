@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from feeddrive.compensation.forms.control import Control, Reversal, Side, millimetres, plain_line
-from feeddrive.compensation.table import STEEPEST, CompensationTable
+from feeddrive.compensation.forms.control import Control, Reversal, millimetres, plain_line
+from feeddrive.compensation.table import CompensationTable
 
 
 def _write(table: CompensationTable, head: Sequence[str], _: str) -> str:
@@ -33,11 +33,7 @@ CSV = Control(
     resolution=1e-9,
     most_points=20_000,
     usual_points=1000,
-    steepest=STEEPEST,
-    side=Side.SETPOINT,
     reversal=Reversal(longest=1.0, setting=_setting),
-    directions=True,
-    comments=True,
     load=_load,
     write=_write,
 )

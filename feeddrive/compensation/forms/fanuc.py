@@ -5,7 +5,8 @@
 Point number n stands for the stretch from (n - n0 - 1) to (n - n0) intervals from the reference, n0 the number of the
 reference (3620); its increment is put out in the middle of the stretch. Increments are whole numbers from -7 to 7,
 times 3623. The running sum is rounded, not each increment, so that no error adds up. Positions before the reference are
-reached by taking the increments off.
+reached by taking the increments off. What is left is half a jump either way: slope of the error times the distance of
+the points, of which there are 128, whatever the detection unit.
 
 Source: B-63980EN/01 page 100 (numbers and where they are put out), A-77810E-02 (parameters 3620 to 3627); 1851, 1852
 and the sign (added to the command) are from experience, to be checked with one point.
@@ -17,8 +18,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from feeddrive.compensation.forms.control import Control, Reversal, Side, steps
-from feeddrive.compensation.table import STEEPEST, CompensationTable
+from feeddrive.compensation.forms.control import Control, steps
+from feeddrive.compensation.table import CompensationTable
 from feeddrive.errors import InputError
 from feeddrive.typing import FloatArray
 
@@ -83,9 +84,6 @@ def writer(unit: float) -> Control:
         resolution=unit,
         most_points=129,
         usual_points=129,
-        steepest=STEEPEST,
-        side=Side.SETPOINT,
-        reversal=Reversal(),
         directions=False,
         comments=False,
         load=_load,

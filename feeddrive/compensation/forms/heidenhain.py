@@ -14,7 +14,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from feeddrive.compensation.forms.control import Control, Reversal, Side, millimetres, plain_line
+from feeddrive.compensation.forms.control import Control, Reversal, millimetres, plain_line
 from feeddrive.compensation.table import CompensationTable
 
 
@@ -46,10 +46,7 @@ HEIDENHAIN = Control(
     most_points=256,
     usual_points=256,
     steepest=1 / 64,
-    side=Side.SETPOINT,
     reversal=Reversal(spread=0.015, longest=1.0, setting=_setting),
-    directions=True,
-    comments=True,
     load=_load,
     write=_write,
 )

@@ -2,21 +2,21 @@
 
 Values and positions are whole tenths of a micrometre (`unit 1`), value = measured - programmed: programmed 19866.7 um,
 measured 19856.5 um along + and 19874.7 um along -, gives pos -102 and neg 80. Straight between, constant beyond; on
-reversal the value goes over within `lr_param.n_backlash_cyc` cycles.
+reversal the value goes over within `lr_param.n_backlash_cyc` cycles, fewer than 20, by sin^2.
 
 Source: ISG kernel documentation, example of a compensation value list (113439115) and leadscrew error compensation
-(308687883); Beckhoff TF5200, axis compensation (308695435).
+(308687883); Beckhoff TF5200, axis compensation (308695435), P-AXIS-00243 (308693899).
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
-from feeddrive.compensation.forms.control import Control, Reversal, Side, plain_line, steps
-from feeddrive.compensation.table import STEEPEST, CompensationTable
+from feeddrive.compensation.forms.control import Control, Reversal, plain_line, steps
+from feeddrive.compensation.table import CompensationTable
 
 _UNIT = 1e-7
-_CYCLES = 10
+_CYCLES, _MOST_CYCLES = 10, 19
 
 
 def _write(table: CompensationTable, head: Sequence[str], axis: str) -> str:
@@ -55,11 +55,7 @@ ISG = Control(
     resolution=_UNIT,
     most_points=1500,
     usual_points=1500,
-    steepest=STEEPEST,
-    side=Side.SETPOINT,
-    reversal=Reversal(cycles=_CYCLES, longest=1.0, setting=_setting),
-    directions=True,
-    comments=True,
+    reversal=Reversal(cycles=_CYCLES, smooth=True, longest=1.0, most_cycles=_MOST_CYCLES, setting=_setting),
     load=_load,
     write=_write,
 )

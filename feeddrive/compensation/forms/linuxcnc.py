@@ -16,8 +16,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from feeddrive.compensation.forms.control import Control, Reversal, Side, millimetres
-from feeddrive.compensation.table import STEEPEST, CompensationTable
+from feeddrive.compensation.forms.control import Control, Reversal, millimetres
+from feeddrive.compensation.table import CompensationTable
 
 _MOST = 256  # EMCMOT_COMP_SIZE
 
@@ -45,10 +45,7 @@ LINUXCNC = Control(
     resolution=1e-9,
     most_points=_MOST,
     usual_points=_MOST,
-    steepest=STEEPEST,
-    side=Side.SETPOINT,
     reversal=Reversal(ramped=True),
-    directions=True,
     comments=False,
     load=_load,
     write=_write,

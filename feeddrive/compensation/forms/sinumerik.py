@@ -117,7 +117,6 @@ SINUMERIK_ENC = Control(
     side=Side.ACTUAL,
     reversal=Reversal(longest=1.0, setting=_setting_encoder),
     directions=False,
-    comments=True,
     load=_load_encoder,
     write=_write_encoder,
 )
@@ -131,10 +130,6 @@ SINUMERIK_CEC = Control(
     most_points=350,
     usual_points=200,
     steepest=0.01,
-    side=Side.SETPOINT,
-    reversal=Reversal(),
-    directions=True,
-    comments=True,
     load=_load_cec,
     write=_write_cec,
 )

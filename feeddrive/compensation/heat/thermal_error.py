@@ -43,12 +43,12 @@ class TableError:
 
 
 def table_error(
-    plant: Heat, model: HeatModel, supports: Supports = FIXED_FREE, count: int = POSITIONS
+    heat: Heat, model: HeatModel, supports: Supports = FIXED_FREE, count: int = POSITIONS
 ) -> TableError:  # fmt: skip
     """The error along the plant's travel.
 
     Args:
-        plant: the machine.
+        heat: the machine.
         model: its full or a reduced model.
         supports: how the screw is held along its axis.
         count: of places, evenly from end to end of the travel.
@@ -57,10 +57,10 @@ def table_error(
         InputError: fewer than two places.
     """
     refuse_unless(count >= 2, f"{count} places make no line", "count", "write at least 2")
-    positions = np.linspace(plant.rig.travel.low, plant.rig.travel.high, count)
+    positions = np.linspace(heat.rig.travel.low, heat.rig.travel.high, count)
     profile = model.profile.toarray() if sparse.issparse(model.profile) else model.profile
     # The cold stretch does not enter the error, and a unit of a state is no temperature that it could be checked with.
-    grown = expansion(plant.rig, profile.T, model.edges, Supports(supports.front, supports.rear))
+    grown = expansion(heat.rig, profile.T, model.edges, Supports(supports.front, supports.rear))
     return TableError(positions, np.array([grown.growth(float(x)) for x in positions]))
 
 

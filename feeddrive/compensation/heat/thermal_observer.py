@@ -123,13 +123,13 @@ class ThermalObserver:
 
 
 def thermal_observer(
-    plant: Heat, model: HeatModel, error: TableError, sensors: Sequence[Sensor],
+    heat: Heat, model: HeatModel, error: TableError, sensors: Sequence[Sensor],
     unknowns: Unknowns | None = None, step: float = 30.0,
 ) -> ThermalObserver:  # fmt: skip
     """An observer.
 
     Args:
-        plant: what the file declares.
+        heat: what the file declares.
         model: reduced, such as `compensation_model` gives.
         error: of the table, of this model.
         sensors: at mountable places; none is a model that knows how wrong it may be.
@@ -140,8 +140,8 @@ def thermal_observer(
         InputError: a place where no sensor can be mounted, two sensors at one place, a step that is not positive.
     """
     refuse_unless_positive(step, "s", "step")
-    refuse_unmountable(plant, sensors)
-    return ThermalObserver(plant, Augmented(model, tuple(sensors), unknowns or Unknowns(), step), error)
+    refuse_unmountable(heat, sensors)
+    return ThermalObserver(heat, Augmented(model, tuple(sensors), unknowns or Unknowns(), step), error)
 
 
 def advance(

@@ -21,30 +21,30 @@ _FILMS = 1.25
 """Range of the films beyond that from rest to the highest speed: the tolerance twice, and some."""
 
 
-def compensation_model(plant: Heat, order: int = ORDER, sizes: Sizes | None = None) -> HeatModel:
+def compensation_model(heat: Heat, order: int = ORDER, sizes: Sizes | None = None) -> HeatModel:
     """The reduced model that a compensation runs: its films may vary with speed, its contact is the declared one.
 
     Args:
-        plant: the machine.
+        heat: the machine.
         order: number of states.
         sizes: working sizes; None for those of a small axis.
 
     Raises:
         InputError: an order that is not possible.
     """
-    limits = dict(plant.limits(_FILMS))
-    limits[Path.CONTACT] = (plant.contact, plant.contact)
+    limits = dict(heat.limits(_FILMS))
+    limits[Path.CONTACT] = (heat.contact, heat.contact)
     limits[Path.COOLING] = (0.0, 0.0)
-    return reduce_model([plant.full_model()], limits, order, sizes)[0]
+    return reduce_model([heat.full_model()], limits, order, sizes)[0]
 
 
 def model_alone(
-    plant: Heat, model: HeatModel, error: TableError, step: float, speeds: FloatArray, ambient: FloatArray
+    heat: Heat, model: HeatModel, error: TableError, step: float, speeds: FloatArray, ambient: FloatArray
 ) -> FloatArray:  # fmt: skip
     """Error of the table that the model foretells at the end of each row, (k, p) [m].
 
     Args:
-        plant: what the file declares.
+        heat: what the file declares.
         model: on which it runs, such as `compensation_model` gives.
         error: of this model.
         step: length of a row [s].
@@ -57,4 +57,4 @@ def model_alone(
     Warns:
         ValidityWarning: a speed above the highest that the plant declares.
     """
-    return error.of(run(model, declared_rows(plant, step, speeds, ambient)))
+    return error.of(run(model, declared_rows(heat, step, speeds, ambient)))

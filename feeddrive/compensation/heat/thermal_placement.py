@@ -42,13 +42,13 @@ class Placement:
 
 
 def placements(
-    plant: Heat, model: HeatModel, error: TableError, count: int, speeds: Sequence[float],
+    heat: Heat, model: HeatModel, error: TableError, count: int, speeds: Sequence[float],
     unknowns: Unknowns | None = None, kind: Sensor | None = None,
 ) -> tuple[Placement, ...]:  # fmt: skip
     """All sets of `count` mountable places, the best first.
 
     Args:
-        plant: the machine.
+        heat: the machine.
         model: reduced.
         error: of the table, of this model.
         count: of sensors; 0 for the model alone.
@@ -59,14 +59,14 @@ def placements(
     Raises:
         InputError: more sensors than places, or no speeds.
     """
-    places, kind = mountable_places(plant), kind or Sensor("nut")
+    places, kind = mountable_places(heat), kind or Sensor("nut")
     if not 0 <= count <= len(places) or not len(speeds):
         told = f"{count} sensors at {len(speeds)} speeds"
         raise InputError(told, "placement", f"give at least one speed, and sensors up to the {len(places)} places")
     found = []
     for chosen in combinations(places, count):
         sensors = [Sensor(place, kind.noise, kind.lag) for place in chosen]
-        observer = thermal_observer(plant, model, error, sensors, unknowns)
+        observer = thermal_observer(heat, model, error, sensors, unknowns)
         spread = np.array([expected_deviation(observer, speed) for speed in speeds])
         found.append(Placement(chosen, float(np.sqrt(np.mean(spread**2))), float(spread.max())))
     return tuple(sorted(found, key=lambda one: one.rms))

@@ -41,20 +41,20 @@ class Sensor:
         refuse_negative(self.lag, "s", f"{self.place}.lag")
 
 
-def mountable_places(plant: Heat) -> tuple[str, ...]:
+def mountable_places(heat: Heat) -> tuple[str, ...]:
     """Places of a plant where a sensor can be mounted."""
-    covered = {body.port for body in plant.bodies}
+    covered = {body.port for body in heat.bodies}
     seats = tuple(seat for seat in (FRONT, REAR) if seat not in covered)
-    return (NUT, *seats, *(body.name for body in plant.bodies))
+    return (NUT, *seats, *(body.name for body in heat.bodies))
 
 
-def refuse_unmountable(plant: Heat, sensors: Sequence[Sensor]) -> None:
+def refuse_unmountable(heat: Heat, sensors: Sequence[Sensor]) -> None:
     """Refuse sensors where none can be mounted, or two at one place.
 
     Raises:
         InputError: says which places there are.
     """
-    known = mountable_places(plant)
+    known = mountable_places(heat)
     for sensor in sensors:
         if sensor.place not in known:
             told = f'no sensor can be mounted at "{sensor.place}"'

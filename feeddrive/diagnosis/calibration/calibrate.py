@@ -69,8 +69,9 @@ def recalibrated(problem: Problem, effects: Sequence[Effect], rough: bool = Fals
     # what is left once the values are as they are most likely tells how much a row is worth
     left = residual - sloped.whitener.columns @ (sloped.whitener.most_likely(residual) - known.coordinates)
     variance = _variance(sloped, left)
-    sloped = replace(problem, calibration=replace(sloped.calibration, variance=variance))
-    return _stepped(sloped, effects, residual)
+    numbers = problem.numbers.with_variance(variance)
+    sloped = replace(problem, calibration=replace(sloped.calibration, variance=variance), numbers=numbers)
+    return _stepped(sloped, effects, sloped.unwhitened(effects) if len(numbers) else residual)
 
 
 def with_new_slopes(problem: Problem, effects: Sequence[Effect], rough: bool = False) -> Problem:
@@ -78,7 +79,24 @@ def with_new_slopes(problem: Problem, effects: Sequence[Effect], rough: bool = F
     if problem.calibration is None or not problem.calibration.values:
         return problem
     slopes = {e.recording: slopes_of(problem, effects, e, rough) for e in problem.evidence}
-    return replace(problem, calibration=replace(problem.calibration, slopes=slopes))
+    more = _number_slopes(problem, effects)
+    return replace(problem, calibration=replace(problem.calibration, slopes=slopes, number_slopes=more))
+
+
+def _number_slopes(problem: Problem, effects: Sequence[Effect]) -> FloatArray:
+    """Slope of the measured numbers with the coordinates of the declared values, over their deviations, (n, k)."""
+    known, rows = problem.calibration, replace(problem.numbers, weight=1.0)
+    assert known is not None
+    if not len(rows):
+        return np.zeros((0, len(known.values)))
+    base, columns = rows.predicted(problem.machine(effects)), []
+    for i, value in enumerate(known.values):
+        step = STEP / value.deviation
+        coordinates = known.coordinates.copy()
+        coordinates[i] += step
+        there = replace(problem, calibration=replace(known, coordinates=coordinates)).machine(effects)
+        columns.append((rows.predicted(there) - base) / step)
+    return np.column_stack(columns)
 
 
 def slopes_of(
@@ -164,6 +182,7 @@ def with_kept(problem: Problem, kept: Sequence[bool] | np.ndarray[tuple[int], np
             values=tuple(known.values[i] for i in places),
             coordinates=known.coordinates[places],
             slopes={of: {name: k[:, places] for name, k in one.items()} for of, one in known.slopes.items()},
+            number_slopes=known.number_slopes[:, places] if known.number_slopes.size else known.number_slopes,
         ),
     )
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,13 +10,15 @@ import numpy as np
 
 from feeddrive.diagnosis.calibration.calibrate import calibrated_list
 from feeddrive.diagnosis.calibration.known import known_values
-from feeddrive.diagnosis.certainty.correlation import TOGETHER
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem
 from feeddrive.effects.chain.stiffness_deviation import PARTS
 from feeddrive.plant.analysis.stiffness_budget import participation
 
 TOLD = 0.9
 """Deviation of a value over that of its tolerance, above which the recordings say nothing of it: it is not listed."""
+
+HALVED = math.sqrt(0.75)
+"""Correlation of two values from which to know one would halve the deviation of the other."""
 
 
 @dataclass(frozen=True)
@@ -55,12 +58,12 @@ def calibrated_results(problem: Problem, found: Fit) -> tuple[CalibratedResult, 
 
 
 def known_together(problem: Problem, found: Fit) -> tuple[str, ...]:
-    """A sentence for every two stiffnesses whose sum is known and neither of them, with what each gives way."""
+    """A sentence for every two stiffnesses of which the sum is known better than either, with what each gives way."""
     known, plant = known_values(problem, found), problem.plant
     if known is None:
         return ()
     deviations = np.sqrt(np.diag(known.covariance))
-    alike = known.covariance / np.outer(deviations, deviations) < -TOGETHER
+    alike = known.covariance / np.outer(deviations, deviations) < -HALVED
     told = []
     for i, first in enumerate(known.values):
         for j in range(i + 1, len(known.values)):
@@ -68,8 +71,8 @@ def known_together(problem: Problem, found: Fit) -> tuple[str, ...]:
             if alike[i, j] and deviations[[i, j]].min() < TOLD and set(keys) <= set(PARTS.values()):
                 shares = [f"{participation(plant, key, plant.middle):.0%}".replace("%", " %") for key in keys]
                 told.append(
-                    f"{first.words} and {second.words}: these recordings tell what both give way together, and neither "
-                    f"of them; of the compliance at the table they have {shares[0]} and {shares[1]} in mid-stroke"
+                    f"{first.words} and {second.words}: these recordings tell what both give way together much better "
+                    f"than either; of the compliance at the table they have {shares[0]} and {shares[1]} in mid-stroke"
                 )
     return tuple(told)
 

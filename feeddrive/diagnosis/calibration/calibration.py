@@ -20,7 +20,7 @@ tolerance does as well, in every set, at no simulation more. Source: Lindley and
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -38,12 +38,14 @@ class Calibration:
         coordinates: c0, (k,).
         slopes: recording to channel to its slope with c, (n, k), SI.
         variance: λ.
+        number_slopes: slope of the numbers that were measured beside the recordings, over their deviations, (n, k).
     """
 
     values: tuple[CalibratedValue, ...]
     coordinates: FloatArray
     slopes: Mapping[Recording, Mapping[str, FloatArray]]
     variance: float
+    number_slopes: FloatArray = field(default_factory=lambda: np.zeros((0, 0)))
 
 
 @dataclass(frozen=True, eq=False)

@@ -84,22 +84,16 @@ class Known:
         return min(max(float(self.at[place]) + math.log(grown) / power / deviation, -far), far)
 
     @cached_property
-    def mean(self) -> FloatArray:
-        """Most likely u under the tolerances as deviations, (k,)."""
-        return self.covariance @ self.slopes.T @ self.told
-
-    @cached_property
     def covariance(self) -> FloatArray:
         """Of u under the tolerances as deviations, (k, k)."""
-        return np.linalg.inv(self.slopes.T @ self.slopes + np.eye(len(self.told)))
+        return np.asarray(np.linalg.inv(self.slopes.T @ self.slopes + np.eye(len(self.told))), dtype=np.float64)
 
     def likeliest(self, place: int, deviation: float) -> tuple[FloatArray, float]:
-        """Most likely u, (k,), where one value has another deviation [of its own], and twice the negative logarithm of
-        the evidence of that."""
+        """Most likely u, (k,), with one value's deviation another one [of its own], and -2 log evidence of that."""
         prior = np.ones(len(self.told))
         prior[place] = deviation**-2
         normal = self.slopes.T @ self.slopes + np.diag(prior)
-        u = np.linalg.solve(normal, self.slopes.T @ self.told)
+        u = np.asarray(np.linalg.solve(normal, self.slopes.T @ self.told), dtype=np.float64)
         left = self.slopes @ u - self.told
         cost = float(left @ left + prior @ u**2 + np.linalg.slogdet(normal)[1] - np.sum(np.log(prior)))
         return u, cost

@@ -35,6 +35,7 @@ def row_shares(problem: Problem) -> FloatArray:
     parts = [
         np.full(int(e.thinned(e.fit_rows).sum()) * len(e.channels), independent_share(e)) for e in problem.evidence
     ]
+    parts.append(np.full(len(problem.numbers), 1 / problem.numbers.weight**2))
     return np.concatenate(parts)
 
 

@@ -85,16 +85,23 @@ def score_covariance(
     Args:
         evidence: recordings.
         rows: of each, the samples (before thinning) that the residual holds.
-        residual: weighted, shape (m,).
+        residual: weighted, shape (m,); rows behind those of the recordings stand for themselves.
         columns: shape (m, k).
 
     Returns:
         Shape (k, k).
     """
     total = np.zeros((columns.shape[1], columns.shape[1]))
+    last = sum(int(one.thinned(chosen).sum()) * len(one.channels) for one, chosen in zip(evidence, rows, strict=True))
     for stretch in stretches(evidence, rows):
         left = rfft(stretch.on_comb(residual), stretch.size, axis=1)
         total += _scatter(np.conj(left)[:, None] * left[None], columns, stretch)
+    alone = columns[last:]
+    if len(alone):
+        # a measured number scatters as one independent value of the recordings does
+        squares = np.sum(columns[:last] ** 2, axis=0)
+        seen = squares > 0
+        total += alone.T @ alone * (float(np.median(np.diag(total)[seen] / squares[seen])) if seen.any() else 1.0)
     return 0.5 * (total + total.T)
 
 

@@ -73,6 +73,7 @@ def odds_and_distance(
         square += float(difference @ difference)
         scatter += float(score_covariance(evidence, rows, left, difference[:, None])[0, 0])
         model = model_error_rows(evidence, [e.thinned(r) for e, r in zip(evidence, rows, strict=True)])
+        model = np.concatenate([model, np.zeros(len(difference) - len(model))])  # measured numbers
         scatter += float(model @ difference**2) / 1.96**2
     if not scatter > 0:
         return (0.0, 0.0) if square == 0 else (excess, float("inf"))

@@ -2,6 +2,8 @@
 
     drive_delay d = channel_delay d of motor_angle               where no table position is recorded
     payload m = inertia_deviation m r^2, at motor or screw       in a rigid structure
+    constant_force F = channel_offset F r of the torque          where nothing is declared to hang or pull
+    lead_error_cumulative s = channel_gain 1 + s of the scale    beyond what any class of screw misses
 
 Without a table position the motor angle is compared with the torque alone, and a torque that acts later than recorded
 is an angle that is recorded late. The drive is named, since every drive acts late, and the angle is listed with it. In
@@ -18,6 +20,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from feeddrive.diagnosis.likelihood.evidence import Evidence
+from feeddrive.diagnosis.suspicion.quality import read_otherwise
 from feeddrive.effects.base import Effect
 from feeddrive.plant.plant import Plant
 
@@ -45,4 +48,8 @@ def twins_of(effect: Effect, plant: Plant, evidence: Sequence[Evidence]) -> tupl
         reason = "in a rigid structure an inertia of motor or screw is a mass on the table"
         mend = 'use structure = "three_inertias" and record the table position to tell them apart'
         return (Twin("inertia_deviation", f"{reason}; {mend}"),)
-    return ()
+    return tuple(
+        Twin(one.kind, f"{one.sentence}; {one.mend}")
+        for one in read_otherwise([effect], plant)
+        if one.alternatives and one.kind != effect.name and effect.name != "drive_delay"
+    )

@@ -72,6 +72,7 @@ def certainty(problem: Problem, fitted: Fit) -> Certainty:
     middle = score_covariance(problem.evidence, rows, fitted.residual, jacobian)
     influence = jacobian @ inverse
     model = model_error_rows(problem.evidence, [e.thinned(e.fit_rows) for e in problem.evidence])
+    model = np.concatenate([model, np.zeros(len(problem.numbers))])
     covariance = inverse @ middle @ inverse
     missed = np.diag(inverse @ fitted_away(problem.evidence, rows, jacobian, inverse) @ inverse)
     widened = np.sqrt(_where_it_matters(problem, fitted.residual, influence) / _left(missed, np.diag(inverse)))
@@ -83,6 +84,24 @@ def certainty(problem: Problem, fitted: Fit) -> Certainty:
     covariance = covariance * np.outer(more, more) + influence.T @ (model[:, None] * influence) / 1.96**2
     reach = student.ppf(0.975, np.where(believed, freedom, max(spectral_freedom(problem.evidence, rows), 2.0)))
     return Certainty(covariance, reach)
+
+
+def score_variances(problem: Problem, residual: FloatArray, columns: FloatArray) -> FloatArray:
+    """Variance of each of the columns' products with the residual, (k,): by its spectrum, widened as intervals are.
+
+    Args:
+        problem: recordings.
+        residual: weighted, (m,).
+        columns: (m, k).
+    """
+    rows = [evidence.fit_rows for evidence in problem.evidence]
+    variance: FloatArray = np.diag(score_covariance(problem.evidence, rows, residual, columns)).copy()
+    variance *= _where_it_matters(problem, residual, columns)
+    measured = columns[len(columns) - len(problem.numbers) :]  # known to their own deviations
+    variance += problem.numbers.weight**2 * np.sum(measured**2, axis=0)
+    blocks, freedom = _by_blocks(residual, columns, blocks_in_time(problem))
+    believed = blocks > variance * chi2.ppf(BEYOND_CHANCE, freedom) / freedom
+    return np.where(believed, blocks, variance)
 
 
 def slopes(problem: Problem, fitted: Fit) -> FloatArray:
@@ -107,7 +126,7 @@ def _left(missed: FloatArray, whole: FloatArray) -> FloatArray:
 
 def _where_it_matters(problem: Problem, residual: FloatArray, influence: FloatArray) -> FloatArray:
     """Residual square where a coordinate is told from, over that of the same channels at large, at least 1; (k,)."""
-    weight, level = influence**2, np.empty_like(residual)
+    weight, level = influence**2, np.full_like(residual, float(np.mean(residual**2)))
     first = 0
     for evidence in problem.evidence:
         count = int(evidence.thinned(evidence.fit_rows).sum())

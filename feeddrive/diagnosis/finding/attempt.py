@@ -50,20 +50,20 @@ class Attempt:
         fit: of all free effects.
         comparison: against the effects found before.
         problem: recordings with the samples that this candidate can predict.
-        errors: residual on blocks left out of the fit, weighted, shape (m,).
+        starts: how many were tried.
     """
 
     name: str
     fit: Fit
     comparison: Comparison
     problem: Problem
-    errors: FloatArray
+    starts: int = 1
 
     def for_the_record(self) -> Attempt:
         """The attempt without series and slopes, which its round alone needs: those of all rounds fill gigabytes."""
         none = np.zeros(0)
         slopes = np.zeros((0, self.fit.jacobian.shape[1]))
-        return replace(self, fit=replace(self.fit, residual=none, jacobian=slopes), errors=none)
+        return replace(self, fit=replace(self.fit, residual=none, jacobian=slopes))
 
 
 def started(scene: Scene, candidate: Candidate) -> list[Attempt]:
@@ -92,13 +92,26 @@ def _best_start(scene: Scene, candidate: Candidate, starts: Sequence[Effect]) ->
     problem = with_predictable(scene.problem, (*before, starts[0])) if _jumps(starts[0]) else scene.problem
     problem = with_short_blocks(problem) if candidate.brief else problem
     free = [False] * len(before) + [True]
-    tried = [fit(problem, (*before, start), free, 0, error_only=candidate.scanned) for start in starts]
-    if not candidate.scanned:
-        tried = [_one_linear_step(attempt) for attempt in tried]
-    result = min(tried, key=lambda attempt: attempt.squared_error)
+    start = starts[0]
+    if len(starts) > 1:
+        nothing = problem.residual(before)
+        start = min(starts, key=lambda one: _left_by(nothing, problem.residual((*before, one)), candidate.scanned))
     if candidate.scanned:
-        result = fit(problem, result.effects, free, SCANNED_ITERATIONS)
-    return _usable(scene, problem, candidate.name, result)
+        result = fit(problem, (*before, start), free, SCANNED_ITERATIONS)
+    else:
+        result = _one_linear_step(fit(problem, (*before, start), free, 0))
+    return replace(_usable(scene, problem, candidate.name, result), starts=len(starts))
+
+
+def _left_by(nothing: FloatArray, start: FloatArray, as_it_is: bool) -> float:
+    """Squared error that a start leaves: as it is, or of the size that suits best, which its own series tells."""
+    if not np.all(np.isfinite(start)):
+        return np.inf
+    taken = nothing - start
+    square = float(taken @ taken)
+    if as_it_is or square == 0:
+        return float(start @ start)
+    return float(nothing @ nothing) - float(taken @ nothing) ** 2 / square
 
 
 def refined(scene: Scene, attempt: Attempt) -> Attempt | None:
@@ -106,7 +119,7 @@ def refined(scene: Scene, attempt: Attempt) -> Attempt | None:
     free = [False] * len(scene.found) + [True]
     result = fit(attempt.problem, attempt.fit.effects, free, FIT_ITERATIONS)
     try:
-        return _usable(scene, attempt.problem, attempt.name, result)
+        return replace(_usable(scene, attempt.problem, attempt.name, result), starts=attempt.starts)
     except InputError:
         return None
 
@@ -131,12 +144,6 @@ def _one_linear_step(fitted: Fit) -> Fit:
     return replace(fitted, residual=fitted.residual - fitted.jacobian @ step, coordinates=fitted.coordinates + step)
 
 
-def together(attempt: Attempt, found: Fit) -> Attempt:
-    """The candidate refitted together with what was found before."""
-    result = fit(attempt.problem, attempt.fit.effects, iterations=JOINT_ITERATIONS)
-    return compared(attempt.problem, attempt.name, result, found.effects)
-
-
 def compared(problem: Problem, name: str, result: Fit, before: Sequence[Effect]) -> Attempt:
     """Compare a fit with the effects before it, both on the same samples and both with their own effects free."""
     blocks = block_numbers(problem)
@@ -146,7 +153,7 @@ def compared(problem: Problem, name: str, result: Fit, before: Sequence[Effect])
     without = left_out_residual(problem, reference, blocks)
     errors = left_out_residual(problem, result, blocks)
     comparison = compare_left_out(without, errors, blocks, least_gain(problem, without, errors))
-    return Attempt(name, result, comparison, problem, errors)
+    return Attempt(name, result, comparison, problem)
 
 
 def _free(result: Fit, before: Sequence[Effect]) -> list[bool]:

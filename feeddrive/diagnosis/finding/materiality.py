@@ -15,18 +15,13 @@ shows and is left without its name leaves the error to the next best one."""
 LEAST_SOFTENING = 0.02
 """Stiffness that is lost around zero force, over that under load."""
 
-LEAST_STIFFNESS_SHARE = 0.003
-"""Deviation of a stiffness from the declared one. No catalogue knows it to that, but a scale shows it; left without its
-name it would be taken for a free play of some nanometres."""
-
-LEAST_FORCE_SHARE = 0.003
-"""A force over the declared Coulomb level of the guide."""
+LEAST_SHARE = 0.003
+"""Deviation of a stiffness from the declared one, and a force over the declared Coulomb level of the guide. No
+catalogue knows either to that, but a scale shows it, and without its name it is taken for a play of some nanometres."""
 
 LEAST_MASS_SHARE = 0.001
-"""A mass over the declared table mass, an inertia over the declared one of its shaft."""
-
-LEAST_MODE_SHARE = 0.001
-"""What swings on the table, over the table's mass: at its frequency it is felt as many times its mass."""
+"""A mass over the declared table mass, what swings on it included, and an inertia over the declared one of its shaft: a
+scale and a torque in steps of a thousandth show no less."""
 
 FORCE_KEYS = ("delta_force", "force", "peak")
 """Parameters that are forces at the table."""
@@ -40,19 +35,17 @@ def is_material(effect: Effect, plant: Plant) -> bool:
     if effect.name == "friction_deviation":
         return any(abs(values[key] - 1) >= LEAST_FACTOR for key in ("coulomb_factor", "viscous_factor"))
     if effect.name == "stiffness_vs_position":
-        return abs(values["share_over_stroke"]) >= LEAST_STIFFNESS_SHARE
+        return abs(values["share_over_stroke"]) >= LEAST_SHARE
     if effect.name == "preload_loss" and values["ratio"] > 1 - LEAST_SOFTENING:
         return False
-    if effect.name == "structural_mode":
-        return abs(values["mass"]) >= LEAST_MODE_SHARE * plant.chain.values["table_mass"]
-    if effect.name == "payload":
+    if effect.name in ("structural_mode", "payload"):
         return abs(values["mass"]) >= LEAST_MASS_SHARE * plant.chain.values["table_mass"]
     if isinstance(effect, InertiaDeviation):
         return abs(values["inertia"]) >= LEAST_MASS_SHARE * declared_inertia(plant.chain.values, effect.place)
     if effect.name == "stiffness_deviation":
-        return abs(values["factor"] - 1) >= LEAST_STIFFNESS_SHARE
+        return abs(values["factor"] - 1) >= LEAST_SHARE
     forces = [abs(number) for key, value in effect.values.items() if key in FORCE_KEYS for number in _numbers(value)]
-    return not forces or max(forces) >= LEAST_FORCE_SHARE * declared_level(plant, Port.TABLE)
+    return not forces or max(forces) >= LEAST_SHARE * declared_level(plant, Port.TABLE)
 
 
 def _numbers(value: float | tuple[float, ...]) -> tuple[float, ...]:

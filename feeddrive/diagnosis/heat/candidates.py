@@ -59,12 +59,6 @@ def turning(scene: Scene) -> str:
     return "" if turned else "the screw never turns"
 
 
-def two_states(scene: Scene) -> str:
-    """What changes with speed needs two speeds, rest among them."""
-    speeds = {round(float(s), 3) for run in _runs(scene) for s in np.unique(run.speed)}
-    return "" if len(speeds) > 1 else "the screw turns at one speed only"
-
-
 def at_the_ends(scene: Scene) -> str:
     """Heat at the ends needs a sensor that feels them: one there, or the growth of the screw between."""
     seen = [name for name in _channels(scene) if name.startswith(GROWTH) or "nut" not in name]

@@ -87,25 +87,25 @@ class HeatEvidence(Evidence):
         return _over_start(name, self.recording)
 
 
-def prepare_heat(recording: Recording, plant: Heat, share: float) -> HeatEvidence:
+def prepare_heat(recording: Recording, heat: Heat, share: float) -> HeatEvidence:
     """Evidence of a recording, its first `share` fitted and the rest judged.
 
     Args:
         recording: with the speed of the screw, the surroundings, and a temperature or growth that the plant predicts.
-        plant: whose sensors are predicted.
+        heat: whose sensors are predicted.
         share: 1 to fit on all of it, 0 to judge on all of it.
 
     Raises:
         InputError: too short, or channels that are needed are missing or unknown.
     """
     _refuse_missing(recording)
-    names = _predicted(recording, plant)
+    names = _predicted(recording, heat)
     n, step = len(recording), recording.sample_time
     if n < FEWEST_ROWS:
         raise InputError(f"{n} rows are too few to compare", recording.name, f"record at least {FEWEST_ROWS}")
     first = 1 if abs(float(recording.time[0])) < 0.5 * step else 0
     time: FloatArray = np.arange(1, n + 1, dtype=np.float64) * step
-    noise = plant_noise(plant)
+    noise = plant_noise(heat)
     missed = {name: model_error_of(name, recording) for name in names}
     return HeatEvidence(
         recording,
@@ -136,16 +136,16 @@ def _over_start(name: str, recording: Recording) -> FloatArray:
     return rise
 
 
-def plant_noise(plant: Heat) -> dict[str, float]:
+def plant_noise(heat: Heat) -> dict[str, float]:
     """Channel to its declared noise; those without are left out."""
-    return {sensor.channel: sensor.noise for sensor in plant.sensors if sensor.noise > 0}
+    return {sensor.channel: sensor.noise for sensor in heat.sensors if sensor.noise > 0}
 
 
-def predicted_channels(plant: Heat) -> tuple[str, ...]:
+def predicted_channels(heat: Heat) -> tuple[str, ...]:
     """Channels that a plant predicts: those of its sensors, or all under their default names."""
-    if plant.sensors:
-        return tuple(sensor.channel for sensor in plant.sensors)
-    grown = [growth_name(x) for x in plant.rig.growth_positions]
+    if heat.sensors:
+        return tuple(sensor.channel for sensor in heat.sensors)
+    grown = [growth_name(x) for x in heat.rig.growth_positions]
     return tuple(channel_of(output) for output in ("nut", "front", "rear", "shaft_travel", *grown))
 
 
@@ -189,9 +189,9 @@ def _refuse_missing(recording: Recording) -> None:
         raise InputError(f"no channel {AMBIENT}", recording.name, "record the air's temperature at the machine")
 
 
-def _predicted(recording: Recording, plant: Heat) -> list[str]:
+def _predicted(recording: Recording, heat: Heat) -> list[str]:
     """Channels that are compared; a name that only nearly is a sensor's is refused."""
-    known = predicted_channels(plant)
+    known = predicted_channels(heat)
     names = [name for name in known if name in recording]
     slow = [c for c in recording.channels if c.endswith("_temperature") or c.startswith("table_growth_")]
     for channel in slow:
@@ -206,8 +206,8 @@ def _predicted(recording: Recording, plant: Heat) -> list[str]:
     return names
 
 
-def left_out_channels(recording: Recording, plant: Heat) -> tuple[str, ...]:
+def left_out_channels(recording: Recording, heat: Heat) -> tuple[str, ...]:
     """Temperatures and growths of a recording that the plant does not predict."""
-    known = (*predicted_channels(plant), AMBIENT)
+    known = (*predicted_channels(heat), AMBIENT)
     slow = [c for c in recording.channels if c.endswith("_temperature") or c.startswith("table_growth_")]
     return tuple(channel for channel in slow if channel not in known)

@@ -36,16 +36,16 @@ LEAST_LAG = 3.0
 """Of a sensor [s]."""
 
 
-def is_material_heat(effect: Effect, plant: Heat) -> bool:
+def is_material_heat(effect: Effect, heat: Heat) -> bool:
     """Whether a thermal effect is of a size that matters on this plant."""
     v = {key: value for key, value in effect.values.items() if isinstance(value, float)}
-    fastest = np.array([plant.highest_speed])
-    nut_heat = float(plant.nut.heats(fastest)[0])
+    fastest = np.array([heat.highest_speed])
+    nut_heat = float(heat.nut.heats(fastest)[0])
     match effect.name:
         case "motor_heat":
             return v["power"] >= LEAST_HEAT_SHARE * nut_heat
         case "bearing_heat":
-            return v["factor"] * plant.highest_speed * _bearing_torque(plant) >= LEAST_HEAT_SHARE * nut_heat
+            return v["factor"] * heat.highest_speed * _bearing_torque(heat) >= LEAST_HEAT_SHARE * nut_heat
         case "ambient_drift":
             return abs(v["amplitude"]) * _largest_shape(effect) >= LEAST_DRIFT
         case "preload_growth" | "viscosity_temperature":
@@ -55,13 +55,13 @@ def is_material_heat(effect: Effect, plant: Heat) -> bool:
         case "contact_conductance_deviation":
             return abs(v["factor"] - 1) >= LEAST_CONTACT_FACTOR
         case "cooling":
-            return v["conductance"] >= LEAST_FILM_SHARE * _film_of_nut(plant)
+            return v["conductance"] >= LEAST_FILM_SHARE * _film_of_nut(heat)
         case "heat_sink":
-            return v["conductance"] >= LEAST_FILM_SHARE * _film_of_nut(plant) and (
-                LEAST_CAPACITY_SHARE * _capacity_of_nut(plant) <= v["capacity"] <= LONGEST_SINK * v["conductance"]
+            return v["conductance"] >= LEAST_FILM_SHARE * _film_of_nut(heat) and (
+                LEAST_CAPACITY_SHARE * _capacity_of_nut(heat) <= v["capacity"] <= LONGEST_SINK * v["conductance"]
             )
         case "structure_growth":
-            return abs(v["growth"]) + abs(v.get("slope", 0.0)) * plant.rig.length >= LEAST_GROWTH
+            return abs(v["growth"]) + abs(v.get("slope", 0.0)) * heat.rig.length >= LEAST_GROWTH
         case _:
             return v.get("time_constant", LEAST_LAG) >= LEAST_LAG
 
@@ -71,19 +71,19 @@ def _largest_shape(effect: Effect) -> float:
     return max(abs(s) for s in nodes) if len(listed(effect.values["time"])) > 1 else 1.0
 
 
-def _bearing_torque(plant: Heat) -> float:
+def _bearing_torque(heat: Heat) -> float:
     """Of the bearing that `bearing_heat` counts by, at the highest speed [N m]."""
-    speed = plant.highest_speed
-    return float(reference_torque(speed) if plant.front is None else torque_law(speed, vars(plant.front)))
+    speed = heat.highest_speed
+    return float(reference_torque(speed) if heat.front is None else torque_law(speed, vars(heat.front)))
 
 
-def _film_of_nut(plant: Heat) -> float:
+def _film_of_nut(heat: Heat) -> float:
     """Conductance to the air at rest [W/K]."""
-    outside = 2 * np.pi * plant.rig.nut.outer_radius * plant.rig.nut.length
-    return float(plant.films.on_nut(np.zeros(1))[0] * outside)
+    outside = 2 * np.pi * heat.rig.nut.outer_radius * heat.rig.nut.length
+    return float(heat.films.on_nut(np.zeros(1))[0] * outside)
 
 
-def _capacity_of_nut(plant: Heat) -> float:
+def _capacity_of_nut(heat: Heat) -> float:
     """[J/K]."""
-    section = np.pi * (plant.rig.nut.outer_radius**2 - plant.rig.radius**2)
-    return float(plant.rig.steel.heat_capacity * section * plant.rig.nut.length)
+    section = np.pi * (heat.rig.nut.outer_radius**2 - heat.rig.radius**2)
+    return float(heat.rig.steel.heat_capacity * section * heat.rig.nut.length)

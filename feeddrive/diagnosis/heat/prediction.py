@@ -39,8 +39,6 @@ class HeatPredictor(Predictor[HeatEvidence]):
         model: its reduced model.
     """
 
-    retries: ClassVar[int] = 4
-    many: ClassVar[int] = 4  # a second search is cheap, and heats do much alike
     chance: ClassVar[float] = 18.0  # as that of motion, of some hundred starts
 
     declared: Heat

@@ -42,8 +42,6 @@ class WarmPredictor(Predictor[WarmEvidence]):
         model: reduced.
     """
 
-    retries: ClassVar[int] = 1
-    many: ClassVar[int] = 4  # as that of heat
     chance: ClassVar[float] = 18.0
 
     declared: Heat

@@ -16,11 +16,11 @@ from feeddrive.effects.base import Effect
 
 
 def effect_results(
-    found: Search, shares: Sequence[Share], spans: Sequence[dict[str, list[Interval] | None]]
+    found: Search, shares: Sequence[Share], spans: Sequence[dict[str, list[Interval] | None]], odds: Sequence[float]
 ) -> tuple[EffectResult, ...]:
     """What was found: values with intervals, what each explains on data not fitted, and its reading."""
     results = []
-    for effect, share, ends in zip(found.fit.effects, shares, spans, strict=False):  # shifts come last
+    for effect, share, ends, own in zip(found.fit.effects, shares, spans, odds, strict=False):  # shifts come last
         results.append(
             EffectResult(
                 effect.name,
@@ -29,6 +29,7 @@ def effect_results(
                 share.carries,
                 _evidence(effect, share),
                 physical_reading(effect),
+                own,
             )
         )
     return tuple(results)

@@ -10,8 +10,10 @@ import numpy as np
 from feeddrive.diagnosis.calibration.calibrated_result import CalibratedResult
 from feeddrive.diagnosis.certainty.certainty_result import Ambiguity, Correlation, NextExperiment
 from feeddrive.diagnosis.ledger.result import Kept
+from feeddrive.diagnosis.numbers.rows import NumberResult
 from feeddrive.diagnosis.recordings.change_result import RecordingChanges
 from feeddrive.diagnosis.simulated.simulation_result import SimulationResult as SimulationResult
+from feeddrive.diagnosis.suspicion.quality import Quality
 from feeddrive.diagnosis.unexplained.result import Dependence as Dependence
 from feeddrive.diagnosis.unexplained.result import Unexplained as Unexplained
 from feeddrive.typing import FloatArray
@@ -67,6 +69,7 @@ class EffectResult:
         carries: whether it also lowers the error on the judged data.
         evidence: one or two sentences for a person: where it shows, how strongly.
         reading: the physical reading of its sign and size.
+        odds: for it, against the sets of effects without it; None where they were not asked.
     """
 
     name: str
@@ -75,6 +78,7 @@ class EffectResult:
     carries: bool
     evidence: str
     reading: str = ""
+    odds: float | None = None
 
 
 def error_without(explains: float) -> float:
@@ -88,6 +92,23 @@ def error_without(explains: float) -> float:
     if math.isnan(explains):
         return math.nan
     return math.inf if explains >= 1.0 else 1.0 / math.sqrt(1.0 - explains)
+
+
+@dataclass(frozen=True)
+class PossibleEffect:
+    """A name that is not asserted, and not excluded either.
+
+    Attributes:
+        name: of the effect.
+        odds: for it, 1 where nothing is known.
+        instead_of: name of the effect taken whose place it would take; empty where it would come beside all.
+        settles: what would settle it, for a person.
+    """
+
+    name: str
+    odds: float
+    instead_of: str
+    settles: str
 
 
 @dataclass(frozen=True)
@@ -176,6 +197,9 @@ class Diagnosis:
     changes: RecordingChanges = field(default_factory=RecordingChanges)
     kept: Kept = field(default_factory=Kept)
     calibrated: tuple[CalibratedResult, ...] = ()
+    possible: tuple[PossibleEffect, ...] = ()
+    measured: tuple[NumberResult, ...] = ()
+    quality: tuple[Quality, ...] = ()
 
     @property
     def nothing_missing(self) -> bool:

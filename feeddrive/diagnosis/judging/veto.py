@@ -24,8 +24,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.stats import chi2
 
+from feeddrive.diagnosis.calibration.beyond import SURE
 from feeddrive.diagnosis.certainty.uncertainty import certainty
-from feeddrive.diagnosis.finding.search import CLEARLY_NEEDED, Search
+from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging.judge import Judged, Share, error_series, judged_channels, share_beyond, share_of
 from feeddrive.diagnosis.likelihood.coordinates import (
     LEFT,
@@ -43,12 +44,11 @@ from feeddrive.effects.base import ChainEffect, Effect
 from feeddrive.typing import FloatArray, IntegerArray
 from feeddrive.units.quantity import format_quantity
 
+CLEARLY_NEEDED = 0.1
+"""Share of the squared error that an effect must bring, by one linear step, not to be refitted without it."""
+
 SCATTER = 2.0
 """Standard deviations by which a channel must be worse: one of forty by chance."""
-
-SURE = 3.0
-"""Gain over its standard error, on blocks left out, of what the judged data cannot confirm: one of 700 by chance,
-as some hundred candidates and starts are tried."""
 
 
 @dataclass(frozen=True)

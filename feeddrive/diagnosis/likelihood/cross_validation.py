@@ -168,6 +168,7 @@ def least_gain(problem: Problem, before: FloatArray, after: FloatArray) -> float
         seconds = float(np.sum(evidence.fit_rows)) * evidence.recording.sample_time
         values += 2 * evidence.edge * seconds * len(evidence.channels)
     rows = model_error_rows(problem.evidence, [e.thinned(e.fit_rows) for e in problem.evidence])
+    rows = np.concatenate([rows, np.zeros(len(problem.numbers))])
     return max(LEAST_GAIN, problem.predictor.chance / values, gain_of_model_error(rows, before, after))
 
 

@@ -137,6 +137,8 @@ class AxisEvidence(Evidence):
         zero: table position where the motor angle is zero [m], for a chain that depends on it; 0 where it is not known.
         gains: channel to the gain of each frequency of its whole series, where the encoder's error shows in it.
         added: channel to the rms in the band that the encoder's error adds to its noise; as `gains`.
+        torque_rows: rows that the recorder writes a torque for, and the first row of one (`suspicion.logged_rows`);
+            None where the torque is what the drive holds.
     """
 
     motion: MotorMotion
@@ -145,6 +147,7 @@ class AxisEvidence(Evidence):
     zero: float = 0.0
     gains: dict[str, FloatArray] = field(default_factory=dict)
     added: dict[str, float] = field(default_factory=dict)
+    torque_rows: tuple[int, int] | None = None
 
     def in_band(self, series: FloatArray) -> FloatArray:
         """A series or columns, (n,), in the band of the comparison."""

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -30,6 +30,7 @@ from feeddrive.diagnosis.likelihood.coordinates import (
 )
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.predictor import Predictor
+from feeddrive.diagnosis.numbers.rows import MeasuredRows
 from feeddrive.effects.base import Effect
 from feeddrive.plant.passive_friction import is_passive
 from feeddrive.plant.plant import Plant
@@ -104,12 +105,14 @@ class Problem:
         evidence: recordings.
         predictor: of their kind.
         calibration: of the declared values; None where all are taken as exact.
+        numbers: measured beside the recordings; their rows stand behind those of all recordings.
     """
 
     plant: Plant
     evidence: tuple[Evidence, ...]
     predictor: Predictor[Any]
     calibration: Calibration | None = None
+    numbers: MeasuredRows = field(default_factory=MeasuredRows)
 
     def machine(self, effects: Sequence[Effect] = ()) -> Plant:
         """The plant with its declared values as calibrated, and further effects."""
@@ -128,13 +131,15 @@ class Problem:
         if known is None or not known.values:
             return None
         count = len(known.values)
-        columns = np.empty((sum(int(e.thinned(e.fit_rows).sum()) * len(e.channels) for e in self.evidence), count))
+        rows = sum(int(e.thinned(e.fit_rows).sum()) * len(e.channels) for e in self.evidence)
+        columns = np.empty((rows + len(self.numbers), count))
+        columns[rows:] = self.numbers.weight * known.number_slopes if len(self.numbers) else 0.0
         for i in range(count):
             parts = [
                 e.weighted({name: known.slopes[e.recording][name][:, i] for name in e.channels}, e.thinned(e.fit_rows))
                 for e in self.evidence
             ]
-            columns[:, i] = np.concatenate(parts)
+            columns[:rows, i] = np.concatenate(parts)
         return whitener(columns, known.coordinates, known.variance)
 
     def levelled(self, effects: Sequence[Effect] = ()) -> Problem:
@@ -160,13 +165,20 @@ class Problem:
             predicted = self.predictor.predict(plant, e)
             rows = e.thinned(e.fit_rows)
             parts.append(e.weighted(e.measured, rows) - e.weighted(predicted, rows))
+        if len(self.numbers):
+            parts.append(self.numbers.measured() - self._numbers(effects))
         return np.concatenate(parts)
+
+    def _numbers(self, effects: Sequence[Effect]) -> FloatArray:
+        """The rows of the measured numbers."""
+        return self.numbers.predicted(self.machine(effects))
 
     def predicted(self, effects: Sequence[Effect]) -> FloatArray:
         """Weighted prediction at the fitted samples of all recordings, whitened."""
         plant = self.machine(effects)
         rows = np.concatenate(
             [e.weighted(self.predictor.predict(plant, e), e.thinned(e.fit_rows)) for e in self.evidence]
+            + ([self._numbers(effects)] if len(self.numbers) else [])
         )
         known = self.whitener
         return rows if known is None else known.applied(rows - known.offset)
@@ -178,7 +190,10 @@ class Problem:
 
     def measured(self) -> FloatArray:
         """Weighted measurement at the fitted samples of all recordings, whitened."""
-        rows = np.concatenate([e.weighted(e.measured, e.thinned(e.fit_rows)) for e in self.evidence])
+        rows = np.concatenate(
+            [e.weighted(e.measured, e.thinned(e.fit_rows)) for e in self.evidence]
+            + ([self.numbers.measured()] if len(self.numbers) else [])
+        )
         return rows if self.whitener is None else self.whitener.applied(rows)
 
     def residual(self, effects: Sequence[Effect]) -> FloatArray:

@@ -36,6 +36,7 @@ def block_numbers(problem: Problem) -> IntegerArray:
         dealt = dealt_blocks(evidence)
         numbers += [first + dealt[block_of_rows(evidence, rows)]] * len(evidence.channels)
         first += FOLDS * (int(dealt.max()) // FOLDS + 1)
+    numbers.append(first + np.arange(len(problem.numbers)))  # each measured number is a block of its own
     return np.concatenate(numbers).astype(np.int64)
 
 
@@ -46,6 +47,7 @@ def blocks_in_time(problem: Problem) -> IntegerArray:
         blocks = block_of_rows(evidence, np.flatnonzero(evidence.thinned(evidence.fit_rows)))
         numbers += [first + blocks] * len(evidence.channels)
         first += int(blocks.max(initial=0)) + 1
+    numbers.append(first + np.arange(len(problem.numbers)))
     return np.concatenate(numbers).astype(np.int64)
 
 

@@ -13,10 +13,12 @@ import numpy as np
 
 from feeddrive import __version__
 from feeddrive.diagnosis.calibration.calibrated_result import calibrated_record
-from feeddrive.diagnosis.calibration.plant_text import with_calibrated_values
 from feeddrive.diagnosis.judging.result import ChannelResult, Diagnosis, EffectResult, ErrorFigures, ParameterResult
+from feeddrive.diagnosis.numbers.rows import numbers_beside
+from feeddrive.diagnosis.plant_text import with_calibrated_values
 from feeddrive.diagnosis.recordings.change_outputs import changes_record
 from feeddrive.diagnosis.simulated.simulation_record import simulation_record
+from feeddrive.diagnosis.suspicion.quality import is_recorders, quality_record
 from feeddrive.diagnosis.unexplained.outputs import carried_remarks, unexplained_record
 from feeddrive.effects.base import Effect
 from feeddrive.files import write_text_atomically
@@ -40,7 +42,9 @@ def write_outputs(diagnosis: Diagnosis, effects: Sequence[Effect], plant_text: s
     count = len(effects) - len(diagnosis.effects) - len(tables)
     changed = ["as in the last recording; see changes in diagnosis.json"] * count
     remarks = [*(result.evidence for result in diagnosis.effects), *changed, *tables]
-    mended = plant_text_with_effects(with_calibrated_values(plant_text, diagnosis.calibrated), effects, remarks)
+    own = [(one, remark) for one, remark in zip(effects, remarks, strict=True) if not is_recorders(one)]
+    calibrated = with_calibrated_values(plant_text, diagnosis.calibrated)
+    mended = plant_text_with_effects(calibrated, [one for one, _ in own], [remark for _, remark in own])
     write_text_atomically(folder / "plant_after.toml", mended)
     write_text_atomically(folder / "prediction.csv", prediction_table(diagnosis))
     write_text_atomically(folder / "diagnosis.json", diagnosis_json(diagnosis))
@@ -62,6 +66,12 @@ def diagnosis_record(diagnosis: Diagnosis) -> dict[str, Any]:
         "channels": [_channel(channel) for channel in diagnosis.channels],
         "effects": [_effect(effect) for effect in diagnosis.effects],
         "calibrated": calibrated_record(diagnosis.calibrated),
+        "possible": [
+            {"name": one.name, "odds": one.odds, "instead_of": one.instead_of, "settles": one.settles}
+            for one in diagnosis.possible
+        ],
+        "measured": numbers_beside(diagnosis.measured),
+        "quality": quality_record(diagnosis.quality),
         "refused": [{"name": refused.name, "reason": refused.reason} for refused in diagnosis.refused],
         "ambiguous": [list(names) for names in diagnosis.ambiguous],
         "ambiguous_reasons": [
@@ -122,6 +132,7 @@ def _effect(effect: EffectResult) -> dict[str, Any]:
         "carries": bool(effect.carries),
         "evidence": effect.evidence,
         "reading": effect.reading,
+        "odds": effect.odds,
     }
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import ClassVar
 
 import numpy as np
 
@@ -14,7 +13,7 @@ from feeddrive.diagnosis.finding.scene import Candidate
 from feeddrive.diagnosis.likelihood.evidence import AxisEvidence
 from feeddrive.diagnosis.likelihood.predictability import predictable_samples, samples_to_fit
 from feeddrive.diagnosis.likelihood.predictor import Predictor
-from feeddrive.diagnosis.suspicion.timing import lag_of, lagging
+from feeddrive.diagnosis.suspicion.timing import lag_of, lagging, repeated
 from feeddrive.diagnosis.suspicion.torque_channel import scale_of, scale_sentence
 from feeddrive.effects.base import ChainEffect, DriveEffect, Effect, Kind, Motion, Port, SourceEffect
 from feeddrive.engine.step.step_constants import SimulationError
@@ -35,8 +34,6 @@ class AxisPredictor(Predictor[AxisEvidence]):
         declared_scale: that their torque was brought to [N m per unit of the channel].
     """
 
-    retries: ClassVar[int] = 1
-
     scaled: tuple[AxisEvidence, ...] = ()
     declared_scale: float = 1.0
     _scales: dict[object, float] = field(default_factory=dict)
@@ -51,8 +48,10 @@ class AxisPredictor(Predictor[AxisEvidence]):
         """Channel to predicted series in the band, shape (n,), SI."""
         run = self.load_motion(plant, evidence)
         torque = torque_gain(plant) * asked_torques(plant, run.torque + motor_sources(plant, run))
-        raw = {"motor_torque": torque, "table_position": run.table_position}
         step = evidence.recording.sample_time
+        if evidence.torque_rows is not None:  # the drive's own row begins half a row before what it acts about
+            torque = repeated(lagging(torque, -0.5 * step, step), evidence.torque_rows)
+        raw = {"motor_torque": torque, "table_position": run.table_position}
         series = {name: evidence.band.filter(raw[name]) for name in evidence.channels}
         if evidence.scaled_from:
             series["motor_torque"] *= self.scale(plant)

@@ -29,12 +29,6 @@ E = TypeVar("E", bound=Evidence)
 class Predictor(ABC, Generic[E]):
     """Predicts recordings of one kind."""
 
-    retries: ClassVar[int] = 0
-    """How many other first effects are tried where the search leaves much unexplained."""
-
-    many: ClassVar[int] = 8
-    """Fitted values beyond which an effect may stand in for others, as a curve does for a law."""
-
     chance: ClassVar[float] = CHANCE
     """Degrees of freedom of the noise that the luckiest wrong candidate takes away."""
 

@@ -37,9 +37,9 @@ from typing import Any
 
 import numpy as np
 from scipy.optimize import minimize_scalar
-from scipy.special import betaln
 from scipy.stats import chi2
 
+from feeddrive.diagnosis.likelihood.set_evidence import log_prior_of_size
 from feeddrive.diagnosis.likelihood.tolerances import BEYOND, WIDEST
 from feeddrive.diagnosis.numbers.declared_values import DeclaredValue, declared_values
 from feeddrive.diagnosis.numbers.measured_file import MeasuredNumber
@@ -186,10 +186,10 @@ def explanations(problem: NumbersProblem, said: Callable[[str], None] = lambda t
     base, slopes = problem.predicted(zero), problem.slopes(zero)
     sets = [chosen for size in range(MOST + 1) for chosen in itertools.combinations(problem.seen, size)]
     found = [_explained(problem, chosen, zero, base, slopes) for chosen in sets]
-    found.sort(key=lambda one: -(one.log_evidence + _log_prior(len(one.beyond), len(problem.seen))))
+    found.sort(key=lambda one: -(one.log_evidence + log_prior_of_size(len(one.beyond), len(problem.seen))))
     said("the likeliest sets at their own values")
     ends = [_settled(problem, one) for one in found[:RELINEARISED]] + found[RELINEARISED:]
-    logs = np.array([one.log_evidence + _log_prior(len(one.beyond), len(problem.seen)) for one in ends])
+    logs = np.array([one.log_evidence + log_prior_of_size(len(one.beyond), len(problem.seen)) for one in ends])
     shares = np.exp(logs - np.max(logs))
     shares = shares / np.sum(shares)
     ranked = sorted(zip(shares, ends, strict=True), key=lambda pair: -pair[0])
@@ -229,10 +229,6 @@ def single_causes(problem: NumbersProblem) -> tuple[SingleCause, ...]:
             meets = misfit <= float(chi2.ppf(0.95, len(problem.measured)))
             found.append(SingleCause(value, float(solved.x), problem.predicted(at), misfit, meets))
     return tuple(sorted(found, key=lambda one: one.misfit))
-
-
-def _log_prior(size: int, count: int) -> float:
-    return float(betaln(1 + size, 2 * count - size) - betaln(1, count))
 
 
 def _explained(

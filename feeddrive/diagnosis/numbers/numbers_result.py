@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -26,7 +25,7 @@ from feeddrive.diagnosis.numbers.explanations import (
 )
 from feeddrive.diagnosis.numbers.measured_file import MeasuredNumber
 from feeddrive.diagnosis.numbers.next_number import NextNumber, mixed, next_numbers
-from feeddrive.diagnosis.numbers.plant_text import with_written_values
+from feeddrive.diagnosis.plant_text import most_likely_values, with_written_values
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray
 from feeddrive.units.quantity import format_quantity
@@ -182,12 +181,14 @@ def _calibrated(problem: NumbersProblem, sets: Sequence[Explanation], asserted: 
 
 
 def plant_text_after(text: str, result: NumbersResult) -> str:
-    """The plant file with the values that are asserted, each with its tolerance and source.
+    """The plant file with its values as they are most likely, those that are asserted with what is known of them.
 
     Raises:
         InputError: a value that cannot be written into this text.
     """
-    changed = {}
+    best = result.sets[0]
+    deviations = np.sqrt(np.maximum(np.diag(best.covariance), 0.0))
+    changed = most_likely_values(result.problem.values, best.coordinates, deviations, "calibrated by measured numbers")
     for one in result.beyond:
         shown = f"{float(f'{one.now:.4g}')!r} {one.value.unit}"
         share = max(one.interval[1] / one.now, one.now / one.interval[0]) - 1 if one.interval[0] > 0 else 1.0
@@ -237,11 +238,6 @@ def numbers_record(result: NumbersResult) -> dict[str, Any]:
         "notes": [f"{one.name}: {one.source}" for one in problem.measured if one.source],
         "plant_after": "plant_after.toml",
     }  # fmt: skip
-
-
-def numbers_json(result: NumbersResult) -> str:
-    """The text of `diagnosis.json`."""
-    return json.dumps(numbers_record(result), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 
 def _channel(number: MeasuredNumber, declared: float, after: float) -> dict[str, Any]:

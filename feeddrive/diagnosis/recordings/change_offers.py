@@ -61,6 +61,7 @@ def recording_of_rows(problem: Problem) -> IntegerArray:
     for evidence in problem.evidence:
         count = int(evidence.thinned(evidence.fit_rows).sum()) * len(evidence.channels)
         parts.append(np.full(count, predictor.numbers[evidence.recording]))
+    parts.append(np.full(len(problem.numbers), -1))  # measured numbers are of none
     return np.concatenate(parts).astype(np.int64)
 
 

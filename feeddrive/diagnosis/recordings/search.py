@@ -14,9 +14,10 @@ from dataclasses import dataclass, replace
 
 from feeddrive.diagnosis.calibration.calibrate import recalibrated, with_new_slopes
 from feeddrive.diagnosis.finding.attempt import with_predictable
-from feeddrive.diagnosis.finding.search import UNEXPLAINED, Search, search
+from feeddrive.diagnosis.finding.search import Search, search
+from feeddrive.diagnosis.finding.sets import needed_members
 from feeddrive.diagnosis.likelihood.evidence import Evidence
-from feeddrive.diagnosis.likelihood.fit import Problem, fit
+from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
 from feeddrive.diagnosis.recordings.change_candidates import levels
 from feeddrive.diagnosis.recordings.change_words import FACTORS
 from feeddrive.diagnosis.recordings.changes import Changes, find_changes
@@ -28,8 +29,10 @@ from feeddrive.diagnosis.recordings.recordings import (
     is_shift,
     without_shifts,
 )
-from feeddrive.diagnosis.recordings.still_needed import still_needed
 from feeddrive.effects.base import Effect
+
+UNEXPLAINED = 1.3
+"""Weighted squared error per sample beyond which much is left; noise alone gives one."""
 
 SAME = 0.01
 """Relative difference of squared errors that counts as none."""
@@ -88,7 +91,7 @@ def _followed(problem: Problem, held: Changes, earlier: Sequence[int], said: Cal
     said("comparing the recordings with the effects found")
     changes = find_changes(found.problem, found.fit.effects, earlier)
     if changes.targets:
-        changes = _settled(replace(changes, fit=still_needed(changes.problem, changes.fit)))
+        changes = _settled(replace(changes, fit=_still_needed(changes.problem, changes.fit)))
     return Searched(replace(found, problem=changes.problem, fit=changes.fit), changes)
 
 
@@ -104,12 +107,22 @@ def _continued(problem: Problem, start: Sequence[Effect], said: Callable[[str], 
     problem = with_predictable(problem, start)
     earlier = range(len(problem.evidence) - 1)
     again = find_changes(problem, fit(problem, start).effects, earlier)
-    again = replace(again, fit=still_needed(problem, again.fit))
+    again = replace(again, fit=_still_needed(problem, again.fit))
     more = _searched(problem, again, said)
     effects = (*without_shifts(again.fit.effects), *more.fit.effects)
     changes = find_changes(more.problem, effects, earlier)
-    together = still_needed(changes.problem, fit(changes.problem, changes.fit.effects))
+    together = _still_needed(changes.problem, fit(changes.problem, changes.fit.effects))
     return Searched(replace(more, problem=changes.problem, fit=together), replace(changes, fit=together))
+
+
+def _still_needed(problem: Problem, found: Fit) -> Fit:
+    """The fit without effects that no longer pay; what differs by recording stays, and what it belongs to."""
+    shifts = [effect for effect in found.effects if isinstance(effect, RecordingShift)]
+
+    def may_go(effect: Effect) -> bool:
+        return not is_shift(effect) and not any(shift.target.meets(effect) for shift in shifts)
+
+    return needed_members(problem, found, may_go)
 
 
 def _better(first: Searched, second: Searched) -> Searched:

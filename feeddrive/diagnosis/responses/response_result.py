@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -13,7 +12,7 @@ import numpy as np
 
 from feeddrive import __version__
 from feeddrive.diagnosis.likelihood.tolerances import ASSERTED
-from feeddrive.diagnosis.numbers.plant_text import with_written_values
+from feeddrive.diagnosis.plant_text import most_likely_values, with_written_values
 from feeddrive.diagnosis.responses.response_problem import (
     DELAY_SIZE,
     MODE_DAMPING,
@@ -85,6 +84,8 @@ class ResponseResult:
         found: what was found, asserted or possible.
         calibrated_values: words, factor on the declared value, its 95 % interval.
         steps: everything that was tried.
+        effects: that are added.
+        coordinates, deviations: of the declared values, most likely, (k,) [1].
     """
 
     problem: ResponseProblem
@@ -99,6 +100,8 @@ class ResponseResult:
     calibrated_values: tuple[tuple[str, float, tuple[float, float]], ...]
     steps: tuple[Step, ...]
     effects: tuple[Effect, ...]
+    coordinates: FloatArray
+    deviations: FloatArray
 
     @property
     def asserted(self) -> tuple[Found, ...]:
@@ -152,6 +155,8 @@ def diagnose_response(
         _calibrated(problem, search),
         search.steps,
         problem.effects(fit.coordinates[own:], fit.lines),
+        fit.coordinates[:own],
+        np.sqrt(np.diag(fit.covariance)[:own]),
     )
 
 
@@ -209,12 +214,13 @@ def _calibrated(problem: ResponseProblem, search: ResponseSearch) -> tuple[tuple
 
 
 def response_plant_text(text: str, result: ResponseResult) -> str:
-    """The plant file with what is asserted: values in their places, effects at its end.
+    """The plant file with its values as they are most likely, and what is asserted: effects at its end.
 
     Raises:
         InputError: a value that cannot be written into this text.
     """
-    changed = {}
+    values, source = result.problem.values, "calibrated by a frequency response"
+    changed = most_likely_values(values, result.coordinates, result.deviations, source)
     names = []
     for one in result.asserted:
         if one.name != "declared_value":
@@ -261,11 +267,6 @@ def response_record(result: ResponseResult) -> dict[str, Any]:
         "notes": list(response.notes),
         "plant_after": "plant_after.toml",
     }  # fmt: skip
-
-
-def response_json(result: ResponseResult) -> str:
-    """The text of `diagnosis.json`."""
-    return json.dumps(response_record(result), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 
 def _label(one: Found) -> str:

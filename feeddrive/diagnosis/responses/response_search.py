@@ -24,8 +24,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.optimize import least_squares, minimize
-from scipy.special import betaln
 
+from feeddrive.diagnosis.likelihood.set_evidence import log_prior_of_size
 from feeddrive.diagnosis.likelihood.tolerances import BEYOND
 from feeddrive.diagnosis.responses.response_problem import Lines, ResponseProblem
 from feeddrive.errors import InputError
@@ -156,12 +156,6 @@ def search_response(problem: ResponseProblem, said: Callable[[str], None] = lamb
     return ResponseSearch(problem, declared, base, found, gains_of, rivals, tuple(steps))
 
 
-def member_names(problem: ResponseProblem, fit: ResponseFit) -> list[str]:
-    """Names of the members of a set: keys of values, `drive_delay`, `structural_mode`."""
-    names = [problem.values[place].key for place in fit.beyond]
-    return names + ["drive_delay"] * int(fit.lines.delay) + ["structural_mode"] * len(fit.lines.modes)
-
-
 def _of_seen_values(problem: ResponseProblem, declared: FloatArray) -> ResponseProblem:
     """The problem without values that the response does not depend on.
 
@@ -247,11 +241,7 @@ def _gain(before: ResponseFit, after: ResponseFit, count: int) -> float:
     """Change of the log evidence with its prior, both with the τ of the one that leaves less."""
     less = min((before, after), key=lambda one: -one.log_likelihood)
     change = after.evidence(less.correlation) - before.evidence(less.correlation)
-    return change + _log_prior(after.size, count) - _log_prior(before.size, count)
-
-
-def _log_prior(size: int, count: int) -> float:
-    return float(betaln(1 + size, 2 * count - size) - betaln(1, count))
+    return change + log_prior_of_size(after.size, count) - log_prior_of_size(before.size, count)
 
 
 def _needed(problem: ResponseProblem, found: ResponseFit, count: int) -> tuple[ResponseFit, tuple[float, ...]]:

@@ -30,6 +30,13 @@ def lag_of(plant: Plant, channel: str) -> float:
     return lag - float(sum(e.delay(e.values) for e in plant.effects if isinstance(e, TimingEffect)))
 
 
+def repeated(series: FloatArray, rows: tuple[int, int]) -> FloatArray:
+    """A series, shape (n,), read every so many rows from a first one on and repeated between (`logged_rows`)."""
+    every, first = rows
+    index = np.arange(len(series))
+    return np.asarray(series[np.maximum((index - first) // every * every + first, 0)])
+
+
 def lagging(series: FloatArray, lag: float, sample_time: float) -> FloatArray:
     """A series in the band, shape (n,), `lag` [s] later; quintic splines are exact to 1e-4 in the band."""
     if lag == 0:

@@ -27,7 +27,7 @@ from feeddrive.engine.step.step_symbols import StepSymbols
 from feeddrive.typing import Expression
 
 INVERSE = np.linalg.inv(RADAU).round(12)
-"""Of the Radau coefficients: 3/2, 1/2; -9/2, 5/2."""
+"""Inverse of the Radau coefficients: 3/2, 1/2; -9/2, 5/2."""
 
 
 @dataclass(frozen=True)
@@ -91,7 +91,7 @@ class NodeEquations:
         return ca.vertcat(*residual)
 
     def _jacobian(self) -> Expression:
-        """Of the residual; the diagonal is 1 or more, plus dissipation."""
+        """Jacobian of the residual; its diagonal is 1 or more, plus dissipation."""
         s, m, nz, nodes = self.symbols, self.symbols.forced, self.symbols.layout.bristles, self._nodes
         jacobian = ca.SX(2 * (m + nz), 2 * (m + nz))
         for i in range(2):

@@ -65,13 +65,16 @@ class Modes(Shown):
             exact["nut [m]"] = found.nut
         shown.append(("k [N/µm]", 1e-6 * found.stiffness))
         exact["stiffness [N/m]"] = found.stiffness
-        for name, said, values in (("held", "braked" if brake else "held", found.held), ("free", "free", found.free)):
+        for name, heading, values in (
+            ("held", "braked" if brake else "held", found.held),
+            ("free", "free", found.free),
+        ):
             exact |= {f"{name} f{i} [Hz]": column for i, column in enumerate(values.T, 1)}
-            shown += [(f"{said} f{i} [Hz]", column) for i, column in enumerate(values.T[:SHOWN], 1)]
+            shown += [(f"{heading} f{i} [Hz]", column) for i, column in enumerate(values.T[:SHOWN], 1)]
         rows = [[f"{column[i]:.1f}" for _, column in shown] for i in range(len(found.positions))]
         records = [{key: float(column[i]) for key, column in exact.items()} for i in range(len(found.positions))]
         caption = chain_remark(float(np.min(found.chain_valid_to)))
-        return Listing(title, [heading for heading, _ in shown], rows, records, caption)
+        return Listing(title, [name for name, _ in shown], rows, records, caption)
 
     def record(self) -> dict[str, Any]:
         """Everything as plain values, SI."""

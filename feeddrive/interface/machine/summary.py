@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from feeddrive.interface.machine.heat_summary import HeatSummary
 from feeddrive.interface.shown import Listing, Shown, finite, write_figures, write_json
+from feeddrive.parts.life.consumed_life import ConsumedLife
 from feeddrive.plant.analysis.modes import Modes
 from feeddrive.plant.analysis.rated_life import LifeRow
 from feeddrive.plant.analysis.stiffness_budget import StiffnessBudget
@@ -119,6 +120,30 @@ class Life(Shown):
         if not self.rows:
             title += " (not known: ball_screw.dynamic_rating is not declared)"
         return Listing(title, headings, rows, records)
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class UsedLife(Shown):
+    """What a motion takes of the life of each nut of the ball screw.
+
+    Attributes:
+        name: of the run or the recording.
+        used: along the samples; None where no dynamic rating is declared, or no force of a nut is known.
+    """
+
+    name: str
+    used: ConsumedLife | None
+
+    def listing(self) -> Listing:
+        """One row per nut, then how often 90 % survive the motion."""
+        title = f"{self.name}: life of the ball screw that it takes"
+        if self.used is None:
+            return Listing(f"{title} (not known: ball_screw.dynamic_rating is not declared)", ("nut", "used"), [], [])
+        totals = dict(zip(("nut +", "nut −"), map(float, self.used.total), strict=True))
+        rows = [[name, f"{1e6 * share:.3g} millionths of its rated life"] for name, share in totals.items()]
+        rows.append(["both, survived by 90 %", f"{_digits(self.used.repetitions)} times one after another"])
+        records = [{"nut": name, "used [1]": share} for name, share in totals.items()]
+        return Listing(title, ("nut", "used"), rows, [*records, {"repetitions": finite(self.used.repetitions)}])
 
 
 @dataclass(frozen=True, repr=False, eq=False)

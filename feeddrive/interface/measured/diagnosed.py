@@ -8,10 +8,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 from feeddrive.compensation.actions import Actions, actions
-from feeddrive.diagnosis.calibration.plant_text import with_calibrated_values
 from feeddrive.diagnosis.diagnose import diagnose as find_what_lacks
 from feeddrive.diagnosis.judging.result import Diagnosis
 from feeddrive.diagnosis.likelihood.outputs import diagnosis_json, diagnosis_record, write_outputs
+from feeddrive.diagnosis.numbers.measured_file import read_measured_numbers
+from feeddrive.diagnosis.plant_text import with_calibrated_values
+from feeddrive.diagnosis.suspicion.quality import is_recorders, quality_lines
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 from feeddrive.interface.axis import Axis, axis_of_text
@@ -21,6 +23,7 @@ from feeddrive.plant.file.effect_text import plant_text_with_effects
 from feeddrive.recording.recording import Recording
 from feeddrive.report.certainty import experiment_sentences
 from feeddrive.report.pages.section_calibrated import calibrated_lines
+from feeddrive.report.pages.section_measured import measured_lines
 from feeddrive.report.parameters import parameter_text
 from feeddrive.report.records import used_sentence
 from feeddrive.report.simulated import simulation_lines
@@ -28,6 +31,7 @@ from feeddrive.report.words.people import error_text, share_text
 from feeddrive.report.words.verdict import verdict_sentences
 
 if TYPE_CHECKING:
+    from feeddrive.interface.compensating import Compensation
     from feeddrive.report.figures.drawing import ReportFigure
 
 Given = Recording | str | Path
@@ -134,11 +138,11 @@ class Diagnosed(Shown):
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """What goes with the errors: data used, each effect in words, what is alike, what to record next."""
+        """Sentences on the data used, each effect, what is alike, and what to record next."""
         found = self.diagnosis
         lines = [used_sentence(found)]
         lines += [f"{one.name}: {one.evidence} {one.reading}" for one in found.effects]
-        lines += calibrated_lines(found)
+        lines += [*quality_lines(found.quality), *calibrated_lines(found), *measured_lines(found)]
         lines += [f"since the earlier diagnosis: {sentence}" for sentence in found.kept.since]
         lines += [
             f"cannot be told apart by these recordings: {', '.join(one.names)}: {one.reason}" for one in found.alike
@@ -162,7 +166,8 @@ class Diagnosed(Shown):
     def plant(self) -> Axis:
         """The axis with its declared values as calibrated, and with what was found."""
         text = with_calibrated_values(self.axis.text, self.diagnosis.calibrated)
-        axis = axis_of_text(plant_text_with_effects(text, (*self.axis.added, *self.found)), self.axis.path)
+        own = [effect for effect in self.found if not is_recorders(effect)]
+        axis = axis_of_text(plant_text_with_effects(text, (*self.axis.added, *own)), self.axis.path)
         return axis.with_values(dict(self.axis.values)) if self.axis.values else axis
 
     def record(self) -> dict[str, Any]:
@@ -181,8 +186,22 @@ class Diagnosed(Shown):
         """
         from feeddrive.report.pages.html import write_report
 
-        write_report(self.diagnosis, Path(path), todo=self._actions())
+        write_report(self.diagnosis, Path(path), todo=self._actions(), bench=self._bench())
         return Path(path)
+
+    def compensation(self, form: str = "csv", **options: Any) -> Compensation:
+        """What was found as a table that a control reads.
+
+        Args:
+            form: of the control, see `compensate`.
+            **options: as of `compensate`, such as every="10 mm".
+
+        Raises:
+            InputError: nothing that a table may hold, or as `compensate`.
+        """
+        from feeddrive.interface.compensating import compensate
+
+        return compensate(self, form, **options)
 
     def save(self, folder: str | Path) -> Path:
         """Write `diagnosis.json`, `prediction.csv`, `plant_after.toml`, `report.html` and the figures.
@@ -197,12 +216,18 @@ class Diagnosed(Shown):
         pictures = render_figures(self.diagnosis)
         write_outputs(self.diagnosis, self.found, self.axis.text, place)
         save_figures(self.diagnosis, place, pictures)
-        write_report(self.diagnosis, place / "report.html", pictures, todo=self._actions())
+        write_report(self.diagnosis, place / "report.html", pictures, todo=self._actions(), bench=self._bench())
         return place
 
     def _actions(self) -> Actions:
         """What to do, with a prediction where a table helps."""
         return actions(self.diagnosis, self.plant.plant)
+
+    def _bench(self) -> str:
+        """The page for the tab of the report."""
+        from feeddrive.interface.benching import bench_of_diagnosis  # which takes a diagnosis
+
+        return bench_of_diagnosis(self.plant.plant, self.diagnosis)
 
     def listing(self) -> Listing:
         """The effects, or where there are none the errors."""
@@ -221,6 +246,7 @@ def diagnose(
     validate: Given | Sequence[Given] | None = None,
     split: float = 0.75,
     simulate: bool = False,
+    measured: str | Path | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> Diagnosed:
     """Find what an axis lacks.
@@ -231,6 +257,7 @@ def diagnose(
         validate: to judge on; the last part of each fitted one if left out.
         split: share that is fitted then.
         simulate: also simulate the closed loop where a controller is declared.
+        measured: TOML file of numbers that were measured beside, `[[measured]]`: a stiffness, a natural frequency.
         progress: called with a word for what is being done.
 
     Raises:
@@ -239,7 +266,9 @@ def diagnose(
     fitted, judged = _several(recording, "recording"), _several(validate, "validate")
     if not fitted:
         raise InputError("no recording is given", "recording", "give fd.read(...), or the path of a file")
-    result, effects = find_what_lacks(axis.plant, fitted, judged, split, simulate, progress or (lambda _: None), ())
+    numbers = read_measured_numbers(Path(measured), axis.plant) if measured is not None else ()
+    said = progress or (lambda _: None)
+    result, effects = find_what_lacks(axis.plant, fitted, judged, split, simulate, said, (), numbers)
     return Diagnosed(axis, result, tuple(effects))
 
 

@@ -15,12 +15,14 @@ from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.ledger.continued import Earlier, changed_since, earlier_run
 from feeddrive.diagnosis.ledger.ledger import FileUse, RunFiles, checksum, runs_of, write_ledger, written_earlier
 from feeddrive.diagnosis.likelihood.outputs import write_outputs
+from feeddrive.diagnosis.numbers.measured_file import read_measured_numbers
 from feeddrive.diagnosis.preparation import informative
 from feeddrive.effects.base import Effect
 from feeddrive.effects.tabulated import Tabulated
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant, shipped_plants
 from feeddrive.interface.axis import load
+from feeddrive.interface.benching import bench_of_diagnosis
 from feeddrive.interface.measured.diagnosed import Diagnosed
 from feeddrive.output_folder import finish_interrupted, output_folder, refuse_unusable, take_away
 from feeddrive.recording import Recording, read_recording
@@ -44,6 +46,7 @@ class Options:
     mapping: Path | None = None
     decimal: str | None = None
     simulate: bool = False
+    measured: Path | None = None
 
 
 @dataclass(frozen=True)
@@ -67,6 +70,7 @@ class Job:
     simulate: bool = False
     start: tuple[Effect, ...] = ()
     earlier: Earlier | None = None
+    measured: Path | None = None
 
 
 def first_job(arguments: Sequence[str], options: Options) -> Job:
@@ -82,7 +86,8 @@ def first_job(arguments: Sequence[str], options: Options) -> Job:
     split = SPLIT if options.split is None else options.split
     fitted = tuple(_source(Path(name), options) for name in arguments[1:])
     judged = tuple(_source(path, options) for path in options.validate)
-    return Job(find_plant(arguments[0]), fitted, judged, options.out, split, options.simulate)
+    plant = find_plant(arguments[0])
+    return Job(plant, fitted, judged, options.out, split, options.simulate, measured=options.measured)
 
 
 def continued_job(arguments: Sequence[str], folder: Path, options: Options) -> Job:
@@ -116,6 +121,7 @@ def continued_job(arguments: Sequence[str], folder: Path, options: Options) -> J
         options.simulate,
         tuple(effect for effect in earlier.effects if not isinstance(effect, Tabulated)),
         earlier,
+        options.measured,
     )
 
 
@@ -141,18 +147,20 @@ def diagnose_files(job: Job, progress: Callable[[str], None] = lambda _: None) -
     if _bytes(job.plant) != declared:
         raise InputError("was changed while it was read", str(job.plant), "diagnose again")
     plant = axis.plant
-    result, effects = diagnose(plant, fitted, judged, job.split, job.simulate, progress, job.start)
+    numbers = read_measured_numbers(job.measured, plant) if job.measured is not None else ()
+    result, effects = diagnose(plant, fitted, judged, job.split, job.simulate, progress, job.start, numbers)
     if job.earlier is not None:
         since = changed_since(job.earlier.told, result.effects)
         result = replace(result, kept=replace(result.kept, since=since))
     progress("predicting what a repair and a compensation bring")
-    todo = actions(result, plant.with_effects(*effects))
+    after = plant.with_effects(*effects)
+    todo, bench = actions(result, after), bench_of_diagnosis(after, result)
     progress("writing the report")
     pictures = render_figures(result)
     with output_folder(job.out) as folder:
         write_outputs(result, effects, declared.decode("utf-8").replace("\r\n", "\n"), folder)
         save_figures(result, folder, pictures)
-        write_report(result, folder / "report.html", pictures, Occasion(_command(job), _today()), todo)
+        write_report(result, folder / "report.html", pictures, Occasion(_command(job), _today()), todo, bench)
         # Read now: another diagnosis may have written here meanwhile.
         there = runs_of(job.out)
         take_away(folder, written_earlier(there))  # a figure that this run has no reason to draw
@@ -172,6 +180,7 @@ def _command(job: Job) -> str:
     first = job.recordings[0]  # files typed together are read alike
     words += ["--map", str(first.mapping)] if first.mapping is not None else []
     words += ["--decimal", first.decimal] if first.decimal is not None else []
+    words += ["--measured", str(job.measured)] if job.measured is not None else []
     words += [] if job.validation else ["--split", f"{job.split:g}"]
     return shlex.join([*words, *(["--simulate"] if job.simulate else []), "--out", str(job.out)])
 

@@ -168,7 +168,7 @@ def watch(
     Raises:
         InputError: no folder, no recording that can be used, or an option that is none.
     """
-    said = progress or (lambda _: None)
+    tell = progress or (lambda _: None)
     place = Path(folder)
     if plant.values or plant.added:
         raise InputError("the axis was changed after it was loaded", plant.name, "save it, and load the file")
@@ -184,14 +184,14 @@ def watch(
         _absolute(absolute, plant),
         dict(limits or {}),
     )
-    trend, kept = follow(plant.plant, plant.text, plant.entries, place, target, options, said)
+    trend, kept = follow(plant.plant, plant.text, plant.entries, place, target, options, tell)
     unknown = set(options.limits or {}) - {one.name for one in trend.quantities if one.watched}
     if unknown:
         held = ", ".join(one.name for one in trend.quantities if one.watched)
         raise InputError(f'no quantity "{sorted(unknown)[0]}" is watched', "limits", f"it has {held}")
     if not search:
         return Watched(plant, trend, target)
-    found, kept = searched_events(plant.plant, trend, kept, place, target, options, said)
+    found, kept = searched_events(plant.plant, trend, kept, place, target, options, tell)
     save_checkpoint(target, kept)
     return Watched(plant, trend, target, found)
 

@@ -37,7 +37,7 @@ UNITS = {
     "speed_excitation": "rad/s",
     "torque_excitation": "N m",
 }
-"""Of what a controller may be fed."""
+"""Units of what a controller may be fed."""
 
 SERIES = {
     "command": "N m",

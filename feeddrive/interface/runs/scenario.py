@@ -14,6 +14,7 @@ from feeddrive import __version__
 from feeddrive.errors import InputError
 from feeddrive.files import find_scenario
 from feeddrive.interface.axis import Axis, load
+from feeddrive.interface.machine.summary import UsedLife
 from feeddrive.interface.runs.figure_listing import figure_listing
 from feeddrive.interface.servo import Servo, controller_entries
 from feeddrive.interface.shown import Listing, Shown, finite, needed_pandas, write_figures, write_json
@@ -27,6 +28,7 @@ from feeddrive.servo.linear_loop import worst_eigenvalue
 from feeddrive.simulate.scenario.scenario_file import GivenPlant, read_scenario
 from feeddrive.simulate.scenario.scenario_result import SERIES, ScenarioResult
 from feeddrive.simulate.scenario.scenario_run import run_scenario
+from feeddrive.simulate.used_life import used_life
 from feeddrive.units.quantity import format_quantity
 
 if TYPE_CHECKING:
@@ -80,6 +82,16 @@ class Run(Shown):
         """Every single number of the run by its name, SI; infinite for a time that never comes."""
         return {name: one.value for name, one in run_metrics(self.result).items()}
 
+    def life(self) -> UsedLife:
+        """What the run takes of the life of each nut of the ball screw, and how often 90 % survive it.
+
+        Raises:
+            SimulationError: a motion that cannot be followed.
+        """
+        series, plant = self.result.series, self.result.scenario.plant
+        used = used_life(plant, self.result.time, series["motor_angle"], series["cutting_force"])
+        return UsedLife(self.result.scenario.name, used)
+
     def listing(self) -> Listing:
         """One row per number: following error, torque, and the figures that the scenario asks for."""
         found = run_metrics(self.result)
@@ -88,6 +100,10 @@ class Run(Shown):
             for name, one in found.items()
         ]
         records = [{"figure": name, "value": one.value, "unit": one.unit} for name, one in found.items()]
+        life = self.life()
+        if life.used is not None:
+            rows += [[f"life, {nut}", text] for nut, text in life.listing().rows]
+            records += life.listing().records
         title = f"{self.result.scenario.name}, {self.result.scenario.plant.name}"
         return Listing(title, ("figure", "quantity"), rows, records)
 

@@ -84,7 +84,7 @@ class WarmUp(Shown):
 
     @cached_property
     def network(self) -> Network:
-        """Lumped network at the mean conductances of the run, for reading: its errors are some per cent."""
+        """Lumped network at the mean conductances of the run, for reading; its errors are some per cent."""
         found = self.study
         bodies = (*found.plant.bodies, *found.plant.attached)
         return network(found.plant.rig, found.conductances, self.segments, bodies)

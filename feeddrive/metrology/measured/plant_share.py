@@ -27,7 +27,7 @@ DWELL = 0.25
 """At a target [s], as its last half is read: ten time constants of a nut spring with its damping, and more."""
 
 SPEED = 0.1
-"""Speed of the approach at most [m/s]: friction and not inertia loads the spring when the axis comes to rest."""
+"""Fastest approach [m/s]: friction and not inertia loads the spring when the axis comes to rest."""
 
 LEAST_MOVE = 0.1
 """Time of the shortest move [s]."""

@@ -19,7 +19,7 @@ from feeddrive.recording import Recording
 from feeddrive.typing import FloatArray
 
 SHORTEST_STOP = 0.1
-"""Rest of the set-point [s]: half of it is averaged, a few periods of the slowest mode of an axis, 40 Hz and more."""
+"""Shortest stop of the set-point [s]: half of it is averaged, a few periods of the slowest mode, 40 Hz and more."""
 
 SLOWEST = 1e-3
 """Speed of the motor's position below which an axis without a set-point stands [m/s]."""

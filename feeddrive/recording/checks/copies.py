@@ -18,7 +18,7 @@ from feeddrive.recording.checks.flaws import resolution
 from feeddrive.typing import FloatArray
 
 ROUNDED = 0.6
-"""Share of a resolution, by which a rounded value departs: half of it, and what the scale between the two loses."""
+"""Share of a resolution by which a rounded value departs: half of it, and what the scale between the two loses."""
 
 WIDE = 1000.0
 """Range over resolution from which a copy is told from two sensors that see next to nothing."""

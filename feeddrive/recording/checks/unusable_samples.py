@@ -35,7 +35,7 @@ BEYOND = 1e6
 """Over the usual size, from which a number is none that was measured, and no unit was mistaken."""
 
 NOTHING = 1e-12
-"""Share of the usual size, below which a change is the rounding of the computer that wrote the file."""
+"""Share of the usual size below which a change is the rounding of the computer that wrote the file."""
 
 FASTEST_ROWS, SLOWEST_ROWS = 1e-8, 1e5
 """Time between rows that is possible [s]: a recorder of 100 MHz, a row a day."""

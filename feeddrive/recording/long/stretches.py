@@ -38,7 +38,7 @@ PLACES, SPEEDS, HOURS = 12, 8, 8
 """Hats over the stroke, over three decades of speed, and over the time of the recording."""
 
 SEED = 3
-"""Seed of the places of the rows that are looked at; so that a recording is always cut in the same way."""
+"""Seed of the places of the rows that are looked at, so that a recording is always cut in the same way."""
 
 
 def informative_windows(recording: Recording, seconds: float) -> list[tuple[int, int]]:

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 _REPAIRED = "#009e73"
 _RIM = 0.35
-"""Of the plot's radius that the largest radial deviation takes."""
+"""Share of the plot's radius that the largest radial deviation takes."""
 
 
 def compensation_figures(done: Compensated) -> Iterator[ReportFigure]:

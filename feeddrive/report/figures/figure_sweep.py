@@ -26,7 +26,7 @@ _MOST_COLUMNS = 4
 
 _DECADE = 10.0
 _LETTERS = 115
-"""Of a line of the title."""
+"""Letters of a line of the title."""
 
 _MANY_WORDS = 6
 _RUNS_OF_A_SCATTER = 400

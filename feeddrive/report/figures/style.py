@@ -38,7 +38,20 @@ ul { margin: 6px 0; padding-left: 20px; } li { overflow-wrap: break-word; }
 figure { margin: 18px 0 26px; break-inside: avoid; }
 figure img { display: block; width: 100%; height: auto; }
 figcaption { margin-top: 6px; }
+.tabs > input { position: absolute; opacity: 0; }
+.tabs > label { display: inline-block; padding: 5px 16px; margin: 0 4px 12px 0; border: 1px solid #b8b8b8;
+  border-radius: 4px; cursor: pointer; }
+.tabs > input:checked + label { background: #0072b2; border-color: #0072b2; color: #fff; }
+.tabs > input:focus-visible + label { outline: 2px solid #d55e00; }
+#tab-bench:not(:checked) ~ .pane-bench, #tab-bench:checked ~ .pane-report { display: none; }
+.pane-bench { position: relative; left: 50%; width: min(1400px, 100vw - 24px); transform: translateX(-50%); }
+.pane-bench iframe { display: block; width: 100%; height: max(900px, 100vh - 120px); border: 1px solid #d9d9d9; }
 @media (max-width: 600px) {
+  thead { display: none; }
+  tr { display: block; border-bottom: 1px solid #c8c8c8; padding: 4px 0; }
+  td, td.number { display: flex; gap: 1em; border: 0; padding: 2px 0; text-align: left; white-space: normal; }
+  td::before { content: attr(data-label); flex: 0 0 38%; color: #6b6b6b; }
+  td:not([data-label])::before, td:empty { display: none; }
   body { padding: 16px 12px 40px; } h1 { font-size: 21px; } .main { font-size: 16px; }
   .verdict { padding: 8px 12px; } dd { margin-left: 10px; }
 }
@@ -46,5 +59,6 @@ figcaption { margin-top: 6px; }
   body { max-width: none; padding: 0; font-size: 10.5pt; }
   h2 { break-after: avoid; } tr, .verdict { break-inside: avoid; }
   .verdict { background: #fff; }
+  .tabs > label, .pane-bench { display: none; } #tab-bench:checked ~ .pane-report { display: block; }
 }
 """

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from html import escape
 from pathlib import Path
 
 from feeddrive.compensation.actions import Actions
@@ -16,6 +17,7 @@ from feeddrive.report.pages.markup import figure, paragraph, section, text
 from feeddrive.report.pages.section_actions import actions_section
 from feeddrive.report.pages.section_calibrated import calibrated_section
 from feeddrive.report.pages.section_changes import changes_section, since_section
+from feeddrive.report.pages.section_measured import measured_section
 from feeddrive.report.pages.section_unexplained import unexplained_section
 from feeddrive.report.pages.sections import (
     effects_section,
@@ -34,8 +36,11 @@ def write_report(
     rendered: tuple[RenderedFigure, ...] | None = None,
     occasion: Occasion = UNKNOWN,
     todo: Actions | None = None,
+    bench: str = "",
 ) -> None:
-    """Write the report as one file without scripts or outside resources; an old one is replaced as a whole.
+    """Write the report as one file without outside resources; an old one is replaced as a whole.
+
+    The report itself has no scripts; those of a bench run in a frame of its own, which sees nothing of the report.
 
     Args:
         diagnosis: what was found.
@@ -43,17 +48,19 @@ def write_report(
         rendered: figures drawn before by `render_figures`; drawn here if left away.
         occasion: when and by which command it was made.
         todo: what to do, and what it brings.
+        bench: page for a second tab, on which the machine as diagnosed can be tried; no tabs without.
 
     Raises:
         InputError: the file cannot be written.
     """
     figures = render_figures(diagnosis) if rendered is None else rendered
-    write_text_atomically(path, report_page(diagnosis, figures, occasion, todo))
+    write_text_atomically(path, report_page(diagnosis, figures, occasion, todo, bench))
 
 
 def report_page(
-    diagnosis: Diagnosis, figures: tuple[RenderedFigure, ...], occasion: Occasion = UNKNOWN, todo: Actions | None = None
-) -> str:
+    diagnosis: Diagnosis, figures: tuple[RenderedFigure, ...], occasion: Occasion = UNKNOWN,
+    todo: Actions | None = None, bench: str = "",
+) -> str:  # fmt: skip
     """The page as text, in the order in which a servo engineer asks."""
     tried = "".join(figure(one) for one in figures if one.stem == "tried")
     explaining = "".join(figure(one) for one in figures if one.stem.startswith(("explains", "curve")))
@@ -66,6 +73,7 @@ def report_page(
         actions_section(diagnosis, todo),
         effects_section(diagnosis) + explaining,
         calibrated_section(diagnosis),
+        measured_section(diagnosis),
         changes_section(diagnosis) + since_section(diagnosis),
         ambiguous_section(diagnosis) + experiments_section(diagnosis),
         correlation_section(diagnosis),
@@ -76,7 +84,22 @@ def report_page(
         recordings_section(diagnosis),
         stamp_section(diagnosis, occasion),
     )
-    return page(f"Diagnosis of {diagnosis.plant}", _under_title(diagnosis), "".join(sections))
+    return page(f"Diagnosis of {diagnosis.plant}", _under_title(diagnosis), _with_bench("".join(sections), bench))
+
+
+def _with_bench(report: str, bench: str) -> str:
+    """The report as the first of two tabs, the bench as the second; the report alone where there is no bench."""
+    if not bench:
+        return report
+    tabs = "".join(
+        f'<input type="radio" name="tab" id="tab-{key}"{checked}><label for="tab-{key}">{name}</label>'
+        for key, name, checked in (("report", "Report", " checked"), ("bench", "Bench", ""))
+    )
+    frame = f'<iframe title="Bench" loading="lazy" sandbox="allow-scripts allow-downloads" srcdoc="{escape(bench)}">'
+    return (
+        f'<div class="tabs">{tabs}\n<div class="pane-report">{report}</div>\n'
+        f'<div class="pane-bench">{frame}</iframe></div></div>\n'
+    )
 
 
 def _under_title(diagnosis: Diagnosis) -> str:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import base64
 import html
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 
 from feeddrive.report.figures.drawing import RenderedFigure
 
+_TAG = re.compile(r"<[^>]*>")
 _KEPT = "\n\N{NO-BREAK SPACE}"
 
 
@@ -54,12 +56,15 @@ def bullets(lines: Iterable[str]) -> str:
 def table(heads: list[Cell], rows: Iterable[list[Cell]], kind: str = "") -> str:
     """A table with one line of heads; numbers and their heads stand flush right."""
     head = "".join(f"<th{_class('number' if cell.number else '')}>{cell.inner}</th>" for cell in heads)
-    body = "".join(f"<tr>{''.join(map(_data_cell, row))}</tr>\n" for row in rows)
+    labels = [_TAG.sub(" ", cell.inner).strip() for cell in heads]  # beside each cell where a row is set as a list
+    cells = ("".join(_data_cell(cell, label) for cell, label in zip(row, labels, strict=False)) for row in rows)
+    body = "".join(f"<tr>{row}</tr>\n" for row in cells)
     return f'<div class="wide"><table{_class(kind)}><thead><tr>{head}</tr></thead>\n<tbody>{body}</tbody></table></div>'
 
 
-def _data_cell(cell: Cell) -> str:
-    return f"<td{_class('number' if cell.number else '')}>{cell.inner}</td>"
+def _data_cell(cell: Cell, label: str) -> str:
+    named = f' data-label="{label}"' if label else ""
+    return f"<td{_class('number' if cell.number else '')}{named}>{cell.inner}</td>"
 
 
 def section(title: str, *parts: str) -> str:

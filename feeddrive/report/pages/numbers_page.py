@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 
 from feeddrive.diagnosis.numbers.numbers_result import NumbersResult
-from feeddrive.files import write_text_atomically
 from feeddrive.report.figures.drawing import RenderedFigure
 from feeddrive.report.pages.html import page
 from feeddrive.report.pages.markup import Cell, bullets, figure, number, paragraph, section, table, words
@@ -14,15 +12,6 @@ from feeddrive.report.words.numbers_words import numbers_verdict, odds_text, val
 from feeddrive.units.quantity import format_quantity
 
 _SETS, _FURTHER = 8, 6
-
-
-def write_numbers_page(result: NumbersResult, picture: RenderedFigure, path: Path) -> None:
-    """Write the page.
-
-    Raises:
-        InputError: the file cannot be written.
-    """
-    write_text_atomically(path, numbers_page(result, picture))
 
 
 def numbers_page(result: NumbersResult, picture: RenderedFigure) -> str:

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from feeddrive.diagnosis.responses.response_result import ResponseResult
-from feeddrive.files import write_text_atomically
 from feeddrive.report.figures.drawing import RenderedFigure
 from feeddrive.report.pages.html import page
 from feeddrive.report.pages.markup import bullets, figure, number, paragraph, section, table, words
@@ -13,15 +10,6 @@ from feeddrive.report.words.response_words import response_verdict
 from feeddrive.units.quantity import format_quantity
 
 _STEPS = 12
-
-
-def write_response_page(result: ResponseResult, picture: RenderedFigure, path: Path) -> None:
-    """Write the page.
-
-    Raises:
-        InputError: the file cannot be written.
-    """
-    write_text_atomically(path, response_page(result, picture))
 
 
 def response_page(result: ResponseResult, picture: RenderedFigure) -> str:

@@ -13,12 +13,17 @@ from feeddrive.report.words.people import DASH, error_text
 
 _KINDS = {REPAIR: "Look at", SET: "Set", COMPENSATE: "Compensate", "watch": "Watch"}
 _FILES = {
-    "table": "feeddrive compensate FOLDER --form linuxcnc|sinumerik-enc|sinumerik-cec|isg|heidenhain-csv|"
-             "fanuc-parameters|csv --out FILE",
+    "table": "feeddrive compensate FOLDER (of this report) --form linuxcnc|sinumerik-enc|sinumerik-cec|isg|"
+             "heidenhain-csv|fanuc-parameters|csv --out FILE",
     "heat": "feeddrive compensate FOLDER --form sinumerik-temp --out FILE",
     "friction": "the sheet of feeddrive compensate, friction at reversals",
     "cogging": "feeddrive compensate FOLDER --out FILE, which writes FILE_cogging.csv",
 }  # fmt: skip
+
+_CHECK = (
+    "Load the table, measure the check of one point on its sheet, then record the same motion again and diagnose it: "
+    "the errors should be those predicted after compensation."
+)
 
 
 def actions_section(diagnosis: Diagnosis, found: Actions | None) -> str:
@@ -26,13 +31,15 @@ def actions_section(diagnosis: Diagnosis, found: Actions | None) -> str:
     if found is None or (not found.effects and found.predicted is None):
         return ""
     by_name = {one.name: one for one in diagnosis.effects}
-    heads = [words("First to last"), words("What"), words("Found"), words("File")]
+    heads = [words("First to last"), words("What"), words("Found"), words("Value to set"), words("File")]
     rows = [
         [words(f"{i}. {_KINDS[cure(name).kind]}"), words(cure(name).look_at), words(_found(by_name[name])),
-         words(_FILES.get(cure(name).form, DASH))]
+         words(found.set_to.get(name, DASH)), words(_FILES.get(cure(name).form, DASH))]
         for i, name in enumerate(found.effects, 1)
     ]  # fmt: skip
     experiments = experiment_sentences(diagnosis)
+    if not experiments and found.predicted is not None:
+        experiments = [_CHECK]
     after = paragraph("Next experiment:") + bullets(experiments) if experiments else ""
     listed = table(heads, rows) if rows else ""
     return section("What to do", listed, _predicted(found), after)
@@ -56,4 +63,5 @@ def _predicted(found: Actions) -> str:
         f"Simulated from {ends[0]:.4g} mm to {ends[1]:.4g} mm with the position loop closed at the motor, in slow "
         "motion; one approach per direction, so that nothing scatters. Repair renews preload; compensation is a table."
     )
-    return table(heads, rows) + bullets(left(found.predicted)) + paragraph(note, "note")
+    rest = [line.replace(" um", " \N{MICRO SIGN}m") for line in left(found.predicted)]
+    return table(heads, rows) + bullets(rest) + paragraph(note, "note")

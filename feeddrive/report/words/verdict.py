@@ -7,6 +7,7 @@ import math
 from feeddrive.diagnosis.judging.result import ChannelResult, Diagnosis
 from feeddrive.report.pages.section_changes import change_sentences
 from feeddrive.report.parameters import effect_sentence
+from feeddrive.report.words.numbers_words import odds_text
 from feeddrive.report.words.people import error_text, share_text, significant
 from feeddrive.report.words.words import effect_words, joined, plain, variable_words
 
@@ -99,6 +100,11 @@ def _doubts(diagnosis: Diagnosis) -> list[str]:
         f"These data cannot tell apart: {joined([effect_words(name) for name in names])}."
         for names in diagnosis.ambiguous
     ]
+    for one in diagnosis.possible:
+        if not one.instead_of:
+            odds = odds_text(one.odds / (1 + one.odds))
+            said = f"Possible beside these: {effect_words(one.name)} (odds {odds})"
+            sentences.append(f"{said}; {one.settles} settles it.")
     idle = [effect_words(effect.name) for effect in diagnosis.effects if not effect.carries]
     if idle:
         sentences.append(f"Not confirmed on data not fitted: {joined(idle)}.")

@@ -26,10 +26,10 @@ from feeddrive.symbolic_turn import SYMBOLS
 from feeddrive.typing import Expression
 
 PARAMETERS = ("position_gain", "velocity_gain", "output_limit", "torque_per_output", "radius", "sample_time")
-"""Of the function, in order."""
+"""Parameters of the function, in order."""
 
 REFERENCES = ("position", "speed_excitation", "torque_excitation")
-"""Of the table [m]; injected at the motor [rad/s, N m]."""
+"""References: of the table [m]; injected at the motor [rad/s, N m]."""
 
 
 def position_velocity_controller(

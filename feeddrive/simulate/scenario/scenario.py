@@ -95,10 +95,10 @@ class Scenario:
 
     @property
     def sample_time(self) -> float:
-        """Of the recording [s]."""
+        """Distance of the samples of the recording [s]."""
         return self.cascade.sample_time * self.recorder.divider
 
     @property
     def duration(self) -> float:
-        """Of the run [s]."""
+        """Length of the run [s]."""
         return self.ticks * self.cascade.sample_time

@@ -57,10 +57,10 @@ from feeddrive.simulate.setpoints.trajectories import (
 from feeddrive.simulate.setpoints.waveforms import Multisine, Prbs, Sweep, Waveform
 
 MOST_REPEATS = 10_000
-"""Of a motion; a day of moves of some seconds. Every piece of it is held in memory."""
+"""Repeats of a motion at most: a day of moves of some seconds. Every piece of it is held in memory."""
 
 MOST_TEETH = 1000
-"""Of a cutter; the largest face mills have some hundred."""
+"""Teeth of a cutter at most; the largest face mills have some hundred."""
 
 
 def read_trajectory(table: Table) -> Trajectory:

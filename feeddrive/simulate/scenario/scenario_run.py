@@ -40,7 +40,7 @@ CHECKPOINT_EVERY = 5.0
 """Seconds of work between checkpoints; shorter runs write none."""
 
 CHECKPOINT_SHARE = 0.05
-"""Of the time that writing checkpoints may take: large ones are written more seldom."""
+"""Share of the time that writing checkpoints may take: large ones are written more seldom."""
 
 _DAMAGE = (
     ValueError,

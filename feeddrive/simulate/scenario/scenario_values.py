@@ -6,7 +6,7 @@ from feeddrive.errors import InputError, quoted
 from feeddrive.plant.file.entries import Table
 
 MOST = 1_000_000_000
-"""Of a whole number that nothing else bounds: above any count of lines, periods or cycles, below what overflows."""
+"""Bound of a whole number that nothing else bounds: above any count of lines or cycles, below what overflows."""
 
 
 def optional(table: Table, key: str, unit: str, default: float) -> float:

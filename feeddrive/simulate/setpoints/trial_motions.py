@@ -21,9 +21,9 @@ from feeddrive.simulate.setpoints.motion import Trajectory
 from feeddrive.simulate.setpoints.trajectories import Circle, position_step
 
 RADIUS, FEED, TURNS = 0.005, 0.05, 1.15
-"""Of the circle [m, m/s, 1]: a whole turn at constant feed is looked at, the rest runs up and out."""
+"""Circle [m, m/s, 1]: a whole turn at constant feed is looked at, the rest runs up and out."""
 HEIGHT, STEP_AT, STEP_LASTS = 20e-6, 0.005, 0.06
-"""Of the step [m, s, s]."""
+"""Step: height, begin and length [m, s, s]."""
 _LIMITS, _DWELL = Limits(FEED, 1.0, 40.0), 0.01
 _CHANNELS = ("setpoint", "motor_torque", "motor_angle", "table_position")
 

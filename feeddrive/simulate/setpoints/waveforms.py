@@ -32,7 +32,7 @@ _LENGTHS = range(4, 21)
 """Orders of the binary sequence."""
 
 _MOST_HARMONICS = 1e5
-"""Of a multisine: 100 s up to 1 kHz. Its crest is looked for at 32 times as many places, 26 MB a series."""
+"""Harmonics of a multisine at most: 100 s up to 1 kHz. Its crest is sought at 32 times as many places, 26 MB each."""
 
 
 class Waveform(Protocol):

@@ -25,7 +25,7 @@ UNIT_TIME = 0.5
 """Seconds of work in a unit, about: what is lost where a worker is killed."""
 
 _FEWEST_UNITS = 16
-"""Of a sweep that has so many runs, so that workers end together."""
+"""Fewest units of a sweep that has so many runs, so that workers end together."""
 
 _UNTIMED = 4
 """Runs of a unit where the first run failed, so that its time says nothing."""

@@ -46,7 +46,7 @@ class Design:
     base_digest: str
 
     def overrides(self, row: tuple[Value, ...]) -> dict[str, str]:
-        """Of one run, as `read_scenario` takes them."""
+        """Settings of one run, as `read_scenario` takes them."""
         varied = {one.key: one.text(value) for one, value in zip(self.parameters, row, strict=True)}
         return {**self.settings, **varied}
 

@@ -23,7 +23,7 @@ MOST_RUNS = 100_000
 """Runs of a sweep at most: tables beyond it are a slip of a count more often than meant."""
 
 Value = float | int | str
-"""Of a parameter, in its unit; or a word."""
+"""Value of a parameter, in its unit; or a word."""
 
 _COMMA = re.compile(r",(?![^\[]*\])")
 """Between values; commas within brackets belong to a list."""

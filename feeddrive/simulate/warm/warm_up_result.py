@@ -107,7 +107,7 @@ class WarmUpRun:
         return np.array([point.time for point in self.points])
 
     def temperature(self, name: str) -> FloatArray:
-        """Of a part or body, (k,) [degC]."""
+        """Temperature of a part or body at the macro steps, (k,) [degC]."""
         return np.array([point.temperatures[name] for point in self.points])
 
     @property

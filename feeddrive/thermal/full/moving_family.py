@@ -66,13 +66,13 @@ class MovingFamily:
 
 
 def moving_family(
-    plant: Heat, speeds: FloatArray, travel: Travel | None = None, order: int = DEFAULT_ORDER,
+    heat: Heat, speeds: FloatArray, travel: Travel | None = None, order: int = DEFAULT_ORDER,
     cells: Cells | None = None,
 ) -> MovingFamily:  # fmt: skip
     """Work out a family.
 
     Args:
-        plant: the machine.
+        heat: the machine.
         speeds: of the screw, ascending, at which the ripple is worked out, at least two, (s,) [rad/s].
         travel: in place of the rig's.
         order: number of states.
@@ -86,13 +86,13 @@ def moving_family(
     """
     ascending = len(speeds) >= 2 and speeds[0] > 0 and bool(np.all(np.diff(speeds) > 0))
     refuse_unless(ascending, "speeds do not ascend from above zero", "speeds", "write at least two, the slowest first")
-    parts, travel = discretise(plant.rig, cells or plant.cells), travel or plant.rig.travel
+    parts, travel = discretise(heat.rig, cells or heat.cells), travel or heat.rig.travel
     full = model_of(parts, travel)
-    limits = dict(plant.limits())
+    limits = dict(heat.limits())
     basis = common_basis([full], limits, order)
-    feeds = np.array([plant.feed(float(speed)) for speed in speeds])
+    feeds = np.array([heat.feed(float(speed)) for speed in speeds])
     losses = [
-        np.hstack(ripple_loss(parts, plant.at_speed(float(speed)), float(feed), basis, travel))
+        np.hstack(ripple_loss(parts, heat.at_speed(float(speed)), float(feed), basis, travel))
         for speed, feed in zip(speeds, feeds, strict=True)
     ]
-    return MovingFamily(replace(full.projected(basis), limits=limits), feeds, np.array(losses), plant.contact)
+    return MovingFamily(replace(full.projected(basis), limits=limits), feeds, np.array(losses), heat.contact)

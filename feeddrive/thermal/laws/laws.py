@@ -26,7 +26,7 @@ import numpy as np
 from feeddrive.effects.base import Value
 from feeddrive.effects.heat.base import Operation
 from feeddrive.effects.heat.bearing_heat import reference_torque
-from feeddrive.symbolic_turn import SYMBOLS
+from feeddrive.symbolic_turn import SYMBOLS, Holder
 from feeddrive.thermal.coupling import viscous_share
 from feeddrive.thermal.full.full_model import END, FRONT, NUT, REAR, SHAFT, growth_name
 from feeddrive.thermal.heat import Heat
@@ -72,73 +72,60 @@ class Laws:
     follows: bool
 
 
-def growth_places(plant: Heat) -> dict[str, float]:
+def growth_places(heat: Heat) -> dict[str, float]:
     """Growths that the network gives, and where the nut is then [m]."""
-    return {growth_name(x): x for x in plant.rig.growth_positions} | {END: plant.rig.length}
+    return {growth_name(x): x for x in heat.rig.growth_positions} | {END: heat.rig.length}
 
 
-def channels(plant: Heat) -> tuple[str, ...]:
+def channels(heat: Heat) -> tuple[str, ...]:
     """Channels of sensors that may lag."""
-    return tuple(dict.fromkeys(e.place for e in plant.effects if e.place_key == "channel"))
+    return tuple(dict.fromkeys(e.place for e in heat.effects if e.place_key == "channel"))
 
 
-def groups_of(plant: Heat) -> Groups:
+def groups_of(heat: Heat) -> Groups:
     """Parameters by group: those that the file declares, then those of its effects."""
-    seats = {"front_film": plant.rig.front.film or 0.0, "rear_film": plant.rig.rear.film or 0.0}
-    frictions = {"nut": plant.nut, "front_bearing": plant.front, "rear_bearing": plant.rear}
+    seats = {"front_film": heat.rig.front.film or 0.0, "rear_film": heat.rig.rear.film or 0.0}
+    frictions = {"nut": heat.nut, "front_bearing": heat.front, "rear_bearing": heat.rear}
     declared = {name: vars(friction) for name, friction in frictions.items() if friction is not None}
-    own = {effect.label: effect.values for effect in plant.effects}
-    return {"film": vars(plant.films), "contact": {"conductance": plant.contact, **seats}, **declared, **own}
+    own = {effect.label: effect.values for effect in heat.effects}
+    return {"film": vars(heat.films), "contact": {"conductance": heat.contact, **seats}, **declared, **own}
 
 
-def values_of(plant: Heat) -> FloatArray:
+def values_of(heat: Heat) -> FloatArray:
     """Parameters of `Laws.names`."""
     found: list[float] = []
-    for group in groups_of(plant).values():
+    for group in groups_of(heat).values():
         for value in group.values():
             found += value if isinstance(value, tuple) else [float(value)]
     return np.array(found)
 
 
-def laws_of(plant: Heat) -> Laws:
+def laws_of(heat: Heat) -> Laws:
     """The laws of a plant; plants that differ in values alone share them."""
     lengths = tuple(
         (name, key, len(value) if isinstance(value, tuple) else 0)
-        for name, group in groups_of(plant).items() for key, value in group.items()
+        for name, group in groups_of(heat).items() for key, value in group.items()
     )  # fmt: skip
-    forms = tuple((effect.name, effect.place) for effect in plant.effects)
-    joined = () if plant.coupling is None else (plant.coupling, plant.preload, plant.ambient, plant.rig)
-    return _laws((lengths, forms, joined, tuple(plant.rig.growth_positions), plant.rig.length), _Holder(plant))
-
-
-class _Holder:
-    """Carries a plant past the cache, whose key is the structure alone."""
-
-    def __init__(self, plant: Heat) -> None:
-        self.plant = plant
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Holder)
-
-    def __hash__(self) -> int:
-        return 0
+    forms = tuple((effect.name, effect.place) for effect in heat.effects)
+    joined = () if heat.coupling is None else (heat.coupling, heat.preload, heat.ambient, heat.rig)
+    return _laws((lengths, forms, joined, tuple(heat.rig.growth_positions), heat.rig.length), Holder(heat))
 
 
 @lru_cache(maxsize=128)
-def _laws(_: tuple[object, ...], holder: _Holder) -> Laws:
+def _laws(_: tuple[object, ...], holder: Holder[Heat]) -> Laws:
     with SYMBOLS.taken():
-        return _made(holder.plant)
+        return _made(holder.held)
 
 
-def _made(plant: Heat) -> Laws:
-    groups, names = _symbols(groups_of(plant))
+def _made(heat: Heat) -> Laws:
+    groups, names = _symbols(groups_of(heat))
     columns = ca.vertcat(*[symbol for group in groups.values() for symbol in group.values()])
     given = {name: ca.SX.sym(name) for name in ("speed", "start", "step", "air", "cold")}
     rises = ca.SX.sym("rises", len(FOLLOWED))
     turning = ca.fabs(given["speed"])
-    run = Operation(turning, given["start"], given["step"], _bearing(plant, groups, turning))
-    g = _conductances(plant, groups, run)
-    u = _inputs(plant, groups, run, given["air"], dict(zip(FOLLOWED, ca.vertsplit(rises), strict=True)), given["cold"])
+    run = Operation(turning, given["start"], given["step"], _bearing(heat, groups, turning))
+    g = _conductances(heat, groups, run)
+    u = _inputs(heat, groups, run, given["air"], dict(zip(FOLLOWED, ca.vertsplit(rises), strict=True)), given["cold"])
     arguments = [given["speed"], given["start"], given["step"], given["air"], rises, given["cold"], columns]
     shown = [
         ca.densify(ca.vertcat(*[g[path] for path in PATHS])),
@@ -147,8 +134,8 @@ def _made(plant: Heat) -> Laws:
     acting = ca.Function("heat_laws", arguments, shown, [*[*given][:4], "rises", "cold", "p"], ["g", "u"])
     named = dict(zip(FOLLOWED, ca.vertsplit(rises), strict=True))
     factors = ca.Function("heat_factors", [rises, given["cold"], columns],
-                          [ca.vertcat(*_factors(plant, groups, named, given["cold"]))])  # fmt: skip
-    sensing, lagging, bodies = _sensing(plant, groups, columns)
+                          [ca.vertcat(*_factors(heat, groups, named, given["cold"]))])  # fmt: skip
+    sensing, lagging, bodies = _sensing(heat, groups, columns)
     return Laws(names, acting, factors, sensing, lagging, bodies, bool(ca.depends_on(shown[1], rises)))
 
 
@@ -164,14 +151,12 @@ def _symbols(groups: Groups) -> tuple[dict[str, dict[str, Expression]], tuple[st
     return symbols, tuple(names)
 
 
-def _bearing(plant: Heat, groups: Mapping[str, Mapping[str, Expression]], speed: Expression) -> Expression:
+def _bearing(heat: Heat, groups: Mapping[str, Mapping[str, Expression]], speed: Expression) -> Expression:
     """Torque of the front bearing, as declared [N m]."""
-    return reference_torque(speed) if plant.front is None else torque_law(speed, groups["front_bearing"])
+    return reference_torque(speed) if heat.front is None else torque_law(speed, groups["front_bearing"])
 
 
-def _conductances(
-    plant: Heat, groups: Mapping[str, Mapping[str, Expression]], run: Operation
-) -> dict[Path, Expression]:
+def _conductances(heat: Heat, groups: Mapping[str, Mapping[str, Expression]], run: Operation) -> dict[Path, Expression]:
     contact = groups["contact"]
     found: dict[Path, Expression] = {
         Path.CONTACT: contact["conductance"],
@@ -182,7 +167,7 @@ def _conductances(
         Path.COOLING: ca.SX(0),
     }
     films = {Path.SCREW_FILM: "screw", Path.NUT_FILM: "nut", Path.FRONT_FILM: FRONT, Path.REAR_FILM: REAR}
-    for effect in plant.effects:
+    for effect in heat.effects:
         p = groups[effect.label]
         for path, film in films.items():
             found[path] *= effect.film_factor(film, p)
@@ -192,16 +177,16 @@ def _conductances(
 
 
 def _inputs(
-    plant: Heat, groups: Mapping[str, Mapping[str, Expression]], run: Operation, air: Expression,
+    heat: Heat, groups: Mapping[str, Mapping[str, Expression]], run: Operation, air: Expression,
     rises: Mapping[str, Expression], cold: Expression,
 ) -> dict[str, Expression]:  # fmt: skip
-    load, oil, bearing_oil = _factors(plant, groups, rises, cold)
+    load, oil, bearing_oil = _factors(heat, groups, rises, cold)
     found: dict[str, Expression] = {AMBIENT: air, FRONT: ca.SX(0), REAR: ca.SX(0)}
-    for effect in plant.effects:
+    for effect in heat.effects:
         p = groups[effect.label]
         found[AMBIENT] += effect.surroundings(run, p)
-        for place, heat in effect.heats(run, p).items():
-            found[place] += heat
+        for place, power in effect.heats(run, p).items():
+            found[place] += power
     rubbing = {
         NUT: ("nut", load, oil),
         FRONT: ("front_bearing", 1, bearing_oil),
@@ -215,20 +200,20 @@ def _inputs(
 
 
 def _factors(
-    plant: Heat, groups: Mapping[str, Mapping[str, Expression]], rises: Mapping[str, Expression],
+    heat: Heat, groups: Mapping[str, Mapping[str, Expression]], rises: Mapping[str, Expression],
     cold: Expression,
 ) -> tuple[Expression, Expression, Expression]:  # fmt: skip
     """On the nut's load torque, on its viscous torque, on that of the bearings."""
     load, oil, bearing_oil = ca.SX(1), ca.SX(1), ca.SX(1)
-    joined = plant.coupling
+    joined = heat.coupling
     if joined is not None:
-        steel, diameter = plant.rig.steel, 2 * plant.rig.radius
-        share = 1 + joined.preload_slope(plant.preload, diameter, steel.expansion) * (rises[NUT] - rises[SHAFT])
+        steel, diameter = heat.rig.steel, 2 * heat.rig.radius
+        share = 1 + joined.preload_slope(heat.preload, diameter, steel.expansion) * (rises[NUT] - rises[SHAFT])
         mean = (1 - joined.rear_share) * rises[FRONT] + joined.rear_share * rises[REAR]
         load = ca.fmax(share, 0)
-        oil = viscous_share(joined.nut_oil, cold + rises[NUT], plant.ambient)
-        bearing_oil = viscous_share(joined.bearing_oil, cold + mean, plant.ambient)
-    for effect in plant.effects:
+        oil = viscous_share(joined.nut_oil, cold + rises[NUT], heat.ambient)
+        bearing_oil = viscous_share(joined.bearing_oil, cold + mean, heat.ambient)
+    for effect in heat.effects:
         p = groups[effect.label]
         load *= effect.load_factor(rises[NUT], p)
         oil *= effect.viscous_factor(rises[NUT], p)
@@ -236,20 +221,20 @@ def _factors(
 
 
 def _sensing(
-    plant: Heat, groups: Mapping[str, Mapping[str, Expression]], columns: Expression
+    heat: Heat, groups: Mapping[str, Mapping[str, Expression]], columns: Expression
 ) -> tuple[ca.Function, dict[str, tuple[int, ...]], tuple[str, ...]]:
     time = ca.SX.sym("time")
     frame = [
-        sum((effect.growth(x, time, groups[effect.label]) for effect in plant.effects), ca.SX(0))
-        for x in growth_places(plant).values()
+        sum((effect.growth(x, time, groups[effect.label]) for effect in heat.effects), ca.SX(0))
+        for x in growth_places(heat).values()
     ]
     lags: list[Expression] = []
     lagging: dict[str, tuple[int, ...]] = {}
-    for channel in channels(plant):
-        own = [e.lag(channel, groups[e.label]) for e in plant.effects if e.place == channel]
+    for channel in channels(heat):
+        own = [e.lag(channel, groups[e.label]) for e in heat.effects if e.place == channel]
         lagging[channel] = tuple(range(len(lags), len(lags) + len(own)))
         lags += own
-    bodies = {e.label: e.attached(groups[e.label]) for e in plant.effects}
+    bodies = {e.label: e.attached(groups[e.label]) for e in heat.effects}
     held = {label: body for label, body in bodies.items() if body is not None}
     shown = [ca.vertcat(ca.SX.zeros(0, 1), *of) for of in (frame, lags, [v for body in held.values() for v in body])]
     function = ca.Function("heat_sensing", [time, columns], [ca.densify(one) for one in shown],

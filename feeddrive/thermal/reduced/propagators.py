@@ -48,9 +48,8 @@ class Propagator:
 
     def held(self, start: FloatArray, inputs: FloatArray, count: int) -> FloatArray:
         """States at the ends of `count` steps under constant inputs, (count, n): a power for each mode."""
-        times = np.arange(1.0, count + 1)[:, None] * self.step
         driven = self.modes.T @ (self.gains @ inputs)
-        shown = np.exp(-times * self.rates) * (self.modes.T @ start) + _integral_over(self.rates, times) * driven
+        shown = held_states(self.rates, driven, count, self.step, self.modes.T @ start)
         return np.asarray(shown @ self.modes.T)
 
     def slopes(self, matrix: FloatArray, gains: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -71,6 +70,15 @@ def propagator(matrix: FloatArray, gains: FloatArray, step: float) -> Propagator
     kept = (modes * _decay(rates, step)) @ modes.T
     fed = (modes * _integral(rates, step)) @ (modes.T @ gains)
     return Propagator(step, rates, modes, gains, kept, fed)
+
+
+def held_states(
+    rates: FloatArray, driven: FloatArray, count: int, step: float, start: FloatArray | None = None
+) -> FloatArray:
+    """Modes at the ends of `count` steps, (count, n), of rates λ, (n,), under constant drives, from rest or a start."""
+    times = np.arange(1.0, count + 1)[:, None] * step
+    shown = _integral_over(rates, times) * driven
+    return shown if start is None else np.asarray(np.exp(-times * rates) * start + shown)
 
 
 def _decay(rates: FloatArray, h: float) -> FloatArray:

@@ -37,22 +37,22 @@ Slopes = dict[str, tuple[FloatArray, FloatArray]]
 
 
 def simulate_with_slopes(
-    plant: Heat, model: HeatModel, step: float, speeds: FloatArray, ambient: FloatArray, wanted: Sequence[str]
+    heat: Heat, model: HeatModel, step: float, speeds: FloatArray, ambient: FloatArray, wanted: Sequence[str]
 ) -> Slopes:
     """Channels as `warm_up.simulate` gives them, with their slopes.
 
     Args:
-        plant: what the file declares, with effects.
+        heat: what the file declares, with effects.
         model: its reduced model, bodies of effects attached in the order of the effects.
         step: length of a row [s].
         speeds: of the screw over each row, (k,) [rad/s].
         ambient: over each row, (k,) [degC].
         wanted: names of parameters (`Laws.names`), (p,).
     """
-    laws, values, first = laws_of(plant), values_of(plant), float(ambient[0])
+    laws, values, first = laws_of(heat), values_of(heat), float(ambient[0])
     columns = tuple(laws.names.index(name) for name in wanted)
     states, slopes = _states(laws, _network(laws, model, columns), step, speeds, ambient, values, columns)
-    return _read(plant, laws, model, states, slopes, step, first, values, columns)
+    return _read(heat, laws, model, states, slopes, step, first, values, columns)
 
 
 @dataclass(frozen=True, eq=False)
@@ -213,16 +213,16 @@ class _Follower:
 
 
 def _read(
-    plant: Heat, laws: Laws, model: HeatModel, states: FloatArray, slopes: FloatArray, step: float,
+    heat: Heat, laws: Laws, model: HeatModel, states: FloatArray, slopes: FloatArray, step: float,
     first: float, values: FloatArray, columns: tuple[int, ...],
 ) -> Slopes:  # fmt: skip
     """What sensors read, from states times C^(1/2)."""
     time = step * np.arange(1.0, len(states) + 1)
     frame, frame_slope, lags, lags_slope = (one.full() for one in _sensed(laws, columns)(time[None, :], values))
-    places, p = list(growth_places(plant)), len(columns)
+    places, p = list(growth_places(heat)), len(columns)
     moved = {name: (frame[i], frame_slope[i :: len(places)].T) for i, name in enumerate(places)}
     lag_slopes = lags_slope[:, 0].reshape(p, -1).T if p else np.zeros((len(lags), 0))
-    named: Mapping[str, str] = {sensor.output: sensor.channel for sensor in plant.sensors}
+    named: Mapping[str, str] = {sensor.output: sensor.channel for sensor in heat.sensors}
     root = np.sqrt(model.capacity)
     roots = np.zeros((model.order, p))  # slope of C^(-1/2)
     for state, is_capacity, column in _network(laws, model, columns).bodies:

@@ -98,11 +98,11 @@ class ThermalStudy:
         return {name: float(np.max(np.abs(self.series[name] - self.reduced[name]))) for name in self.series}
 
 
-def study(plant: Heat, duty: Duty, within: float = 1e-6, order: int = DEFAULT_ORDER) -> ThermalStudy:
+def study(heat: Heat, duty: Duty, within: float = 1e-6, order: int = DEFAULT_ORDER) -> ThermalStudy:
     """Let a machine warm up from rest and cold.
 
     Args:
-        plant: the machine; its travel is where the nut goes to and fro.
+        heat: the machine; its travel is where the nut goes to and fro.
         duty: what it does.
         within: band about the final growth for the warm-up time [m].
         order: number of states of the reduced model.
@@ -113,18 +113,18 @@ def study(plant: Heat, duty: Duty, within: float = 1e-6, order: int = DEFAULT_OR
     Warns:
         ValidityWarning: a speed or a conductance outside the range of films or reduction.
     """
-    rows = declared_rows(plant, duty.step, duty.speeds, duty.ambient)
-    full = plant.full_model()
+    rows = declared_rows(heat, duty.step, duty.speeds, duty.ambient)
+    full = heat.full_model()
     counted = with_ledger(full)
     states = run(counted, rows, substeps=_SUBSTEPS)
-    small = reduce_model([full], plant.limits(), order)[0]
+    small = reduce_model([full], heat.limits(), order)[0]
     start = float(duty.ambient[0])
     series = readings(counted, states, start)
     conductances = {path: float(np.mean(values)) for path, values in rows.conductances.items()}
     heats = {name: float(np.mean(values)) for name, values in rows.inputs.items()}
     modes = _modes(compressed(full.at(conductances)), heats)
     return ThermalStudy(
-        plant, duty, series, readings(small, run(small, rows), start), states, counted, small.order, conductances,
+        heat, duty, series, readings(small, run(small, rows), start), states, counted, small.order, conductances,
         heats, _constants(modes), within, _warm_ups(modes, series, duty, within),
         balance_of(counted, states[-1], duty.step, _acting(rows, full, states)),
     )  # fmt: skip

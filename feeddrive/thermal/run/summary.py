@@ -1,4 +1,4 @@
-"""A thermal plant at a glance: films, contact and heats against speed, settled rises, time constants."""
+"""The heat of a machine at a glance: films, contact and heats against speed, settled rises, time constants."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ TIME_CONSTANTS = 3
 
 @dataclass(frozen=True)
 class HeatRow:
-    """A thermal plant at one constant speed, effects not counted.
+    """The heat of a machine at one constant speed, effects not counted.
 
     Attributes:
         speed: of the screw [rad/s].
@@ -42,16 +42,16 @@ class HeatRow:
     time_constants: tuple[float, ...]
 
 
-def heat_rows(plant: Heat) -> tuple[HeatRow, ...]:
+def heat_rows(heat: Heat) -> tuple[HeatRow, ...]:
     """The plant at rest and at a quarter, half and all of its highest speed."""
-    model = plant.full_model()
-    return tuple(_row(plant, model, share * plant.highest_speed) for share in SHARES)
+    model = heat.full_model()
+    return tuple(_row(heat, model, share * heat.highest_speed) for share in SHARES)
 
 
-def _row(plant: Heat, model: HeatModel, speed: float) -> HeatRow:
-    conductances = plant.at_speed(speed)
+def _row(heat: Heat, model: HeatModel, speed: float) -> HeatRow:
+    conductances = heat.at_speed(speed)
     system = model.at(conductances)
-    heats = {name: float(values[0]) for name, values in plant.heats(np.array([speed])).items()}
+    heats = {name: float(values[0]) for name, values in heat.heats(np.array([speed])).items()}
     settled = system.steady(np.array([heats.get(name, 0.0) for name in system.input_names]))
     outputs = dict(zip(system.output_names, system.outputs(settled), strict=True))
     slowest = tuple(float(1 / rate) for rate in sorted(abs(system.poles(TIME_CONSTANTS))))

@@ -150,13 +150,13 @@ def grouped(table: FloatArray) -> tuple[FloatArray, IntegerArray]:
 
 
 def simulate(
-    plant: Heat, model: HeatModel, step: float, speeds: FloatArray, ambient: FloatArray,
+    heat: Heat, model: HeatModel, step: float, speeds: FloatArray, ambient: FloatArray,
     rows: Rows | None = None,
 ) -> dict[str, FloatArray]:  # fmt: skip
     """Temperatures and growth of a machine from the speed of its screw and the air around it.
 
     Args:
-        plant: what the file declares.
+        heat: what the file declares.
         model: its full or its reduced model.
         step: time between rows [s].
         speeds: of the screw over each row, (k,) [rad/s].
@@ -166,11 +166,11 @@ def simulate(
     Returns:
         Channel to its values at the end of each row, (k,): temperatures [degC], growths [m].
     """
-    states = run(model, rows or declared_rows(plant, step, speeds, ambient), substeps=4)
-    return sensed(plant, model, states, step, float(ambient[0]))
+    states = run(model, rows or declared_rows(heat, step, speeds, ambient), substeps=4)
+    return sensed(heat, model, states, step, float(ambient[0]))
 
 
-def declared_rows(plant: Heat, step: float, speeds: FloatArray, ambient: FloatArray) -> Rows:
+def declared_rows(heat: Heat, step: float, speeds: FloatArray, ambient: FloatArray) -> Rows:
     """What acts on the plant as its file says, effects among it; arguments as `simulate`.
 
     Raises:
@@ -182,11 +182,11 @@ def declared_rows(plant: Heat, step: float, speeds: FloatArray, ambient: FloatAr
     if len(speeds) != len(ambient) or len(speeds) == 0:
         raise InputError(f"{len(speeds)} speeds and {len(ambient)} ambient temperatures", "", "give one of each a row")
     fastest = float(np.max(np.abs(speeds)))
-    if fastest > plant.highest_speed * (1 + 1e-9):
+    if fastest > heat.highest_speed * (1 + 1e-9):
         told = f"{format_quantity(fastest, 'rad/s')} is above the highest speed declared"
-        shown = format_quantity(plant.highest_speed, "rad/s")
+        shown = format_quantity(heat.highest_speed, "rad/s")
         warnings.warn(f"{told}, {shown}: films and friction are extrapolated", ValidityWarning, stacklevel=2)
-    laws, values, cold = laws_of(plant), values_of(plant), float(ambient[0])
+    laws, values, cold = laws_of(heat), values_of(heat), float(ambient[0])
     g, u = laws.acting(*row_arguments(step, speeds, ambient), cold, values)
     conductances = dict(zip(PATHS, np.asarray(ca.DM(g).full()), strict=True))
     inputs = dict(zip(INPUTS, np.asarray(ca.DM(u).full()), strict=True))
@@ -220,13 +220,13 @@ class _Followed:
         return self._inputs[: len(HEATED)]
 
 
-def sensed(plant: Heat, model: HeatModel, states: FloatArray, step: float, first: float) -> dict[str, FloatArray]:
+def sensed(heat: Heat, model: HeatModel, states: FloatArray, step: float, first: float) -> dict[str, FloatArray]:
     """Channels that a plant's sensors read from states (k, n), frame growth added and lags behind; as `simulate`."""
-    laws, values = laws_of(plant), values_of(plant)
+    laws, values = laws_of(heat), values_of(heat)
     time = step * np.arange(1.0, len(states) + 1)
     frame, lags, _ = laws.sensing(time[None, :], values)
-    moved = dict(zip(growth_places(plant), frame.full(), strict=True))
-    named = {sensor.output: sensor.channel for sensor in plant.sensors}
+    moved = dict(zip(growth_places(heat), frame.full(), strict=True))
+    named = {sensor.output: sensor.channel for sensor in heat.sensors}
     found = {}
     for name, row in model.readings.items():
         channel = named.get(name, channel_of(name))

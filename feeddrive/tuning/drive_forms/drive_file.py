@@ -36,7 +36,8 @@ WRITERS: dict[str, Writer] = {
     one.FORM.name: Writer(one.FORM, one.LIMITS, one.lines, one.known, one.settings) for one in _MODULES
 }
 UNPUBLISHED = {
-    "fanuc": "FANUC sets the velocity gain as a share of a standard value of each motor, which is not published",
+    "fanuc": "FANUC sets the velocity gain as a share of a standard value of each motor (B-65270EN), and that value, "
+    "like the filters, stands in no public page that could be read",
 }
 """Forms that are asked for and cannot be written, with the reason."""
 

@@ -1,4 +1,4 @@
-"""The sensors of a thermal plant file: its `[[sensor]]` tables."""
+"""The sensors of heat of a plant file: its `[[sensor]]` tables."""
 
 from __future__ import annotations
 

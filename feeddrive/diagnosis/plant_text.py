@@ -1,15 +1,75 @@
-"""Values written into the text of a plant file, comments and order kept; checked by reading the text again."""
+"""Values put into the text of a plant file, each with what is known of it and where that is from.
+
+Comments and order are kept; the text is read again to check it.
+"""
 
 from __future__ import annotations
 
+import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
+from feeddrive.diagnosis.calibration.calibrated_result import CalibratedResult
+from feeddrive.diagnosis.numbers.declared_values import DeclaredValue
 from feeddrive.errors import InputError
 from feeddrive.plant.file.entries import parse_toml
+from feeddrive.typing import FloatArray
+from feeddrive.units.quantity import format_quantity
 
 _HEADER = re.compile(r"^\s*\[([^\[\]]+)\]\s*(#.*)?$")
 _LIST_HEADER = re.compile(r"^\s*\[\[([^\[\]]+)\]\]\s*(#.*)?$")
+SOURCE = "calibrated by recordings"
+
+TOLD = 0.01
+"""Deviations by which a measurement must move a value for it to be written: less is no news, and moves no number by as
+much as a hundredth of what its tolerance does."""
+
+
+def with_calibrated_values(text: str, results: Sequence[CalibratedResult]) -> str:
+    """The text with the calibrated values in place of the declared ones.
+
+    Values are written in full: what is known of a sum of two inertias is more than what is known of either, and
+    rounding one would lose it. The tolerance is that of the value alone, half its 95 % interval.
+
+    Args:
+        text: of the declared plant's file.
+        results: what was calibrated.
+
+    Raises:
+        InputError: a text in which a value cannot be placed.
+    """
+    changed = {}
+    for one in results:
+        factor, half = one.value / one.declared, 0.5 * (one.ci95[1] - one.ci95[0]) / one.value
+        for key, unit, declared in one.written:
+            number = f"{factor * declared!r} {unit}".removesuffix(" 1")
+            was = format_quantity(declared, unit)
+            changed[key] = (number, f"{100 * half:.2g} %", f"{SOURCE}, declared {was} within {one.tolerance:.0%}")
+    return with_written_values(text, changed) if changed else text
+
+
+def most_likely_values(
+    values: Sequence[DeclaredValue], coordinates: FloatArray, deviations: FloatArray, source: str
+) -> dict[str, tuple[str, str, str]]:
+    """Declared values as a measurement moved them: dotted key to value, tolerance and source.
+
+    Values are written in full, as those of parts that share a compliance are known together far better than alone. Left
+    out are those of which the measurement tells nothing: it moved them by less than a hundredth of their deviation.
+
+    Args:
+        values: as declared.
+        coordinates: most likely, (k,).
+        deviations: of the coordinates, (k,); twice that is the tolerance.
+        source: what says so.
+    """
+    found = {}
+    for value, at, deviation in zip(values, coordinates, deviations, strict=True):
+        text = value.at(float(at)) if abs(at) > TOLD * value.deviation else None
+        if text is not None:
+            tolerance = f"{100 * math.expm1(2 * float(deviation)):.2g} %" if not value.missing else "50 %"
+            was = "rigid" if value.missing else format_quantity(value.value, value.unit)
+            found[value.key] = (text, tolerance, f"{source}, declared {was}")
+    return found
 
 
 def with_written_values(text: str, changed: Mapping[str, tuple[str, str, str]]) -> str:

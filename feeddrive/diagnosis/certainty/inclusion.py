@@ -1,0 +1,66 @@
+"""Odds for every name: of those taken against the sets without them, of others against the set as it is.
+
+    odds(m) = 1 / (Σ E(without m) / E + Σ E(rival in the place of m) / E)
+
+with the evidence E of `likelihood.set_evidence`. What the data say for a further effect grows with the time that is
+recorded, what it costs does not: so a recording of the same kind that settles it is so many times as long.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.special import logsumexp
+
+from feeddrive.diagnosis.certainty.ambiguity import AGAINST, Rival
+from feeddrive.diagnosis.finding.search import Search
+from feeddrive.diagnosis.finding.sets import odds_of_members
+from feeddrive.diagnosis.judging.result import PossibleEffect
+from feeddrive.diagnosis.recordings.recordings import without_shifts
+
+OPEN = 0.5 * AGAINST
+"""Logarithm of the odds, either way, within which a name is possible: those that refuse a rival."""
+
+MOST = 1e6
+"""Odds that are told at most: beyond, the model that they are odds under is what is in doubt."""
+
+
+def odds_for(found: Search, rivals: Sequence[Sequence[Rival]]) -> tuple[float, ...]:
+    """Odds for every effect that was taken, at most `MOST`.
+
+    Args:
+        found: what the search took.
+        rivals: per effect, those that do as well in its place.
+    """
+    count = len(found.problem.predictor.candidates)
+    members = odds_of_members(found.problem, found.fit, count)[: len(without_shifts(found.fit.effects))]
+    result = []
+    for own, alike in zip(members, rivals, strict=False):
+        against = float(logsumexp([-own, *(-0.5 * rival.odds for rival in alike)]))
+        result.append(float(np.exp(np.clip(-against, -math.log(MOST), math.log(MOST)))))
+    return tuple(result)
+
+
+def possible_effects(found: Search, rivals: Sequence[Sequence[Rival]]) -> tuple[PossibleEffect, ...]:
+    """Names that may be, beside those taken or in their place, the likeliest first."""
+    taken = {effect.name for effect in found.fit.effects}
+    result = []
+    for effect, alike in zip(found.fit.effects, rivals, strict=False):
+        for rival in alike:
+            settles = f"an experiment in which {rival.effect.signature.variable} varies otherwise"
+            odds = math.exp(-0.5 * max(rival.odds, -2 * OPEN))
+            result.append(PossibleEffect(rival.effect.name, odds, effect.name, settles))
+    known = taken | {one.name for one in result}
+    for near in found.near:
+        if near.name in known or near.gain <= -OPEN:
+            continue
+        longer = (OPEN - near.gain + near.speaks) / near.speaks
+        if longer > 1:
+            settles = f"a recording of the same motion {longer:.1f} times as long"
+        else:
+            settles = "a recording of another motion: on blocks left out of the fit it does not pay"
+        result.append(PossibleEffect(near.name, min(math.exp(min(near.gain, OPEN)), MOST), "", settles))
+        known.add(near.name)
+    return tuple(sorted(result, key=lambda one: -one.odds))

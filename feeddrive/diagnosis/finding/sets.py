@@ -1,0 +1,249 @@
+"""Sets of effects near the one at hand, compared by their evidence on one shared Jacobian, nothing being simulated.
+
+About the set that was found, with every effect's slopes taken at its own start,
+
+    r_S = r - Σ_added (s_i + J_i θ_i) - Σ_dropped s_m - J_kept θ
+
+| symbol | meaning | unit |
+|---|---|---|
+| r | residual of the set that was found | 1 |
+| s_i, J_i | what an effect at its start takes from r, and its slopes there | 1 |
+| s_m | what taking a member out takes from r | 1 |
+| θ | coordinates, fitted by least squares in every set | 1 |
+
+All products of these columns are taken once; a set then costs the solution of a small system. Effects are added,
+dropped and swapped, two moves deep on a beam, so that two effects that hide each other, or that together look like a
+third, are met as any other set. The best are fitted exactly by the search.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from feeddrive.diagnosis.certainty.noise_colour import score_covariance
+from feeddrive.diagnosis.finding.attempt import Attempt
+from feeddrive.diagnosis.likelihood.coordinates import read_coordinates, write_coordinates
+from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
+from feeddrive.diagnosis.likelihood.set_evidence import (
+    DISCREPANCY,
+    log_odds,
+    log_prior_of_size,
+    log_volume,
+)
+from feeddrive.effects.base import Effect
+from feeddrive.typing import FloatArray, IntegerArray
+
+BEAM = 12
+"""Sets from which the next move is tried; those beyond are hundreds of nats behind where anything is told."""
+
+
+ITERATIONS = 6
+"""Steps of a fit without one member."""
+
+SURE = 20.0
+"""Logarithm of the odds, as slopes tell them, from which a member is not asked again with the others refitted."""
+
+
+TINY = 1e-300
+"""In place of no variance at all."""
+
+
+@dataclass(frozen=True)
+class Neighbour:
+    """A set that differs from the one found.
+
+    Attributes:
+        dropped: places of the members that are not in it.
+        added: numbers of the attempts that are.
+        gain: logarithm of the odds for it against the set found, as far as slopes tell.
+        speaks: part of it that grows with the time recorded.
+        effects: of the set, with values as slopes tell; empty where the set was not weighed closely.
+    """
+
+    dropped: tuple[int, ...]
+    added: tuple[int, ...]
+    gain: float
+    speaks: float = 0.0
+    effects: tuple[Effect, ...] = ()
+
+    @property
+    def is_next(self) -> bool:
+        """Whether one move leads to it."""
+        return len(self.added) <= 1 and len(self.dropped) <= 1
+
+
+def neighbours(problem: Problem, found: Fit, attempts: Sequence[Attempt], count: int) -> list[Neighbour]:
+    """The sets near the one found, the likeliest first.
+
+    Args:
+        problem: recordings.
+        found: a set, all its effects free.
+        attempts: effects that may be added, fitted to the samples of `problem` while the set stayed as it is.
+        count: candidates and starts that were tried.
+    """
+    columns = _Columns(problem, found, attempts, count)
+    nothing = Neighbour((), (), 0.0)
+    known: dict[tuple[tuple[int, ...], tuple[int, ...]], Neighbour] = {((), ()): nothing}
+    beam, near = [nothing], [nothing]
+    for _ in range(2):
+        fresh = []
+        for one in beam:
+            for dropped, added in _moves(one, found, attempts):
+                if (dropped, added) not in known:
+                    known[dropped, added] = columns.weighed(dropped, added)
+                    fresh.append(known[dropped, added])
+        beam = sorted(fresh, key=lambda one: -one.gain)[:BEAM]
+        near += beam
+    return sorted((columns.weighed_closely(one) for one in near[1:]), key=lambda one: -one.gain)
+
+
+def _moves(
+    one: Neighbour, found: Fit, attempts: Sequence[Attempt]
+) -> Iterator[tuple[tuple[int, ...], tuple[int, ...]]]:
+    """Effects added, dropped and swapped from a set: places of members out, numbers of attempts in."""
+    rest = [place for place in range(len(found.effects)) if place not in one.dropped]
+    able = [i for i in range(len(attempts)) if i not in one.added and _may_join(one, attempts, i)]
+    for place in rest:
+        yield tuple(sorted((*one.dropped, place))), one.added
+    for i in able:
+        yield one.dropped, tuple(sorted((*one.added, i)))
+        for place in rest:
+            yield tuple(sorted((*one.dropped, place))), tuple(sorted((*one.added, i)))
+
+
+def _may_join(one: Neighbour, attempts: Sequence[Attempt], i: int) -> bool:
+    """Whether no other effect of the name and place was added already."""
+    new = attempts[i].fit.effects[-1]
+    others = [attempts[k].fit.effects[-1] for k in one.added]
+    return not any(other.name == new.name and (other.place == new.place or not new.repeatable) for other in others)
+
+
+def odds_of_members(problem: Problem, found: Fit, count: int) -> tuple[float, ...]:
+    """Logarithm of the odds for each member of a set against the set without it, as far as slopes tell.
+
+    Args:
+        problem: recordings.
+        found: a set, all its effects free.
+        count: candidates that were tried.
+    """
+    columns = _Columns(problem, found, (), count)
+    nothing = [columns.weighed((place,), ()) for place in range(len(found.effects))]
+    return tuple(-columns.weighed_closely(one).gain for one in nothing)
+
+
+def needed_members(problem: Problem, found: Fit, may_go: Callable[[Effect], bool]) -> Fit:
+    """The fit without the members that the data are likelier without, the least needed first.
+
+    Args:
+        problem: recordings.
+        found: a set, all its effects free.
+        may_go: whether a member may be left out.
+    """
+    count = len(problem.predictor.candidates)
+    columns = _Columns(problem, found, (), count)
+    able = [place for place, effect in enumerate(found.effects) if may_go(effect)]
+    for one in sorted((columns.weighed((place,), ()) for place in able), key=lambda one: -one.gain):
+        rest = [effect for place, effect in enumerate(found.effects) if place not in one.dropped]
+        without = fit(problem, rest, iterations=ITERATIONS)
+        if log_odds(problem, found, without, count) > 0:
+            return needed_members(problem, without, may_go)
+        if one.gain < -SURE:
+            break
+    return found
+
+
+class _Columns:
+    """All columns of the sets near one, and their products.
+
+    Not a frozen record: it holds the products beside what they are of.
+    """
+
+    def __init__(self, problem: Problem, found: Fit, attempts: Sequence[Attempt], count: int) -> None:
+        self.problem, self.found, self.count = problem, found, count
+        self.own = [attempt.fit for attempt in attempts]
+        sizes = [len(read_coordinates([effect], problem.plant)) for effect in found.effects]
+        self.member = np.cumsum([0, *sizes])
+        parts = [found.jacobian]
+        for place in range(len(found.effects)):
+            rest = (*found.effects[:place], *found.effects[place + 1 :])
+            parts.append((found.residual - problem.residual(rest))[:, None])
+        self.first_own: list[int] = []
+        at = found.jacobian.shape[1] + len(found.effects)
+        for fitted in self.own:
+            parts += [(found.residual - fitted.residual)[:, None], fitted.jacobian]
+            self.first_own.append(at)
+            at += 1 + fitted.jacobian.shape[1]
+        columns = np.hstack(parts)
+        # a member that cannot be left out, or a slope that no number can hold, is no way to go
+        self.able = np.all(np.isfinite(columns), axis=0)
+        self.columns = np.where(self.able, columns, 0.0)
+        self.products = self.columns.T @ self.columns
+        self.with_residual = self.columns.T @ found.residual
+        rows = [evidence.fit_rows for evidence in problem.evidence]
+        measured = self.columns[len(self.columns) - len(problem.numbers) :]
+        self.scatter = score_covariance(problem.evidence, rows, found.residual, self.columns)
+        self.scatter += problem.numbers.weight**2 * measured.T @ measured
+
+    def _taken(
+        self, dropped: Sequence[int], added: Sequence[int]
+    ) -> tuple[FloatArray, IntegerArray, tuple[Effect, ...], FloatArray]:
+        """What all columns of a set take from the residual, the free ones of them, its effects and coordinates."""
+        kept = [place for place in range(len(self.found.effects)) if place not in dropped]
+        free = [i for place in kept for i in range(self.member[place], self.member[place + 1])]
+        fixed = [self.found.jacobian.shape[1] + place for place in dropped]
+        start = [self.found.coordinates[i] for i in free]
+        for i in added:
+            fixed.append(self.first_own[i])
+            free += range(self.first_own[i] + 1, self.first_own[i] + 1 + self.own[i].jacobian.shape[1])
+            start += list(self.own[i].coordinates)
+        effects = (*(self.found.effects[place] for place in kept), *(self.own[i].effects[-1] for i in added))
+        taken = np.zeros(len(self.products))
+        taken[fixed] = 1.0
+        places = np.array(free, dtype=np.int64)
+        if len(places):
+            wanted = self.with_residual[places] - self.products[np.ix_(places, fixed)].sum(axis=1)
+            length = np.sqrt(np.diag(self.products)[places])
+            length = np.where(length > 0, length, 1.0)
+            normal = self.products[np.ix_(places, places)] / np.outer(length, length)
+            taken[places] = np.linalg.lstsq(normal, wanted / length, rcond=1e-10)[0] / length
+        if not np.all(self.able[fixed]):
+            taken[:] = np.nan
+        return taken, places, effects, np.array(start) + taken[places]
+
+    def weighed(self, dropped: tuple[int, ...], added: tuple[int, ...]) -> Neighbour:
+        """A set by the colour of the residual at hand, smaller by what the set takes away."""
+        taken, free, effects, coordinates = self._taken(dropped, added)
+        if not np.all(np.isfinite(taken)):
+            return Neighbour(dropped, added, -np.inf)
+        before = self.found.squared_error
+        square = float(taken @ self.products @ taken)
+        excess = 2 * float(taken @ self.with_residual) - square
+        less = min(before, before - excess)
+        if square <= 0 or less <= 0:
+            return Neighbour(dropped, added, -np.inf)
+        variance = float(taken @ self.scatter @ taken) / square * less / before + DISCREPANCY * less
+        gain = self._gain(excess, variance, free, effects, coordinates)
+        return Neighbour(dropped, added, gain, 0.5 * excess / max(variance, TINY))
+
+    def _gain(
+        self, excess: float, variance: float, free: IntegerArray, effects: Sequence[Effect], coordinates: FloatArray
+    ) -> float:
+        plant, found = self.problem.plant, self.found
+        mine = slice(0, found.jacobian.shape[1])
+        after = log_volume(effects, plant, coordinates, self.products[np.ix_(free, free)], variance)
+        before = log_volume(found.effects, plant, found.coordinates, self.products[mine, mine], variance)
+        sizes = [log_prior_of_size(len(some), self.count) for some in (effects, found.effects)]
+        return 0.5 * excess / max(variance, TINY) + after - before + sizes[0] - sizes[1]
+
+    def weighed_closely(self, one: Neighbour) -> Neighbour:
+        """The set by the colour of what it leaves itself, where that is less."""
+        taken, free, effects, coordinates = self._taken(one.dropped, one.added)
+        if not np.all(np.isfinite(taken)):
+            return one
+        left = self.found.residual - self.columns @ taken
+        there = Fit(effects, left, self.columns[:, free], coordinates)
+        placed = write_coordinates(effects, self.problem.plant, coordinates)
+        return replace(one, gain=log_odds(self.problem, self.found, there, self.count), effects=tuple(placed))

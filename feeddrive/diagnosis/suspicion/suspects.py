@@ -1,0 +1,221 @@
+"""Is it the recorder? One number about a recording, asked beside what the machine was found to lack.
+
+| suspect | what is recorded | the recording as mended |
+|---|---|---|
+| clock_rate | time stamps exp(c) times the true ones | time / exp(c) |
+| channel_gain | torque exp(c) times the true one | torque / exp(c) |
+
+Each is one column beside the slopes of a fitted set: for the clock the change of the residual when the recording is
+prepared with other time stamps, for a gain the predicted torque. What a column brings on blocks left out is compared as
+for any effect (`cross_validation`), and two questions are asked of it:
+
+    alone    with nothing found, is it worth as much as the best single effect was?
+    beside   with all effects found, does it pay?
+
+Where either is so the recording is mended and searched again. The mend is kept where fewer fitted values, that of the
+fault among them, then say as much, or where no more names leave less. An effect of one value that says as much as a
+fault stays, as nobody can tell.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from feeddrive.diagnosis.calibration.beyond import SURE as BEYOND_SURELY
+from feeddrive.diagnosis.calibration.calibrate import calibrated_list
+from feeddrive.diagnosis.calibration.known import known_values
+from feeddrive.diagnosis.certainty.noise_colour import score_covariance
+from feeddrive.diagnosis.finding.search import Search
+from feeddrive.diagnosis.likelihood.cross_validation import (
+    LEAST_GAIN,
+    Comparison,
+    Prior,
+    compare_left_out,
+    least_gain,
+    left_out,
+    left_out_residual,
+    prior_of,
+)
+from feeddrive.diagnosis.likelihood.evidence import AxisEvidence, prepare
+from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit, linear_step
+from feeddrive.diagnosis.likelihood.folds import block_numbers
+from feeddrive.diagnosis.recordings.recordings import is_shift
+from feeddrive.diagnosis.suspicion.quality import Quality
+from feeddrive.errors import InputError
+from feeddrive.recording import Recording
+from feeddrive.typing import FloatArray
+
+CLOCK, GAIN = "clock_rate", "channel_gain"
+
+LEAST = {CLOCK: 1e-3, GAIN: 5e-3}
+"""Logarithm of a factor that is a fault: a quartz misses by 1e-4 at most, a calibrated current by half a per cent."""
+
+STEP = 1e-3
+"""Change of the logarithm of a clock from which its column is taken."""
+
+SAME_ERROR = 1.05
+"""Ratio of squared errors per sample from which a fault leaves less than what was found without it (`round.TIE`)."""
+
+SURE = 3.0
+"""Deviations from none: one of 400 by chance, two suspects asked twice."""
+
+
+NOT_ASKED = Comparison(0.0, 0.0, 0.0)
+"""What a fault brings that is only applied."""
+
+
+@dataclass(frozen=True)
+class Suspect:
+    """A fault of the recorder with its size.
+
+    Attributes:
+        kind: `CLOCK` or `GAIN`.
+        size: c.
+        deviation: of c.
+        comparison: what it brings on blocks left out.
+    """
+
+    kind: str
+    size: float
+    deviation: float = math.inf
+    comparison: Comparison = NOT_ASKED
+
+    def mended(self, recording: Recording) -> Recording:
+        """The recording without the fault."""
+        factor = math.exp(-self.size)
+        if self.kind == CLOCK:
+            return replace(recording, time=recording.time * factor, sample_time=recording.sample_time * factor)
+        names = [name for name in ("motor_torque", "motor_current", "motor_torque_share") if name in recording]
+        return recording.with_channels({name: factor * recording[name] for name in names})
+
+    def said(self, recordings: Sequence[Recording]) -> Quality:
+        """What is reported; recordings are the mended ones."""
+        factor = math.exp(self.size)
+        low, high = (math.exp(self.size + way * 1.96 * self.deviation) for way in (-1, 1))
+        explains = self.comparison.gain
+        if self.kind == CLOCK:
+            off = f"{100 * (factor - 1):+.3g} % off"
+            what = f"the clock of the recording is {off}: {factor:.6g} s are written for each second"
+            mend = f'write sample_time = "{1e3 * recordings[0].sample_time:.6g} ms" in the mapping'
+            return Quality(CLOCK, "time", factor, "1", what, mend, (low, high), explains, mended=True)
+        return replace(scaled(factor, (low, high)), explains=explains)
+
+
+def scaled(factor: float, ci95: tuple[float, float]) -> Quality:
+    """A torque that is recorded as so many times what acts."""
+    what = f"the torque is recorded {factor:.4g} times as large as this machine needs, whatever it does"
+    mend = f'write "factor = {1 / factor:.4g}" in the mapping, or correct the torque constant'
+    return Quality(GAIN, "motor_torque", factor, "1", what, mend, ci95, mended=True)
+
+
+def beyond_its_constant(problem: Problem, found: Fit) -> tuple[Quality, ...]:
+    """A torque of another scale than the tolerance of its constant allows; it was fitted and is judged so."""
+    known = known_values(problem, found)
+    constant = (
+        [i for i, value in enumerate(known.values) if value.key == "torque_constant"] if known is not None else []
+    )
+    if known is None or not constant or known.least() - known.least(constant[0]) < BEYOND_SURELY**2:
+        return ()
+    one = calibrated_list(problem, found)[constant[0]]
+    declared = one.value.declared
+    return (scaled(declared / one.number, (declared / one.ci95[1], declared / one.ci95[0])),)
+
+
+def suspected(found: Search) -> Suspect | None:
+    """The fault of the recorder that is worth a search of the mended recordings; None where none is."""
+    asked = [*_asked(*found.begun), *_asked(found.problem, found.fit)] if found.begun is not None else []
+    first = max((trial.gain for trial in found.trials if trial.round == 1), default=0.0)
+    alone, beside = asked[: len(asked) // 2], asked[len(asked) // 2 :]
+    able = [one for one in alone if one.comparison.gain > first - max(LEAST_GAIN, 2 * one.comparison.standard_error)]
+    able = [one for one in (*able, *beside) if one.comparison.pays and _is_sure(one)]
+    return max(able, key=lambda one: one.comparison.gain, default=None)
+
+
+def again(problem: Problem, kind: str) -> Suspect | None:
+    """What is left of a fault in recordings that were mended, nothing being found in them."""
+    return next((one for one in _asked(problem, fit(problem, ())) if one.kind == kind), None)
+
+
+def is_better(fault: Suspect, mended: Search, found: Search) -> bool:
+    """Whether a fault and what was found beside it say as much as what was found without it, or more with no more.
+
+    As much is what chance does for the values that are spared: of each, less than is asked of any effect.
+    """
+    before, after = (one.fit.squared_error / max(len(one.fit.residual), 1) for one in (found, mended))
+    spared = len(found.fit.coordinates) - len(mended.fit.coordinates) - 1
+    if spared > 0:
+        return after <= (1 + spared * fault.comparison.least) * before
+    return len(mended.fit.effects) <= len(found.fit.effects) and after < before / SAME_ERROR
+
+
+def _is_sure(one: Suspect) -> bool:
+    return abs(one.size) > max(LEAST[one.kind], SURE * one.deviation)
+
+
+def _asked(problem: Problem, found: Fit) -> list[Suspect]:
+    """Every suspect beside a fitted set."""
+    if not all(isinstance(e, AxisEvidence) for e in problem.evidence):
+        return []
+    if any(map(is_shift, (*problem.plant.effects, *found.effects))):
+        return []  # recordings that differ are compared with each other, not with a clock
+    if any("motor_torque" not in e.channels or e.scaled_from for e in problem.evidence):  # type: ignore[attr-defined]
+        return []
+    columns = {CLOCK: _clock_column(problem, found), GAIN: _gain_column(problem, found)}
+    return [_beside(problem, found, kind, column) for kind, column in columns.items() if column is not None]
+
+
+def _beside(problem: Problem, found: Fit, kind: str, column: FloatArray) -> Suspect:
+    """A suspect whose slope with the prediction is a column, (m,)."""
+    blocks = block_numbers(problem)
+    wide = np.column_stack([found.jacobian, column])
+    step = linear_step(wide, found.residual)
+    residual = found.residual - wide @ step
+    prior = prior_of(found.free, problem.plant, found.coordinates)
+    size = float(step[-1])
+    own = max(abs(size), LEAST[kind])
+    prior = Prior(np.append(prior.beyond, size), np.append(prior.width, own))
+    without = left_out_residual(problem, found, blocks)
+    errors = left_out(residual, wide, blocks, prior)
+    comparison = compare_left_out(without, errors, blocks, least_gain(problem, without, errors))
+    alone = column - found.jacobian @ linear_step(found.jacobian, column) if found.jacobian.size else column
+    score = score_covariance(problem.evidence, [e.fit_rows for e in problem.evidence], residual, alone[:, None])
+    square = float(alone @ alone)
+    deviation = math.sqrt(float(score[0, 0])) / square if square > 0 else math.inf
+    return Suspect(kind, size, deviation, comparison)
+
+
+def _gain_column(problem: Problem, found: Fit) -> FloatArray:
+    """The predicted torque, whitened, (m,)."""
+    plant, parts = problem.machine(found.effects), []
+    for e in problem.evidence:
+        predicted = problem.predictor.predict(plant, e)
+        only = {name: s if name == "motor_torque" else np.zeros_like(s) for name, s in predicted.items()}
+        parts.append(e.weighted(only, e.thinned(e.fit_rows)))
+    return _whitened(problem, np.concatenate(parts))
+
+
+def _clock_column(problem: Problem, found: Fit) -> FloatArray | None:
+    """What the residual loses per logarithm of a clock, whitened, (m,); None where no other clock can be tried."""
+    plant, parts = problem.machine(found.effects), []
+    for e in problem.evidence:
+        assert isinstance(e, AxisEvidence)
+        try:
+            other = prepare(Suspect(CLOCK, STEP).mended(e.recording), problem.plant, 1.0)
+        except InputError:
+            return None
+        # the same rows pass the same filter: what changes is the motion between them
+        other = replace(e, recording=other.recording, motion=other.motion)
+        rows = e.thinned(e.fit_rows)
+        here, there = (e.weighted(problem.predictor.predict(plant, one), rows) for one in (e, other))
+        parts.append((there - here) / STEP)
+    column = np.concatenate(parts)
+    return _whitened(problem, column) if np.all(np.isfinite(column)) else None
+
+
+def _whitened(problem: Problem, column: FloatArray) -> FloatArray:
+    column = np.concatenate([column, np.zeros(len(problem.numbers))])  # measured beside the recordings, by others
+    return column if problem.whitener is None else problem.whitener.applied(column)

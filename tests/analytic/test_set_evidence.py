@@ -1,0 +1,153 @@
+"""Evidence of sets of effects: against an integral, on chance alone, and on effects that hide or imitate each other."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from feeddrive.diagnosis.finding.attempt import Attempt
+from feeddrive.diagnosis.finding.sets import Neighbour, neighbours, odds_of_members
+from feeddrive.diagnosis.likelihood.cross_validation import Comparison
+from feeddrive.diagnosis.likelihood.fit import Fit, linear_step
+from feeddrive.diagnosis.likelihood.set_evidence import log_odds, log_prior_of_size, log_volume
+from feeddrive.diagnosis.numbers.rows import MeasuredRows
+from feeddrive.effects.base import Effect
+from feeddrive.effects.chain.payload import Payload
+from feeddrive.effects.source.constant_force import ConstantForce
+from feeddrive.effects.travel.lead_error_cumulative import LeadErrorCumulative
+from feeddrive.plant.plant import Plant
+from feeddrive.typing import FloatArray
+from tests.convergence.test_simulate import BENCH
+
+ROWS = 6000
+PLANT = Plant("axis", BENCH)
+FIRST, SECOND, THIRD = Payload.of(mass=0.0), ConstantForce.of(force=0.0), LeadErrorCumulative.of(slope=0.0)
+COUNT = 25
+
+
+def problem(columns: dict[str, FloatArray], measured: FloatArray) -> Any:
+    """Recordings in which an effect of size one is its column."""
+    evidence = SimpleNamespace(
+        channels=("a",), fit_rows=np.ones(ROWS, dtype=bool), recording=SimpleNamespace(sample_time=0.01), block=0.5,
+        thinning=1, floating=(), model_error={}, noise={}, thinned=lambda rows: rows,
+    )  # fmt: skip
+
+    def residual(effects: Sequence[Effect]) -> FloatArray:
+        return measured - sum((columns[e.name] * coordinate(e) for e in effects), np.zeros(ROWS))
+
+    return SimpleNamespace(evidence=(evidence,), plant=PLANT, residual=residual, numbers=MeasuredRows())
+
+
+def coordinate(effect: Effect) -> float:
+    """The one coordinate of an effect of these."""
+    (parameter,) = effect.parameters
+    value = effect.values[parameter.key]
+    assert isinstance(value, float)
+    return value / parameter.size
+
+
+def fitted(effects: Sequence[Effect], columns: dict[str, FloatArray], measured: FloatArray) -> Fit:
+    """A set fitted to a series."""
+    slopes = np.column_stack([np.zeros((ROWS, 0)), *(columns[e.name] for e in effects)])
+    step = linear_step(slopes, measured)
+    placed = tuple(
+        e.with_values(**{e.parameters[0].key: e.parameters[0].size * float(c)})
+        for e, c in zip(effects, step, strict=True)
+    )
+    return Fit(placed, measured - slopes @ step, slopes, step)
+
+
+def attempt(effect: Effect, columns: dict[str, FloatArray], found: Fit, made: Any) -> Attempt:
+    """A candidate at its start, beside a set that stays as it is."""
+    slopes, held = columns[effect.name][:, None], len(found.effects)
+    start = Fit((*found.effects, effect), found.residual, slopes, np.zeros(1), held)
+    return Attempt(effect.name, start, Comparison(0.0, 0.0, 0.0), made)
+
+
+def drawn(seed: int, *sizes: float, likeness: float = 0.0) -> tuple[dict[str, FloatArray], FloatArray]:
+    """Columns, the second like the first by so much, and a series that holds so many deviations of each in noise."""
+    generator = np.random.default_rng(seed)
+    a, b, c, noise = generator.standard_normal((4, ROWS))
+    b = likeness * a + np.sqrt(1 - likeness**2) * b
+    columns = {"payload": a, "constant_force": b, "lead_error_cumulative": c}
+    told = [size / np.sqrt(ROWS) * column for size, column in zip(sizes, columns.values(), strict=False)]
+    return columns, noise + sum(told, np.zeros(ROWS))
+
+
+def named(one: Neighbour, effects: Sequence[Effect]) -> set[str]:
+    """Names that a set adds."""
+    return {effects[i].name for i in one.added}
+
+
+def test_volume_is_that_of_the_integral_over_the_prior() -> None:
+    """One coordinate, told to a twentieth of its prior: Laplace's formula is exact to the bend of the prior there."""
+    deviation, at = 0.05, 0.7
+    effect = SECOND.with_values(force=at * 10.0)
+
+    def density(theta: float) -> float:
+        return float(np.exp(-0.5 * ((theta - at) / deviation) ** 2) / (np.pi * (1 + theta**2)))
+
+    exact = np.log(quad(density, at - 8 * deviation, at + 8 * deviation)[0])
+    found = log_volume((effect,), PLANT, np.array([at]), np.array([[1.0]]), deviation**2)
+    assert found == pytest.approx(exact, abs=deviation**2)  # the second order of the prior over its width
+
+
+def test_prior_of_all_sets_of_a_size_falls_as_candidates_grow() -> None:
+    """One effect of K is expected half as often as none, whichever it is: p(one) K / p(none) is a half at large K."""
+    for count in (10, 100, 1000):
+        ratio = np.exp(log_prior_of_size(1, count) - log_prior_of_size(0, count))
+        assert count * ratio == pytest.approx(0.5, rel=1 / count)
+
+
+def test_chance_gives_no_effect_and_its_odds_are_small() -> None:
+    odds = []
+    for seed in range(40):
+        columns, measured = drawn(seed)
+        nothing, one = fitted((), columns, measured), fitted((FIRST,), columns, measured)
+        odds.append(log_odds(problem(columns, measured), nothing, one, COUNT))
+    assert max(odds) < 0
+
+
+def test_effect_of_eight_deviations_is_in_and_one_of_two_is_not() -> None:
+    """The price of 25 candidates is 4 nats, of a size known to a seventieth of its prior 4.4: 4.1 deviations."""
+    for size, wanted in ((8.0, True), (2.0, False)):
+        columns, measured = drawn(3, size)
+        found = fitted((FIRST,), columns, measured)
+        assert (odds_of_members(problem(columns, measured), found, COUNT)[0] > 0) is wanted
+
+
+def test_two_effects_that_hide_each_other_are_found_together() -> None:
+    columns, measured = drawn(4, 60.0, -60.0, likeness=0.98)
+    made, nothing = problem(columns, measured), fitted((), columns, measured)
+    effects = (FIRST, SECOND, THIRD)
+    attempts = [attempt(effect, columns, nothing, made) for effect in effects]
+    ranked = neighbours(made, nothing, attempts, COUNT)
+    assert named(ranked[0], effects) == {"payload", "constant_force"}
+    alone = [one for one in ranked if len(one.added) == 1]
+    assert ranked[0].gain > 5 + max((one.gain for one in alone), default=-np.inf)
+
+
+def test_effect_that_stands_in_for_another_is_swapped_and_one_that_no_longer_pays_is_dropped() -> None:
+    columns, measured = drawn(5, 60.0, likeness=0.95)
+    wrong = fitted((SECOND,), columns, measured)
+    made = problem(columns, measured)
+    (best, *_) = neighbours(made, wrong, [attempt(FIRST, columns, wrong, made)], COUNT)
+    assert best.dropped == (0,) and named(best, (FIRST,)) == {"payload"}
+    both = fitted((FIRST, SECOND), columns, measured)
+    (best, *_) = neighbours(made, both, [], COUNT)
+    assert best.dropped == (1,) and best.gain > 0
+
+
+def test_what_one_block_alone_shows_is_no_effect() -> None:
+    """Six deviations for one block of 120: by the spectrum alone it would be an effect, by the sums over blocks not."""
+    columns, measured = drawn(6)
+    for name in columns:
+        columns[name] = np.sign(np.sin(2 * np.pi * np.arange(ROWS) / 700))
+    measured = measured + np.where((np.arange(ROWS) >= 100) & (np.arange(ROWS) < 150), 6.0, 0.0)
+    found = fitted((FIRST,), columns, measured)
+    assert odds_of_members(problem(columns, measured), found, COUNT)[0] < 0

@@ -1,0 +1,124 @@
+"""A fault of the recorder is said as one, with the mend, and no effect of the machine stands for it.
+
+The recordings are written down in closed form (`rigid_runs`) for an axis whose values are exact, and spoilt in plain
+numpy; faults and their sizes are drawn. Neither shares code with the package.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from feeddrive.diagnosis.diagnose import diagnose
+from feeddrive.diagnosis.judging.result import Diagnosis
+from feeddrive.diagnosis.likelihood.outputs import diagnosis_record
+from feeddrive.diagnosis.suspicion.logged_rows import rhythm
+from feeddrive.diagnosis.suspicion.quality import Quality
+from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.plant import Plant
+from feeddrive.recording import Recording
+from tests.recovery.rigid_runs import PLANT, Truth, rigid_run
+
+KEYS = "mass|coulomb|smoothing_velocity|viscous"
+EXACT = re.sub(rf'^({KEYS}) = (".*")$', r'\1 = { value = \2, source = "simulated" }', PLANT, flags=re.M)
+
+STEP = 1e-3
+"""Time between rows [s]: clearly that of a servo loop, be the clock some per cent off."""
+
+
+@pytest.fixture(scope="module")
+def rigid(tmp_path_factory: pytest.TempPathFactory) -> Plant:
+    """The rigid axis, its values exact."""
+    path = tmp_path_factory.mktemp("plant") / "rigid.toml"
+    path.write_text(EXACT, encoding="utf-8")
+    return read_plant(path)
+
+
+def runs(seed: int, truth: Truth) -> list[Recording]:
+    """Two recordings of one machine, the second of other speeds."""
+    first, second = replace(truth, seed=seed), replace(truth, seed=seed + 1)
+    return [rigid_run("a", first, step=STEP), rigid_run("b", second, slow=1.2, step=STEP)]
+
+
+def with_clock(run: Recording, factor: float) -> Recording:
+    return replace(run, time=factor * run.time, sample_time=factor * run.sample_time)
+
+
+def with_torque(run: Recording, torque: np.ndarray) -> Recording:
+    return replace(run, channels={**run.channels, "motor_torque": torque})
+
+
+def told(result: Diagnosis) -> Quality:
+    (one,) = result.quality
+    return one
+
+
+@pytest.mark.parametrize("seed", [1, pytest.param(2, marks=pytest.mark.slow), pytest.param(3, marks=pytest.mark.slow)])
+def test_a_clock_that_is_off(rigid: Plant, seed: int) -> None:
+    random = np.random.default_rng(seed)
+    factor = 1 + float(random.choice([-1, 1]) * random.uniform(0.008, 0.05))
+    one, other = (with_clock(run, factor) for run in runs(seed, Truth()))
+    result, effects = diagnose(rigid, [one], [other])
+    assert (result.effects, effects) == ((), ())
+    found = told(result)
+    assert (found.kind, found.channel, found.mended) == ("clock_rate", "time", True)
+    assert found.ci95 is not None
+    # a tenth of what is off: what is asked of a planted size
+    assert found.value - 1 == pytest.approx(factor - 1, rel=0.1)
+    written = re.search(r'sample_time = "(.*) ms"', found.mend)
+    assert written is not None and float(written.group(1)) == pytest.approx(1e3 * STEP, rel=0.1 * abs(factor - 1))
+    assert diagnosis_record(result)["quality"][0]["value"] == found.value
+
+
+@pytest.mark.parametrize("seed", [4, pytest.param(5, marks=pytest.mark.slow), pytest.param(6, marks=pytest.mark.slow)])
+def test_a_torque_of_another_scale(rigid: Plant, seed: int) -> None:
+    random = np.random.default_rng(seed)
+    factor = float(random.choice([0.85, 1.15]) * random.uniform(0.97, 1.03))
+    one, other = (with_torque(run, factor * run["motor_torque"]) for run in runs(seed, Truth()))
+    result, effects = diagnose(rigid, [one], [other])
+    assert (result.effects, effects) == ((), ())
+    found = told(result)
+    assert (found.kind, found.channel) == ("channel_gain", "motor_torque")
+    assert found.value == pytest.approx(factor, abs=0.1 * abs(factor - 1))
+    assert f"factor = {1 / found.value:.4g}" in found.mend
+    assert found.ci95 is not None and found.ci95[0] < found.value < found.ci95[1]
+
+
+@pytest.mark.parametrize("seed", [7, pytest.param(8, marks=pytest.mark.slow), pytest.param(9, marks=pytest.mark.slow)])
+def test_a_torque_that_the_recorder_repeats(rigid: Plant, seed: int) -> None:
+    every = int(np.random.default_rng(seed).integers(2, 10))
+    spoilt = [
+        with_torque(run, run["motor_torque"][np.arange(len(run)) // every * every]) for run in runs(seed, Truth())
+    ]
+    result, effects = diagnose(rigid, spoilt[:1], spoilt[1:])
+    assert (result.effects, effects) == ((), ())
+    assert {(one.kind, round(one.value / STEP)) for one in result.quality} == {("channel_hold", every)}
+
+
+def test_a_machine_that_lacks_something_is_not_taken_for_a_recorder(rigid: Plant) -> None:
+    one, other = runs(11, Truth(mass=9.0, ripple=0.01))
+    result, _ = diagnose(rigid, [one], [other])
+    assert {effect.name for effect in result.effects} == {"payload", "torque_ripple"}
+    assert [found.kind for found in result.quality if found.mended] == []
+
+
+def test_an_offset_and_a_constant_force_are_said_together(rigid: Plant) -> None:
+    one, other = (with_torque(run, run["motor_torque"] + 0.01) for run in runs(13, Truth()))
+    result, _ = diagnose(rigid, [one], [other])
+    assert [effect.name for effect in result.effects] == ["constant_force"]
+    assert ("constant_force", "channel_offset") in result.ambiguous
+    assert told(result).alternatives == ("constant_force",)
+    assert told(result).value == pytest.approx(0.01, rel=0.1)
+    assert "offset = -0.01" in told(result).mend or "offset = -10" in told(result).mend
+
+
+def test_the_rhythm_of_a_repeated_channel() -> None:
+    random = np.random.default_rng(17)
+    fresh = random.standard_normal(400)
+    every, first = int(random.integers(2, 30)), 1
+    assert rhythm(np.repeat(fresh, every)[every - first :]) == (every, first)
+    assert rhythm(random.standard_normal(4000)) is None
+    assert rhythm(np.round(np.sin(np.linspace(0, 40, 4000)), 1)) is None  # coarse steps change at any row
