@@ -144,7 +144,8 @@ def _bridge(before: FloatArray, after: FloatArray, step: float, fastest: float, 
         count = int(np.ceil(slower * time / step))
         scales = np.array([1.0, count * step, (count * step) ** 2])
         terms = np.linalg.solve(np.array(rows, float), np.concatenate([np.array(end) * scales for end in ends]))
-        found = np.polynomial.polynomial.polyval(np.arange(1, count) / count, terms)
+        way_on = np.polynomial.polynomial.polyval(np.arange(1, count) / count, terms)
+        found = np.asarray(way_on, dtype=np.float64)
         if np.abs(np.diff(found)).max() <= fastest * step:
             break
     return found
