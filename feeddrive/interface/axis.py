@@ -25,10 +25,12 @@ from feeddrive.plant.analysis.rated_life import rated_life
 from feeddrive.plant.analysis.stiffness_budget import stiffness_budget
 from feeddrive.plant.analysis.summary import summarise
 from feeddrive.plant.chain.moving_inertia import inertia_at_motor
+from feeddrive.plant.derived_effects import GRAVITY
 from feeddrive.plant.file.declared_check import check_declared
 from feeddrive.plant.file.effect_text import plant_text_with_effects
 from feeddrive.plant.file.entries import parse_toml
 from feeddrive.plant.file.files import plant_from_entries
+from feeddrive.plant.file.plant_schema import plant_table
 from feeddrive.plant.plant import Plant
 from feeddrive.simulate.scenario.scenario_overrides import with_overrides
 from feeddrive.thermal.heat import Heat
@@ -214,14 +216,17 @@ class Axis:
         write_text_atomically(target, plant_text_with_effects(self.text, self.added))
         return target
 
-    def summary(self, at: Quantity | None = None) -> Summary | HeatSummary:
+    def summary(
+        self, at: Quantity | None = None, recording: Recording | str | Path | None = None
+    ) -> Summary | HeatSummary:
         """Values with their sources, inertias, stiffness budget, friction, modes and life; of heat alone its own.
 
         Args:
             at: table position for stiffness and modes; the middle of the stroke if left out.
+            recording: of which the life that it takes is told, see `used_life`; none if left out.
 
         Raises:
-            InputError: a position off the screw.
+            InputError: a position off the screw, a recording without motor angle, or of a machine of heat alone.
 
         >>> import feeddrive as fd
         >>> [one.title for one in fd.load("bench_axis").summary().tables()][2]
@@ -230,9 +235,17 @@ class Axis:
         from feeddrive.interface.machine.heat_summary import HeatSummary
 
         if not self.has_motion:
+            if recording is not None:
+                raise InputError(
+                    "declares heat alone, so no load of a nut is known", self.name, "leave the recording out"
+                )
             return HeatSummary(self.heat)
+        from feeddrive.plant.file.guide_section import declared_carriages  # Hertz's contacts take time to import
+
         found = summarise(self.plant, None if at is None else si(at, "m", "at"))
-        return Summary(self.plant, found, rated_life(self.plant))
+        carriages = declared_carriages(plant_table(self.entries, str(self.path)), GRAVITY)
+        used = None if recording is None else self.used_life(recording)
+        return Summary(self.plant, found, rated_life(self.plant), carriages, used)
 
     def lumped(self, at: Quantity | None = None) -> Lumped:
         """The three inertias that are nearest to a machine of parts, and how near they are.
@@ -321,7 +334,7 @@ class Axis:
             raise InputError("no channel motor_angle", rec.name, "record it: its revolutions are what wears the nuts")
         angle = comparison_band(self.plant, 1 / rec.sample_time).filter(rec["motor_angle"])
         force = rec.channels.get("cutting_force")
-        return UsedLife(rec.name, used_life(self.plant, rec.time, angle, force))
+        return UsedLife(rec.name, rec.time, used_life(self.plant, rec.time, angle, force))
 
     def linear(self, at: str = "") -> control.StateSpace:
         """The axis linearised exactly about a steady motion, states, inputs and outputs named, SI.

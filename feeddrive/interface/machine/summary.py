@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from feeddrive.interface.machine.heat_summary import HeatSummary
 from feeddrive.interface.shown import Listing, Shown, finite, write_figures, write_json
+from feeddrive.parts.guide.carriages import Carriages
 from feeddrive.parts.life.consumed_life import ConsumedLife
 from feeddrive.plant.analysis.modes import Modes
 from feeddrive.plant.analysis.rated_life import LifeRow
@@ -17,6 +18,7 @@ from feeddrive.plant.analysis.stiffness_budget import StiffnessBudget
 from feeddrive.plant.analysis.summary import Summary as Figures
 from feeddrive.plant.plant import Plant
 from feeddrive.report.words.chain_words import chain_remark
+from feeddrive.typing import FloatArray
 from feeddrive.units.quantity import format_quantity
 
 if TYPE_CHECKING:
@@ -128,22 +130,65 @@ class UsedLife(Shown):
 
     Attributes:
         name: of the run or the recording.
+        time: of its samples, (n,) [s].
         used: along the samples; None where no dynamic rating is declared, or no force of a nut is known.
     """
 
     name: str
+    time: FloatArray
     used: ConsumedLife | None
 
     def listing(self) -> Listing:
         """One row per nut, then how often 90 % survive the motion."""
         title = f"{self.name}: life of the ball screw that it takes"
+        headings = ("nut", "load over the turns", "greatest load", "used of its rated life")
         if self.used is None:
-            return Listing(f"{title} (not known: ball_screw.dynamic_rating is not declared)", ("nut", "used"), [], [])
-        totals = dict(zip(("nut +", "nut −"), map(float, self.used.total), strict=True))
-        rows = [[name, f"{1e6 * share:.3g} millionths of its rated life"] for name, share in totals.items()]
-        rows.append(["both, survived by 90 %", f"{_digits(self.used.repetitions)} times one after another"])
-        records = [{"nut": name, "used [1]": share} for name, share in totals.items()]
-        return Listing(title, ("nut", "used"), rows, [*records, {"repetitions": finite(self.used.repetitions)}])
+            return Listing(f"{title} (not known: ball_screw.dynamic_rating is not declared)", headings, [])
+        records = [
+            {"nut": name, "equivalent load [N]": equivalent, "greatest load [N]": greatest, "used [1]": share}
+            for name, equivalent, greatest, share in zip(
+                ("nut +", "nut −"),
+                self.used.equivalent.tolist(),
+                self.used.forces.max(axis=1).tolist(),
+                self.used.total.tolist(),
+                strict=True,
+            )
+        ]
+        rows = [
+            [
+                str(one["nut"]),
+                *(format_quantity(one[key], "N") for key in ("equivalent load [N]", "greatest load [N]")),
+                f"{1e6 * one['used [1]']:.3g} millionths",
+            ]
+            for one in records
+        ]
+        rows.append(["both", "", "", f"survived by 90 % {_digits(self.used.repetitions)} times one after another"])
+        turned = float(self.used.revolutions[-1])
+        caption = (
+            f"{_digits(turned)} revolutions of the screw. Load over the turns: the constant load that takes as much "
+            f"life (mean to the power {self.used.exponents.load:g}), preload included."
+        )
+        return Listing(title, headings, rows, [*records, {"repetitions": finite(self.used.repetitions)}], caption)
+
+    def record(self) -> dict[str, Any] | None:
+        """Loads, shares of life and repetitions of the motion, SI; None where nothing is known."""
+        if self.used is None:
+            return None
+        return {
+            "recording": self.name,
+            "revolutions": float(self.used.revolutions[-1]),
+            "equivalent_loads": self.used.equivalent.tolist(),
+            "greatest_loads": self.used.forces.max(axis=1).tolist(),
+            "used": self.used.total.tolist(),
+            "repetitions": finite(self.used.repetitions),
+        }
+
+    def _figures(self) -> Sequence[ReportFigure]:
+        if self.used is None:
+            return ()
+        from feeddrive.report.figures.figure_parts import used_life_figure
+
+        return (used_life_figure(self.time, self.used),)
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -154,11 +199,15 @@ class Summary(Shown):
         plant: the machine.
         figures: everything that was computed, SI.
         life: rows of the rated life.
+        carriages: of its guide, where declared.
+        used: what a recording takes of the life, where one was given.
     """
 
     plant: Plant
     figures: Figures
     life: Sequence[LifeRow]
+    carriages: Carriages | None = None
+    used: UsedLife | None = None
 
     def listing(self) -> Listing:
         """The declared values."""
@@ -189,6 +238,8 @@ class Summary(Shown):
         if found.stiffness is not None:
             stiffness = Stiffness(plant.name, found.position, found.stiffness, plant).listing()
             tables.insert(3, replace(stiffness, title=f"Stiffness, motor held{at}"))
+        if self.used is not None:
+            tables.append(self.used.listing())
         heat = HeatSummary(plant.heat).tables() if plant.has_heat else ()
         return (*(one for one in tables if one.rows), *heat)
 
@@ -213,6 +264,7 @@ class Summary(Shown):
             "stiffness": asdict(found.stiffness) if found.stiffness else None,
             "friction": [asdict(row) for row in found.friction],
             "life": [asdict(row) for row in self.life],
+            **({"used_life": self.used.record()} if self.used is not None else {}),
             "modes": {
                 "coordinates": list(found.modes.coordinates),
                 "braked": _modes_record(found.modes.braked),
@@ -223,7 +275,7 @@ class Summary(Shown):
         }
 
     def save(self, folder: str | Path) -> Path:
-        """Write `show.json`, and the figures of the stiffness of a machine that is described by parts.
+        """Write `show.json` and the figures that the declared values allow; `not_drawn` says which are left out.
 
         Raises:
             InputError: the folder cannot be written.
@@ -233,7 +285,21 @@ class Summary(Shown):
         write_figures(self._figures(), place)
         return place
 
+    @property
+    def not_drawn(self) -> tuple[str, ...]:
+        """A line for each figure that is left out, with what to declare for it."""
+        from feeddrive.report.figures.figure_parts import parts_figures
+
+        stiffness = "stiffness along the stroke: describe a distributed screw by its parts"
+        return (*(() if self._stiffness_figures() else (stiffness,)), *parts_figures(self.plant, self.carriages)[1])
+
     def _figures(self) -> Sequence[ReportFigure]:
+        from feeddrive.report.figures.figure_parts import parts_figures
+
+        drawn = (*self._stiffness_figures(), *parts_figures(self.plant, self.carriages)[0])
+        return (*drawn, *(self.used._figures() if self.used is not None else ()))
+
+    def _stiffness_figures(self) -> Sequence[ReportFigure]:
         if self.plant.drive is None or not self.plant.chain.varies:
             return ()
         from feeddrive.report.figures.figure_stiffness import stiffness_figures

@@ -90,7 +90,7 @@ class Run(Shown):
         """
         series, plant = self.result.series, self.result.scenario.plant
         used = used_life(plant, self.result.time, series["motor_angle"], series["cutting_force"])
-        return UsedLife(self.result.scenario.name, used)
+        return UsedLife(self.result.scenario.name, self.result.time, used)
 
     def listing(self) -> Listing:
         """One row per number: following error, torque, and the figures that the scenario asks for."""
