@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -200,6 +201,36 @@ class Axis:
             if not isinstance(one, Effect):
                 raise InputError(f"{one!r} is no effect", "with_effects", 'give fd.effect("backlash", width="7.5 um")')
         changed = replace(self, added=(*self.added, *effects))
+        changed.refuse_unusable()
+        return changed
+
+    def with_body(
+        self, name: str, port: str, *, capacity: Quantity, conductance: Quantity, to_air: Quantity = "0 W/K"
+    ) -> Axis:
+        """The axis with a further body that takes heat: motor, bearing housing, bed; a `[[thermal.body]]` of the file.
+
+        Args:
+            name: of the body, for its temperature and for heats that act on it.
+            port: "front", "rear" or "nut", where it is attached.
+            capacity: [J/K].
+            conductance: to the surface at the port [W/K].
+            to_air: to the surroundings [W/K].
+
+        Raises:
+            InputError: a machine without heat, an unknown port, a value that is not possible.
+
+        >>> import feeddrive as fd
+        >>> axis = fd.load("thermal_bench")
+        >>> axis.with_body("bed", "front", capacity="60 kJ/K", conductance="0.2 W/K").heat.bodies[0].capacity
+        60000.0
+        """
+        given = {"name": name, "port": port}
+        for key, value, unit in (("capacity", capacity, "J/K"), ("conductance", conductance, "W/K"),
+                                 ("to_air", to_air, "W/K")):  # fmt: skip
+            given[key] = f"{si(value, unit, key)!r} {unit}"
+        written = "".join(f"{key} = {json.dumps(value, ensure_ascii=False)}\n" for key, value in given.items())
+        _ = self.heat
+        changed = replace(self, text=f"{self.text.rstrip()}\n\n[[thermal.body]]\n{written}")
         changed.refuse_unusable()
         return changed
 

@@ -69,7 +69,7 @@ def test_a_recording_tells_what_it_takes_of_each_nut(tmp_path: Path, capsys: pyt
     asked = ["show", "hsr_axis", "--recording", str(tmp_path / "stroke.csv")]
     assert main([*asked, "--out", str(tmp_path / "out")]) == 0
     shown = capsys.readouterr().out
-    assert "life of the ball screw that it takes" in shown and "millionths" in shown
+    assert "life of the ball screw that it takes" in shown and "billionths" in shown and "million times" in shown
     assert (tmp_path / "out" / "used_life.png").read_bytes().startswith(PNG)
     told = json.loads((tmp_path / "out" / "show.json").read_text(encoding="utf-8"))["used_life"]
     assert told["revolutions"] == pytest.approx(20.0, rel=1e-3)

@@ -18,6 +18,7 @@ from feeddrive.plant.analysis.stiffness_budget import StiffnessBudget
 from feeddrive.plant.analysis.summary import Summary as Figures
 from feeddrive.plant.plant import Plant
 from feeddrive.report.words.chain_words import chain_remark
+from feeddrive.report.words.people import scale_for_share_of_life
 from feeddrive.typing import FloatArray
 from feeddrive.units.quantity import format_quantity
 
@@ -154,15 +155,16 @@ class UsedLife(Shown):
                 strict=True,
             )
         ]
+        scale = scale_for_share_of_life(float(self.used.total.max()))
         rows = [
             [
                 str(one["nut"]),
                 *(format_quantity(one[key], "N") for key in ("equivalent load [N]", "greatest load [N]")),
-                f"{1e6 * one['used [1]']:.3g} millionths",
+                f"{_digits(scale.factor * one['used [1]'])} {scale.unit}",
             ]
             for one in records
         ]
-        rows.append(["both", "", "", f"survived by 90 % {_digits(self.used.repetitions)} times one after another"])
+        rows.append(["both", "", "", f"survived by 90 % {_times(self.used.repetitions)} times"])
         turned = float(self.used.revolutions[-1])
         caption = (
             f"{_digits(turned)} revolutions of the screw. Load over the turns: the constant load that takes as much "
@@ -372,6 +374,11 @@ def _modes_record(modes: Modes) -> dict[str, Any]:
 
 def _several(value: Any) -> tuple[float, ...]:
     return value if isinstance(value, tuple) else (value,)
+
+
+def _times(value: float) -> str:
+    """How often, in millions where it is often."""
+    return f"{_digits(value / _MILLION)} million" if math.isfinite(value) and value >= _MILLION else _digits(value)
 
 
 def _digits(value: float) -> str:

@@ -26,7 +26,7 @@ from feeddrive.report.figures.drawing import (
     legend_above,
     new_figure,
 )
-from feeddrive.report.words.people import significant
+from feeddrive.report.words.people import scale_for_share_of_life, significant
 from feeddrive.typing import FloatArray
 from feeddrive.units.quantity import format_quantity
 
@@ -293,11 +293,12 @@ def used_life_figure(time: FloatArray, used: ConsumedLife) -> ReportFigure:
     """
     figure = new_figure(4.6)
     upper, lower = figure.subplots(2, 1, sharex=True)
+    scale = scale_for_share_of_life(float(used.total.max()))
     for name, forces, share, colour in zip(("nut +", "nut −"), used.forces, used.used, (AFTER, BEFORE), strict=True):
         upper.plot(time, _KILO * forces, color=colour, lw=0.9, label=name)
-        lower.plot(time, 1e6 * share, color=colour, lw=1.4)
+        lower.plot(time, scale.factor * share, color=colour, lw=1.4)
     dress(upper, "", "load of the nut [kN]")
-    dress(lower, "time [s]", "rated life used [millionths]")
+    dress(lower, "time [s]", f"rated life used [{scale.unit}]")
     upper.set_ylim(0.0)
     lower.set_ylim(0.0)
     legend_above(upper)
