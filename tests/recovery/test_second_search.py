@@ -1,4 +1,4 @@
-"""Two effects that look most like a third: the search goes back to the turn that it nearly took."""
+"""Two effects that look most like a third: the search meets the pair as one of the sets near the one at hand."""
 
 from __future__ import annotations
 
