@@ -16,8 +16,9 @@ from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant, write_text_atomically
 from feeddrive.interface.machine.check import Check
+from feeddrive.interface.machine.life import Life, UsedLife
 from feeddrive.interface.machine.modes import Modes
-from feeddrive.interface.machine.summary import Life, Stiffness, Summary, UsedLife
+from feeddrive.interface.machine.summary import Stiffness, Summary
 from feeddrive.interface.quantities import Quantity, quantities, si
 from feeddrive.plant.analysis.lumping import lump
 from feeddrive.plant.analysis.mode_map import mode_map
@@ -345,7 +346,7 @@ class Axis:
 
     def life(self) -> Life:
         """Rated life of the ball screw, survived by 90 %."""
-        return Life(self.name, rated_life(self.plant))
+        return Life(self.name, rated_life(self.plant), self.plant)
 
     def used_life(self, recording: Recording | str | Path) -> UsedLife:
         """What a recorded motion has taken of the life of each nut of the ball screw.
