@@ -90,3 +90,11 @@ def test_every_axis_of_figures_names_its_unit_and_what_is_missing_is_said() -> N
             for axes in one.figure.axes:
                 assert axes.get_xlabel() == "" or axes.get_xlabel().endswith("]")
     assert all("declare" in line or "describe" in line for line in summary(fd.load("bench_axis")).not_drawn)
+
+
+def test_life_draws_itself_where_a_rating_is_declared() -> None:
+    left, right = fd.load("hsr_axis").life().plot().axes[:2]
+    heights = left.lines[0].get_ydata()
+    assert np.all(np.diff(heights) < 0) and right.lines[0].get_ydata()[0] == pytest.approx(heights[0])
+    with pytest.raises(fd.InputError, match="nothing to draw"):
+        fd.load("kimm_testbed").life().plot()
