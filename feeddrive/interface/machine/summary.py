@@ -174,23 +174,23 @@ class Summary(Shown):
     @property
     def not_drawn(self) -> tuple[str, ...]:
         """A line for each figure that is left out, with what to declare for it."""
-        from feeddrive.report.figures.figure_parts import parts_figures
+        from feeddrive.report.figures.figure_parts import figures_left_out
 
         stiffness = "stiffness along the stroke: describe a distributed screw by its parts"
-        return (*(() if self._stiffness_figures() else (stiffness,)), *parts_figures(self.plant, self.carriages)[1])
+        return (*(() if self._has_places else (stiffness,)), *figures_left_out(self.plant, self.carriages))
+
+    @property
+    def _has_places(self) -> bool:
+        """Whether the stiffness follows the nut along a screw that is described by its parts."""
+        return self.plant.drive is not None and self.plant.chain.varies
 
     def _figures(self) -> Sequence[ReportFigure]:
         from feeddrive.report.figures.figure_parts import parts_figures
-
-        drawn = (*self._stiffness_figures(), *parts_figures(self.plant, self.carriages)[0])
-        return (*drawn, *(self.used._figures() if self.used is not None else ()))
-
-    def _stiffness_figures(self) -> Sequence[ReportFigure]:
-        if self.plant.drive is None or not self.plant.chain.varies:
-            return ()
         from feeddrive.report.figures.figure_stiffness import stiffness_figures
 
-        return stiffness_figures(self.plant, self.figures.position)
+        drawn = stiffness_figures(self.plant, self.figures.position) if self._has_places else ()
+        used = self.used._figures() if self.used is not None else ()
+        return (*drawn, *parts_figures(self.plant, self.carriages), *used)
 
     def _source(self, key: str) -> str:
         return self.plant.origins.get(key, "")

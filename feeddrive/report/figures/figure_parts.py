@@ -43,29 +43,26 @@ _EXAMPLES = (0.05, 0.1, 0.2)
 """Loads over the dynamic rating that are drawn where the axis declares none: light, usual and heavy duty."""
 
 
-def parts_figures(plant: Plant, carriages: Carriages | None) -> tuple[tuple[ReportFigure, ...], tuple[str, ...]]:
-    """The figures that the declared values allow, and a line for each that they do not.
-
-    Args:
-        plant: the machine.
-        carriages: under its table, where declared.
-    """
-    figures, missing = list[ReportFigure](), list[str]()
+def parts_figures(plant: Plant, carriages: Carriages | None) -> tuple[ReportFigure, ...]:
+    """The figures that the declared values of a plant and of its carriages allow."""
+    figures, rating = list[ReportFigure](), datum(plant, "ball_screw.dynamic_rating")
     if (losses := nut_losses(plant)) is not None:
-        figures.append(
-            efficiency_figure(losses, datum(plant, "table.axial_load"), datum(plant, "ball_screw.dynamic_rating"))
-        )
-    else:
-        missing.append("efficiency of the ball screw: declare [[effect]] nut_friction, or nut_drag and nut.preload")
+        figures.append(efficiency_figure(losses, datum(plant, "table.axial_load"), rating))
     if carriages is not None:
         figures.append(guide_figure(carriages))
-    else:
-        missing.append("friction and loads of the guide: declare [guide] with its carriages")
-    if datum(plant, "ball_screw.dynamic_rating") is not None:
+    if rating is not None:
         figures.append(life_figure(plant))
-    else:
-        missing.append("life of the ball screw: declare ball_screw.dynamic_rating")
-    return tuple(figures), tuple(missing)
+    return tuple(figures)
+
+
+def figures_left_out(plant: Plant, carriages: Carriages | None) -> tuple[str, ...]:
+    """A line for each of `parts_figures` that is not drawn: what it shows, and what to declare for it."""
+    needed = {
+        "efficiency of the ball screw: declare [[effect]] nut_friction, or nut_drag and nut.preload": nut_losses(plant),
+        "friction and loads of the guide: declare [guide] with its carriages": carriages,
+        "life of the ball screw: declare ball_screw.dynamic_rating": datum(plant, "ball_screw.dynamic_rating"),
+    }
+    return tuple(line for line, given in needed.items() if given is None)
 
 
 def efficiency_figure(losses: NutLosses, load: float | None, rating: float | None) -> ReportFigure:
