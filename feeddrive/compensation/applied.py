@@ -29,7 +29,7 @@ from feeddrive.typing import FloatArray
 
 @dataclass(frozen=True)
 class AxisLimits:
-    """Of an axis, for controls that ramp: velocity [m/s] and acceleration [m/s^2], both above zero."""
+    """Limits of an axis, for controls that ramp: velocity [m/s] and acceleration [m/s^2], both above zero."""
 
     velocity: float = 0.25
     acceleration: float = 1.0

@@ -31,7 +31,7 @@ from feeddrive.tuning.recommendation import recommend
 from feeddrive.units.quantity import format_quantity
 
 _USUAL_RATE, _POSITION_RATE, _BANDWIDTH, _DEAD_TIME = 8000.0, 2000.0, 1000.0, 125e-6
-"""Of a drive that nobody has declared: those of `feeddrive tune`."""
+"""Rates, bandwidth and dead time of a drive that nobody has declared: those of `feeddrive tune`."""
 
 
 @dataclass(frozen=True)

@@ -32,7 +32,7 @@ from feeddrive.simulate.setpoints.trajectories import Circle
 from feeddrive.typing import FloatArray
 
 SHARES = (0.25, 0.5, 0.75, 1.0)
-"""Of the pulse that are tried; between them the glitch changes by less than friction does over a day."""
+"""Shares of the pulse that are tried; between them the glitch changes by less than friction does over a day."""
 
 _TURN = 0.5e-3
 """Velocity of the table over which the feed-forward turns its sign [m/s]."""

@@ -45,7 +45,7 @@ CURE = (
     "stiffen it or lower its friction (preload, alignment, lubrication), close the position loop by a scale, or use "
     "friction feed-forward"
 )
-"""Of wind-up."""
+"""What lessens wind-up."""
 
 
 @dataclass(frozen=True)

@@ -122,8 +122,8 @@ class Applied:
 
 
 _SHARES, _BETWEEN = (0.4, 0.65, 0.9), 0.125
-"""Of the time in which the table would cross the play by itself: reversals tried first, and on either side of the best
-of them; about the optimum the error changes by less than a tenth between two that are so near."""
+"""Shares of the time in which the table would cross the play by itself: reversals tried first, and those on either side
+of the best of them; about the optimum the error changes by less than a tenth between two that are so near."""
 
 
 def best_reversal(

@@ -37,7 +37,8 @@ _STANDING = 1e-5
 _BINS_PER_REVOLUTION = 16
 
 _ENOUGH = 0.1
-"""Of the usual number of samples between two points; fewer lie at the ends of strokes, where the axis brakes."""
+"""Least share of the usual number of samples between two points; at the ends of strokes, where the axis
+brakes, fewer lie."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -40,7 +40,7 @@ FITTED_SPEEDS, JUDGED_SPEED = (0.25, 0.5, 1.0), 0.7
 """Shares of the highest speed."""
 
 FITTED_PART = 0.6
-"""Of a recording: the warm-up and some of what follows must be in it."""
+"""Share of a recording that is fitted: the warm-up and some of what follows must be in it."""
 
 _HOURS, _SEED, _POINTS = 4, 7, 8
 _GROWTH = re.compile(r"table_growth_([0-9]+(?:\.[0-9]+)?)mm")

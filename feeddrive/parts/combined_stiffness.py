@@ -99,7 +99,7 @@ class CombinedStiffness:
         return {one.part: one.compliance / whole for one in self.contributions if one.deformation is deformation}
 
     def natural_frequency(self, mass: float) -> float:
-        """Of a mass [kg] on this spring [Hz]; without the screw's own part in it."""
+        """Natural frequency [Hz] of a mass [kg] on this spring; without the screw's own part in it."""
         return natural_frequency(self.total, mass)
 
     def _of(self, deformation: Deformation) -> float:

@@ -33,7 +33,7 @@ LEAST_PRELOAD = 0.05
 
 @dataclass(frozen=True)
 class Temperatures:
-    """Of the parts whose laws depend on them [degC]: nut, shaft under it, front and rear bearing."""
+    """Temperatures of the parts whose laws depend on them [degC]: nut, shaft under it, front and rear bearing."""
 
     nut: float
     shaft: float

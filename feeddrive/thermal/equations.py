@@ -65,7 +65,7 @@ class HeatEquations:
 
     @property
     def values(self) -> FloatArray:
-        """Of the parameters, (p,)."""
+        """Values of the parameters, (p,)."""
         return np.array([value for _, value in self.parameters.values()])
 
 

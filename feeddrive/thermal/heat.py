@@ -69,7 +69,7 @@ class Heat:
         refuse_unless_positive(self.highest_speed, "rad/s", "highest_speed")
 
     def joined(self, coupling: Coupling) -> Heat:
-        """The same network heated by the friction of the motion in place of its own."""
+        """This network heated by the friction of the motion in place of its own."""
         nut, *ends = (
             None if one is None else replace(one, heat_share=0.0) for one in (self.nut, self.front, self.rear)
         )

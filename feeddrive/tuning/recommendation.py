@@ -32,7 +32,7 @@ USABLE = 1.0
 _LOWERED, _SLOWED = 0.98, 0.99
 _TRIES = 12
 _POINTS = 4000
-"""Of the grid of margins; 5 times fewer than usual, and still 0.3 % of frequency apart."""
+"""Points of the frequency grid of margins; 5 times fewer than usual, and still 0.3 % of frequency apart."""
 
 
 @dataclass(frozen=True)

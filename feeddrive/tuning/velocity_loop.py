@@ -40,7 +40,7 @@ from feeddrive.tuning.largest_gain import GainLimit, largest_gain
 from feeddrive.typing import ComplexArray, FloatArray
 
 LOWEST = 0.5
-"""Of the frequencies looked at [Hz]."""
+"""Lowest frequency looked at [Hz]."""
 
 WORTH = 1.2
 """Factor of integral gain that a further filter must bring: one that brings less costs K_v by its lag and asks to be
@@ -148,7 +148,7 @@ def _best(task: _Task, filters: tuple[FilterChoice, ...], reset_times: FloatArra
 
 
 def _refined(task: _Task, found: VelocityGains) -> VelocityGains:
-    """The same filters, the reset time to half a percent."""
+    """Gains with the filters that were found and the reset time to half a percent."""
     for width in (0.2, 0.03):
         times = found.reset_time * np.geomspace(1 - width, 1 + width, 13)
         found = max(found, _best(task, found.filters, times), key=lambda one: one.integral)

@@ -31,7 +31,7 @@ from feeddrive.thermal.reduced.stepping import exact_propagator
 from feeddrive.typing import FloatArray
 
 _LEAST_LAG = 0.01
-"""Of a row: a sensor that follows at once is given so much lag, which nobody can tell from none."""
+"""Least lag of a sensor, in rows: one that follows at once is given so much lag, which nobody can tell from none."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,7 +21,7 @@ STEP = 1e-3
 """Change of the logarithm of a value from which its slope is taken; ten times that of a coordinate of size one."""
 
 LONG = 30 * STEP
-"""The same where a prediction goes from cell to cell (`fit.COARSE`)."""
+"""Change of the logarithm where a prediction goes from cell to cell (`fit.COARSE`)."""
 
 ENOUGH = 0.1
 """Move of a value over its deviation that needs no new slopes: it moves the evidence by a two-hundredth."""

@@ -85,7 +85,7 @@ class Known:
 
     @cached_property
     def covariance(self) -> FloatArray:
-        """Of u under the tolerances as deviations, (k, k)."""
+        """Covariance of u under the tolerances as deviations, (k, k)."""
         return np.asarray(np.linalg.inv(self.slopes.T @ self.slopes + np.eye(len(self.told))), dtype=np.float64)
 
     def likeliest(self, place: int, deviation: float) -> tuple[FloatArray, float]:

@@ -39,7 +39,7 @@ MODEL_ERROR = {"degC": 4e-3, "m": 1e-8}
 to the sensor noise as its square, and an effect must explain more than it."""
 
 MODEL_SHARE = 4e-4
-"""The same as a share of the rms of a rise, where it rises high."""
+"""What two such models differ by, as a share of the rms of a rise, where it rises high."""
 
 KINK = 4.5
 """Fourth differences beyond this multiple of their usual size are no noise; of white noise none of 10^5 is."""

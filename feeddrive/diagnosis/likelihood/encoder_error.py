@@ -59,7 +59,7 @@ MATERIAL = 0.1
 """Variance that the encoder adds to a channel, over its sensor's, from which it is carried: errors grow by 5 %."""
 
 SEED = 12
-"""Of where the steps of the drawn encoder lie; all of them are passed, so that any will do."""
+"""Seed of the places of the drawn encoder's steps; all of them are passed, so that any will do."""
 
 
 @dataclass(frozen=True)

@@ -84,7 +84,7 @@ class Evidence:
         return self.counted & ~self.fitted
 
     def thinned(self, rows: BoolArray) -> BoolArray:
-        """Of these samples, those that carry all that is in the band."""
+        """Those of these samples that carry all that is in the band."""
         comb = np.zeros(len(rows), dtype=bool)
         comb[:: self.thinning] = True
         return rows & comb

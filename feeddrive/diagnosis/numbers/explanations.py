@@ -61,7 +61,7 @@ UNSEEN = 0.01
 value beyond it, some ten times as far, is lost in their noise."""
 
 STEP = 1e-3
-"""Of the differences, in coordinates whose tolerances are some hundredths."""
+"""Step of the differences, in coordinates whose tolerances are some hundredths."""
 
 
 @dataclass(frozen=True)
@@ -252,7 +252,7 @@ def _explained(
 
 
 def _settled(problem: NumbersProblem, one: Explanation) -> Explanation:
-    """The same set, linearised at its own best values until they stay."""
+    """The set linearised at its own best values until they stay."""
     for _ in range(6):
         at = one.coordinates
         try:

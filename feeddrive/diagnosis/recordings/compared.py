@@ -90,7 +90,7 @@ def machine_as_last(searched: Searched, listed: Sequence[bool]) -> tuple[Effect,
 
 
 def last_state(searched: Searched) -> tuple[str, ...]:
-    """Of which recording the plant is that was found, where they differ."""
+    """Names the recording whose plant was found, where they differ."""
     if searched.changes is None or not searched.changes.targets:
         return ()
     last = searched.search.problem.evidence[-1].recording.name

@@ -167,7 +167,7 @@ def _searched(problem: Problem, held: Changes, said: Callable[[str], None]) -> S
 
 
 def _levels_of(problem: Problem, changes: Changes) -> set[tuple[str, str]]:
-    """Of what differs, name and port of what differs without an effect that would have to be found first."""
+    """Names and ports of those differences that need no effect to be found first."""
     known = {(effect.name, effect.port) for effect in levels(problem, ())}
     return {(t.name, t.port) for t in changes.targets if (t.name, t.port) in known}
 

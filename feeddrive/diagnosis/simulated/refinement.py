@@ -66,7 +66,7 @@ class Refinement:
     loops: tuple[LoopEvidence, ...] = ()
 
     def saying(self, statement: str, kept_back: Mapping[str, str] | None = None) -> Refinement:
-        """The same, with a statement and the effects that could not be moved."""
+        """A copy with a statement and the effects that could not be moved."""
         assert self.simulation is not None
         told = replace(self.simulation, statement=statement, not_refined=kept_back or {})
         return replace(self, simulation=told)

@@ -30,7 +30,7 @@ MOST_CYCLES = 40
 """Cycles in a row at most; more are not told apart."""
 
 NEAR = 0.02
-"""Of a row, by which a lag may miss one of these where its interval is narrower: what the shape of the hold leaves."""
+"""Share of a row by which a lag may miss one of these where its interval is narrower: what the hold's shape leaves."""
 
 
 def may_be_logged(recordings: Sequence[Recording]) -> bool:

@@ -31,7 +31,7 @@ from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray
 
 DAMPING = 0.01
-"""Of the step on all channels: breakpoints that the recordings hardly see keep the value of the residual."""
+"""Damping of the step on all channels: breakpoints that the recordings hardly see keep the value of the residual."""
 
 WORSE = 1.02
 """Factor by which the error of another channel may rise."""

@@ -59,7 +59,7 @@ def tried(
 
 
 def finer_forms(found: Found, analyses: Mapping[str, Analysis]) -> list[Found]:
-    """The same term with the breakpoints that another channel shows, where these are more."""
+    """The found term with the breakpoints that another channel shows, where these are more."""
     if found.term.form is not Form.CURVE:
         return []
     others = [one for analysis in analyses.values() for one in analysis.found]

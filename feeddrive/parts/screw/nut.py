@@ -41,7 +41,7 @@ CATALOGUE_VALUES = (
         meaning="share of the stated stiffness that real balls and grooves reach, f_ar",
     ),
 )
-"""Of a nut whose stiffness follows from a catalogue's value at another preload."""
+"""Values of a nut whose stiffness follows from a catalogue's value at another preload."""
 
 
 @dataclass(frozen=True)

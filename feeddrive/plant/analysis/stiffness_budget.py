@@ -126,7 +126,7 @@ def _deformation(plant: Plant, spring: Spring) -> str:
 
 
 def _of_parts(plant: Plant, position: float) -> list[tuple[str, str, float]]:
-    """The same part by part; none where there are no parts, or the chain differs from them."""
+    """Compliances part by part; none where there are no parts, or the chain differs from them."""
     if plant.drive is None or not plant.chain.varies:
         return []
     place = plant.chain.nut_at_zero + position

@@ -66,7 +66,7 @@ from feeddrive.typing import Expression
 from feeddrive.units.quantity import format_quantity
 
 MIDDLE_SHARE = 1 / math.sqrt(3)
-"""Of a span's inertia that is put in its middle: (mu^2 / k_c = 1/24 with mu = share / 2, k_c = 2)."""
+"""Share of a span's inertia that is put in its middle (mu^2 / k_c = 1/24 with mu = share / 2, k_c = 2)."""
 
 _WITH_ONE = ("motor", "drive_end", "screw", "free_end", "axial", "table")
 _WITH_TWO = ("motor", "drive_end", "mid_span", "screw", "free_end", "axial", "far_axial", "table")

@@ -25,11 +25,11 @@ STRUCTURES = ("distributed_screw", "three_inertias")
 
 ORIENTATIONS = {"horizontal": 0.0, "vertical": math.pi / 2}
 _CLEARANCE = 0.1
-"""Of the nut's centre from either bearing at the ends of the stroke [m]: half a nut, a bearing, a bumper."""
+"""Distance of the nut's centre from either bearing at the ends of the stroke [m]: half a nut, a bearing, a bumper."""
 _EFFICIENCY = 0.95
-"""Of a ball screw; from it follows the preload torque, (1/eta - eta) F L / 2 pi (`parts.screw.preload_torque`)."""
+"""Efficiency of a ball screw; the preload torque follows: (1/eta - eta) F L / 2 pi (`parts.screw.preload_torque`)."""
 _PRELOAD_SHARE = 0.05
-"""Of the dynamic rating: half of what catalogues call the maximum possible preload."""
+"""Preload over the dynamic rating: half of what catalogues call the maximum possible preload."""
 _JOURNAL = 0.75
 """Greatest bore of a support bearing over the root diameter, so that the shoulder carries the inner ring."""
 

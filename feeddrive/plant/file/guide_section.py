@@ -49,7 +49,7 @@ _OF_GEOMETRY = (*_SHARED, "coefficients", *_GEOMETRY)
 _OF_RATING = (*_SHARED, "preload_class", "preload", "friction_coefficient")
 
 MOST = 1000
-"""Of carriages, and of balls in a row."""
+"""Most carriages, and most balls in a row, that a file may write."""
 
 TURNING = 5e-4
 """Where tanh of the guide friction turns unless it is said [m/s]."""
@@ -138,7 +138,7 @@ def _rated_friction(top: Table, gravity: float) -> tuple[Effect, str]:
 
 
 def _preload(table: Table, part: CataloguePart) -> float:
-    """Of one carriage [N]: written, or that of its class."""
+    """Preload of one carriage [N]: written, or that of its class."""
     if "preload" in table.entries:
         return table.quantity("preload", "N", "guide.preload")
     shares = part.further["preload_share"]

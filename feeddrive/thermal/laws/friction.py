@@ -27,7 +27,7 @@ from feeddrive.thermal.rig import refuse_negative, refuse_unless, refuse_unless_
 from feeddrive.typing import Expression, FloatArray
 
 LOAD_EXPONENT = 1.33
-"""Of the preload in the load torque: 1 + y, y = 0.33."""
+"""Exponent of the preload in the load torque: 1 + y, y = 0.33."""
 
 
 def nut_load_torque(constant: float, preload: float, mean_diameter: float, lead_angle: float) -> float:

@@ -185,7 +185,7 @@ def _warm_ups(modes: _Modes, series: Mapping[str, FloatArray], duty: Duty, withi
 
 
 def _approach(modes: _Modes, name: str, within: float) -> WarmUp:
-    """Of a constant duty, exact by the modes on a fine grid of time."""
+    """Warm-up of a constant duty, exact by the modes on a fine grid of time."""
     final = float(np.sum(modes.parts[name]))
     times = np.linspace(0.0, _LASTING / float(modes.rates[0]), 40_001)
     return _settling(times, final - modes.rest(name, times), final, within)
