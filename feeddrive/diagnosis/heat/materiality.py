@@ -21,7 +21,7 @@ LEAST_DRIFT = 0.03
 """Least drift of the surroundings [K]."""
 
 LEAST_COEFFICIENT = 3e-4
-"""Least coefficient of load or viscous torque [1/K]; over ten kelvin 0.3 % of the heat, as much as thermometers show."""
+"""Least slope of load or viscous torque [1/K]; over ten kelvin 0.3 % of the heat, which thermometers just show."""
 
 LEAST_CAPACITY_SHARE, LEAST_FILM_SHARE = 1e-2, 1e-3
 """A mass over the nut's capacity, a conductance over the film's of the nut."""
