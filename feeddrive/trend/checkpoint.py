@@ -19,7 +19,7 @@ from feeddrive.trend.regressors import Grid, Pass
 from feeddrive.typing import FloatArray
 
 NAME = "watch.npz"
-FORMAT = "feeddrive-watch/1"
+FORMAT = "feeddrive-watch/2"
 
 USED, COPY, BROKEN, WAITING, UNDATED = "used", "copy", "broken", "waiting", "undated"
 """What becomes of a file; one that waits is asked again the next time."""
@@ -33,7 +33,7 @@ class Entry:
         key: of its source.
         size, changed: as it was when it was read.
         status: see above.
-        told: why, or where its date stands.
+        reason: why, or where its date stands.
         moment: when it was recorded, ISO; empty where it is not known.
         digest: of its samples.
         passes: of its channels.
@@ -44,7 +44,7 @@ class Entry:
     size: int
     changed: float
     status: str
-    told: str = ""
+    reason: str = ""
     moment: str = ""
     digest: str = ""
     passes: tuple[Pass, ...] = ()
@@ -59,7 +59,7 @@ class Checkpoint:
         plant: checksum of the plant and the options that the passes were taken with.
         grid: of the maps; None before the first recording.
         entries: by key.
-        searched: what full searches said, by the digests of their recordings.
+        searched: what full searches found, by the digests of their recordings.
     """
 
     plant: str
@@ -73,7 +73,7 @@ class Checkpoint:
 
 
 def load_checkpoint(folder: Path, plant: str) -> tuple[Checkpoint, str]:
-    """What was kept for this plant, and what is to be said where it is not used."""
+    """What was kept for this plant, and a remark where it is not used."""
     path = folder / NAME
     if not path.is_file():
         return Checkpoint(plant), ""

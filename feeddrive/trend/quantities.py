@@ -102,7 +102,7 @@ class _Terms:
         return float(self.pooled.declared[TERMS[self.pooled.channel].index(name)])
 
     def amplitude(self, stem: str) -> tuple[FloatArray, FloatArray] | None:
-        """Length of a sine and cosine part, (n,); None where it is not told from none."""
+        """Length of a sine and cosine part, (n,); None where it is not distinguished from none."""
         (sine, variance), (cosine, _) = self[f"{stem}_sine"], self[f"{stem}_cosine"]
         size = np.hypot(sine, cosine)
         scatter = np.hypot(np.nanstd(np.diff(sine)), np.nanstd(np.diff(cosine))) / 2 if self.count > 2 else math.inf

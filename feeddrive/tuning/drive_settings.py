@@ -64,9 +64,9 @@ def drive_settings(plant: Plant, found: Recommendation, form: str) -> DriveSetti
     """
     writer, remarks = writer_of(form), []
     cases = [one.case for one in found.reached]
-    filters, said = as_low_passes(found.velocity.filters)
-    remarks += said
-    if said or not fits(filters, writer.limits):
+    filters, notes = as_low_passes(found.velocity.filters)
+    remarks += notes
+    if notes or not fits(filters, writer.limits):
         drive = replace(found.cascade, torque_filters=())
         found = recommend(plant, drive, cases, found.demand, writer.limits)
         filters = found.velocity.filters
@@ -86,14 +86,14 @@ def drive_settings(plant: Plant, found: Recommendation, form: str) -> DriveSetti
 
 def as_low_passes(filters: Sequence[FilterChoice]) -> tuple[tuple[FilterChoice, ...], list[str]]:
     """The filters, a notch wider than an octave as the low-pass that it is; and a sentence for each that was one."""
-    made, said = [], []
+    made, notes = [], []
     for one in filters:
         if one.kind == "notch" and is_low_pass(one.frequency, one.bandwidth):
-            said.append(f"a notch at {one.frequency:g} Hz that is {one.bandwidth:.4g} Hz wide is a low-pass, "
+            notes.append(f"a notch at {one.frequency:g} Hz that is {one.bandwidth:.4g} Hz wide is a low-pass, "
                         "and is written as one")  # fmt: skip
             one = FilterChoice("PT2", one.frequency, one.damping)
         made.append(one)
-    return tuple(made), said
+    return tuple(made), notes
 
 
 def _settled(

@@ -159,8 +159,8 @@ def _variance(problem: Problem, residual: FloatArray) -> float:
     columns = problem.whitener.columns
     score = score_covariance(problem.evidence, [e.fit_rows for e in problem.evidence], residual, columns)
     squares = np.sum(columns**2, axis=0)
-    told = squares > 0
-    return float(np.median(np.diag(score)[told] / squares[told])) if told.any() else 1.0
+    informed = squares > 0
+    return float(np.median(np.diag(score)[informed] / squares[informed])) if informed.any() else 1.0
 
 
 def _without_unseen(problem: Problem) -> Problem:

@@ -9,7 +9,7 @@
 | Coulomb and viscous friction of table and of screw | friction_deviation |
 | torsional stiffness, damping, width of the sign change of friction, torque constant | no effect says so |
 
-Friction is one factor a port, on all that is declared there. A rigid machine shows one mass: its inertias are not told
+Friction is one factor a port, on all that is declared there. A rigid machine shows one mass: its inertias are not known
 from it. Tolerances: `feeddrive.diagnosis.likelihood.tolerances`.
 """
 

@@ -71,7 +71,7 @@ def scales(scene: Scene) -> str:
 
 
 def several_channels(scene: Scene) -> str:
-    """A lag is told from a slow machine by the other channels."""
+    """A lag is distinguished from a slow machine by the other channels."""
     return "" if len(_channels(scene)) > 1 else "with one channel a slow sensor cannot be told from a slow machine"
 
 

@@ -42,7 +42,7 @@ from feeddrive.simulate.driven import MotorMotion, motor_motion, simulate_driven
 from feeddrive.typing import ComplexArray, FloatArray
 
 WINDOW = 0.128
-"""Length of a window [s]: motion keeps its spectrum that long, and 8 Hz are told from the next."""
+"""Length of a window [s]: motion keeps its spectrum that long, and 8 Hz are distinguished from the next."""
 
 ALONG_FREQUENCY, ALONG_TIME = 5, 3
 """Neighbours over which P is averaged: 15 values, of which those of overlapping windows are half independent, are

@@ -58,7 +58,7 @@ BENT = 0.5
 """Bend above which the slope is computed anew; below, it is corrected along the step (Broyden, 1965)."""
 
 LEVEL = 0.8
-"""Residual over the noise that a channel is said to have, below which the noise is put right: a level that is read from
+"""Residual over the noise that a channel is stated to have, below which the noise is put right: a level read from
 the quietest tenth of the blocks is known to some per cent."""
 
 FREE = 1e-6

@@ -104,7 +104,7 @@ def diagnosis_record(diagnosis: Diagnosis) -> dict[str, Any]:
             "parameters": list(known.names),
             "matrix": [list(row) for row in known.matrix],
             "condition": condition,
-            "known_only_together": list(known.told),
+            "known_only_together": list(known.remarks),
         }
     return record
 

@@ -73,7 +73,7 @@ class AxisPredictor(Predictor[AxisEvidence]):
             measured.append(evidence.measured["motor_torque"][rows])
         return scale_of(np.concatenate(measured), np.concatenate(predicted))
 
-    def told(self, before: Plant, after: Plant) -> tuple[str, ...]:
+    def remarks(self, before: Plant, after: Plant) -> tuple[str, ...]:
         """The scale of the torque, where it is fitted."""
         scales = [self.declared_scale / self.scale(plant) for plant in (before, after)] if self.scaled else []
         return tuple(scale_sentence(self.scaled[0].scaled_from, *scales) for _ in scales[:1])

@@ -69,8 +69,8 @@ class Predictor(ABC, Generic[E]):
     def reference(self, name: str, plant: Plant, evidence: E) -> FloatArray:
         """Series of a channel whose rms a relative error refers to, over the judged samples."""
 
-    def told(self, before: Plant, after: Plant) -> tuple[str, ...]:
-        """What is to be said of this way to predict, with the declared plant and with what was found."""
+    def remarks(self, before: Plant, after: Plant) -> tuple[str, ...]:
+        """Remarks on this way to predict, with the declared plant and with what was found."""
         return ()
 
     def smooth(self, plant: Plant) -> bool:

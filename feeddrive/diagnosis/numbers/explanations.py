@@ -179,15 +179,17 @@ class SingleCause:
     meets: bool
 
 
-def explanations(problem: NumbersProblem, said: Callable[[str], None] = lambda text: None) -> tuple[Explanation, ...]:
+def explanations(
+    problem: NumbersProblem, progress: Callable[[str], None] = lambda text: None
+) -> tuple[Explanation, ...]:
     """Every set of at most `MOST` values beyond their tolerances, the most probable first; probabilities add to one."""
-    said("slopes of the numbers with the declared values")
+    progress("slopes of the numbers with the declared values")
     zero = np.zeros(len(problem.values))
     base, slopes = problem.predicted(zero), problem.slopes(zero)
     sets = [chosen for size in range(MOST + 1) for chosen in itertools.combinations(problem.seen, size)]
     found = [_explained(problem, chosen, zero, base, slopes) for chosen in sets]
     found.sort(key=lambda one: -(one.log_evidence + log_prior_of_size(len(one.beyond), len(problem.seen))))
-    said("the likeliest sets at their own values")
+    progress("the likeliest sets at their own values")
     ends = [_settled(problem, one) for one in found[:RELINEARISED]] + found[RELINEARISED:]
     logs = np.array([one.log_evidence + log_prior_of_size(len(one.beyond), len(problem.seen)) for one in ends])
     shares = np.exp(logs - np.max(logs))

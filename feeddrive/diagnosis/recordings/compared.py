@@ -28,7 +28,7 @@ class Compared:
     """What differs, and what follows from it for the effects.
 
     Attributes:
-        changes: to be said.
+        changes: to be reported.
         judged: differences of the judged recordings; None where all were fitted.
         listed: which effects of the machine the declared plant lacks in every recording.
     """
@@ -98,9 +98,9 @@ def last_state(searched: Searched) -> tuple[str, ...]:
 
 
 def with_carrying(results: Sequence[EffectResult], compared: Compared) -> tuple[EffectResult, ...]:
-    """The listed effects; whether they carry is asked with the levels of the judged recordings, and that is said."""
+    """The listed effects; whether they carry is asked with the levels of the judged recordings, and that is stated."""
     carries = compared.judged.carries if compared.judged is not None else ()
-    told = []
+    kept = []
     for number, (result, named) in enumerate(zip(results, compared.listed, strict=True)):
         if not named:
             continue
@@ -110,8 +110,8 @@ def with_carrying(results: Sequence[EffectResult], compared: Compared) -> tuple[
             one = replace(one, carries=carries[number], evidence=f"{one.evidence} With the changes allowed for {seen}.")
         if not one.carries:
             one = replace(one, evidence=f"{one.evidence}{_why_not(one, compared)}")
-        told.append(one)
-    return tuple(told)
+        kept.append(one)
+    return tuple(kept)
 
 
 def _why_not(result: EffectResult, compared: Compared) -> str:

@@ -170,7 +170,7 @@ def _rms(problem: Problem, judged: Sequence[Judged]) -> dict[str, float]:
 
 
 def carried_result(judgement: Judgement) -> Carried:
-    """The effect as it is said."""
+    """The effect as it is reported."""
     effect = judgement.effect
     key, values = effect.breakpoint_key, effect.tables[0]
     table = Table(

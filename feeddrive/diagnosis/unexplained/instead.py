@@ -2,7 +2,7 @@
 
 A drag with the square of the velocity looks like another viscous friction, another Coulomb level and a Stribeck curve
 together; friction that sets in at a time looks like a little of anything. One tabulated term in the declared plant is
-held against all named effects together on the judged data. Does it do as well as two or more of them, that is said.
+held against all named effects together on the judged data. Does it do as well as two or more of them, that is reported.
 Does it do better, the named ones that do not pay beside it are dropped: a name is worse than none where it is wrong.
 """
 
@@ -32,7 +32,7 @@ from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.effects.tabulated import Tabulated
 
 FEWEST = 2
-"""Named effects from which a table that does as well is told."""
+"""Named effects from which a table that does as well is reported."""
 
 ITERATIONS = 4
 """Steps of a fit of what is kept beside a table."""

@@ -97,8 +97,10 @@ def _harmonics(values: FloatArray) -> str:
     """How much of the square of one period each of its harmonics holds."""
     powers = np.abs(np.fft.rfft(values))[1:4] ** 2
     shares = powers / powers.sum() if powers.sum() > 0 else powers
-    told = [f"{share:.0%} of it {word}" for share, word in zip(shares, ("once", "twice", "three times"), strict=True)]
-    return f"{', '.join(told)} a period"
+    phrases = [
+        f"{share:.0%} of it {word}" for share, word in zip(shares, ("once", "twice", "three times"), strict=True)
+    ]
+    return f"{', '.join(phrases)} a period"
 
 
 def _odd(table: Table) -> str:

@@ -18,7 +18,7 @@ from feeddrive.effects.base import Effect
 from feeddrive.effects.tabulated import Tabulated
 
 EVENT = 0.1
-"""Share of the squared residual from which something that happened once is told, though the judged data lack it."""
+"""Share of the squared residual from which something that happened once is reported, though the judged data lack it."""
 
 
 @dataclass(frozen=True)
@@ -65,11 +65,13 @@ def explain_rest(
     own = [judgement.effect for _, judgement in carried]
     after = with_carried(judged, *own)
     other = instead_of(problem, effects, judged, channels)
-    said = {
-        c.name: _said(c, first[c.name], carried, reasons[c.name], other if other and other.channel == c.name else None)
+    by_channel = {
+        c.name: _unexplained(
+            c, first[c.name], carried, reasons[c.name], other if other and other.channel == c.name else None
+        )
         for c in channels
     }
-    return Rest(said, tuple(own), tuple(after))
+    return Rest(by_channel, tuple(own), tuple(after))
 
 
 def _together(
@@ -91,7 +93,7 @@ def _happened(one: Dependence) -> bool:
     return one.variable == "time" and one.share > EVENT and not one.alike
 
 
-def _said(
+def _unexplained(
     channel: ChannelResult, analysis: Analysis, carried: Sequence[tuple[str, Judgement]], reasons: Sequence[str],
     other: Instead | None,
 ) -> Unexplained:  # fmt: skip

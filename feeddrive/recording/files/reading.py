@@ -125,11 +125,11 @@ def _foreign(
 ) -> tuple[dict[str, FloatArray], int, tuple[str, ...]]:
     """Return the columns of a foreign file, the row they begin in (1 in a .mat file), and notes."""
     where = str(source.path)
-    said = f"read through the mapping {printable(mapping.name)}"
+    note = f"read through the mapping {printable(mapping.name)}"
     if isinstance(source, FileContent):
-        return mapped_columns(read_variables(source), mapping, where), 1, (said,)
+        return mapped_columns(read_variables(source), mapping, where), 1, (note,)
     table = find_table(source.blocks(), mapping.layout, where).numbers(decimal or mapping.layout.decimal)
-    notes = (said, *source.notes, *table.notes)
+    notes = (note, *source.notes, *table.notes)
     return mapped_columns(table_variables(table), mapping, where), table.first_row, notes
 
 

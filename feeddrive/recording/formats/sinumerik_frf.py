@@ -60,8 +60,8 @@ def read(content: FileContent, text: str) -> FrequencyResponse:
         raise InputError("the input was not excited at every frequency", where, "measure again")
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         coherence = np.abs(values) ** 2 / (given.spectrum.real * output.spectrum.real)
-    names, unit, said = _names(root, given, output, (values / given.spectrum.real)[frequency > 0.0])
-    notes = (f"{NAME}: from {names[0]} to {names[1]}", *said, *_clock(root, frequency, given))
+    names, unit, remarks = _names(root, given, output, (values / given.spectrum.real)[frequency > 0.0])
+    notes = (f"{NAME}: from {names[0]} to {names[1]}", *remarks, *_clock(root, frequency, given))
     return FrequencyResponse(content.path.name, *names, unit, frequency, values / given.spectrum.real, coherence,
                              notes, where, content.sha256)  # fmt: skip
 
@@ -70,7 +70,7 @@ def _tuned(root: Element, content: FileContent, where: str) -> FrequencyResponse
     """Read the plant of the speed loop that automatic servo tuning (AST) keeps, with the coherence beside it.
 
     The file names neither signals nor units. The speed controller turns speed into torque, so its plant is taken as
-    the way from torque to speed, and that is said.
+    the way from torque to speed, and that is stated.
     """
     found: list[tuple[ComplexArray, FloatArray, FloatArray]] = []
     for parent in root.iter():
@@ -192,12 +192,12 @@ def _names(
     """Return the two channels, the unit of the magnitude, and what was inferred."""
     loop = _text(root, "m_eControlLoopType")
     if loop == _SPEED_LOOP and values.size and abs(abs(values[0]) - 1.0) < _ONE_QUANTITY:
-        said = (
+        note = (
             f"the magnitude at the lowest frequency is {abs(values[0]):.4f}: the closed speed loop, set-point to actual"
         )
-        return ("motor_speed_setpoint", "motor_speed"), "1", (said,)
-    said = "the file names no signals; write them in the first line of the CSV: # from = motor_torque, to = motor_speed"
-    return (f"signal {given.id}", f"signal {output.id}"), "", (said,)
+        return ("motor_speed_setpoint", "motor_speed"), "1", (note,)
+    note = "the file names no signals; write them in the first line of the CSV: # from = motor_torque, to = motor_speed"
+    return (f"signal {given.id}", f"signal {output.id}"), "", (note,)
 
 
 def _clock(root: Element, frequency: FloatArray, given: _Node) -> tuple[str, ...]:
@@ -207,13 +207,15 @@ def _clock(root: Element, frequency: FloatArray, given: _Node) -> tuple[str, ...
         step = float(tick)
     except ValueError:
         return ()
-    said = [f"sampled every {step * 1e6:g} µs"] if step > 0.0 else []
+    remarks = [f"sampled every {step * 1e6:g} µs"] if step > 0.0 else []
     if step > 0.0 and given.samples and frequency.size > 2 and frequency[1] > 0.0:
         off = frequency[1] * given.samples * step - 1.0
         if 1e-6 < abs(off) < 0.1:
-            said.append(f"the frequencies of the file lie {100 * off:+.3f} % off the lines of its own {given.samples} "
-                        "samples; kept as written")  # fmt: skip
-    return tuple(said)
+            remarks.append(
+                f"the frequencies of the file lie {100 * off:+.3f} % off the lines of its own {given.samples} "
+                "samples; kept as written"
+            )
+    return tuple(remarks)
 
 
 def _named(element: Element, name: str) -> Element | None:

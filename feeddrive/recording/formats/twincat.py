@@ -1,7 +1,7 @@
 """Beckhoff TwinCAT 3 Scope, text export (CSV or TXT), in all its variants.
 
 One time column [ms] for each group of channels; groups that were sampled more slowly end earlier. The decimal sign of
-the numbers is told by the numbers: that of the header follows the language of the computer. Layout: `twincat_header`.
+the numbers is known by the numbers: that of the header follows the language of the computer. Layout: `twincat_header`.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ def read(text: str, where: str) -> Trace:
     """Read an export.
 
     Raises:
-        InputError: header and numbers that do not fit each other, or cannot be told apart.
+        InputError: header and numbers that do not fit each other, or cannot be distinguished.
     """
     lines = _without_quotes(text.split("\n"))
     header = read_header(lines, where)
@@ -52,8 +52,8 @@ def read(text: str, where: str) -> Trace:
         _refuse_unordered(time, header.first_line + 1, names[first], where)
         signals.extend(_signal(header, names, first + i, time, table.column(group, 1 + i))
                        for i in range(header.groups[group]))  # fmt: skip
-    signals, said = scaled(signals, header)
-    return Trace(NAME, tuple(signals), (*header.notes, *table.notes, *said))
+    signals, remarks = scaled(signals, header)
+    return Trace(NAME, tuple(signals), (*header.notes, *table.notes, *remarks))
 
 
 _QUOTED = "\ue000"

@@ -42,7 +42,7 @@ def scaled(signals: list[Signal], header: Header) -> tuple[list[Signal], tuple[s
     """Apply the scaling of the header if the export left it out, which no line of the file says.
 
     The option `Scale values before export` decides it. Two channels of one symbol tell: raw they are equal, scaled they
-    are as their scalings. Without such a pair the scaling is taken as applied, which is the usual export, and said.
+    are as their scalings. Without such a pair the scaling is taken as applied, which is the usual export, and stated.
     """
     scalings = _scalings(header, len(signals))
     shown = ", ".join(s.name for s, scaling in zip(signals, scalings, strict=True) if not scaling.neutral)

@@ -111,10 +111,10 @@ def _joined(recording: Recording, name: str, stretches: list[tuple[int, int]], r
     channels = {channel: np.concatenate(parts[channel]) for channel in recording.channels}
     if bridged:
         flaws.append(flaw("motor_angle", JOINED, np.concatenate(bridged), channels[name]))
-    told = _told(recording, name, stretches, radius, fastest)
+    remarks = _remarks(recording, name, stretches, radius, fastest)
     return replace(
         recording, time=np.concatenate(parts["time"]), channels=channels, flaws=tuple(flaws),
-        notes=(*recording.notes, *told),
+        notes=(*recording.notes, *remarks),
     )  # fmt: skip
 
 
@@ -168,7 +168,7 @@ def _between(
     return smooth
 
 
-def _told(
+def _remarks(
     recording: Recording, name: str, stretches: list[tuple[int, int]], radius: float, fastest: float
 ) -> tuple[str, ...]:
     """What was taken, and statistics of all of it."""
@@ -199,6 +199,6 @@ def _told(
             if np.sum(even & (hour == quarter)) > 100
         ]
         if len(levels) == 4:
-            told = ", ".join(f"{level:.3g}" for level in levels)
-            notes.append(f"drag at even speed, median of each quarter of the time: {told} N m")
+            written = ", ".join(f"{level:.3g}" for level in levels)
+            notes.append(f"drag at even speed, median of each quarter of the time: {written} N m")
     return tuple(notes)

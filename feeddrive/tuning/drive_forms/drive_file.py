@@ -76,10 +76,10 @@ def drive_text(form: DriveForm, lines: Sequence[Line], remarks: Sequence[str]) -
 
 def _written(form: DriveForm, line: Line) -> str:
     one = line.parameter
-    said = ", ".join(part for part in (one.unit, one.meaning) if part)
+    comment = ", ".join(part for part in (one.unit, one.meaning) if part)
     if form.name == "linuxcnc":
-        return f"setp {one.name} {line.text}    # {said}"
-    return f"{one.name} = {line.text}    # {said}"
+        return f"setp {one.name} {line.text}    # {comment}"
+    return f"{one.name} = {line.text}    # {comment}"
 
 
 def read_drive_file(path: Path, name: str, facts: Facts) -> LoopSettings:
