@@ -29,12 +29,12 @@ from feeddrive.compensation.heat.thermal_trial import TriedMachine, tried_machin
 from feeddrive.compensation.heat.thermal_unknowns import Unknowns
 from feeddrive.files import find_plant, write_bytes_atomically, write_text_atomically
 from feeddrive.metrology.axis_heating import AxisHeating, axis_heating
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.report.figures.drawing import render
 from feeddrive.report.figures.figure_thermal_compensation import axis_heating_figure, compensation_figure, stroke_figure
 from feeddrive.thermal.full.grid import Cells
-from feeddrive.thermal.heat import Heat
-from feeddrive.thermal.reduced.model import HeatModel
+from feeddrive.thermal.machine_heat import Heat
+from feeddrive.thermal.reduced.parametric_model import HeatModel
 from feeddrive.thermal.rig import Body
 from feeddrive.typing import FloatArray
 

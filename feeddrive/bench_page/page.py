@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from feeddrive.bench_page.equations import bench_equations
+from feeddrive.bench_page.page_equations import bench_equations
 from feeddrive.effects.base import Effect
 from feeddrive.effects.chain.payload import Payload
 from feeddrive.errors import InputError, printable
@@ -24,8 +24,8 @@ from feeddrive.plant.equations import parameter_names, parameter_values
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade
 from feeddrive.servo.filters import Filter, notch
-from feeddrive.servo.frequency_response import grid
 from feeddrive.servo.margins import GROWTH
+from feeddrive.servo.mechanics_response import grid
 from feeddrive.simulate.setpoints.trial_motions import HEIGHT, RADIUS, STEP_AT, Trial, circle_about, step_at
 from feeddrive.tuning.reasons import current_loop_lines
 

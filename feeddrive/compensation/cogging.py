@@ -16,14 +16,14 @@ import casadi as ca
 import numpy as np
 
 from feeddrive.compensation.lost_motion import without_play
-from feeddrive.compensation.prediction import run
+from feeddrive.compensation.predicted_accuracy import run
 from feeddrive.effects.base import Effect, Port, SourceEffect, number
 from feeddrive.effects.base import Motion as PortMotion
 from feeddrive.effects.source.torque_ripple import TorqueRipple
 from feeddrive.effects.tabulated import PERIODIC
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade
-from feeddrive.simulate.setpoints.motion import Motion, Piece, Pieces
+from feeddrive.simulate.setpoints.setpoint_motion import Motion, Piece, Pieces
 from feeddrive.typing import FloatArray
 
 POINTS = 360

@@ -23,11 +23,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feeddrive.compensation.lost_motion import LostMotion
-from feeddrive.compensation.prediction import Applied, circle_figures
+from feeddrive.compensation.predicted_accuracy import Applied, circle_figures
 from feeddrive.metrology.circular import Circular
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade
-from feeddrive.simulate.setpoints.motion import Motion
+from feeddrive.simulate.setpoints.setpoint_motion import Motion
 from feeddrive.simulate.setpoints.trajectories import Circle
 from feeddrive.typing import FloatArray
 

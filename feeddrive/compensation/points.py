@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from feeddrive.compensation.forms.catalogue import as_held
+from feeddrive.compensation.forms.all_forms import as_held
 from feeddrive.compensation.forms.control import Control
 from feeddrive.compensation.table import CompensationTable, Deviations, fitted, grid, stepped
 from feeddrive.errors import InputError

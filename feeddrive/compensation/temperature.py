@@ -29,8 +29,8 @@ from feeddrive.compensation.heat.thermal_sensors import Sensor, lagged, mountabl
 from feeddrive.compensation.heat.thermal_trial import TriedMachine, random_duty, tried_machine
 from feeddrive.errors import InputError
 from feeddrive.recording.recording import Recording
-from feeddrive.thermal.heat import Heat
-from feeddrive.thermal.reduced.model import HeatModel
+from feeddrive.thermal.machine_heat import Heat
+from feeddrive.thermal.reduced.parametric_model import HeatModel
 from feeddrive.typing import FloatArray
 
 STEP = 60.0

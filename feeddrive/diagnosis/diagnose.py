@@ -28,12 +28,12 @@ from feeddrive.diagnosis.ledger.entry import kept_of
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.diagnosis.numbers.measured_file import MeasuredNumber
-from feeddrive.diagnosis.numbers.rows import MeasuredRows, NumberResult, number_results, refuse_ungiven
+from feeddrive.diagnosis.numbers.number_rows import MeasuredRows, NumberResult, number_results, refuse_ungiven
 from feeddrive.diagnosis.preparation import Shown, informative, prepared, shown
 from feeddrive.diagnosis.recordings.compared import compared_recordings, last_state, machine_as_last, with_carrying
 from feeddrive.diagnosis.recordings.recordings import is_shift, without_shifts
+from feeddrive.diagnosis.recordings.recordings_search import Searched, search_recordings
 from feeddrive.diagnosis.recordings.rehoming import rehomed_plant
-from feeddrive.diagnosis.recordings.search import Searched, search_recordings
 from feeddrive.diagnosis.simulated.loop_evidence import refuse_unfit_loop
 from feeddrive.diagnosis.simulated.refinement import Refinement, refined
 from feeddrive.diagnosis.starts.needs import WITHOUT_TORQUE

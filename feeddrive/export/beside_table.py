@@ -19,7 +19,7 @@ from dataclasses import replace
 import casadi as ca
 import numpy as np
 
-from feeddrive.export.model import Model
+from feeddrive.export.nonlinear_model import Model
 from feeddrive.plant.equations import chain_symbols, parameter_symbols
 from feeddrive.symbolic_turn import SYMBOLS
 from feeddrive.typing import Expression

@@ -13,10 +13,10 @@ import casadi as ca
 
 from feeddrive import __version__
 from feeddrive.errors import printable
+from feeddrive.export.equation_quantities import Quantity
 from feeddrive.export.fmu_units import exponents
-from feeddrive.export.model import Model
 from feeddrive.export.nominals import nominals
-from feeddrive.export.quantities import Quantity
+from feeddrive.export.nonlinear_model import Model
 from feeddrive.symbolic_turn import SYMBOLS
 
 TOLERANCE = 1e-8

@@ -18,7 +18,7 @@ from scipy.special import logsumexp
 
 from feeddrive.trend.atoms import JUMP, ODD, SETTLING, SLOPE
 from feeddrive.trend.change_points import ASSERTED, Course, Found, most_likely
-from feeddrive.trend.quantities import Quantity
+from feeddrive.trend.watched_quantities import Quantity
 from feeddrive.typing import FloatArray
 
 

@@ -13,7 +13,7 @@ from feeddrive.errors import InputError
 from feeddrive.plant.analysis.linear import MOVING
 from feeddrive.plant.analysis.rest import ports_without_presliding
 from feeddrive.plant.plant import Plant
-from feeddrive.servo.frequency_response import Case, Friction
+from feeddrive.servo.mechanics_response import Case, Friction
 
 PHASE, GAIN = 45.0, 8.0
 """Usual margins of automatic tuning in drives: 45 degrees and 8 dB."""

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade
-from feeddrive.servo.frequency_response import Case
 from feeddrive.servo.margins import GROWTH
+from feeddrive.servo.mechanics_response import Case
 from feeddrive.tuning.demand import Demand
 from feeddrive.tuning.drive_forms.drive_file import Writer, drive_text, fits, writer_of
 from feeddrive.tuning.drive_forms.parameter import Facts, Line, LoopSettings

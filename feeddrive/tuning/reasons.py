@@ -11,7 +11,7 @@ from feeddrive.plant.analysis.modes import braked_modes
 from feeddrive.plant.chain.moving_inertia import inertia_at_motor
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import KV_UNIT, Cascade
-from feeddrive.servo.frequency_response import Case, Friction
+from feeddrive.servo.mechanics_response import Case, Friction
 from feeddrive.tuning.filter_choice import FilterChoice
 from feeddrive.tuning.largest_gain import GainLimit, Limit
 from feeddrive.tuning.recommendation import Recommendation

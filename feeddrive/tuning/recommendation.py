@@ -17,9 +17,9 @@ from feeddrive.errors import InputError
 from feeddrive.plant.chain.moving_inertia import inertia_at_motor
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade, FeedForward
-from feeddrive.servo.frequency_response import Case
 from feeddrive.servo.linear_loop import open_position_loop, open_velocity_loop, worst_eigenvalue
 from feeddrive.servo.margins import GROWTH, Margins, margins
+from feeddrive.servo.mechanics_response import Case
 from feeddrive.tuning.demand import Demand
 from feeddrive.tuning.filter_choice import NO_LIMITS, FilterLimits
 from feeddrive.tuning.largest_gain import GainLimit

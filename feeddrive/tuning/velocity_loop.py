@@ -30,9 +30,9 @@ from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade
 from feeddrive.servo.filters import Filter
-from feeddrive.servo.frequency_response import Case, Friction, grid, transfer
 from feeddrive.servo.linear_loop import open_velocity_loop
 from feeddrive.servo.margins import frequency_response
+from feeddrive.servo.mechanics_response import Case, Friction, grid, transfer
 from feeddrive.servo.resonances import Kind, Resonance, resonances
 from feeddrive.tuning.demand import Demand
 from feeddrive.tuning.filter_choice import NO_LIMITS, FilterChoice, FilterLimits, low_pass, notches_about

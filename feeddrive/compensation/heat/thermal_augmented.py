@@ -26,7 +26,7 @@ from feeddrive.compensation.heat.thermal_deviation import NUT_FILMS, SCREW_FILMS
 from feeddrive.compensation.heat.thermal_sensors import Sensor
 from feeddrive.compensation.heat.thermal_unknowns import Unknowns, stationary_step
 from feeddrive.errors import InputError
-from feeddrive.thermal.reduced.model import AMBIENT, HeatModel, Path
+from feeddrive.thermal.reduced.parametric_model import AMBIENT, HeatModel, Path
 from feeddrive.thermal.reduced.stepping import exact_propagator
 from feeddrive.typing import FloatArray
 

@@ -15,9 +15,9 @@ import numpy as np
 import scipy.sparse as sparse
 
 from feeddrive.errors import InputError
-from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.laws.expansion import FIXED_FREE, Supports, expansion
-from feeddrive.thermal.reduced.model import HeatModel
+from feeddrive.thermal.machine_heat import Heat
+from feeddrive.thermal.reduced.parametric_model import HeatModel
 from feeddrive.thermal.rig import refuse_unless
 from feeddrive.typing import FloatArray
 

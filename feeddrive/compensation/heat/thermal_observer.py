@@ -26,8 +26,8 @@ from feeddrive.compensation.heat.thermal_error import TableError
 from feeddrive.compensation.heat.thermal_sensors import Sensor, refuse_unmountable
 from feeddrive.compensation.heat.thermal_unknowns import Unknowns
 from feeddrive.errors import InputError
-from feeddrive.thermal.heat import Heat
-from feeddrive.thermal.reduced.model import AMBIENT, HeatModel
+from feeddrive.thermal.machine_heat import Heat
+from feeddrive.thermal.reduced.parametric_model import AMBIENT, HeatModel
 from feeddrive.thermal.rig import refuse_unless_positive
 from feeddrive.thermal.run.warm_up import declared_rows, grouped
 from feeddrive.typing import FloatArray

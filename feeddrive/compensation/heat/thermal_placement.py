@@ -21,8 +21,8 @@ from feeddrive.compensation.heat.thermal_observer import ThermalObserver, therma
 from feeddrive.compensation.heat.thermal_sensors import Sensor, mountable_places
 from feeddrive.compensation.heat.thermal_unknowns import Unknowns
 from feeddrive.errors import InputError
-from feeddrive.thermal.heat import Heat
-from feeddrive.thermal.reduced.model import HeatModel
+from feeddrive.thermal.machine_heat import Heat
+from feeddrive.thermal.reduced.parametric_model import HeatModel
 from feeddrive.typing import FloatArray
 
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from feeddrive.errors import InputError
 from feeddrive.thermal.full.full_model import FRONT, NUT, REAR
-from feeddrive.thermal.heat import Heat
+from feeddrive.thermal.machine_heat import Heat
 from feeddrive.thermal.rig import refuse_negative, refuse_unless_positive
 from feeddrive.typing import FloatArray
 

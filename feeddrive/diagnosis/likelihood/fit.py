@@ -30,7 +30,7 @@ from feeddrive.diagnosis.likelihood.coordinates import (
 )
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.predictor import Predictor
-from feeddrive.diagnosis.numbers.rows import MeasuredRows
+from feeddrive.diagnosis.numbers.number_rows import MeasuredRows
 from feeddrive.effects.base import Effect
 from feeddrive.plant.passive_friction import is_passive
 from feeddrive.plant.plant import Plant

@@ -13,7 +13,7 @@ from feeddrive.diagnosis.finding.scene import Candidate
 from feeddrive.diagnosis.likelihood.evidence import AxisEvidence
 from feeddrive.diagnosis.likelihood.predictability import predictable_samples, samples_to_fit
 from feeddrive.diagnosis.likelihood.predictor import Predictor
-from feeddrive.diagnosis.suspicion.timing import lag_of, lagging, repeated
+from feeddrive.diagnosis.suspicion.channel_timing import lag_of, lagging, repeated
 from feeddrive.diagnosis.suspicion.torque_channel import scale_of, scale_sentence
 from feeddrive.effects.base import ChainEffect, DriveEffect, Effect, Kind, Motion, Port, SourceEffect
 from feeddrive.engine.step.step_constants import SimulationError

@@ -45,7 +45,7 @@ from feeddrive.diagnosis.numbers.declared_values import DeclaredValue, declared_
 from feeddrive.diagnosis.numbers.measured_file import MeasuredNumber
 from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.plant.analysis.stiffness_budget import stiffness_budget
-from feeddrive.plant.file.files import plant_from_entries
+from feeddrive.plant.file.plant_file import plant_from_entries
 from feeddrive.plant.plant import Plant
 from feeddrive.simulate.scenario.scenario_overrides import with_overrides
 from feeddrive.typing import FloatArray

@@ -19,7 +19,7 @@ from feeddrive.diagnosis.recordings.change_report import (
 from feeddrive.diagnosis.recordings.change_result import ParameterChange, RecordingChanges
 from feeddrive.diagnosis.recordings.judged_changes import JudgedChanges, judged_changes
 from feeddrive.diagnosis.recordings.recordings import RecordingShift, without_shifts
-from feeddrive.diagnosis.recordings.search import Searched
+from feeddrive.diagnosis.recordings.recordings_search import Searched
 from feeddrive.effects.base import Effect
 
 

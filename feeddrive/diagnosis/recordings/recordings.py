@@ -16,7 +16,7 @@ from feeddrive.diagnosis.likelihood.coordinates import coordinates_of, read_coor
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.predictor import Predictor
 from feeddrive.effects.base import Effect, Kind, Parameter, Port, Signature
-from feeddrive.effects.heat.base import ThermalEffect
+from feeddrive.effects.heat.thermal_effect import ThermalEffect
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 from feeddrive.simulate.driven import LoadMotion

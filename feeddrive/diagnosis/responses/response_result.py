@@ -27,7 +27,7 @@ from feeddrive.plant.file.effect_text import plant_text_with_effects
 from feeddrive.plant.plant import Plant
 from feeddrive.recording.frequency_response import FrequencyResponse
 from feeddrive.servo.cascade import Cascade
-from feeddrive.servo.frequency_response import Case
+from feeddrive.servo.mechanics_response import Case
 from feeddrive.typing import ComplexArray, FloatArray
 from feeddrive.units.quantity import format_quantity
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from feeddrive.diagnosis.declared_friction import declared_level
 from feeddrive.diagnosis.finding.scene import Scene
+from feeddrive.diagnosis.friction_at_port import declared_level
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.effects.base import Port
 from feeddrive.simulate.driven import LoadMotion

@@ -123,7 +123,7 @@ def lump(plant: Plant, position: float, further: tuple[str, ...] = ()) -> Lumped
 
 
 def _read(text: str, plant: Plant) -> Plant:
-    from feeddrive.plant.file.files import plant_from_entries  # the reader of files imports plants
+    from feeddrive.plant.file.plant_file import plant_from_entries  # the reader of files imports plants
 
     return plant_from_entries(parse_toml(text, f"{plant.name}, lumped"), Path(f"{plant.name}, lumped"))
 

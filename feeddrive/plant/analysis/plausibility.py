@@ -18,8 +18,8 @@ from feeddrive.plant.analysis.screw_limits import buckling_force, critical_speed
 from feeddrive.plant.analysis.steady import steady_motions
 from feeddrive.plant.analysis.summary import Summary, summarise
 from feeddrive.plant.plant import Plant, PositionVelocityController
-from feeddrive.thermal.heat import Heat
-from feeddrive.thermal.run.summary import HeatRow, heat_rows
+from feeddrive.thermal.machine_heat import Heat
+from feeddrive.thermal.run.heat_figures import HeatRow, heat_rows
 
 USUAL_DN = 70_000 * 1e-3 * math.pi / 30
 """Ball circle times speed of a ground screw with return tubes [m rad/s]; 70 000 mm rev/min."""

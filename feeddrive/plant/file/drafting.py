@@ -13,8 +13,8 @@ from typing import Any
 
 from feeddrive.errors import InputError
 from feeddrive.parts.bearings.supports import Support
-from feeddrive.parts.catalogue.choosing import away, chosen_motor, chosen_screw, newton, of_kind
-from feeddrive.parts.catalogue.reading import CataloguePart, catalogue, find_part
+from feeddrive.parts.catalogue.part_choice import away, chosen_motor, chosen_screw, newton, of_kind
+from feeddrive.parts.catalogue.part_files import CataloguePart, catalogue, find_part
 from feeddrive.parts.screw.preload_torque import ideal_torque
 from feeddrive.plant.file.entries import nearest_choice
 from feeddrive.plant.file.guide_section import CARRIAGES, TURNING

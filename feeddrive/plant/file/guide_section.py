@@ -31,7 +31,7 @@ from collections.abc import Mapping, Sequence
 from feeddrive.effects.base import Effect
 from feeddrive.effects.friction.guide_friction import GuideFriction, guide_effect
 from feeddrive.errors import InputError
-from feeddrive.parts.catalogue.reading import CataloguePart, catalogue, nearest_names
+from feeddrive.parts.catalogue.part_files import CataloguePart, catalogue, nearest_names
 from feeddrive.parts.guide.guide_coefficients import SET_A, SET_B
 from feeddrive.parts.guide.guide_geometry import GUIDE_VALUES, HSR_20R, HSR_30R, BallGuide
 from feeddrive.parts.guide.guide_rating import rated_friction

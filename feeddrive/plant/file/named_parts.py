@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from feeddrive.errors import InputError
-from feeddrive.parts.catalogue.reading import CataloguePart, catalogue, find_part
+from feeddrive.parts.catalogue.part_files import CataloguePart, catalogue, find_part
 from feeddrive.parts.screw.nut import CATALOGUE_VALUES
 from feeddrive.parts.values import PartValue
 from feeddrive.plant.file.drive_sections import BEARING_VALUES, PART_VALUES

@@ -20,16 +20,16 @@ from feeddrive.recording.checks.unusable_samples import (
     check_size,
 )
 from feeddrive.recording.derived import with_angle
+from feeddrive.recording.files.channel_mapping import FileMapping, read_mapping
 from feeddrive.recording.files.csv_faults import is_number
 from feeddrive.recording.files.csv_file import Layout, TextTable, find_table
 from feeddrive.recording.files.foreign import mapped_columns, table_variables
-from feeddrive.recording.files.mapping import FileMapping, read_mapping
 from feeddrive.recording.files.mat_file import read_variables
 from feeddrive.recording.files.opening import FileContent, first_bytes, open_file
 from feeddrive.recording.files.text_blocks import TextFile
 from feeddrive.recording.frequency_response import FrequencyResponse
 from feeddrive.recording.recording import Recording
-from feeddrive.recording.traces.choosing import Wishes
+from feeddrive.recording.traces.channel_choice import Wishes
 from feeddrive.recording.traces.opened import Understood, columns_of, could_be_trace, mapped, read_trace, understand
 from feeddrive.recording.traces.trace import Trace
 from feeddrive.typing import FloatArray

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feeddrive.errors import InputError
-from feeddrive.recording.files.mapping import FileMapping, Hold, Variable
+from feeddrive.recording.files.channel_mapping import FileMapping, Hold, Variable
 from feeddrive.recording.files.opening import FileContent, decode, head_of, is_hdf5
 from feeddrive.recording.formats import (
     halscope,
@@ -24,7 +24,7 @@ from feeddrive.recording.formats import (
     twincat,
 )
 from feeddrive.recording.frequency_response import FrequencyResponse, read_response, recognises_response
-from feeddrive.recording.traces.choosing import Choice, Pick, Wishes, choose
+from feeddrive.recording.traces.channel_choice import Choice, Pick, Wishes, choose
 from feeddrive.recording.traces.resampling import Series, gaps, on_one_grid, part_read, parts_of, same_time
 from feeddrive.recording.traces.trace import Signal, Trace, clean
 from feeddrive.typing import FloatArray

@@ -22,14 +22,14 @@ from feeddrive.simulate.controlled.controlled import (
 from feeddrive.simulate.scenario.cycle_losses import CycleLosses, cycle_losses
 from feeddrive.simulate.scenario.scenario import Scenario
 from feeddrive.simulate.setpoints.cutting_force import held
-from feeddrive.thermal.coupling import Changes, Coupling, Temperatures
 from feeddrive.thermal.full.full_model import FRONT, NUT, REAR, SHAFT
-from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.laws.contact_conductance import conductance_at_preload
 from feeddrive.thermal.laws.expansion import expansion
 from feeddrive.thermal.laws.laws import FOLLOWED, INPUTS, PATHS, laws_of, values_of
-from feeddrive.thermal.reduced.model import AMBIENT, HeatModel, Path
+from feeddrive.thermal.machine_heat import Heat
+from feeddrive.thermal.reduced.parametric_model import AMBIENT, HeatModel, Path
 from feeddrive.thermal.rig import Travel
+from feeddrive.thermal.thermal_coupling import Changes, Coupling, Temperatures
 from feeddrive.typing import FloatArray
 
 _MOTOR = "motor"

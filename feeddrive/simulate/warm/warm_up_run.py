@@ -27,8 +27,8 @@ from feeddrive.simulate.scenario.scenario import Scenario
 from feeddrive.simulate.warm.warm_up_cycle import Cycle, ServoCycle
 from feeddrive.simulate.warm.warm_up_result import RunEnergy, WarmUpPoint, WarmUpRun
 from feeddrive.thermal.full.full_model import FRONT, NUT, REAR, SHAFT
-from feeddrive.thermal.reduced.model import HeatModel, Path
-from feeddrive.thermal.run.ledger import with_ledger
+from feeddrive.thermal.reduced.parametric_model import HeatModel, Path
+from feeddrive.thermal.run.energy_balance import with_ledger
 from feeddrive.typing import FloatArray
 
 OBSERVED = (NUT, SHAFT, FRONT, REAR)

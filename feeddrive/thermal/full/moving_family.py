@@ -18,8 +18,8 @@ from feeddrive.errors import ValidityWarning
 from feeddrive.thermal.full.full_model import discretise, model_of
 from feeddrive.thermal.full.grid import Cells
 from feeddrive.thermal.full.moving import lowered, ripple_loss
-from feeddrive.thermal.heat import Heat
-from feeddrive.thermal.reduced.model import HeatModel, Path
+from feeddrive.thermal.machine_heat import Heat
+from feeddrive.thermal.reduced.parametric_model import HeatModel, Path
 from feeddrive.thermal.reduced.reduction import DEFAULT_ORDER, common_basis
 from feeddrive.thermal.reduced.system import HeatSystem
 from feeddrive.thermal.rig import Travel, refuse_unless

@@ -24,15 +24,15 @@ import casadi as ca
 import numpy as np
 
 from feeddrive.effects.base import Value
-from feeddrive.effects.heat.base import Operation
 from feeddrive.effects.heat.bearing_heat import reference_torque
+from feeddrive.effects.heat.thermal_effect import Operation
 from feeddrive.symbolic_turn import SYMBOLS, Holder
-from feeddrive.thermal.coupling import viscous_share
 from feeddrive.thermal.full.full_model import END, FRONT, NUT, REAR, SHAFT, growth_name
-from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.laws.films import film_on_nut, film_on_screw
 from feeddrive.thermal.laws.friction import torque_law
-from feeddrive.thermal.reduced.model import AMBIENT, Path
+from feeddrive.thermal.machine_heat import Heat
+from feeddrive.thermal.reduced.parametric_model import AMBIENT, Path
+from feeddrive.thermal.thermal_coupling import viscous_share
 from feeddrive.typing import Expression, FloatArray
 
 PATHS = tuple(Path)

@@ -19,7 +19,7 @@ import numpy as np
 
 from feeddrive.thermal.reduced.balancing import balance, truncated
 from feeddrive.thermal.reduced.krylov import moments, orthonormal
-from feeddrive.thermal.reduced.model import AMBIENT, COOLANT, HeatModel, Path
+from feeddrive.thermal.reduced.parametric_model import AMBIENT, COOLANT, HeatModel, Path
 from feeddrive.thermal.reduced.system import HeatSystem
 from feeddrive.typing import FloatArray
 

@@ -15,7 +15,7 @@ import scipy.sparse as sparse
 import scipy.sparse.linalg
 
 from feeddrive.errors import InputError
-from feeddrive.thermal.reduced.propagators import held_states
+from feeddrive.thermal.reduced.heat_propagators import held_states
 from feeddrive.thermal.reduced.stepping import Stepper, stepper_of
 from feeddrive.typing import Expression, FloatArray
 

@@ -19,13 +19,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from feeddrive.thermal.full.full_model import NUT
-from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.laws.laws import FOLLOWED
-from feeddrive.thermal.reduced.model import HeatModel, Path
+from feeddrive.thermal.machine_heat import Heat
+from feeddrive.thermal.reduced.parametric_model import HeatModel, Path
 from feeddrive.thermal.reduced.reduction import DEFAULT_ORDER, compressed, reduce_model
 from feeddrive.thermal.reduced.system import HeatSystem
 from feeddrive.thermal.run.duty import Duty
-from feeddrive.thermal.run.ledger import EnergyBalance, balance_of, with_ledger
+from feeddrive.thermal.run.energy_balance import EnergyBalance, balance_of, with_ledger
 from feeddrive.thermal.run.warm_up import HEATED, Rows, declared_rows, readings, run
 from feeddrive.typing import FloatArray
 

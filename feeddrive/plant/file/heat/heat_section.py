@@ -58,12 +58,12 @@ from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 from feeddrive.plant.file.entries import Table, declares_heat_alone
 from feeddrive.plant.file.heat.sensor_sections import read_heat_sensors
-from feeddrive.thermal.coupling import Coupling
-from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.laws.declared_friction import bearings_of, nut_of
 from feeddrive.thermal.laws.films import Films
 from feeddrive.thermal.laws.friction import Friction
+from feeddrive.thermal.machine_heat import Heat
 from feeddrive.thermal.rig import Body, Nut, Rig, Seat, Steel, Travel, refuse_unless
+from feeddrive.thermal.thermal_coupling import Coupling
 
 SECTION = "thermal"
 _LENGTHS = ("shaft_radius", "shaft_length", "nut_outer_radius", "nut_length")

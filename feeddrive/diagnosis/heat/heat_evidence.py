@@ -18,7 +18,7 @@ from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 from feeddrive.recording.channels import channel_unit
 from feeddrive.thermal.full.full_model import growth_name
-from feeddrive.thermal.heat import Heat
+from feeddrive.thermal.machine_heat import Heat
 from feeddrive.thermal.run.warm_up import channel_of
 from feeddrive.typing import BoolArray, FloatArray
 

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 
 from feeddrive.errors import InputError
 from feeddrive.parts.lubricant import Lubricant
-from feeddrive.parts.screw.preload_loss import stiffness_share
+from feeddrive.parts.screw.preload_monitoring import stiffness_share
 from feeddrive.thermal.laws.nut_preload import Spacer, preload_change
 from feeddrive.thermal.rig import refuse_negative, refuse_unless, refuse_unless_positive
 from feeddrive.typing import Expression

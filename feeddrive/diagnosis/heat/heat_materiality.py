@@ -6,8 +6,8 @@ import numpy as np
 
 from feeddrive.effects.base import Effect, listed
 from feeddrive.effects.heat.bearing_heat import reference_torque
-from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.laws.friction import torque_law
+from feeddrive.thermal.machine_heat import Heat
 
 LEAST_HEAT_SHARE = 2e-4
 """A heat over that of the nut at the highest declared speed: a sensor on a flange shows milliwatts, and what shows is

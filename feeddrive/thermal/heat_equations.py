@@ -22,9 +22,9 @@ import numpy as np
 
 from feeddrive.symbolic_turn import SYMBOLS
 from feeddrive.thermal.full.full_model import NUT
-from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.laws.laws import FOLLOWED, INPUTS, PATHS, growth_places, laws_of, values_of
-from feeddrive.thermal.reduced.model import AMBIENT, HeatModel
+from feeddrive.thermal.machine_heat import Heat
+from feeddrive.thermal.reduced.parametric_model import AMBIENT, HeatModel
 from feeddrive.thermal.reduced.reduction import reduce_model
 from feeddrive.thermal.rig import refuse_unless
 from feeddrive.thermal.run.warm_up import channel_of

@@ -6,7 +6,7 @@
 |---|---|
 | p | parameters of `feeddrive.thermal.laws.laws` |
 | g, u | conductances and inputs of a row, with slopes u_p, u_θ, dg/dp that CasADi takes from the laws |
-| Φ_i, Γ_i | slopes of the exact step (`propagators`) with conductance i, or with a body's conductance or capacity |
+| Φ_i, Γ_i | slopes of the exact step (`heat_propagators`) with conductance i, or with a body's conductance or capacity |
 
 The states are those of `warm_up.run`, of a reduced model; a group of rows that share a step is at the mean of its
 conductances, and its slopes are those of each row.
@@ -25,10 +25,10 @@ from scipy.signal import lfilter
 from feeddrive.symbolic_turn import SYMBOLS
 from feeddrive.thermal.bound_function import BoundFunction
 from feeddrive.thermal.full.full_model import NUT
-from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.laws.laws import FOLLOWED, INPUTS, PATHS, Laws, growth_places, laws_of, values_of
-from feeddrive.thermal.reduced.model import HeatModel, Path
-from feeddrive.thermal.reduced.propagators import Propagator, propagator
+from feeddrive.thermal.machine_heat import Heat
+from feeddrive.thermal.reduced.heat_propagators import Propagator, propagator
+from feeddrive.thermal.reduced.parametric_model import HeatModel, Path
 from feeddrive.thermal.run.warm_up import channel_of, grouped, lagging, row_arguments
 from feeddrive.typing import FloatArray
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from feeddrive.diagnosis.judging.result import ChannelResult
-from feeddrive.diagnosis.unexplained.result import Above, Dependence, Instead, Unexplained
+from feeddrive.diagnosis.unexplained.unexplained_result import Above, Dependence, Instead, Unexplained
 from feeddrive.units.quantity import format_quantity
 
 WORDS = {

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from feeddrive.diagnosis.finding.scene import Candidate, Scene
-from feeddrive.diagnosis.heat.evidence import HeatEvidence
+from feeddrive.diagnosis.heat.heat_evidence import HeatEvidence
 from feeddrive.effects.base import Effect
 from feeddrive.effects.heat.ambient_drift import AmbientDrift
 from feeddrive.effects.heat.bearing_heat import BearingHeat
