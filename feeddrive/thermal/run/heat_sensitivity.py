@@ -6,7 +6,7 @@
 |---|---|
 | p | parameters of `feeddrive.thermal.laws.laws` |
 | g, u | conductances and inputs of a row, with slopes u_p, u_θ, dg/dp that CasADi takes from the laws |
-| Φ_i, Γ_i | slopes of the exact step (`heat_propagators`) with conductance i, or with a body's conductance or capacity |
+| Φ_i, Γ_i | slopes of the exact step (`heat_propagators`) with conductance i, or a body's conductance or capacity |
 
 The states are those of `warm_up.run`, of a reduced model; a group of rows that share a step is at the mean of its
 conductances, and its slopes are those of each row.
