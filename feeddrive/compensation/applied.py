@@ -36,9 +36,13 @@ class AxisLimits:
 
 
 def motor_setpoint(
-    control: Control, table: CompensationTable, position: FloatArray, velocity: FloatArray, cycle: float,
+    control: Control,
+    table: CompensationTable,
+    position: FloatArray,
+    velocity: FloatArray,
+    cycle: float,
     limits: AxisLimits | None = None,
-) -> FloatArray:  # fmt: skip
+) -> FloatArray:
     """Positions that the motor is told, (n,) [m].
 
     Args:
@@ -114,9 +118,7 @@ def ramped(value: FloatArray, cycle: float, limits: AxisLimits) -> FloatArray:
     return found
 
 
-def _one_cycle(
-    rest: float, speed: float, highest: float, hardest: float, cycle: float
-) -> tuple[float | None, float]:  # fmt: skip
+def _one_cycle(rest: float, speed: float, highest: float, hardest: float, cycle: float) -> tuple[float | None, float]:
     """Way of a cycle towards the goal and the speed behind it; no way where the goal is reached [m, m/s]."""
     step, ahead = hardest * cycle, speed * cycle
     if rest <= 0.5 * (speed + step) ** 2 / hardest + ahead:

@@ -118,7 +118,7 @@ class Compensated:
 
 def plant_table(
     plant: Plant, wishes: Wishes, cascade: Cascade | None = None, unsure_of_play: str = "", where: str = ""
-) -> Compensated:  # fmt: skip
+) -> Compensated:
     """The table of a plant, nothing simulated.
 
     Args:
@@ -152,13 +152,17 @@ def plant_table(
     table = table_for(wanted, known, stroke, reference, wishes.every, found.shortest)
     return Compensated(
         plant.name, wishes, wanted, table, known.zeroed(reference), lost, found.of_time, tuple(refused), found.shortest
-    )  # fmt: skip
+    )
 
 
 def compensate_plant(
-    plant: Plant, wishes: Wishes, cascade: Cascade | None = None, unsure_of_play: str = "", where: str = "",
+    plant: Plant,
+    wishes: Wishes,
+    cascade: Cascade | None = None,
+    unsure_of_play: str = "",
+    where: str = "",
     beside: bool = True,
-) -> Compensated:  # fmt: skip
+) -> Compensated:
     """The table of a plant as `plant_table` gives it, with its prediction.
 
     Args:
@@ -182,9 +186,12 @@ def compensate_plant(
     applied, usual = best_reversal(moved, loop, test, Applied(made.control, made.table, _limits(plant)))
     made = replace(made, control=applied.control)
     prediction = Prediction(
-        figures(moved, loop, test), None if renewed is None else figures(renewed, loop, test),
-        figures(moved, loop, test, applied), test.circle, usual,
-    )  # fmt: skip
+        figures(moved, loop, test),
+        None if renewed is None else figures(renewed, loop, test),
+        figures(moved, loop, test, applied),
+        test.circle,
+        usual,
+    )
     if not beside:
         return replace(made, prediction=prediction)
     friction = friction_values(moved, loop, test.circle, lost, applied) if lost.torque > 0 else None

@@ -63,7 +63,7 @@ class FrictionValues:
 
 def friction_values(
     plant: Plant, cascade: Cascade, circle: Circle, lost: LostMotion, applied: Applied | None = None
-) -> FrictionValues:  # fmt: skip
+) -> FrictionValues:
     """Values for a plant under its controller, tried on a circle.
 
     Args:

@@ -60,9 +60,7 @@ class RecordedDeviations:
     ends: tuple[float, float]
 
 
-def recorded_deviations(
-    recording: Recording, radius: float | None, period: float | None = None
-) -> RecordedDeviations:  # fmt: skip
+def recorded_deviations(recording: Recording, radius: float | None, period: float | None = None) -> RecordedDeviations:
     """The mean deviation along the stroke.
 
     Args:
@@ -129,9 +127,13 @@ def _stops(recording: Recording) -> tuple[FloatArray, FloatArray, FloatArray]:
 
 
 def _solved(
-    recording: Recording, places: FloatArray, values: FloatArray, ways: FloatArray, period: float | None,
+    recording: Recording,
+    places: FloatArray,
+    values: FloatArray,
+    ways: FloatArray,
+    period: float | None,
     from_motor: bool,
-) -> RecordedDeviations:  # fmt: skip
+) -> RecordedDeviations:
     """Mean deviation at nodes and the difference of the directions, by least squares in turn."""
     low, high = float(places.min()), float(places.max())
     width = high - low

@@ -108,8 +108,9 @@ def heat_table(heat: Heat, reference: float | None = None) -> HeatTable:
     left, after = _left(heat, tables[best], judged, best)
     words = f"warm-up and cool-down of {_HOURS} h each at {JUDGED_SPEED:g} of the highest speed, not fitted"
     ordered = dict(sorted(ranking.items(), key=lambda one: one[1]))
-    return HeatTable(heat.name, best, tables[best], left, words, ordered, judged.times, judged.positions,
-                     judged.error, after)  # fmt: skip
+    return HeatTable(
+        heat.name, best, tables[best], left, words, ordered, judged.times, judged.positions, judged.error, after
+    )
 
 
 def _tried(heat: Heat, model: HeatModel, speeds: FloatArray) -> TriedMachine:
@@ -139,8 +140,9 @@ def recorded_heat_table(recording: Recording, reference: float | None = None) ->
     Raises:
         InputError: too few growths or temperatures, or a sensor that hardly moves.
     """
-    growths = sorted((float(match[1]) * 1e-3, name) for name in recording.channels
-                     if (match := _GROWTH.fullmatch(name)))  # fmt: skip
+    growths = sorted(
+        (float(match[1]) * 1e-3, name) for name in recording.channels if (match := _GROWTH.fullmatch(name))
+    )
     sensors = [name for name in recording.channels if name.endswith("_temperature")]
     if len(growths) < 2 or not sensors:
         mend = "record table_growth_100mm, table_growth_400mm and nut_temperature, or the like"

@@ -115,8 +115,13 @@ def combined_stiffness(drive: BallScrewDrive, position: float) -> CombinedStiffn
     """
     near, shaft, far = drive.supports.compliances(drive.screw, position)
     housing = 1.0 / drive.housing_stiffness if drive.housing_stiffness is not None else 0.0
-    axial = [("housing", housing), ("nut", 1.0 / drive.nut.axial_stiffness), ("screw", shaft), ("bearing", near),
-             ("far bearing", far)]  # fmt: skip
+    axial = [
+        ("housing", housing),
+        ("nut", 1.0 / drive.nut.axial_stiffness),
+        ("screw", shaft),
+        ("bearing", near),
+        ("far bearing", far),
+    ]
     r = drive.screw.travel_per_radian
     twist = [(spring.part, spring.compliance * r**2) for spring in reversed(drive.torsion_springs(position))]
     found = [Contribution(part, Deformation.AXIAL, compliance) for part, compliance in axial]

@@ -118,9 +118,11 @@ class Coupling:
             raise InputError(told, "coupling", f"cool it, or preload it with more than {format_quantity(preload, 'N')}")
         mean = (1 - self.rear_share) * at.front + self.rear_share * at.rear
         return Changes(
-            _warned_share(self.nut_oil, at.nut, reference), _warned_share(self.bearing_oil, mean, reference),
-            share, stiffness_share(share),
-        )  # fmt: skip
+            _warned_share(self.nut_oil, at.nut, reference),
+            _warned_share(self.bearing_oil, mean, reference),
+            share,
+            stiffness_share(share),
+        )
 
     def preload_slope(self, preload: float, pitch_diameter: float, expansion: float) -> float:
         """Change of the preload's share with the difference of nut and shaft [1/K]; arguments as `changes`."""

@@ -115,9 +115,12 @@ def save_checkpoint(folder: Path, kept: Checkpoint) -> None:
             at += len(packed)
         entries.append(plain)
     content = {
-        "format": FORMAT, "plant": kept.plant, "grid": asdict(kept.grid) if kept.grid else None, "entries": entries,
+        "format": FORMAT,
+        "plant": kept.plant,
+        "grid": asdict(kept.grid) if kept.grid else None,
+        "entries": entries,
         "searched": dict(kept.searched),
-    }  # fmt: skip
+    }
     index = np.frombuffer(json.dumps(content).encode(), dtype=np.uint8)
     file = io.BytesIO()
     np.savez(file, index=index, numbers=np.concatenate(parts) if parts else np.zeros(0))
@@ -133,5 +136,6 @@ def _pass(one: dict[str, Any], numbers: FloatArray) -> Pass:
     size, at = int(one["size"]), int(one["at"])
     triangle = np.zeros((size, size))
     triangle[np.triu_indices(size)] = numbers[at : at + size * (size + 1) // 2]
-    return Pass(one["channel"], triangle, one["first"], one["hats"], one["rows"], np.array(one["declared"]),
-                one["slow_force"])  # fmt: skip
+    return Pass(
+        one["channel"], triangle, one["first"], one["hats"], one["rows"], np.array(one["declared"]), one["slow_force"]
+    )

@@ -300,9 +300,7 @@ def _searched(
             continue
         course = _course(times, values, quantity.variance[here], len(watched), lines)
         courses[quantity.name] = course
-        limit = limit_of(
-            replace(quantity, values=values), course, times, options.limits or {}, declared, len(watched)
-        )  # fmt: skip
+        limit = limit_of(replace(quantity, values=values), course, times, options.limits or {}, declared, len(watched))
         if limit is not None:
             limits[quantity.name] = limit
         for found in course.found:
@@ -325,19 +323,22 @@ def _course(
     found = course_of(Series(line, y), watched)
     fitted, band = np.interp(times, t, found.fitted), np.interp(times, t, found.band)
     return Course(
-        (middle + size * found.level[0], size * found.level[1]), size * found.scatter,
+        (middle + size * found.level[0], size * found.level[1]),
+        size * found.scatter,
         tuple(replace(one, size=size * one.size, deviation=size * one.deviation) for one in found.found),
-        middle + size * fitted, size * band,
-    )  # fmt: skip
+        middle + size * fitted,
+        size * band,
+    )
 
 
 def _averaged(t: FloatArray, y: FloatArray, v: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Neighbours averaged to as many values as are searched at a time, each dated as its first."""
     groups = np.array_split(np.arange(len(t)), LONGEST_SEARCHED)
     return (
-        np.array([t[group[0]] for group in groups]), np.array([np.mean(y[group]) for group in groups]),
+        np.array([t[group[0]] for group in groups]),
+        np.array([np.mean(y[group]) for group in groups]),
         np.array([np.mean(v[group]) for group in groups]),
-    )  # fmt: skip
+    )
 
 
 def _remarks(quantities: tuple[Quantity, ...], options: Options, days: FloatArray) -> list[str]:
@@ -345,11 +346,15 @@ def _remarks(quantities: tuple[Quantity, ...], options: Options, days: FloatArra
     names = {one.name: one for one in quantities}
     found = []
     if "slope" in names and not options.absolute:
-        found.append("The zero of the scale is taken to be free: an offset that moves is not called growth. "
-                     "Say --absolute where scale and motor keep their zeros.")  # fmt: skip
+        found.append(
+            "The zero of the scale is taken to be free: an offset that moves is not called growth. "
+            "Say --absolute where scale and motor keep their zeros."
+        )
     if "offset" in names and np.nanstd(np.diff(names["offset"].values)) > 1e-3:
-        found.append("The table's zero against the motor scatters by more than 1 mm from recording to recording: "
-                     "the motor's zero is not kept, and growth cannot be told from it.")  # fmt: skip
+        found.append(
+            "The table's zero against the motor scatters by more than 1 mm from recording to recording: "
+            "the motor's zero is not kept, and growth cannot be told from it."
+        )
     if len(days) > 1 and np.any(np.diff(days) == 0):
         found.append("Some recordings have the same date and time; the first of each is followed.")
     if len(days) > LONGEST_SEARCHED:

@@ -134,8 +134,9 @@ def _travel(terms: _Terms, plant: Plant, grid: Grid, absolute: bool) -> list[Qua
     found.append(Quantity("delay", "table read later than the motor", "s", *terms["delay"], ("channel_delay",)))
     periodic = terms.amplitude("lead")
     if periodic is not None:
-        found.append(Quantity("lead_ripple", "lead error once per motor revolution", "m",
-                              *periodic, ("lead_error_periodic",)))  # fmt: skip
+        found.append(
+            Quantity("lead_ripple", "lead error once per motor revolution", "m", *periodic, ("lead_error_periodic",))
+        )
     return found
 
 

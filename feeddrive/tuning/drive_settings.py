@@ -89,17 +89,23 @@ def as_low_passes(filters: Sequence[FilterChoice]) -> tuple[tuple[FilterChoice, 
     made, notes = [], []
     for one in filters:
         if one.kind == "notch" and is_low_pass(one.frequency, one.bandwidth):
-            notes.append(f"a notch at {one.frequency:g} Hz that is {one.bandwidth:.4g} Hz wide is a low-pass, "
-                        "and is written as one")  # fmt: skip
+            notes.append(
+                f"a notch at {one.frequency:g} Hz that is {one.bandwidth:.4g} Hz wide is a low-pass, "
+                "and is written as one"
+            )
             one = FilterChoice("PT2", one.frequency, one.damping)
         made.append(one)
     return tuple(made), notes
 
 
 def _settled(
-    plant: Plant, found: Recommendation, filters: Sequence[FilterChoice], writer: Writer, facts: Facts,
+    plant: Plant,
+    found: Recommendation,
+    filters: Sequence[FilterChoice],
+    writer: Writer,
+    facts: Facts,
     cases: Sequence[Case],
-) -> tuple[list[Line], Cascade, tuple[Reached, ...]]:  # fmt: skip
+) -> tuple[list[Line], Cascade, tuple[Reached, ...]]:
     """Lines whose loop keeps the margins: of the recommendation, or slowed by a percent until it does."""
     whole, demand = found.cascade, found.demand
     loop = LoopSettings(whole.velocity_gain, whole.reset_time, whole.position_gain, tuple(filters))
@@ -114,8 +120,11 @@ def _settled(
         if not inner:
             loop = replace(loop, velocity_gain=_SLOWED * loop.velocity_gain, reset_time=loop.reset_time / _SLOWED)
         loop = replace(loop, position_gain=_SLOWED * loop.position_gain)
-    raise InputError(f"{writer.form.title} keeps {demand.phase:g}° and {demand.gain:g} dB in no way that was found",
-                     plant.name, "ask for less")  # fmt: skip
+    raise InputError(
+        f"{writer.form.title} keeps {demand.phase:g}° and {demand.gain:g} dB in no way that was found",
+        plant.name,
+        "ask for less",
+    )
 
 
 def _kept(reached: Sequence[Reached], demand: Demand) -> tuple[bool, bool]:

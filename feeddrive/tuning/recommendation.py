@@ -95,9 +95,12 @@ def recommend(
     found = velocity_gains(plant, bare, cases, demand, limits)
     reset = _rounded(found.reset_time)
     with_velocity = replace(
-        bare, velocity_gain=_rounded(found.gain), reset_time=reset, tracking_time=reset,
+        bare,
+        velocity_gain=_rounded(found.gain),
+        reset_time=reset,
+        tracking_time=reset,
         torque_filters=(*drive.torque_filters, *(choice.filter for choice in found.filters)),
-    )  # fmt: skip
+    )
     with_velocity = _lowered_velocity(plant, with_velocity, cases, demand)
     limit = position_gain(plant, with_velocity, cases, demand)
     if limit.gain < USABLE:
@@ -127,8 +130,9 @@ def _lowered_velocity(plant: Plant, cascade: Cascade, cases: Sequence[Case], dem
         if all(holds(one, demand) for one in every):
             return cascade
         reset = _rounded(cascade.reset_time / _SLOWED)
-        cascade = replace(cascade, velocity_gain=_rounded(_SLOWED * cascade.velocity_gain), reset_time=reset,
-                          tracking_time=reset)  # fmt: skip
+        cascade = replace(
+            cascade, velocity_gain=_rounded(_SLOWED * cascade.velocity_gain), reset_time=reset, tracking_time=reset
+        )
     raise _unmet(plant, demand, "velocity")
 
 

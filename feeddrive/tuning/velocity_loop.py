@@ -111,8 +111,11 @@ def velocity_gains(
     task = _task(plant, drive, cases, demand, limits)
     found = _best(task, (), _RESET_TIMES)
     if not found.gain:
-        raise InputError(f"no gain of the velocity loop keeps {demand.phase:g}° and {demand.gain:g} dB in every case",
-                         plant.name, _hint(task))  # fmt: skip
+        raise InputError(
+            f"no gain of the velocity loop keeps {demand.phase:g}° and {demand.gain:g} dB in every case",
+            plant.name,
+            _hint(task),
+        )
     while len(found.filters) < limits.most:
         better = _with_filter(task, found)
         if better is None:
@@ -191,9 +194,11 @@ def _offered(task: _Task, found: VelocityGains) -> list[FilterChoice]:
     """Filters about the resonance that limits, and a low-pass, as far as the drive has them."""
     spread, highest = _limiting_resonance(task, found), 0.4 / task.tick
     notches = [] if spread is None else notches_about(spread, task.limits)
-    passes = [] if any(choice.kind == "PT2" for choice in found.filters) else [
-        low_pass(factor * found.limit.frequency, task.limits) for factor in (0.7, 1.5, 3.0)
-    ]  # fmt: skip
+    passes = (
+        []
+        if any(choice.kind == "PT2" for choice in found.filters)
+        else [low_pass(factor * found.limit.frequency, task.limits) for factor in (0.7, 1.5, 3.0)]
+    )
     return [one for one in (*notches, *passes) if one is not None and one.frequency < highest]
 
 

@@ -27,12 +27,16 @@ def _write(table: CompensationTable, head: Sequence[str], axis: str) -> str:
     pos, neg = ([steps(float(one), _UNIT) for one in way] for way in (table.forward, table.reverse))
     lines = [
         *(f"# {plain_line(one)}" for one in head),
-        line("kopf.log_achs_name", axis), line("kw.ssfk.interval", 0), line("kw.ssfk.kw_startpos", rows[0]),
-        line("kw.ssfk.kw_nr_max", len(rows)), line("kw.ssfk.unit", 1), line("kw.ssfk.bilateral", 1),
+        line("kopf.log_achs_name", axis),
+        line("kw.ssfk.interval", 0),
+        line("kw.ssfk.kw_startpos", rows[0]),
+        line("kw.ssfk.kw_nr_max", len(rows)),
+        line("kw.ssfk.unit", 1),
+        line("kw.ssfk.bilateral", 1),
         *(line(f"kw.ssfk.table[{i}].setpoint", one) for i, one in enumerate(rows)),
         *(line(f"kw.ssfk.table[{i}].pos", one) for i, one in enumerate(pos)),
         *(line(f"kw.ssfk.table[{i}].neg", one) for i, one in enumerate(neg)),
-    ]  # fmt: skip
+    ]
     return "\n".join(lines) + "\n"
 
 

@@ -42,9 +42,7 @@ class TableError:
         return np.asarray(states @ self.rows.T)
 
 
-def table_error(
-    heat: Heat, model: HeatModel, supports: Supports = FIXED_FREE, count: int = POSITIONS
-) -> TableError:  # fmt: skip
+def table_error(heat: Heat, model: HeatModel, supports: Supports = FIXED_FREE, count: int = POSITIONS) -> TableError:
     """The error along the plant's travel.
 
     Args:

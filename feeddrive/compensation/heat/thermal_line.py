@@ -121,7 +121,7 @@ class LineTable:
 
 def line_table(
     readings: FloatArray, error: FloatArray, positions: FloatArray, reference: float, count: int = 6
-) -> LineTable:  # fmt: skip
+) -> LineTable:
     """The table of least squares over runs of the machine or of its model.
 
     Args:

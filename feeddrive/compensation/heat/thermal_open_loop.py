@@ -40,7 +40,7 @@ def compensation_model(heat: Heat, order: int = ORDER, sizes: Sizes | None = Non
 
 def model_alone(
     heat: Heat, model: HeatModel, error: TableError, step: float, speeds: FloatArray, ambient: FloatArray
-) -> FloatArray:  # fmt: skip
+) -> FloatArray:
     """Error of the table that the model foretells at the end of each row, (k, p) [m].
 
     Args:

@@ -42,9 +42,14 @@ class Placement:
 
 
 def placements(
-    heat: Heat, model: HeatModel, error: TableError, count: int, speeds: Sequence[float],
-    unknowns: Unknowns | None = None, kind: Sensor | None = None,
-) -> tuple[Placement, ...]:  # fmt: skip
+    heat: Heat,
+    model: HeatModel,
+    error: TableError,
+    count: int,
+    speeds: Sequence[float],
+    unknowns: Unknowns | None = None,
+    kind: Sensor | None = None,
+) -> tuple[Placement, ...]:
     """All sets of `count` mountable places, the best first.
 
     Args:

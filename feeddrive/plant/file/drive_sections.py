@@ -94,11 +94,16 @@ def read_drive(top: Table) -> BallScrewDrive:
     return placed(
         f"{top.where}, table",
         lambda: BallScrewDrive(
-            screw=screw, nut=nut, supports=supports, table_mass=mass,
-            motor=motor, coupling=coupling, transmission=transmission,
+            screw=screw,
+            nut=nut,
+            supports=supports,
+            table_mass=mass,
+            motor=motor,
+            coupling=coupling,
+            transmission=transmission,
             housing_stiffness=housing.get("housing_stiffness"),
         ),
-    )  # fmt: skip
+    )
 
 
 def placed(where: str, make: Callable[[], Made]) -> Made:

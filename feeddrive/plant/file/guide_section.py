@@ -102,10 +102,14 @@ def _carriage(table: Table) -> tuple[str, BallGuide]:
     return "as written", placed(
         table.where,
         lambda: BallGuide(
-            size["ball_diameter"], size["rail_conformity"], size["carriage_conformity"], size["contact_angle"],
-            size["preload_oversize"], balls,
+            size["ball_diameter"],
+            size["rail_conformity"],
+            size["carriage_conformity"],
+            size["contact_angle"],
+            size["preload_oversize"],
+            balls,
         ),
-    )  # fmt: skip
+    )
 
 
 def _known_carriages(name: str) -> str:

@@ -64,8 +64,9 @@ def read(text: str, where: str) -> Trace:
         notes = (*notes, "the names are no HAL pins or signals that tell a joint")
     time: FloatArray = np.arange(values.shape[0], dtype=np.float64) * period
     plain = unique_names(names)
-    signals = tuple(Signal(name, time, np.ascontiguousarray(values[:, i]), "", axis_in(name))
-                    for i, name in enumerate(plain))  # fmt: skip
+    signals = tuple(
+        Signal(name, time, np.ascontiguousarray(values[:, i]), "", axis_in(name)) for i, name in enumerate(plain)
+    )
     return Trace(NAME, signals, notes)
 
 
@@ -163,8 +164,9 @@ def read_sampler(text: str, where: str, sample_time: float | None, columns: tupl
         separator="" if "," in kept[0] else None,
     )
     count = values[:, 0]
-    numbered = len(cells) > 1 and bool(np.all(count == np.round(count)) and np.all(np.diff(count) >= 1)
-                                  and np.mean(np.diff(count) == 1) > 0.5)  # fmt: skip
+    numbered = len(cells) > 1 and bool(
+        np.all(count == np.round(count)) and np.all(np.diff(count) >= 1) and np.mean(np.diff(count) == 1) > 0.5
+    )
     data = values[:, 1:] if numbered else values
     names = _columns(columns, data.shape[1], numbered, where)
     place: FloatArray = count - count[0] if numbered else np.arange(values.shape[0], dtype=np.float64)

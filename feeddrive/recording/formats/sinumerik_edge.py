@@ -63,8 +63,11 @@ def read(text: str, where: str, sample_time: float | None = None) -> Trace:
     listed = header.get("SignalListHFData") if isinstance(header, Mapping) else None
     payload = tree.get("Payload") if isinstance(tree, Mapping) else None
     if not isinstance(listed, list) or not isinstance(payload, list) or not isinstance(header, Mapping):
-        raise InputError("is JSON, but not a capture: Header.SignalListHFData or Payload is missing", where,
-                         "name a file of SINUMERIK Edge, or save the table as CSV")  # fmt: skip
+        raise InputError(
+            "is JSON, but not a capture: Header.SignalListHFData or Payload is missing",
+            where,
+            "name a file of SINUMERIK Edge, or save the table as CSV",
+        )
     names = [str(signal.get("Name", "")) if isinstance(signal, Mapping) else "" for signal in listed]
     axes = [str(signal.get("Axis", "")) if isinstance(signal, Mapping) else "" for signal in listed]
     rows = [row for item in payload if isinstance(item, Mapping) for row in _list(item.get("HFData"))]
@@ -245,5 +248,7 @@ def _adapter_clock(stamps: Sequence[Any], clock: FloatArray, cycle: float) -> tu
     deviation = float(np.sqrt(rest @ rest / freedom / power))
     if abs(slope - 1.0) <= 3.0 * deviation:  # not resolved: the stamps are those of a network, to 1 ms
         return ()
-    return (f"the adapter's clock runs {1e6 * (slope - 1.0):+.0f} ± {2e6 * deviation:.0f} ppm beside the control's; "
-            "the control's is used",)  # fmt: skip
+    return (
+        f"the adapter's clock runs {1e6 * (slope - 1.0):+.0f} ± {2e6 * deviation:.0f} ppm beside the control's; "
+        "the control's is used",
+    )

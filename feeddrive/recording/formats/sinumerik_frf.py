@@ -51,8 +51,11 @@ def read(content: FileContent, text: str) -> FrequencyResponse:
     if cross is None:
         cross = next(((once, f) for id_, once, f in given.crosses if id_ == output.id), None)
     if cross is None or given.spectrum is None or output.spectrum is None:
-        raise InputError("the spectra of the measurement are not in the file", where,
-                         "save them with it (option frequency spectra) at the control")  # fmt: skip
+        raise InputError(
+            "the spectra of the measurement are not in the file",
+            where,
+            "save them with it (option frequency spectra) at the control",
+        )
     values, frequency = cross
     if not values.size == frequency.size == given.spectrum.size == output.spectrum.size or not values.size:
         raise InputError("the spectra differ in length", where, "export it again")
@@ -87,12 +90,16 @@ def _tuned(root: Element, content: FileContent, where: str) -> FrequencyResponse
     values, frequency, coherence = found[0]
     if values.size != frequency.size:
         raise InputError("the spectra differ in length", where, "export it again")
-    notes = [f"{NAME}, of automatic servo tuning: the plant of a speed loop, taken as motor_torque to motor_speed",
-             "the file does not say the unit of the magnitude: write it in the header of the CSV"]  # fmt: skip
+    notes = [
+        f"{NAME}, of automatic servo tuning: the plant of a speed loop, taken as motor_torque to motor_speed",
+        "the file does not say the unit of the magnitude: write it in the header of the CSV",
+    ]
     if len(found) > 1:
         notes.append(f"{len(found)} responses are in the file; the first is read")
-    notes += [f"a speed controller of the file has K_p {gain} and T_n {time}, in its own units"
-              for gain, time in _controllers(root)]  # fmt: skip
+    notes += [
+        f"a speed controller of the file has K_p {gain} and T_n {time}, in its own units"
+        for gain, time in _controllers(root)
+    ]
     return FrequencyResponse(content.path.name, "motor_torque", "motor_speed", "", frequency, values, coherence,
                              tuple(notes), where, content.sha256)  # fmt: skip
 
@@ -124,8 +131,13 @@ def _node(element: Element, where: str) -> _Node:
             crosses.append((_text(info, "m_uSignodeId"), *spectrum))
     own = _spectrum(auto, where) if auto is not None else None
     length = _text(element, "m_TimeVector.length", deep=True)
-    return _Node(_text(element, "m_uNodeId"), _text(element, "m_iUniqueInstanceId"), own[0] if own else None,
-                 tuple(crosses), int(length) if length.isdigit() else 0)  # fmt: skip
+    return _Node(
+        _text(element, "m_uNodeId"),
+        _text(element, "m_iUniqueInstanceId"),
+        own[0] if own else None,
+        tuple(crosses),
+        int(length) if length.isdigit() else 0,
+    )
 
 
 def _spectrum(info: Element, where: str) -> tuple[ComplexArray, FloatArray] | None:
@@ -182,8 +194,11 @@ def _sides(root: Element, nodes: list[_Node], where: str) -> tuple[_Node, _Node]
         output = by_instance.get(_text(pair, "m_iOutputSigNodeUniqueInstanceID"))
         if given is not None and output is not None and given is not output:
             return given, output
-    raise InputError("the file does not say which signal answers which, or holds no spectra", where,
-                     "save the spectra with the measurement at the control")  # fmt: skip
+    raise InputError(
+        "the file does not say which signal answers which, or holds no spectra",
+        where,
+        "save the spectra with the measurement at the control",
+    )
 
 
 def _names(

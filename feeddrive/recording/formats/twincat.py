@@ -30,9 +30,10 @@ def recognises(head: str) -> bool:
     plain = head.removeprefix("\ufeff")
     plain = plain.replace('"', "") if plain.startswith('"Name"') else plain
     return (
-        plain.startswith("Name") and plain[4:5] in "\t ;:,"
+        plain.startswith("Name")
+        and plain[4:5] in "\t ;:,"
         and ("\nData-Type" in plain or "Starttime of export" in plain)
-    )  # fmt: skip
+    )
 
 
 def read(text: str, where: str) -> Trace:
@@ -50,8 +51,9 @@ def read(text: str, where: str) -> Trace:
     for group, first in enumerate(_first_channels(header.groups)):
         time = _seconds(table.column(group, 0), header, where)
         _refuse_unordered(time, header.first_line + 1, names[first], where)
-        signals.extend(_signal(header, names, first + i, time, table.column(group, 1 + i))
-                       for i in range(header.groups[group]))  # fmt: skip
+        signals.extend(
+            _signal(header, names, first + i, time, table.column(group, 1 + i)) for i in range(header.groups[group])
+        )
     signals, remarks = scaled(signals, header)
     return Trace(NAME, tuple(signals), (*header.notes, *table.notes, *remarks))
 

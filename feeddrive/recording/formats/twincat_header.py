@@ -64,8 +64,12 @@ def read_header(lines: list[str], where: str) -> Header:
     if any(width == 0 for width in groups):
         raise InputError("a time column has no channel", f"{where}, row {structure + 1}", "export it again")
     rows = {row: number for number in range(top, end) if (row := _attribute(lines[number], separator))}
-    attributes = {name: cells for name, number in rows.items() if name not in ("Name", "SymbolComment")
-                  if (cells := _attribute_cells(lines[number], name, separator, groups)) is not None}  # fmt: skip
+    attributes = {
+        name: cells
+        for name, number in rows.items()
+        if name not in ("Name", "SymbolComment")
+        if (cells := _attribute_cells(lines[number], name, separator, groups)) is not None
+    }
     names, remarks = _names(lines[top], separator, groups, attributes.get("SymbolName"), f"{where}, row {top + 1}")
     first = end
     while first < len(lines) and not lines[first].strip(separator + " "):  # an export may add an empty line

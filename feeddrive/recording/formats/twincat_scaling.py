@@ -65,9 +65,14 @@ def scaled(signals: list[Signal], header: Header) -> tuple[list[Signal], tuple[s
     if votes == {False}:
         made = [replace(s, values=scaling.apply(s.values)) for s, scaling in zip(signals, scalings, strict=True)]
         return made, (f"exported without scaling, as channels of one symbol show; applied by the header to {shown}",)
-    how = "applied in the export, as channels of one symbol show" if votes == {True} else (
-        "taken as applied (the option Scale values before export); if it was off, give factor and offset in a mapping"
-    )  # fmt: skip
+    how = (
+        "applied in the export, as channels of one symbol show"
+        if votes == {True}
+        else (
+            "taken as applied (the option Scale values before export); "
+            "if it was off, give factor and offset in a mapping"
+        )
+    )
     return signals, (f"scale factors or offsets stand in the header for {shown}: {how}",)
 
 

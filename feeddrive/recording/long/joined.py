@@ -122,9 +122,12 @@ def _joined(recording: Recording, name: str, stretches: list[tuple[int, int]], r
         flaws.append(flaw("motor_angle", JOINED, np.concatenate(bridged), channels[name]))
     remarks = _remarks(recording, name, stretches, radius, fastest)
     return replace(
-        recording, time=np.concatenate(parts["time"]), channels=channels, flaws=tuple(flaws),
+        recording,
+        time=np.concatenate(parts["time"]),
+        channels=channels,
+        flaws=tuple(flaws),
         notes=(*recording.notes, *remarks),
-    )  # fmt: skip
+    )
 
 
 def _usual(position: FloatArray, step: float) -> tuple[float, float, float, float]:
@@ -196,8 +199,10 @@ def _remarks(
     ]
     if "motor_torque" in recording:
         torque = recording["motor_torque"]
-        whole, part = (float(np.sqrt(np.mean(np.square(one)))) for one in (
-            torque[::every], np.concatenate([torque[first:last] for first, last in stretches])))  # fmt: skip
+        whole, part = (
+            float(np.sqrt(np.mean(np.square(one))))
+            for one in (torque[::every], np.concatenate([torque[first:last] for first, last in stretches]))
+        )
         notes.append(f"rms of motor_torque: {whole:.3g} N m in all of it, {part:.3g} N m in what is compared")
         even = moving[1:] & (np.abs(np.diff(speed)) < 0.02 * np.abs(speed[1:]))
         drag = (torque[: every * len(speed) : every] * np.sign(speed))[1:]

@@ -115,7 +115,7 @@ def model_of(parts: Discretisation, travel: Travel) -> HeatModel:
         edges=parts.shaft.edges,
         ports=_ports(parts),
         air=np.zeros(parts.nodes),
-    )  # fmt: skip
+    )
 
 
 def _profile(parts: Discretisation) -> Expression:

@@ -49,9 +49,11 @@ class Cells:
         """Grid of paper 002: cells of 2.5 mm by 0.5 mm."""
         nut_wall = rig.nut.outer_radius - rig.radius
         return Cells(
-            round(rig.length / axial), round(rig.radius / radial), round(rig.nut.length / axial),
+            round(rig.length / axial),
+            round(rig.radius / radial),
+            round(rig.nut.length / axial),
             round(nut_wall / radial),
-        )  # fmt: skip
+        )
 
 
 @dataclass(frozen=True, eq=False)

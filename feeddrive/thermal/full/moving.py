@@ -45,9 +45,13 @@ LARGEST_RIPPLE = 1.0
 
 
 def moving_system(
-    parts: Discretisation, conductances: Mapping[Path, float], feed: float, basis: FloatArray,
-    travel: Travel | None = None, harmonics: int = HARMONICS,
-) -> HeatSystem:  # fmt: skip
+    parts: Discretisation,
+    conductances: Mapping[Path, float],
+    feed: float,
+    basis: FloatArray,
+    travel: Travel | None = None,
+    harmonics: int = HARMONICS,
+) -> HeatSystem:
     """The slow system under a moving nut on a basis of its temperatures.
 
     Args:
@@ -90,9 +94,13 @@ def lowered(slow: HeatSystem, lost_K: FloatArray, lost_B: FloatArray) -> HeatSys
 
 
 def ripple_loss(
-    parts: Discretisation, conductances: Mapping[Path, float], feed: float, basis: FloatArray, travel: Travel,
+    parts: Discretisation,
+    conductances: Mapping[Path, float],
+    feed: float,
+    basis: FloatArray,
+    travel: Travel,
     harmonics: int = HARMONICS,
-) -> tuple[FloatArray, FloatArray]:  # fmt: skip
+) -> tuple[FloatArray, FloatArray]:
     """What the ripple takes from K₀ and B₀ on a basis, (r, r) symmetric and (r, m); arguments as `moving_system`.
 
     Warns:

@@ -66,9 +66,12 @@ class MovingFamily:
 
 
 def moving_family(
-    heat: Heat, speeds: FloatArray, travel: Travel | None = None, order: int = DEFAULT_ORDER,
+    heat: Heat,
+    speeds: FloatArray,
+    travel: Travel | None = None,
+    order: int = DEFAULT_ORDER,
     cells: Cells | None = None,
-) -> MovingFamily:  # fmt: skip
+) -> MovingFamily:
     """Work out a family.
 
     Args:

@@ -140,6 +140,7 @@ def expansion(rig: Rig, profile: FloatArray, edges: FloatArray, supports: Suppor
     found = Expansion(edges, free, force, supports, stiffness)
     if supports.tension > 0 and np.any(found.tension_left < 0):
         told = f"heat adds {format_quantity(float(force.max()), 'N')} to a stretch of"
-        warnings.warn(f"{told} {format_quantity(supports.tension, 'N')}: the shaft is compressed", ValidityWarning,
-                      stacklevel=2)  # fmt: skip
+        warnings.warn(
+            f"{told} {format_quantity(supports.tension, 'N')}: the shaft is compressed", ValidityWarning, stacklevel=2
+        )
     return found

@@ -75,8 +75,9 @@ class Friction:
         torques = ca.DM(oil_torque(ca.DM(turning.ravel()), vars(self))).full().reshape(turning.shape)
         return np.asarray(np.where(turning > 0, torques, 0.0))
 
-    def heats(self, speeds: FloatArray, load_factor: FloatArray | float = 1.0,
-              viscous_factor: FloatArray | float = 1.0) -> FloatArray:  # fmt: skip
+    def heats(
+        self, speeds: FloatArray, load_factor: FloatArray | float = 1.0, viscous_factor: FloatArray | float = 1.0
+    ) -> FloatArray:
         """Q at speeds [rad/s], of the same shape [W].
 
         Args:

@@ -127,9 +127,13 @@ class HeatModel:
                     facing[way.source] = facing[way.source] + g * way.facing
         columns = [*self.heats.values(), facing[AMBIENT], facing[COOLANT]]
         return HeatSystem(
-            self.capacity, matrix, np.column_stack(columns), np.vstack(list(self.readings.values())),
-            self.input_names, tuple(self.readings),
-        )  # fmt: skip
+            self.capacity,
+            matrix,
+            np.column_stack(columns),
+            np.vstack(list(self.readings.values())),
+            self.input_names,
+            tuple(self.readings),
+        )
 
     def warn_of_extrapolation(self, conductances: Mapping[Path, float]) -> None:
         """Warn of conductances outside the range that a reduced model was made for; `limits` gives it."""

@@ -94,9 +94,14 @@ class _Step:
 
 
 def _states(
-    laws: Laws, network: _Network, step: float, speeds: FloatArray, ambient: FloatArray, values: FloatArray,
+    laws: Laws,
+    network: _Network,
+    step: float,
+    speeds: FloatArray,
+    ambient: FloatArray,
+    values: FloatArray,
     columns: tuple[int, ...],
-) -> tuple[FloatArray, FloatArray]:  # fmt: skip
+) -> tuple[FloatArray, FloatArray]:
     """C^(1/2) θ at the ends of the rows, (k, n), and the slopes of `readings`, (k, outputs, p)."""
     model, count = network.model, len(speeds)
     given = row_arguments(step, speeds, ambient)
@@ -182,9 +187,11 @@ def _rows(
     count = len(columns)
     # a column of CasADi stands column by column
     return (
-        g, g_slope.reshape(len(g), count, len(PATHS)).swapaxes(1, 2),
-        u, u_slope.reshape(len(u), count, len(INPUTS)).swapaxes(1, 2),
-    )  # fmt: skip
+        g,
+        g_slope.reshape(len(g), count, len(PATHS)).swapaxes(1, 2),
+        u,
+        u_slope.reshape(len(u), count, len(INPUTS)).swapaxes(1, 2),
+    )
 
 
 class _Follower:

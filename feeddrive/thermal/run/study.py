@@ -155,8 +155,9 @@ class _Modes:
 def _modes(system: HeatSystem, heats: Mapping[str, float]) -> _Modes:
     """Modes of a dense symmetric system with every C one."""
     rates, vectors = np.linalg.eigh(system.conductance)
-    given = np.array([heats.get(name, 0.0) if name not in ("ambient", "coolant") else 0.0
-                      for name in system.input_names])  # fmt: skip
+    given = np.array(
+        [heats.get(name, 0.0) if name not in ("ambient", "coolant") else 0.0 for name in system.input_names]
+    )
     driven = vectors.T @ (system.gains @ given)
     rates = np.maximum(rates, 1e-12)
     return _Modes(rates, dict(zip(system.output_names, (system.rows @ vectors) * driven / rates, strict=True)))

@@ -150,9 +150,13 @@ def grouped(table: FloatArray) -> tuple[FloatArray, IntegerArray]:
 
 
 def simulate(
-    heat: Heat, model: HeatModel, step: float, speeds: FloatArray, ambient: FloatArray,
+    heat: Heat,
+    model: HeatModel,
+    step: float,
+    speeds: FloatArray,
+    ambient: FloatArray,
     rows: Rows | None = None,
-) -> dict[str, FloatArray]:  # fmt: skip
+) -> dict[str, FloatArray]:
     """Temperatures and growth of a machine from the speed of its screw and the air around it.
 
     Args:
