@@ -6,7 +6,7 @@
 | symbol | meaning | unit |
 |---|---|---|
 | p | set-point of the table | m |
-| p_m | what the motor is told, as a position | m |
+| p_m | what the motor is commanded, as a position | m |
 | c | deviation that the table holds, of the direction of the set velocity | m |
 
 Straight between points and constant beyond, as everywhere in this program (`CompensationTable.at`), or, where a control
@@ -43,7 +43,7 @@ def motor_setpoint(
     cycle: float,
     limits: AxisLimits | None = None,
 ) -> FloatArray:
-    """Positions that the motor is told, (n,) [m].
+    """Positions that the motor is commanded, (n,) [m].
 
     Args:
         control: that applies the table.

@@ -36,7 +36,7 @@ from feeddrive.plant.plant import Plant
 from feeddrive.units.quantity import format_quantity
 
 SLOW = 5e-3
-"""Velocity at which lost motion is told [m/s]: 0.3 m/min, at which positioning tests approach their targets."""
+"""Velocity at which lost motion is stated [m/s]: 0.3 m/min, at which positioning tests approach their targets."""
 
 NOTICED = 1e-7
 """Lost motion that a laser interferometer on a machine tells from none [m]."""

@@ -215,12 +215,12 @@ def run(
     columns = {"position": motion.position, "velocity": motion.velocity, "acceleration": motion.acceleration}
     if applied is not None:
         slow = slice(None, None, divider)
-        told = motor_setpoint(
+        commanded = motor_setpoint(
             applied.control, applied.table, motion.position[slow], motion.velocity[slow], tick * divider, applied.limits
         )
-        columns["position"] = np.repeat(told, divider)
+        columns["position"] = np.repeat(commanded, divider)
         if applied.control.reversal.ramped:  # the whole command of the motor is differentiated by such a control
-            rate = np.diff(told - motion.position[slow], prepend=0.0) / (tick * divider)
+            rate = np.diff(commanded - motion.position[slow], prepend=0.0) / (tick * divider)
             rate[0] = 0.0
             columns["velocity"] = motion.velocity + np.repeat(rate, divider)
     if extra is not None:

@@ -26,7 +26,7 @@ from feeddrive.typing import BoolArray, FloatArray
 from feeddrive.units.quantity import format_quantity
 
 _QUIET = 0.05
-"""s: over which a velocity is told, and at the end of a stand-still."""
+"""s: over which a velocity is read, and at the end of a stand-still."""
 
 _STEADY = 0.1
 """Share by which the velocity may change over that time in steady motion; beyond it inertia winds up the springs."""
@@ -173,7 +173,7 @@ def _filled(nodes: FloatArray, places: FloatArray) -> FloatArray:
 
 
 def difference_words(found: RecordedDeviations) -> str:
-    """What is said of the difference of the directions."""
+    """Remarks on the difference of the directions."""
     if found.difference is None:
         return "Only one direction was recorded: the table is the same in both."
     shown = format_quantity(found.difference, "m")

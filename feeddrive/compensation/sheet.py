@@ -21,10 +21,10 @@ from feeddrive.units.quantity import format_quantity
 Section = tuple[str, Sequence[str]]
 
 _THROWN = 0.25
-"""Share of the play by which a quadrant may go inwards before it is said."""
+"""Share of the play by which a quadrant may go inwards before it is reported."""
 
 _OTHER = 0.1
-"""Share of the play that may be lacking in a simulated reversal before it is said."""
+"""Share of the play that may be lacking in a simulated reversal before it is reported."""
 
 
 def micrometres(value: float) -> str:
@@ -125,7 +125,7 @@ def left(done: Compensated) -> list[str]:
 
 
 def _reversal_words(done: Compensated, usual: float) -> str:
-    """Why the play goes over within the time told, and what it is worth."""
+    """Why the play goes over within the time stated, and what it is worth."""
     assert done.prediction is not None and done.prediction.circle is not None
     circle, reversal = done.prediction.circle, done.control.reversal
     within = f"{reversal.cycles} cycles" if reversal.cycles else f"{1e3 * reversal.spread:.1f} ms"

@@ -9,7 +9,7 @@
 | T | reading of the sensor, its lag included | degC |
 
 Of a machine that declares heat: the table is fitted to warm-ups and cool-downs at a quarter, half and the whole of its
-highest speed on the reduced model; the sensor is chosen on a random duty; what is told is a warm-up and cool-down at
+highest speed on the reduced model; the sensor is chosen on a random duty; reported is a warm-up and cool-down at
 0.7 of the highest speed on the full model, which nothing was fitted to. Of a recording: fitted to its first part, the
 sensor chosen and judged on the rest. The error is that of an axis that reads its position at the motor.
 """
@@ -122,8 +122,8 @@ def _reading(heat: Heat, machine: TriedMachine, place: str) -> FloatArray:
 
 
 def _left(heat: Heat, table: LineTable, machine: TriedMachine, place: str) -> tuple[LeftOver, FloatArray]:
-    told = table.line(_reading(heat, machine, place)).at(machine.positions)
-    return left_over(machine.error, told), np.asarray(machine.error - told)
+    corrected = table.line(_reading(heat, machine, place)).at(machine.positions)
+    return left_over(machine.error, corrected), np.asarray(machine.error - corrected)
 
 
 def _share(left: LeftOver) -> float:

@@ -25,7 +25,7 @@ from feeddrive.symbolic_turn import SYMBOLS
 from feeddrive.typing import Expression
 
 BESIDE = "beside_table"
-"""Ends the name of a state that is told beside the table."""
+"""Ends the name of a state that is given beside the table."""
 
 
 @SYMBOLS.taken()

@@ -132,13 +132,13 @@ def _refusal(plant: Plant, least: LeastFriction, where: str) -> InputError:
     taken = -least.taken[label]
     if taken <= 0:  # a bristle on a level that is nothing
         bristle = next(e.name for e in plant.effects if isinstance(e, BristleEffect) and e.port == least.port)
-        told = f"the Coulomb level of the {least.port} is {shown}, and {bristle} acts on it"
-        return InputError(told, where, f"write a greater one in {label}, or leave {bristle} out")
+        what = f"the Coulomb level of the {least.port} is {shown}, and {bristle} acts on it"
+        return InputError(what, where, f"write a greater one in {label}, or leave {bristle} out")
     kind = "Coulomb level" if by_level else "force, viscous part included,"
-    told = f"friction of the {least.port} would push: its {kind} falls to {shown} {at}, where {label} takes "
-    told += format_quantity(taken, unit)
+    what = f"friction of the {least.port} would push: its {kind} falls to {shown} {at}, where {label} takes "
+    what += format_quantity(taken, unit)
     effect = next(effect for effect in plant.effects if effect.label == label)
-    return InputError(told, where, _mend(effect, (taken + least.margin) / taken, by_level))
+    return InputError(what, where, _mend(effect, (taken + least.margin) / taken, by_level))
 
 
 def _mend(effect: Effect, share: float, by_level: bool) -> str:
@@ -160,15 +160,15 @@ def _mend(effect: Effect, share: float, by_level: bool) -> str:
 def _place(least: LeastFriction) -> str:
     """Where it is least, in words."""
     turning = least.port != Port.TABLE
-    told = [f"in {'+' if least.direction > 0 else '-'} direction"]
+    parts = [f"in {'+' if least.direction > 0 else '-'} direction"]
     if least.position is not None:
-        told.append(f"at {format_quantity(least.position, 'rad' if turning else 'm')}")
+        parts.append(f"at {format_quantity(least.position, 'rad' if turning else 'm')}")
     if least.speed is not None:
         speed = format_quantity(least.speed, "rad/s" if turning else "m/s")
-        told.append(f"at {speed}" if least.speed else "near rest")
+        parts.append(f"at {speed}" if least.speed else "near rest")
     if least.time is not None:
-        told.append(f"{format_quantity(least.time, 's')} from the start")
-    return ", ".join(told)
+        parts.append(f"{format_quantity(least.time, 's')} from the start")
+    return ", ".join(parts)
 
 
 class _Way:

@@ -114,8 +114,8 @@ class Coupling:
         """
         share = 1 + self._gained(at.nut - at.shaft, preload, pitch_diameter, expansion) / preload
         if share < LEAST_PRELOAD:
-            told = f"a nut {at.nut - at.shaft:.3g} K warmer than its shaft keeps {share:.0%} of its preload"
-            raise InputError(told, "coupling", f"cool it, or preload it with more than {format_quantity(preload, 'N')}")
+            what = f"a nut {at.nut - at.shaft:.3g} K warmer than its shaft keeps {share:.0%} of its preload"
+            raise InputError(what, "coupling", f"cool it, or preload it with more than {format_quantity(preload, 'N')}")
         mean = (1 - self.rear_share) * at.front + self.rear_share * at.rear
         return Changes(
             _warned_share(self.nut_oil, at.nut, reference),

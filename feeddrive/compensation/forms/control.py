@@ -90,8 +90,8 @@ class Control:
 
     def loading(self, table: CompensationTable, axis: str) -> tuple[str, ...]:
         """What to do with the file, and which settings it needs, that of the reversal among them."""
-        told = self.reversal.setting
-        play = () if told is None or not table.directions_differ else (told(table, axis, self.reversal),)
+        setting = self.reversal.setting
+        play = () if setting is None or not table.directions_differ else (setting(table, axis, self.reversal),)
         return (*self.load(table, axis), *play)
 
     def refuse_beyond_limits(self, table: CompensationTable) -> None:

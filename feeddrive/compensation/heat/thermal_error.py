@@ -94,8 +94,8 @@ def left_over(error: FloatArray, compensation: FloatArray) -> LeftOver:
         InputError: arrays of unequal shape, or without values.
     """
     if np.shape(error) != np.shape(compensation) or np.size(error) == 0:
-        told = f"errors of shape {np.shape(error)} and a compensation of shape {np.shape(compensation)}"
-        raise InputError(told, "compensation", "give one value for each error")
+        what = f"errors of shape {np.shape(error)} and a compensation of shape {np.shape(compensation)}"
+        raise InputError(what, "compensation", "give one value for each error")
     after = error - compensation
     return LeftOver(_rms(error), _rms(after), float(np.abs(error).max()), float(np.abs(after).max()))
 

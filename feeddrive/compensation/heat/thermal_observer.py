@@ -90,8 +90,8 @@ class ThermalObserver:
             ValidityWarning: a speed above the highest that the plant declares.
         """
         if np.shape(readings) != (len(speeds), len(self.system.sensors)):
-            told = f"readings of shape {np.shape(readings)} for {len(speeds)} rows"
-            raise InputError(told, "readings", f"give {len(self.system.sensors)} columns, a row each")
+            what = f"readings of shape {np.shape(readings)} for {len(speeds)} rows"
+            raise InputError(what, "readings", f"give {len(self.system.sensors)} columns, a row each")
         rows, transitions = self.rows(speeds, ambient, reference)
         z, P = self.system.cold() if start is None else start
         states, spread = np.empty((len(rows), len(z))), np.empty((len(rows), len(self.error.positions)))

@@ -66,8 +66,8 @@ def placements(
     """
     places, kind = mountable_places(heat), kind or Sensor("nut")
     if not 0 <= count <= len(places) or not len(speeds):
-        told = f"{count} sensors at {len(speeds)} speeds"
-        raise InputError(told, "placement", f"give at least one speed, and sensors up to the {len(places)} places")
+        what = f"{count} sensors at {len(speeds)} speeds"
+        raise InputError(what, "placement", f"give at least one speed, and sensors up to the {len(places)} places")
     found = []
     for chosen in combinations(places, count):
         sensors = [Sensor(place, kind.noise, kind.lag) for place in chosen]

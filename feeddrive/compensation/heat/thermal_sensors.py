@@ -57,8 +57,8 @@ def refuse_unmountable(heat: Heat, sensors: Sequence[Sensor]) -> None:
     known = mountable_places(heat)
     for sensor in sensors:
         if sensor.place not in known:
-            told = f'no sensor can be mounted at "{sensor.place}"'
-            raise InputError(told, "sensors", f"the screw turns; choose among {', '.join(known)}")
+            what = f'no sensor can be mounted at "{sensor.place}"'
+            raise InputError(what, "sensors", f"the screw turns; choose among {', '.join(known)}")
     if len({sensor.place for sensor in sensors}) < len(sensors):
         raise InputError("two sensors at one place", "sensors", "name each place once")
 

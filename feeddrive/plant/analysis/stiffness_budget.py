@@ -4,7 +4,7 @@
 
 Every spring's part is twice its strain energy under a unit force, so that the parts add up for series and parallel
 springs alike. Where the machine is described by its parts and none of their values is replaced by a measured one, the
-springs are told part by part (`feeddrive.parts.combined_stiffness`), the brake included.
+springs are listed part by part (`feeddrive.parts.combined_stiffness`), the brake included.
 Source: paper 004, eqs. (5) to (8): axial and torsional spring chain act in series on the table.
 """
 

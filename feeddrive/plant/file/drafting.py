@@ -1,4 +1,4 @@
-"""A plant file from a few wishes: parts of the catalogue, and guesses where nothing was said, each marked as one.
+"""A plant file from a few wishes: parts of the catalogue, and guesses where nothing was stated, each marked as one.
 
 A guess stands in the file with `source = "guess: ..."`, so that it shows wherever origins are shown, and so that a
 diagnosis takes it for as uncertain as it is.
@@ -36,7 +36,7 @@ _JOURNAL = 0.75
 
 @dataclass(frozen=True)
 class Wishes:
-    """What is asked for; a field that is empty is chosen, and said to be a guess.
+    """What is asked for; a field that is empty is chosen, and marked as a guess.
 
     Attributes:
         screw: name of the catalogue, or size such as "32 x 10 mm".

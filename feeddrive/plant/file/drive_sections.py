@@ -107,7 +107,7 @@ def read_drive(top: Table) -> BallScrewDrive:
 
 
 def placed(where: str, make: Callable[[], Made]) -> Made:
-    """What `make` makes, its errors and warnings told at their place in the file.
+    """What `make` makes, its errors and warnings reported at their place in the file.
 
     Parts tell `part.key: ...`; a person looks for file, section and key.
 

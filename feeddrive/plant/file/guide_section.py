@@ -52,7 +52,7 @@ MOST = 1000
 """Most carriages, and most balls in a row, that a file may write."""
 
 TURNING = 5e-4
-"""Where tanh of the guide friction turns unless it is said [m/s]."""
+"""Where tanh of the guide friction turns unless it is stated [m/s]."""
 
 
 def guide_friction_of(top: Table, gravity: float, before: Sequence[Effect]) -> list[tuple[Effect, str]]:

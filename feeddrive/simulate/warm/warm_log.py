@@ -108,7 +108,7 @@ def warm_log(recording: Recording, ambient: float) -> WarmLog:
 def _stroke_speeds(turned: FloatArray) -> FloatArray:
     """Speed of the stroke that each row belongs to, (n,): the fastest of its rows that others have too; 0 at rest.
 
-    A stroke is a run of rows of one direction. One that no full row tells has the speed of the last that was told.
+    A stroke is a run of rows of one direction. One that no full row tells has the speed of the last that was known.
     """
     fastest = float(np.max(np.abs(turned), initial=0.0))
     moving = np.abs(turned) > 1e-4 * fastest
@@ -126,10 +126,12 @@ def _stroke_speeds(turned: FloatArray) -> FloatArray:
     for first, end in zip(starts, np.append(starts[1:], len(turned)), strict=True):
         if direction[first] == 0:
             continue
-        told = np.abs(turned[first:end])[equal[first:end]]
+        measured_speeds = np.abs(turned[first:end])[equal[first:end]]
         slowest = float(np.max(np.abs(turned[first:end])))
-        last = float(np.median(told)) if len(told) else max(last, slowest)
-        speed[first:end] = direction[first] * max(last, slowest) if not len(told) else direction[first] * last
+        last = float(np.median(measured_speeds)) if len(measured_speeds) else max(last, slowest)
+        speed[first:end] = (
+            direction[first] * max(last, slowest) if not len(measured_speeds) else direction[first] * last
+        )
     return speed
 
 

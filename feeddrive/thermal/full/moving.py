@@ -126,8 +126,8 @@ def ripple_number(parts: Discretisation, conductances: Mapping[Path, float], fee
 
 def _warn_of_slowness(number: float) -> None:
     if number > LARGEST_RIPPLE:
-        told = f"the nut is slow for its contact (ripple number {number:.2g}, up to {LARGEST_RIPPLE} is covered)"
-        warnings.warn(f"{told}: the moving contact is extrapolated", ValidityWarning, stacklevel=4)
+        what = f"the nut is slow for its contact (ripple number {number:.2g}, up to {LARGEST_RIPPLE} is covered)"
+        warnings.warn(f"{what}: the moving contact is extrapolated", ValidityWarning, stacklevel=4)
 
 
 def _harmonic(

@@ -57,8 +57,8 @@ class MovingFamily:
             return averaged
         low, high = float(self.feeds[0]), float(self.feeds[-1])
         if not low * (1 - 1e-9) <= feed <= high * (1 + 1e-9):
-            told = f"a feed of {feed * 1e3:.4g} mm/s lies outside {low * 1e3:.4g} to {high * 1e3:.4g} mm/s"
-            warnings.warn(f"{told}: the ripple at the nearer end is taken", ValidityWarning, stacklevel=2)
+            what = f"a feed of {feed * 1e3:.4g} mm/s lies outside {low * 1e3:.4g} to {high * 1e3:.4g} mm/s"
+            warnings.warn(f"{what}: the ripple at the nearer end is taken", ValidityWarning, stacklevel=2)
         order = averaged.order
         curve = PchipInterpolator(np.log(self.feeds), self.losses)
         lost = curve(np.log(np.clip(feed, low, high))) * (conductances.get(Path.CONTACT, 0.0) / self.contact) ** 2

@@ -74,8 +74,8 @@ def preload_change(
     radial = stiffness * pitch_diameter / 2 / math.tan(contact_angle)
     change = expansion * difference * (axial - radial)
     if preload + change < 0:
-        told = f"{difference:.3g} K between nut and shaft take {format_quantity(-change, 'N')}"
+        loss = f"{difference:.3g} K between nut and shaft take {format_quantity(-change, 'N')}"
         warnings.warn(
-            f"{told} of {format_quantity(preload, 'N')} preload: the nut is loose", ValidityWarning, stacklevel=2
+            f"{loss} of {format_quantity(preload, 'N')} preload: the nut is loose", ValidityWarning, stacklevel=2
         )
     return change

@@ -140,8 +140,8 @@ class HeatModel:
         for path, g in conductances.items():
             low, high = self.limits.get(path, (0.0, np.inf))
             if not low * (1 - 1e-9) <= g <= high * (1 + 1e-9):
-                told = f"{path} of {g:.4g} lies outside {low:.4g} to {high:.4g}, for which the reduced model was made"
-                warnings.warn(f"{told}: extrapolated, reduce it for a wider range", ValidityWarning, stacklevel=3)
+                what = f"{path} of {g:.4g} lies outside {low:.4g} to {high:.4g}, for which the reduced model was made"
+                warnings.warn(f"{what}: extrapolated, reduce it for a wider range", ValidityWarning, stacklevel=3)
 
     def projected(self, basis: FloatArray) -> HeatModel:
         """The model on the columns of `basis`, (n, r) with basisᵀ C basis = 1: stable and passive as this one is."""

@@ -3,7 +3,7 @@
 The full model is stepped implicitly, a reduced one exactly row by row; 6 h in rows of 30 s take milliseconds. Rows
 whose conductances agree to 0.2 % share one propagator, at the mean of the group (`grouped`). A heat that follows a
 temperature (preload growing, oil thinning) is taken at the middle of its row, extrapolated from the two rows before.
-What acts is said by `laws` alone.
+What acts is stated by `laws` alone.
 """
 
 from __future__ import annotations
@@ -187,9 +187,9 @@ def declared_rows(heat: Heat, step: float, speeds: FloatArray, ambient: FloatArr
         raise InputError(f"{len(speeds)} speeds and {len(ambient)} ambient temperatures", "", "give one of each a row")
     fastest = float(np.max(np.abs(speeds)))
     if fastest > heat.highest_speed * (1 + 1e-9):
-        told = f"{format_quantity(fastest, 'rad/s')} is above the highest speed declared"
+        what = f"{format_quantity(fastest, 'rad/s')} is above the highest speed declared"
         shown = format_quantity(heat.highest_speed, "rad/s")
-        warnings.warn(f"{told}, {shown}: films and friction are extrapolated", ValidityWarning, stacklevel=2)
+        warnings.warn(f"{what}, {shown}: films and friction are extrapolated", ValidityWarning, stacklevel=2)
     laws, values, cold = laws_of(heat), values_of(heat), float(ambient[0])
     g, u = laws.acting(*row_arguments(step, speeds, ambient), cold, values)
     conductances = dict(zip(PATHS, np.asarray(ca.DM(g).full()), strict=True))

@@ -113,7 +113,7 @@ def read_heat(top: Table, name: str, effects: Sequence[Effect], joint: Coupling 
             origins=top.origins.found,
         )
     except InputError as error:
-        # What the rig refuses is told with the file and the section in front.
+        # What the rig refuses is reported with the file and the section in front.
         inside = error.where.startswith(table.where)
         raise error if inside else InputError(error.what, f"{table.where}, {error.where}", error.mend) from None
 
