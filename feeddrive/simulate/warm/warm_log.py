@@ -126,12 +126,10 @@ def _stroke_speeds(turned: FloatArray) -> FloatArray:
     for first, end in zip(starts, np.append(starts[1:], len(turned)), strict=True):
         if direction[first] == 0:
             continue
-        measured_speeds = np.abs(turned[first:end])[equal[first:end]]
+        steady = np.abs(turned[first:end])[equal[first:end]]
         slowest = float(np.max(np.abs(turned[first:end])))
-        last = float(np.median(measured_speeds)) if len(measured_speeds) else max(last, slowest)
-        speed[first:end] = (
-            direction[first] * max(last, slowest) if not len(measured_speeds) else direction[first] * last
-        )
+        last = float(np.median(steady)) if len(steady) else max(last, slowest)
+        speed[first:end] = direction[first] * max(last, slowest) if not len(steady) else direction[first] * last
     return speed
 
 
