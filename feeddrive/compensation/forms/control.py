@@ -138,6 +138,11 @@ def plain_line(text: str) -> str:
     return "".join(letter if " " <= letter <= "~" else "?" for letter in " ".join(one.split()))
 
 
+def comments(lines: Sequence[str], mark: str = "#") -> list[str]:
+    """Lines of a comment behind the mark of a file's language."""
+    return [f"{mark} {plain_line(one)}" for one in lines]
+
+
 def millimetres(value: float, digits: int) -> str:
     """A length in mm with that many digits behind the point, and no minus before zero."""
     return f"{round(value * 1e3, digits) + 0.0:.{digits}f}"
