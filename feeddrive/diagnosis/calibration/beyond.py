@@ -53,7 +53,7 @@ def beyond_tolerance(problem: Problem, found: Fit) -> tuple[Problem, Effect] | N
 
 
 def _together(problem: Problem, effects: Sequence[Effect]) -> tuple[Problem, Effect]:
-    """Effects and declared values fitted in turn until neither moves: alike, each bends what the other is known by."""
+    """Effects and declared values fitted in turn until neither moves: alike, each bends what the other is told by."""
     for _ in range(PASSES):
         before = problem = recalibrated(problem, effects)
         effects = fit(problem, effects).effects
