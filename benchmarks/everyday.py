@@ -21,7 +21,7 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
 from feeddrive.files import find_plant  # noqa: E402
-from feeddrive.plant.file.files import read_plant  # noqa: E402
+from feeddrive.plant.file.plant_file import read_plant  # noqa: E402
 from feeddrive.recording import read_recording  # noqa: E402
 from feeddrive.report.figures.figures import render_figures  # noqa: E402
 from feeddrive.report.pages.html import write_report  # noqa: E402

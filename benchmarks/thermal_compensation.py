@@ -25,11 +25,11 @@ from feeddrive.compensation.heat.thermal_sensors import Sensor, mountable_places
 from feeddrive.compensation.heat.thermal_trial import TriedMachine, random_duty, tried_machine
 from feeddrive.compensation.heat.thermal_unknowns import Unknowns
 from feeddrive.files import find_plant
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.thermal.full.full_model import full_model
 from feeddrive.thermal.full.grid import Cells
 from feeddrive.thermal.full.moving_family import moving_family
-from feeddrive.thermal.reduced.model import HeatModel
+from feeddrive.thermal.reduced.parametric_model import HeatModel
 from feeddrive.thermal.reduced.stepping import Stepper
 from feeddrive.thermal.run.warm_up import declared_rows
 from feeddrive.typing import FloatArray

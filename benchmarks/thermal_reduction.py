@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.thermal.full.explicit import ExplicitRun, run_explicitly
 from feeddrive.thermal.full.full_model import discretise, full_model, model_of
 from feeddrive.thermal.full.grid import Cells

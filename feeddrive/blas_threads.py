@@ -57,7 +57,7 @@ def one_thread() -> Iterator[None]:
 
 @lru_cache(maxsize=1)
 def _libraries() -> tuple[tuple[Get, Set], ...]:
-    """How many threads every OpenBLAS of numpy and scipy takes, told and set."""
+    """How many threads every OpenBLAS of numpy and scipy takes, read and set."""
     found = []
     for file in _files():
         try:

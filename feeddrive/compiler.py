@@ -106,7 +106,7 @@ def run_compiler(command: Sequence[str], folder: Path) -> None:
         start_new_session=True,
     )
     try:
-        _, said = started.communicate(timeout=COMPILE_TIME)
+        _, output = started.communicate(timeout=COMPILE_TIME)
     except BaseException as error:
         _end(started)
         if not isinstance(error, subprocess.TimeoutExpired):
@@ -114,7 +114,7 @@ def run_compiler(command: Sequence[str], folder: Path) -> None:
         _hung.add(command[0])
         raise CompilerError(f"the C compiler did not end within {COMPILE_TIME:g} s") from None
     if started.returncode != 0:
-        raise CompilerError(next(iter(said.strip().splitlines()), f"status {started.returncode}"))
+        raise CompilerError(next(iter(output.strip().splitlines()), f"status {started.returncode}"))
 
 
 def _end(started: subprocess.Popen[str]) -> None:

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from feeddrive.bench_page.equations import bench_equations
+from feeddrive.bench_page.page_equations import bench_equations
 from feeddrive.effects.base import Effect
 from feeddrive.effects.chain.payload import Payload
 from feeddrive.errors import InputError, printable
@@ -24,8 +24,8 @@ from feeddrive.plant.equations import parameter_names, parameter_values
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade
 from feeddrive.servo.filters import Filter, notch
-from feeddrive.servo.frequency_response import grid
 from feeddrive.servo.margins import GROWTH
+from feeddrive.servo.mechanics_response import grid
 from feeddrive.simulate.setpoints.trial_motions import HEIGHT, RADIUS, STEP_AT, Trial, circle_about, step_at
 from feeddrive.tuning.reasons import current_loop_lines
 
@@ -173,8 +173,11 @@ def _motion(trial: Trial, cascade: Cascade, origin: float) -> dict[str, Any]:
     ticks = math.ceil(trial.trajectory.duration / cascade.sample_time - 1e-6)
     time = np.arange(0, ticks, cascade.position_divider, dtype=np.float64) * cascade.sample_time
     motion = trial.trajectory.at(time)
-    ref = {"position": (motion.position - origin).tolist(), "velocity": motion.velocity.tolist(),
-           "acceleration": motion.acceleration.tolist()}  # fmt: skip
+    ref = {
+        "position": (motion.position - origin).tolist(),
+        "velocity": motion.velocity.tolist(),
+        "acceleration": motion.acceleration.tolist(),
+    }
     return {"ref": ref, "ticks": ticks}
 
 
@@ -197,11 +200,15 @@ def _effects(plant: Plant, names: Sequence[str], found: Sequence[str]) -> list[d
     made = []
     for effect in plant.effects[:-1]:
         sliders = [
-            {"place": names.index(f"{effect.label}.{one.key}"), "key": one.key, "unit": one.unit,
-             "value": values[names.index(f"{effect.label}.{one.key}")]}
+            {
+                "place": names.index(f"{effect.label}.{one.key}"),
+                "key": one.key,
+                "unit": one.unit,
+                "value": values[names.index(f"{effect.label}.{one.key}")],
+            }
             for one in effect.parameters
             if one.key not in _FIXED_KEYS and f"{effect.label}.{one.key}" in names
-        ]  # fmt: skip
+        ]
         sliders = [one for one in sliders if one["value"]]
         if sliders:
             made.append(

@@ -10,9 +10,9 @@ import typer
 from feeddrive.cli.output import deliver, warnings_as_lines
 from feeddrive.compiler import find_compiler
 from feeddrive.errors import printable
+from feeddrive.export.exported_plant import Form
 from feeddrive.export.notes import included, left_out, linear_notes
 from feeddrive.export.point import Point, export_point
-from feeddrive.export.writing import Form
 from feeddrive.interface.axis import load
 from feeddrive.output_folder import output_folder, refuse_unusable
 from feeddrive.plant.plant import Plant

@@ -1,1 +1,1 @@
-"""What is told to the control: lead errors, backlash, friction, cogging and heat; tables in the controls' own forms."""
+"""What a control is given: lead errors, backlash, friction, cogging and heat; tables in the controls' own forms."""

@@ -109,6 +109,8 @@ def recorded_stroke(diagnosis: Diagnosis) -> tuple[float, float] | None:
     found = [one.variables["table_position"] for one in diagnosis.recordings if "table_position" in one.variables]
     if not found:
         return None
-    low, high = (float(of([of(one[np.isfinite(one)], initial=start) for one in found]))
-                 for of, start in ((np.min, np.inf), (np.max, -np.inf)))  # fmt: skip
+    low, high = (
+        float(of([of(one[np.isfinite(one)], initial=start) for one in found]))
+        for of, start in ((np.min, np.inf), (np.max, -np.inf))
+    )
     return (low, high) if high - low > _ROOM else None

@@ -6,7 +6,7 @@
 | symbol | meaning | unit |
 |---|---|---|
 | p | set-point of the table | m |
-| p_m | what the motor is told, as a position | m |
+| p_m | what the motor is commanded, as a position | m |
 | c | deviation that the table holds, of the direction of the set velocity | m |
 
 Straight between points and constant beyond, as everywhere in this program (`CompensationTable.at`), or, where a control
@@ -29,17 +29,21 @@ from feeddrive.typing import FloatArray
 
 @dataclass(frozen=True)
 class AxisLimits:
-    """Of an axis, for controls that ramp: velocity [m/s] and acceleration [m/s^2], both above zero."""
+    """Limits of an axis, for controls that ramp: velocity [m/s] and acceleration [m/s^2], both above zero."""
 
     velocity: float = 0.25
     acceleration: float = 1.0
 
 
 def motor_setpoint(
-    control: Control, table: CompensationTable, position: FloatArray, velocity: FloatArray, cycle: float,
+    control: Control,
+    table: CompensationTable,
+    position: FloatArray,
+    velocity: FloatArray,
+    cycle: float,
     limits: AxisLimits | None = None,
-) -> FloatArray:  # fmt: skip
-    """Positions that the motor is told, (n,) [m].
+) -> FloatArray:
+    """Positions that the motor is commanded, (n,) [m].
 
     Args:
         control: that applies the table.
@@ -114,9 +118,7 @@ def ramped(value: FloatArray, cycle: float, limits: AxisLimits) -> FloatArray:
     return found
 
 
-def _one_cycle(
-    rest: float, speed: float, highest: float, hardest: float, cycle: float
-) -> tuple[float | None, float]:  # fmt: skip
+def _one_cycle(rest: float, speed: float, highest: float, hardest: float, cycle: float) -> tuple[float | None, float]:
     """Way of a cycle towards the goal and the speed behind it; no way where the goal is reached [m, m/s]."""
     step, ahead = hardest * cycle, speed * cycle
     if rest <= 0.5 * (speed + step) ** 2 / hardest + ahead:

@@ -2,7 +2,7 @@
 
     T(theta) = sum of the torques that resist at the motor and depend on its angle alone
 
-What it leaves is told by a revolution a second at constant velocity, simulated without and with the map and without
+What it leaves is shown by a revolution a second at constant velocity, simulated without and with the map and without
 travel errors: the ripple of the table's position. Valid for orders that are whole numbers per revolution, as cogging
 and current offsets make them; the angle is that of the recording, whose zero has to be the drive's own.
 """
@@ -16,14 +16,14 @@ import casadi as ca
 import numpy as np
 
 from feeddrive.compensation.lost_motion import without_play
-from feeddrive.compensation.prediction import run
+from feeddrive.compensation.predicted_accuracy import run
 from feeddrive.effects.base import Effect, Port, SourceEffect, number
 from feeddrive.effects.base import Motion as PortMotion
 from feeddrive.effects.source.torque_ripple import TorqueRipple
 from feeddrive.effects.tabulated import PERIODIC
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade
-from feeddrive.simulate.setpoints.motion import Motion, Piece, Pieces
+from feeddrive.simulate.setpoints.setpoint_motion import Motion, Piece, Pieces
 from feeddrive.typing import FloatArray
 
 POINTS = 360
@@ -33,7 +33,7 @@ _WHOLE = 1e-3
 """By which an order may miss a whole number: the phase drifts by 2 degrees over the 6 revolutions of 100 mm."""
 
 _TURNS, _SKIPPED = 4, 2
-"""Revolutions in all, and before the ripple is told: the loop settles in the first."""
+"""Revolutions in all, and before the ripple is read: the loop settles in the first."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,13 +10,13 @@ import numpy as np
 from feeddrive.compensation.applied import AxisLimits
 from feeddrive.compensation.cogging import CoggingMap, cogging_map
 from feeddrive.compensation.cures import repaired
-from feeddrive.compensation.forms.catalogue import as_held, control
+from feeddrive.compensation.forms.all_forms import as_held, control
 from feeddrive.compensation.forms.control import Control
 from feeddrive.compensation.friction_values import FrictionValues, friction_values
 from feeddrive.compensation.lost_motion import LostMotion, lost_motion, refuse_wind_up, resting_words, without_play
 from feeddrive.compensation.plant_deviations import plant_deviations
 from feeddrive.compensation.points import table_for
-from feeddrive.compensation.prediction import Applied, Figures, best_reversal, figures, motions, sticking
+from feeddrive.compensation.predicted_accuracy import Applied, Figures, best_reversal, figures, motions, sticking
 from feeddrive.compensation.recorded_deviations import RecordedDeviations
 from feeddrive.compensation.table import CompensationTable, Deviations, fitted
 from feeddrive.errors import InputError
@@ -31,7 +31,7 @@ from feeddrive.tuning.recommendation import recommend
 from feeddrive.units.quantity import format_quantity
 
 _USUAL_RATE, _POSITION_RATE, _BANDWIDTH, _DEAD_TIME = 8000.0, 2000.0, 1000.0, 125e-6
-"""Of a drive that nobody has declared: those of `feeddrive tune`."""
+"""Rates, bandwidth and dead time of a drive that nobody has declared: those of `feeddrive tune`."""
 
 
 @dataclass(frozen=True)
@@ -118,7 +118,7 @@ class Compensated:
 
 def plant_table(
     plant: Plant, wishes: Wishes, cascade: Cascade | None = None, unsure_of_play: str = "", where: str = ""
-) -> Compensated:  # fmt: skip
+) -> Compensated:
     """The table of a plant, nothing simulated.
 
     Args:
@@ -152,13 +152,17 @@ def plant_table(
     table = table_for(wanted, known, stroke, reference, wishes.every, found.shortest)
     return Compensated(
         plant.name, wishes, wanted, table, known.zeroed(reference), lost, found.of_time, tuple(refused), found.shortest
-    )  # fmt: skip
+    )
 
 
 def compensate_plant(
-    plant: Plant, wishes: Wishes, cascade: Cascade | None = None, unsure_of_play: str = "", where: str = "",
+    plant: Plant,
+    wishes: Wishes,
+    cascade: Cascade | None = None,
+    unsure_of_play: str = "",
+    where: str = "",
     beside: bool = True,
-) -> Compensated:  # fmt: skip
+) -> Compensated:
     """The table of a plant as `plant_table` gives it, with its prediction.
 
     Args:
@@ -182,9 +186,12 @@ def compensate_plant(
     applied, usual = best_reversal(moved, loop, test, Applied(made.control, made.table, _limits(plant)))
     made = replace(made, control=applied.control)
     prediction = Prediction(
-        figures(moved, loop, test), None if renewed is None else figures(renewed, loop, test),
-        figures(moved, loop, test, applied), test.circle, usual,
-    )  # fmt: skip
+        figures(moved, loop, test),
+        None if renewed is None else figures(renewed, loop, test),
+        figures(moved, loop, test, applied),
+        test.circle,
+        usual,
+    )
     if not beside:
         return replace(made, prediction=prediction)
     friction = friction_values(moved, loop, test.circle, lost, applied) if lost.torque > 0 else None

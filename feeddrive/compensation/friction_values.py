@@ -23,16 +23,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feeddrive.compensation.lost_motion import LostMotion
-from feeddrive.compensation.prediction import Applied, circle_figures
+from feeddrive.compensation.predicted_accuracy import Applied, circle_figures
 from feeddrive.metrology.circular import Circular
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade
-from feeddrive.simulate.setpoints.motion import Motion
+from feeddrive.simulate.setpoints.setpoint_motion import Motion
 from feeddrive.simulate.setpoints.trajectories import Circle
 from feeddrive.typing import FloatArray
 
 SHARES = (0.25, 0.5, 0.75, 1.0)
-"""Of the pulse that are tried; between them the glitch changes by less than friction does over a day."""
+"""Shares of the pulse that are tried; between them the glitch changes by less than friction does over a day."""
 
 _TURN = 0.5e-3
 """Velocity of the table over which the feed-forward turns its sign [m/s]."""
@@ -63,7 +63,7 @@ class FrictionValues:
 
 def friction_values(
     plant: Plant, cascade: Cascade, circle: Circle, lost: LostMotion, applied: Applied | None = None
-) -> FrictionValues:  # fmt: skip
+) -> FrictionValues:
     """Values for a plant under its controller, tried on a circle.
 
     Args:

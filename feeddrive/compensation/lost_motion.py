@@ -36,7 +36,7 @@ from feeddrive.plant.plant import Plant
 from feeddrive.units.quantity import format_quantity
 
 SLOW = 5e-3
-"""Velocity at which lost motion is told [m/s]: 0.3 m/min, at which positioning tests approach their targets."""
+"""Velocity at which lost motion is stated [m/s]: 0.3 m/min, at which positioning tests approach their targets."""
 
 NOTICED = 1e-7
 """Lost motion that a laser interferometer on a machine tells from none [m]."""
@@ -45,7 +45,7 @@ CURE = (
     "stiffen it or lower its friction (preload, alignment, lubrication), close the position loop by a scale, or use "
     "friction feed-forward"
 )
-"""Of wind-up."""
+"""What lessens wind-up."""
 
 
 @dataclass(frozen=True)
@@ -82,9 +82,10 @@ class LostMotion:
 def without_play(plant: Plant) -> Plant:
     """The plant with neither play nor travel errors: what is left of its lost motion is wind-up."""
     kept = tuple(
-        one for one in plant.effects
+        one
+        for one in plant.effects
         if not isinstance(one, TravelEffect) and not (isinstance(one, TransmissionEffect) and one.has_play)
-    )  # fmt: skip
+    )
     return replace(plant, effects=kept)
 
 
@@ -108,8 +109,7 @@ def lost_motion(plant: Plant, position: float | None = None) -> LostMotion:
     # by virtual work: what the motor need not give where nothing acts on the table
     free = replace(bare, effects=tuple(one for one in bare.effects if not _acts_on_table(one)))
     unloaded = steady_motions(free, (SLOW, -SLOW), at)
-    ahead, back = ((one.torque - two.torque) / radius
-                   for one, two in zip((forward, reverse), unloaded, strict=True))  # fmt: skip
+    ahead, back = ((one.torque - two.torque) / radius for one, two in zip((forward, reverse), unloaded, strict=True))
     force, weight = max(0.5 * (ahead - back), 0.0), 0.5 * (ahead + back)
     mass = float(plant.chain_values()["table_mass"])
     holding = force / mass if mass > 0 else math.inf

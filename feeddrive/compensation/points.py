@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from feeddrive.compensation.forms.catalogue import as_held
+from feeddrive.compensation.forms.all_forms import as_held
 from feeddrive.compensation.forms.control import Control
 from feeddrive.compensation.table import CompensationTable, Deviations, fitted, grid, stepped
 from feeddrive.errors import InputError
@@ -20,9 +20,13 @@ _NICE = (1.0, 1.2, 1.5, 1.6, 2.0, 2.5, 3.0, 3.2, 4.0, 5.0, 6.0, 8.0)
 
 
 def table_for(
-    wanted: Control, known: Deviations, stroke: tuple[float, float], reference: float, every: float | None,
+    wanted: Control,
+    known: Deviations,
+    stroke: tuple[float, float],
+    reference: float,
+    every: float | None,
     shortest: float,
-) -> CompensationTable:  # fmt: skip
+) -> CompensationTable:
     """The table of a control along a stroke.
 
     Args:

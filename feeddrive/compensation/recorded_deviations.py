@@ -26,7 +26,7 @@ from feeddrive.typing import BoolArray, FloatArray
 from feeddrive.units.quantity import format_quantity
 
 _QUIET = 0.05
-"""s: over which a velocity is told, and at the end of a stand-still."""
+"""s: over which a velocity is read, and at the end of a stand-still."""
 
 _STEADY = 0.1
 """Share by which the velocity may change over that time in steady motion; beyond it inertia winds up the springs."""
@@ -37,7 +37,8 @@ _STANDING = 1e-5
 _BINS_PER_REVOLUTION = 16
 
 _ENOUGH = 0.1
-"""Of the usual number of samples between two points; fewer lie at the ends of strokes, where the axis brakes."""
+"""Least share of the usual number of samples between two points; at the ends of strokes, where the axis
+brakes, fewer lie."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,9 +60,7 @@ class RecordedDeviations:
     ends: tuple[float, float]
 
 
-def recorded_deviations(
-    recording: Recording, radius: float | None, period: float | None = None
-) -> RecordedDeviations:  # fmt: skip
+def recorded_deviations(recording: Recording, radius: float | None, period: float | None = None) -> RecordedDeviations:
     """The mean deviation along the stroke.
 
     Args:
@@ -128,9 +127,13 @@ def _stops(recording: Recording) -> tuple[FloatArray, FloatArray, FloatArray]:
 
 
 def _solved(
-    recording: Recording, places: FloatArray, values: FloatArray, ways: FloatArray, period: float | None,
+    recording: Recording,
+    places: FloatArray,
+    values: FloatArray,
+    ways: FloatArray,
+    period: float | None,
     from_motor: bool,
-) -> RecordedDeviations:  # fmt: skip
+) -> RecordedDeviations:
     """Mean deviation at nodes and the difference of the directions, by least squares in turn."""
     low, high = float(places.min()), float(places.max())
     width = high - low
@@ -170,7 +173,7 @@ def _filled(nodes: FloatArray, places: FloatArray) -> FloatArray:
 
 
 def difference_words(found: RecordedDeviations) -> str:
-    """What is said of the difference of the directions."""
+    """Remarks on the difference of the directions."""
     if found.difference is None:
         return "Only one direction was recorded: the table is the same in both."
     shown = format_quantity(found.difference, "m")

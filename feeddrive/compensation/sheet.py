@@ -13,7 +13,7 @@ from feeddrive.compensation.compensate import Compensated
 from feeddrive.compensation.forms.control import checked_axis, plain_line
 from feeddrive.compensation.lost_motion import CURE, NOTICED, flank_words, wind_up_words
 from feeddrive.compensation.points import POINTS_PER_PERIOD
-from feeddrive.compensation.prediction import Figures
+from feeddrive.compensation.predicted_accuracy import Figures
 from feeddrive.compensation.recorded_deviations import difference_words
 from feeddrive.metrology.circular import Circular
 from feeddrive.units.quantity import format_quantity
@@ -21,10 +21,10 @@ from feeddrive.units.quantity import format_quantity
 Section = tuple[str, Sequence[str]]
 
 _THROWN = 0.25
-"""Share of the play by which a quadrant may go inwards before it is said."""
+"""Share of the play by which a quadrant may go inwards before it is reported."""
 
 _OTHER = 0.1
-"""Share of the play that may be lacking in a simulated reversal before it is said."""
+"""Share of the play that may be lacking in a simulated reversal before it is reported."""
 
 
 def micrometres(value: float) -> str:
@@ -36,10 +36,11 @@ def head(done: Compensated) -> list[str]:
     """Lines for the comments of the file: what it is, sign rule with its source, check of one point."""
     return [
         f"{done.control.title}, axis {done.wishes.axis} of {plain_line(done.name)}, feeddrive {__version__}",
-        f"Sign: {done.control.sign_rule}", f"Source: {done.control.source}",
+        f"Sign: {done.control.sign_rule}",
+        f"Source: {done.control.source}",
         *check_of_one_point(done),
         *done.control.loading(done.table, done.wishes.axis),
-    ]  # fmt: skip
+    ]
 
 
 def text(done: Compensated) -> str:
@@ -124,7 +125,7 @@ def left(done: Compensated) -> list[str]:
 
 
 def _reversal_words(done: Compensated, usual: float) -> str:
-    """Why the play goes over within the time told, and what it is worth."""
+    """Why the play goes over within the time stated, and what it is worth."""
     assert done.prediction is not None and done.prediction.circle is not None
     circle, reversal = done.prediction.circle, done.control.reversal
     within = f"{reversal.cycles} cycles" if reversal.cycles else f"{1e3 * reversal.spread:.1f} ms"
@@ -203,13 +204,18 @@ def sections(done: Compensated) -> list[Section]:
         f"{1e6 * done.control.resolution:g} um; play {micrometres(done.table.play)}.",
     ]
     found: list[Section] = [
-        ("Table", what), ("Sign", [done.control.sign_rule, f"Source: {done.control.source}"]),
-        ("Check of one point", check_of_one_point(done)), ("Load", done.control.loading(done.table, done.wishes.axis)),
-    ]  # fmt: skip
+        ("Table", what),
+        ("Sign", [done.control.sign_rule, f"Source: {done.control.source}"]),
+        ("Check of one point", check_of_one_point(done)),
+        ("Load", done.control.loading(done.table, done.wishes.axis)),
+    ]
     rows = predicted_rows(done)
     if rows:
-        shown = [f"{name}: " + ", ".join(_shown(label, value) for label, value in zip(_LABELS, values, strict=True)
-                                         if value is not None) for name, values in rows]  # fmt: skip
+        shown = [
+            f"{name}: "
+            + ", ".join(_shown(label, value) for label, value in zip(_LABELS, values, strict=True) if value is not None)
+            for name, values in rows
+        ]
         found.append(("Predicted by simulation, the table applied as this control does", shown))
     found.append(("What is left", left(done)))
     if friction_lines(done):
@@ -249,10 +255,20 @@ def record(done: Compensated) -> dict[str, Any]:
         ],
     }  # fmt: skip
     if lost is not None:
-        content["lost_motion"] = {"play": lost.play, "wind_up": lost.wind_up, "friction_force": lost.force,
-                                  "weight": lost.weight, "friction_torque": lost.torque,
-                                  "holding": lost.holding if math.isfinite(lost.holding) else None}  # fmt: skip
+        content["lost_motion"] = {
+            "play": lost.play,
+            "wind_up": lost.wind_up,
+            "friction_force": lost.force,
+            "weight": lost.weight,
+            "friction_torque": lost.torque,
+            "holding": lost.holding if math.isfinite(lost.holding) else None,
+        }
     if friction is not None:
-        content["friction"] = {"torque": friction.torque, "turning_speed": friction.turning, "pulse": friction.pulse,
-                               "pulse_time": friction.time, "share": friction.share}  # fmt: skip
+        content["friction"] = {
+            "torque": friction.torque,
+            "turning_speed": friction.turning,
+            "pulse": friction.pulse,
+            "pulse_time": friction.time,
+            "share": friction.share,
+        }
     return content

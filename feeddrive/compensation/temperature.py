@@ -9,7 +9,7 @@
 | T | reading of the sensor, its lag included | degC |
 
 Of a machine that declares heat: the table is fitted to warm-ups and cool-downs at a quarter, half and the whole of its
-highest speed on the reduced model; the sensor is chosen on a random duty; what is told is a warm-up and cool-down at
+highest speed on the reduced model; the sensor is chosen on a random duty; reported is a warm-up and cool-down at
 0.7 of the highest speed on the full model, which nothing was fitted to. Of a recording: fitted to its first part, the
 sensor chosen and judged on the rest. The error is that of an axis that reads its position at the motor.
 """
@@ -29,8 +29,8 @@ from feeddrive.compensation.heat.thermal_sensors import Sensor, lagged, mountabl
 from feeddrive.compensation.heat.thermal_trial import TriedMachine, random_duty, tried_machine
 from feeddrive.errors import InputError
 from feeddrive.recording.recording import Recording
-from feeddrive.thermal.heat import Heat
-from feeddrive.thermal.reduced.model import HeatModel
+from feeddrive.thermal.machine_heat import Heat
+from feeddrive.thermal.reduced.parametric_model import HeatModel
 from feeddrive.typing import FloatArray
 
 STEP = 60.0
@@ -40,7 +40,7 @@ FITTED_SPEEDS, JUDGED_SPEED = (0.25, 0.5, 1.0), 0.7
 """Shares of the highest speed."""
 
 FITTED_PART = 0.6
-"""Of a recording: the warm-up and some of what follows must be in it."""
+"""Share of a recording that is fitted: the warm-up and some of what follows must be in it."""
 
 _HOURS, _SEED, _POINTS = 4, 7, 8
 _GROWTH = re.compile(r"table_growth_([0-9]+(?:\.[0-9]+)?)mm")
@@ -108,8 +108,9 @@ def heat_table(heat: Heat, reference: float | None = None) -> HeatTable:
     left, after = _left(heat, tables[best], judged, best)
     words = f"warm-up and cool-down of {_HOURS} h each at {JUDGED_SPEED:g} of the highest speed, not fitted"
     ordered = dict(sorted(ranking.items(), key=lambda one: one[1]))
-    return HeatTable(heat.name, best, tables[best], left, words, ordered, judged.times, judged.positions,
-                     judged.error, after)  # fmt: skip
+    return HeatTable(
+        heat.name, best, tables[best], left, words, ordered, judged.times, judged.positions, judged.error, after
+    )
 
 
 def _tried(heat: Heat, model: HeatModel, speeds: FloatArray) -> TriedMachine:
@@ -121,8 +122,8 @@ def _reading(heat: Heat, machine: TriedMachine, place: str) -> FloatArray:
 
 
 def _left(heat: Heat, table: LineTable, machine: TriedMachine, place: str) -> tuple[LeftOver, FloatArray]:
-    told = table.line(_reading(heat, machine, place)).at(machine.positions)
-    return left_over(machine.error, told), np.asarray(machine.error - told)
+    corrected = table.line(_reading(heat, machine, place)).at(machine.positions)
+    return left_over(machine.error, corrected), np.asarray(machine.error - corrected)
 
 
 def _share(left: LeftOver) -> float:
@@ -139,8 +140,9 @@ def recorded_heat_table(recording: Recording, reference: float | None = None) ->
     Raises:
         InputError: too few growths or temperatures, or a sensor that hardly moves.
     """
-    growths = sorted((float(match[1]) * 1e-3, name) for name in recording.channels
-                     if (match := _GROWTH.fullmatch(name)))  # fmt: skip
+    growths = sorted(
+        (float(match[1]) * 1e-3, name) for name in recording.channels if (match := _GROWTH.fullmatch(name))
+    )
     sensors = [name for name in recording.channels if name.endswith("_temperature")]
     if len(growths) < 2 or not sensors:
         mend = "record table_growth_100mm, table_growth_400mm and nut_temperature, or the like"

@@ -28,12 +28,12 @@ from feeddrive.diagnosis.ledger.entry import kept_of
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.diagnosis.numbers.measured_file import MeasuredNumber
-from feeddrive.diagnosis.numbers.rows import MeasuredRows, NumberResult, number_results, refuse_ungiven
+from feeddrive.diagnosis.numbers.number_rows import MeasuredRows, NumberResult, number_results, refuse_ungiven
 from feeddrive.diagnosis.preparation import Shown, informative, prepared, shown
 from feeddrive.diagnosis.recordings.compared import compared_recordings, last_state, machine_as_last, with_carrying
 from feeddrive.diagnosis.recordings.recordings import is_shift, without_shifts
+from feeddrive.diagnosis.recordings.recordings_search import Searched, search_recordings
 from feeddrive.diagnosis.recordings.rehoming import rehomed_plant
-from feeddrive.diagnosis.recordings.search import Searched, search_recordings
 from feeddrive.diagnosis.simulated.loop_evidence import refuse_unfit_loop
 from feeddrive.diagnosis.simulated.refinement import Refinement, refined
 from feeddrive.diagnosis.starts.needs import WITHOUT_TORQUE
@@ -51,7 +51,7 @@ from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 
-Said = Callable[[str], None]
+Progress = Callable[[str], None]
 
 
 @one_thread()
@@ -61,7 +61,7 @@ def diagnose(
     validation: Sequence[Recording] = (),
     split: float = 0.75,
     simulate: bool = False,
-    said: Said = lambda text: None,
+    progress: Progress = lambda text: None,
     start: Sequence[Effect] = (),
     measured: Sequence[MeasuredNumber] = (),
 ) -> tuple[Diagnosis, tuple[Effect, ...]]:
@@ -73,7 +73,7 @@ def diagnose(
         validation: judged only.
         split: share of each recording that is fitted where there is no `validation`.
         simulate: simulate the closed loop and refine what was found in it, where the controller is declared.
-        said: told what is going on.
+        progress: called with a line that says what is going on.
         start: effects found earlier, asked again before others are searched.
         measured: numbers (a stiffness, a frequency, a drag torque, a lost motion) beside recordings of motion.
 
@@ -96,13 +96,13 @@ def diagnose(
         mend = "diagnose the numbers alone, or beside a recording of motion and torque"
         raise InputError("measured numbers beside recordings of heat", plant.name, mend)
     begun = _begun(plant, recordings, validation, split, declared, declared_sentence, measured)
-    settled = _settled(begun.problem, begun.judged, in_the_loop, said, start)
+    settled = _settled(begun.problem, begun.judged, in_the_loop, progress, start)
     hold = _logged_hold(settled.searched.search, every) if declared is None else declared
     if hold is not None and declared is None:
-        said("the torque is logged more slowly than the drive holds it: again")
+        progress("the torque is logged more slowly than the drive holds it: again")
         begun = _begun(plant, recordings, validation, split, hold, held_for, measured)
-        settled = _settled(begun.problem, begun.judged, in_the_loop, said, start)
-    said("asking whether it is the recorder")
+        settled = _settled(begun.problem, begun.judged, in_the_loop, progress, start)
+    progress("asking whether it is the recorder")
     begun, settled, (recordings, validation) = _without_fault(
         begun,
         settled,
@@ -110,11 +110,11 @@ def diagnose(
         lambda files: _begun(
             plant, *files, split, hold, declared_sentence if declared is not None else held_for, measured
         ),
-        lambda one: _settled(one.problem, one.judged, in_the_loop, said, start),
+        lambda one: _settled(one.problem, one.judged, in_the_loop, progress, start),
     )
     searched, judged, refinement = settled.searched, settled.judged, settled.refinement
     found = searched.search
-    said("looking at what is left")
+    progress("looking at what is left")
     alike = ambiguous_sets(found, settled.rivals)
     rest = explain_rest(found.problem, found.fit.effects, judged, channel_results(found.problem, judged))
     compared, known = compared_recordings(searched, judged), certainty(found.problem, found.fit)
@@ -122,7 +122,7 @@ def diagnose(
     effects = machine_as_last(searched, compared.listed)
     count = len(without_shifts(found.fit.effects))
     shares = [share_of(found.problem, judged, found.fit.effects, i) for i in range(count)]
-    said("looking for what would settle doubts")
+    progress("looking for what would settle doubts")
     result = Diagnosis(
         plant=plant.name,
         fit=_stamps(recordings),
@@ -151,7 +151,7 @@ def diagnose(
         next_experiments=next_experiments(found, settled.rivals, spans),
         correlation=correlation(found.problem, found.fit, known),
         notes=(
-            *begun.told,
+            *begun.notes,
             *(open_lag(found.fit.effects, every) if hold is None else ()),
             *other_places(found, judged),
             *known_together(found.problem, found.fit),
@@ -180,11 +180,11 @@ def _logged_hold(found: Search, recordings: Sequence[Recording]) -> float | None
 
 @dataclass(frozen=True)
 class _Begun:
-    """The problem, the recordings judged on, what is to be said of them, and what was mended of them."""
+    """The problem, the recordings judged on, remarks about them, and what was mended of them."""
 
     problem: Problem
     judged: list[Evidence]
-    told: tuple[str, ...]
+    notes: tuple[str, ...]
     quality: tuple[Quality, ...]
 
 
@@ -192,13 +192,13 @@ def _begun(
     plant: Plant, recordings: Sequence[Recording], validation: Sequence[Recording],
     split: float, hold: float | None, sentence: Callable[[float, float], str], measured: Sequence[MeasuredNumber],
 ) -> _Begun:  # fmt: skip
-    problem, judged, told = prepared(plant, recordings, validation, split, hold)
+    problem, judged, notes = prepared(plant, recordings, validation, split, hold)
     problem = replace(problem, numbers=MeasuredRows(tuple(measured)))
     refuse_ungiven(problem.numbers, plant)
     refuse_faulty(problem, (*problem.evidence, *judged))
     also = () if hold is None else (sentence(hold, recordings[0].sample_time),)
     problem, judged, quality = with_recorder_that_holds(problem, judged)
-    return _Begun(problem, judged, (*told, *also), quality)
+    return _Begun(problem, judged, (*notes, *also), quality)
 
 
 @dataclass(frozen=True)
@@ -208,7 +208,7 @@ class _Settled:
     Attributes:
         searched: the search, without effects that stand in for others, refined in simulation where that was asked.
         rivals: per effect, those that would do as well.
-        judged, rehomed: the recordings judged on, and what was said of their zeros.
+        judged, rehomed: the recordings judged on, and remarks about their zeros.
         refinement: in closed-loop simulation.
     """
 
@@ -220,11 +220,11 @@ class _Settled:
 
 
 def _settled(
-    problem: Problem, evidence: Sequence[Evidence], simulate: bool, said: Said, start: Sequence[Effect]
+    problem: Problem, evidence: Sequence[Evidence], simulate: bool, progress: Progress, start: Sequence[Effect]
 ) -> _Settled:
-    searched = search_recordings(problem, said, start)
+    searched = search_recordings(problem, progress, start)
     found = searched.search
-    said("judging on data not fitted")
+    progress("judging on data not fitted")
     judged, rehomed = _judged(found, evidence)
     if (fewer := without_stand_ins(found, judged)) is not found:
         found = fewer
@@ -235,8 +235,8 @@ def _settled(
 
     kept, judged = without_denied(found, judged, judge)
     if kept is not found and not any(is_shift(effect) for effect in kept.fit.effects):
-        said("searching again without the names that are denied")
-        again = search(kept.problem, said, kept)
+        progress("searching again without the names that are denied")
+        again = search(kept.problem, progress, kept)
         if len(again.fit.effects) > len(kept.fit.effects):
             kept, judged = without_denied(again, judge(again), judge)
     found = kept
@@ -248,7 +248,7 @@ def _settled(
     judged, rehomed = _judged(found, evidence)
     refinement = Refinement(found, (judged, rehomed))
     if simulate:
-        said("simulating the closed loop, and refining in simulation")
+        progress("simulating the closed loop, and refining in simulation")
         refinement = refined(found, refinement.outcome, lambda other: _judged(other, evidence))
         found, (judged, rehomed) = refinement.found, refinement.outcome
     return _Settled(replace(searched, search=found), rivals, judged, rehomed, refinement)
@@ -280,8 +280,8 @@ def _without_fault(
     again_settled = settle(other)
     if not is_better(fault, again_settled.searched.search, settled.searched.search):
         return begun, settled, files
-    told = replace(other, quality=(*other.quality, fault.said(mended[0])))
-    return told, again_settled, (mended[0], mended[1])
+    mended_run = replace(other, quality=(*other.quality, fault.quality(mended[0])))
+    return mended_run, again_settled, (mended[0], mended[1])
 
 
 def _judged(found: Search, evidence: Sequence[Evidence]) -> tuple[list[Judged], tuple[str, ...]]:
@@ -303,7 +303,7 @@ def _notes(fitted: Sequence[Evidence], judged: Sequence[Evidence], found: Search
     ready = dict.fromkeys((*fitted, *judged))  # a recording may be both
     notes = [f"{evidence.recording.name}: {note}" for evidence in ready for note in evidence.recording.notes]
     declared = found.problem.plant
-    notes += found.problem.predictor.told(declared, found.problem.machine(found.fit.effects))
+    notes += found.problem.predictor.remarks(declared, found.problem.machine(found.fit.effects))
     unseen = {name for name, reason in found.impossible.items() if reason == WITHOUT_TORQUE}
     if unseen:
         notes.append(without_torque_sentence(unseen))

@@ -8,8 +8,8 @@ from enum import Enum
 
 import numpy as np
 
-from feeddrive.diagnosis.heat.evidence import left_out_channels, prepare_heat, within_range
-from feeddrive.diagnosis.heat.prediction import heat_predictor
+from feeddrive.diagnosis.heat.heat_evidence import left_out_channels, prepare_heat, within_range
+from feeddrive.diagnosis.heat.heat_prediction import heat_predictor
 from feeddrive.diagnosis.heat.warm_evidence import is_warm_log, prepare_warm
 from feeddrive.diagnosis.heat.warm_prediction import warm_predictor
 from feeddrive.diagnosis.likelihood.evidence import AxisEvidence, Evidence, prepare
@@ -45,7 +45,7 @@ def shown(plant: Plant, recordings: Sequence[Recording]) -> Shown:
 
 
 Prepared = tuple[Problem, list[Evidence], tuple[str, ...]]
-"""The problem, what is judged, and what is to be said."""
+"""The problem, what is judged, and remarks."""
 
 
 def informative(plant: Plant, recordings: Sequence[Recording]) -> tuple[Recording, ...]:
@@ -135,12 +135,12 @@ def _prepared_heat(
 ) -> Prepared:
     fitted = tuple(prepare_heat(recording, plant.heat, 1.0 if validation else split) for recording in recordings)
     others = [prepare_heat(recording, plant.heat, 0.0) for recording in validation]
-    wide, told = within_range(plant, (*fitted, *others))
+    wide, raised = within_range(plant, (*fitted, *others))
     lost = [
         f"{r.name}: {c} is not predicted" for r in (*recordings, *validation) for c in left_out_channels(r, plant.heat)
     ]
     judged: list[Evidence] = [*others] or [*fitted]
-    return Problem(wide, fitted, heat_predictor(wide)), judged, (*told, *lost)
+    return Problem(wide, fitted, heat_predictor(wide)), judged, (*raised, *lost)
 
 
 def _refuse_heat(recording: Recording) -> None:

@@ -110,7 +110,7 @@ class Signature:
     Attributes:
         channels: residual channels, the clearest first.
         variable: the measured variable whose function it is.
-        confused_with: effects that can look alike, and need not be told apart by every recording.
+        confused_with: effects that can look alike, and need not be distinguished by every recording.
     """
 
     channels: tuple[str, ...]

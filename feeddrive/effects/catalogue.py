@@ -22,7 +22,6 @@ from feeddrive.effects.friction.tabulated_friction import TabulatedFriction
 from feeddrive.effects.friction.viscous_asymmetry import ViscousAsymmetry
 from feeddrive.effects.friction.viscous_warmup import ViscousWarmup
 from feeddrive.effects.heat.ambient_drift import AmbientDrift
-from feeddrive.effects.heat.base import ThermalEffect
 from feeddrive.effects.heat.bearing_heat import BearingHeat
 from feeddrive.effects.heat.contact_conductance_deviation import ContactConductanceDeviation
 from feeddrive.effects.heat.convection_deviation import ConvectionDeviation
@@ -32,6 +31,7 @@ from feeddrive.effects.heat.motor_heat import MotorHeat
 from feeddrive.effects.heat.preload_growth import PreloadGrowth
 from feeddrive.effects.heat.sensor_lag import SensorLag
 from feeddrive.effects.heat.structure_growth import StructureGrowth
+from feeddrive.effects.heat.thermal_effect import ThermalEffect
 from feeddrive.effects.heat.viscosity_temperature import ViscosityTemperature
 from feeddrive.effects.source.ball_pass_ripple import BallPassRipple
 from feeddrive.effects.source.constant_force import ConstantForce

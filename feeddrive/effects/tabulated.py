@@ -70,8 +70,8 @@ class Tabulated(Effect):
     def _refuse_what_is_no_table(self) -> None:
         lengths = {key: len(self.table(key)) for key in (self.breakpoint_key, *self.tables)}
         if len(set(lengths.values())) > 1:
-            told = " and ".join(f"{key} has {length}" for key, length in lengths.items())
-            raise InputError(f"{told} values", self.name, "write lists of equal length")
+            what = " and ".join(f"{key} has {length}" for key, length in lengths.items())
+            raise InputError(f"{what} values", self.name, "write lists of equal length")
         if any(b <= a for a, b in pairwise(self.breakpoints)):
             raise InputError(f"{self.breakpoint_key} does not ascend", self.name, "write it in ascending order")
         if self.periodic and not self.breakpoints[-1] - self.breakpoints[0] < self.period:

@@ -21,7 +21,7 @@ CELL = 0.005
 """Width of the cells of table position over which a chain that varies is frozen [m]; the rest acts as a force."""
 
 NO_CELL = -(2**40)
-"""Cell of a position whose forces are not yet told."""
+"""Cell of a position whose forces are not yet known."""
 
 TOLERANCE = 1e-11
 """Error of the table position that one step may make [m]; a thousandth of a good scale's resolution."""
@@ -134,8 +134,8 @@ class StepReport:
         jumps = (
             f"{self.over} steps stayed above the tolerance, by {1e9 * self.excess:.3g} nm in all" if self.over else ""
         )
-        told = "; ".join(part for part in (finer, jumps) if part) or "one step a sample was enough"
-        return f"finished: {self.steps} steps for {self.samples} samples; {told}"
+        steps_taken = "; ".join(part for part in (finer, jumps) if part) or "one step a sample was enough"
+        return f"finished: {self.steps} steps for {self.samples} samples; {steps_taken}"
 
 
 def joined(reports: Sequence[StepReport]) -> StepReport:
@@ -207,7 +207,7 @@ class Position:
         memory: of the step, shape (m,).
         own: of the commands, shape (o,).
         level: halvings of the last step.
-        cell: in which the memory's forces are told; `NO_CELL` before the first step.
+        cell: in which the memory's forces are known; `NO_CELL` before the first step.
     """
 
     memory: FloatArray

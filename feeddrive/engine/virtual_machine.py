@@ -9,7 +9,7 @@ from feeddrive.typing import Expression, FloatArray
 
 
 class Called:
-    """A function whose arguments and results are columns, or matrices told as one row per column.
+    """A function whose arguments and results are columns, or matrices written as one row per column.
 
     May be called by several threads at once: every call has buffers to itself, which later calls use again.
     """
@@ -19,7 +19,7 @@ class Called:
         self._idle = [_Buffers(function)]
 
     def __call__(self, *arguments: Expression) -> list[FloatArray]:
-        """Results, one row per column; a single column is told as shape (n,)."""
+        """Results, one row per column; a single column is given as shape (n,)."""
         try:
             buffers = self._idle.pop()  # no other thread gets the same: a list gives an item to one alone
         except IndexError:

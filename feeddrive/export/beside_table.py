@@ -19,13 +19,13 @@ from dataclasses import replace
 import casadi as ca
 import numpy as np
 
-from feeddrive.export.model import Model
+from feeddrive.export.nonlinear_model import Model
 from feeddrive.plant.equations import chain_symbols, parameter_symbols
 from feeddrive.symbolic_turn import SYMBOLS
 from feeddrive.typing import Expression
 
 BESIDE = "beside_table"
-"""Ends the name of a state that is told beside the table."""
+"""Ends the name of a state that is given beside the table."""
 
 
 @SYMBOLS.taken()

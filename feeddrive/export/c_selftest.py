@@ -13,7 +13,7 @@ import casadi as ca
 import numpy as np
 
 from feeddrive.export.c_source import comment, numbers
-from feeddrive.export.model import Model, slopes_of
+from feeddrive.export.nonlinear_model import Model, slopes_of
 from feeddrive.typing import FloatArray
 
 ALLOWED = 1e-12

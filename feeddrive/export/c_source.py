@@ -16,8 +16,8 @@ from collections.abc import Sequence
 import casadi as ca
 
 from feeddrive.errors import printable
-from feeddrive.export.model import Model, slopes_of
-from feeddrive.export.quantities import Quantity
+from feeddrive.export.equation_quantities import Quantity
+from feeddrive.export.nonlinear_model import Model, slopes_of
 from feeddrive.symbolic_turn import SYMBOLS
 
 

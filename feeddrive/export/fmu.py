@@ -28,10 +28,10 @@ from feeddrive.compiler import CompilerError, run_compiler
 from feeddrive.errors import InputError
 from feeddrive.export.beside_table import beside_table
 from feeddrive.export.c_source import call, comment, header_text, numbers, source_text
-from feeddrive.export.events import Kinks, kinks_of
 from feeddrive.export.fmu_description import description_text, fixed_parameters
-from feeddrive.export.model import Model
+from feeddrive.export.kinks import Kinks, kinks_of
 from feeddrive.export.nominals import nominals
+from feeddrive.export.nonlinear_model import Model
 from feeddrive.symbolic_turn import SYMBOLS
 
 _WRAPPER = "fmi2_model_exchange.c"

@@ -1,6 +1,6 @@
 """modelDescription.xml of an exported model, FMI 2.0 for model exchange.
 
-States are told beside the table (`feeddrive.export.beside_table`). Variables in the order of their value references:
+States are given beside the table (`feeddrive.export.beside_table`). Variables in the order of their value references:
 states `state.NAME`, their derivatives `der(state.NAME)`, inputs, outputs, parameters. Values of inertias and springs
 are fixed once the simulation starts, since the states hang on them; those of effects can be tuned.
 """
@@ -13,10 +13,10 @@ import casadi as ca
 
 from feeddrive import __version__
 from feeddrive.errors import printable
+from feeddrive.export.equation_quantities import Quantity
 from feeddrive.export.fmu_units import exponents
-from feeddrive.export.model import Model
 from feeddrive.export.nominals import nominals
-from feeddrive.export.quantities import Quantity
+from feeddrive.export.nonlinear_model import Model
 from feeddrive.symbolic_turn import SYMBOLS
 
 TOLERANCE = 1e-8

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 import control
 import numpy as np
 
-from feeddrive.export.model import identifier_of
+from feeddrive.export.equation_quantities import Quantity, inputs, outputs, states
+from feeddrive.export.nonlinear_model import identifier_of
 from feeddrive.export.point import Point, refuse_outside
-from feeddrive.export.quantities import Quantity, inputs, outputs, states
 from feeddrive.plant.analysis.linear import state_space, steady_motion
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray

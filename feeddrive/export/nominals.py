@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from feeddrive.export.model import Model
+from feeddrive.export.nonlinear_model import Model
 from feeddrive.typing import FloatArray
 
 _TRAVEL, _VELOCITY = 1e-3, 0.1

@@ -12,9 +12,9 @@ from collections.abc import Sequence
 
 from feeddrive import __version__
 from feeddrive.errors import printable
+from feeddrive.export.equation_quantities import Quantity
 from feeddrive.export.linear_model import LinearModel
 from feeddrive.export.notes import included, left_out, linear_notes
-from feeddrive.export.quantities import Quantity
 from feeddrive.typing import FloatArray
 
 

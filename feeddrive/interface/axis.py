@@ -31,11 +31,11 @@ from feeddrive.plant.derived_effects import GRAVITY
 from feeddrive.plant.file.declared_check import check_declared
 from feeddrive.plant.file.effect_text import plant_text_with_effects
 from feeddrive.plant.file.entries import parse_toml
-from feeddrive.plant.file.files import plant_from_entries
+from feeddrive.plant.file.plant_file import plant_from_entries
 from feeddrive.plant.file.plant_schema import plant_table
 from feeddrive.plant.plant import Plant
 from feeddrive.simulate.scenario.scenario_overrides import with_overrides
-from feeddrive.thermal.heat import Heat
+from feeddrive.thermal.machine_heat import Heat
 
 if TYPE_CHECKING:
     import casadi
@@ -461,8 +461,8 @@ class Axis:
         Raises:
             InputError: an unknown form, a point off the stroke, or a folder that cannot be written.
         """
+        from feeddrive.export.exported_plant import Form, write_export, write_heat_export
         from feeddrive.export.point import export_point
-        from feeddrive.export.writing import Form, write_export, write_heat_export
         from feeddrive.plant.file.entries import nearest
 
         forms = {str(one): one for one in Form}

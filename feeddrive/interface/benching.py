@@ -17,8 +17,8 @@ from feeddrive.interface.measured.diagnosed import Diagnosed
 from feeddrive.interface.quantities import Quantity, si
 from feeddrive.interface.servo import Servo, cascade_for, tune
 from feeddrive.plant.plant import Plant
-from feeddrive.servo.frequency_response import Case
 from feeddrive.servo.loop_response import refuse_unstable_case
+from feeddrive.servo.mechanics_response import Case
 
 _MOST_BYTES = 200_000_000
 

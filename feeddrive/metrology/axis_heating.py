@@ -74,11 +74,11 @@ def axis_heating(times: FloatArray, error: FloatArray, positions: FloatArray, st
     """
     fits = np.shape(error) == (len(times), len(positions)) and len(positions) >= 2
     if not fits or np.any(np.diff(times) <= 0) or np.any(np.diff(positions) <= 0):
-        told = f"errors of shape {np.shape(error)} at {len(times)} times and {len(positions)} positions"
-        raise InputError(told, "error", "give a row a time and a column a target, times and targets ascending")
+        what = f"errors of shape {np.shape(error)} at {len(times)} times and {len(positions)} positions"
+        raise InputError(what, "error", "give a row a time and a column a target, times and targets ascending")
     if not _HOUR <= stop <= times[-1]:
-        told = f"the axis stops after {stop / 60:.4g} min of {times[-1] / 60:.4g} min"
-        raise InputError(told, "stop", "heat for an hour at least, within the test")
+        what = f"the axis stops after {stop / 60:.4g} min of {times[-1] / 60:.4g} min"
+        raise InputError(what, "stop", "heat for an hour at least, within the test")
     targets = tuple(_target(times, column, float(x), stop) for column, x in zip(error.T, positions, strict=True))
     last = error[np.searchsorted(times, stop * (1 + 1e-12), side="right") - 1]
     return AxisHeating(targets, float((last[-1] - last[0]) / (positions[-1] - positions[0])))

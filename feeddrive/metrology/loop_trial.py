@@ -13,9 +13,9 @@ from feeddrive.metrology.evaluate import evaluate
 from feeddrive.metrology.response import StepResponse
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade
-from feeddrive.servo.frequency_response import Case
 from feeddrive.servo.loop_response import Loop, closed_figures, closed_response
 from feeddrive.servo.margins import GROWTH
+from feeddrive.servo.mechanics_response import Case
 from feeddrive.simulate.scenario.scenario_result import ScenarioResult
 from feeddrive.simulate.setpoints.trial_motions import Trial, circle_about, run_trial, step_at
 from feeddrive.tuning.recommendation import Reached, reached_in

@@ -9,7 +9,7 @@
 | W | response of the hold, which is in H1 and not in G | 1 |
 
 An answer that was not recorded is the difference of its integral (speed from angle), a mean over the sample, whose own
-sinc(w T / 2) exp(+j w T / 2) is taken out likewise. Told up to a quarter of the sample rate; beyond, what the sampling
+sinc(w T / 2) exp(+j w T / 2) is taken out likewise. Valid up to a quarter of the sample rate; beyond, what the sampling
 folds back shows (2 dB at 0.4). Recordings under control are biased by noise that runs round the loop; the coherence
 says where.
 """

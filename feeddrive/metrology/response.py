@@ -97,8 +97,10 @@ def periodic_response(
         np.fft.rfft(_level(values[len(values) - periods * period :].reshape(periods, period)), axis=1)[:, index]
         for values in (given, output)
     ]
-    cross, power, answer = (np.mean(a * np.conj(b), axis=0) for a, b in
-                            ((spectra[1], spectra[0]), (spectra[0], spectra[0]), (spectra[1], spectra[1])))  # fmt: skip
+    cross, power, answer = (
+        np.mean(a * np.conj(b), axis=0)
+        for a, b in ((spectra[1], spectra[0]), (spectra[0], spectra[0]), (spectra[1], spectra[1]))
+    )
     coherence = np.abs(cross) ** 2 / (power.real * answer.real)
     if periods < 2:
         coherence = np.full_like(coherence, np.nan)

@@ -99,7 +99,7 @@ class CombinedStiffness:
         return {one.part: one.compliance / whole for one in self.contributions if one.deformation is deformation}
 
     def natural_frequency(self, mass: float) -> float:
-        """Of a mass [kg] on this spring [Hz]; without the screw's own part in it."""
+        """Natural frequency [Hz] of a mass [kg] on this spring; without the screw's own part in it."""
         return natural_frequency(self.total, mass)
 
     def _of(self, deformation: Deformation) -> float:
@@ -115,8 +115,13 @@ def combined_stiffness(drive: BallScrewDrive, position: float) -> CombinedStiffn
     """
     near, shaft, far = drive.supports.compliances(drive.screw, position)
     housing = 1.0 / drive.housing_stiffness if drive.housing_stiffness is not None else 0.0
-    axial = [("housing", housing), ("nut", 1.0 / drive.nut.axial_stiffness), ("screw", shaft), ("bearing", near),
-             ("far bearing", far)]  # fmt: skip
+    axial = [
+        ("housing", housing),
+        ("nut", 1.0 / drive.nut.axial_stiffness),
+        ("screw", shaft),
+        ("bearing", near),
+        ("far bearing", far),
+    ]
     r = drive.screw.travel_per_radian
     twist = [(spring.part, spring.compliance * r**2) for spring in reversed(drive.torsion_springs(position))]
     found = [Contribution(part, Deformation.AXIAL, compliance) for part, compliance in axial]

@@ -67,10 +67,10 @@ class Coupling:
 
     @property
     def screw_hub_inertia(self) -> float:
-        """Of the hub that turns with the screw's end [kg m^2]."""
+        """Inertia of the hub that turns with the screw's end [kg m^2]."""
         return self.inertia * self.screw_side_share
 
     @property
     def motor_hub_inertia(self) -> float:
-        """Of the hub that turns with the motor shaft [kg m^2]."""
+        """Inertia of the hub that turns with the motor shaft [kg m^2]."""
         return self.inertia * (1.0 - self.screw_side_share)

@@ -62,8 +62,9 @@ def check_values(part: str, known: tuple[PartValue, ...], values: Mapping[str, f
         if value.usual is not None and not value.usual[0] <= number <= value.usual[1]:
             low, high = (format_quantity(end, value.unit) for end in value.usual)
             shown = format_quantity(number, value.unit)
-            warnings.warn(f"{where}: {shown} is unusual, {low} to {high} is usual; check its unit", ValidityWarning,
-                          stacklevel=3)  # fmt: skip
+            warnings.warn(
+                f"{where}: {shown} is unusual, {low} to {high} is usual; check its unit", ValidityWarning, stacklevel=3
+            )
 
 
 def _possible(value: PartValue, number: float) -> bool:

@@ -68,9 +68,14 @@ def bristle_count(plant: Plant) -> int:
 
 
 def effect_forces(
-    plant: Plant, symbols: Symbols, q: Expression, rate: Expression, z: Expression, time: Expression,
+    plant: Plant,
+    symbols: Symbols,
+    q: Expression,
+    rate: Expression,
+    z: Expression,
+    time: Expression,
     reference: Expression | None = 0.0,
-) -> Forces:  # fmt: skip
+) -> Forces:
     """Generalised forces of all effects, and the rates of their states.
 
     Args:

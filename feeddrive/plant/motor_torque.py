@@ -82,8 +82,8 @@ def warn_beyond_top(plant: Plant, asked: FloatArray) -> None:
     droop, most = _droop(plant), float(np.max(np.abs(asked), initial=0.0))
     top = declared_gain(plant) / math.sqrt(3 * droop + _NONE)
     if most > top:
-        told, given = (format_quantity(value, "N m") for value in (most, top))
-        text = f"{plant.name}: {told} is asked for, and with its droop the torque rises no further beyond {given}"
+        wanted, given = (format_quantity(value, "N m") for value in (most, top))
+        text = f"{plant.name}: {wanted} is asked for, and with its droop the torque rises no further beyond {given}"
         warnings.warn(text, ValidityWarning, stacklevel=4)
 
 

@@ -132,13 +132,13 @@ def _refusal(plant: Plant, least: LeastFriction, where: str) -> InputError:
     taken = -least.taken[label]
     if taken <= 0:  # a bristle on a level that is nothing
         bristle = next(e.name for e in plant.effects if isinstance(e, BristleEffect) and e.port == least.port)
-        told = f"the Coulomb level of the {least.port} is {shown}, and {bristle} acts on it"
-        return InputError(told, where, f"write a greater one in {label}, or leave {bristle} out")
+        what = f"the Coulomb level of the {least.port} is {shown}, and {bristle} acts on it"
+        return InputError(what, where, f"write a greater one in {label}, or leave {bristle} out")
     kind = "Coulomb level" if by_level else "force, viscous part included,"
-    told = f"friction of the {least.port} would push: its {kind} falls to {shown} {at}, where {label} takes "
-    told += format_quantity(taken, unit)
+    what = f"friction of the {least.port} would push: its {kind} falls to {shown} {at}, where {label} takes "
+    what += format_quantity(taken, unit)
     effect = next(effect for effect in plant.effects if effect.label == label)
-    return InputError(told, where, _mend(effect, (taken + least.margin) / taken, by_level))
+    return InputError(what, where, _mend(effect, (taken + least.margin) / taken, by_level))
 
 
 def _mend(effect: Effect, share: float, by_level: bool) -> str:
@@ -160,15 +160,15 @@ def _mend(effect: Effect, share: float, by_level: bool) -> str:
 def _place(least: LeastFriction) -> str:
     """Where it is least, in words."""
     turning = least.port != Port.TABLE
-    told = [f"in {'+' if least.direction > 0 else '-'} direction"]
+    parts = [f"in {'+' if least.direction > 0 else '-'} direction"]
     if least.position is not None:
-        told.append(f"at {format_quantity(least.position, 'rad' if turning else 'm')}")
+        parts.append(f"at {format_quantity(least.position, 'rad' if turning else 'm')}")
     if least.speed is not None:
         speed = format_quantity(least.speed, "rad/s" if turning else "m/s")
-        told.append(f"at {speed}" if least.speed else "near rest")
+        parts.append(f"at {speed}" if least.speed else "near rest")
     if least.time is not None:
-        told.append(f"{format_quantity(least.time, 's')} from the start")
-    return ", ".join(told)
+        parts.append(f"{format_quantity(least.time, 's')} from the start")
+    return ", ".join(parts)
 
 
 class _Way:
@@ -243,8 +243,12 @@ class _Way:
 
         top = self._top_speed()
         turning = [x for turns in self.turns for x in turns.get(_SPEEDS, ())]
-        smooth = [number(value) for effect in self.effects for key, value in effect.values.items()
-                  if key.startswith("smoothing")]  # fmt: skip
+        smooth = [
+            number(value)
+            for effect in self.effects
+            for key, value in effect.values.items()
+            if key.startswith("smoothing")
+        ]
         first = min([0.1 * top, *smooth])
         points = np.unique([first, top, *(x for x in turning if first < x < top)])
         bound, place, parts = least_sum(terms, points, _ROUNDS)
@@ -252,14 +256,19 @@ class _Way:
 
     def _least_viscous(self, i: int, speed: FloatArray) -> FloatArray:
         """Viscous force of an effect at some speeds, the least over position and time, shape (speeds,)."""
-        places = [{_SPEEDS: speed, variable: np.full_like(speed, place)} for variable in (_POSITIONS, _TIMES)
-                  for place in self._within(variable, self.turns[i].get(variable, ()))]  # fmt: skip
+        places = [
+            {_SPEEDS: speed, variable: np.full_like(speed, place)}
+            for variable in (_POSITIONS, _TIMES)
+            for place in self._within(variable, self.turns[i].get(variable, ()))
+        ]
         read = [self._read("viscous", at)[i] for at in places or [{_SPEEDS: speed}]]
         least: FloatArray = np.min(read, axis=0) * self.direction if self.direction > 0 else -np.max(read, axis=0)
         if not self.declared[i]:
             return least
-        factors = [self._read("viscous_factor", {_TIMES: np.array(turns.get(_TIMES, (0.0,)))})[j].min()
-                   for j, turns in enumerate(self.turns)]  # fmt: skip
+        factors = [
+            self._read("viscous_factor", {_TIMES: np.array(turns.get(_TIMES, (0.0,)))})[j].min()
+            for j, turns in enumerate(self.turns)
+        ]
         return np.asarray(least * math.prod(factors), dtype=np.float64)
 
     def _points(self, variable: str, rows: Sequence[int]) -> FloatArray:
@@ -314,8 +323,11 @@ def _slots(plant: Plant, port: Port) -> tuple[dict[str, ca.Function], tuple[int,
     rows["level_factor"] = [effect.level_factor(motion, values) for effect, values in zip(effects, p, strict=True)]
     rows["viscous"] = [effect.viscous(motion, values) for effect, values in zip(effects, p, strict=True)]
     rows["viscous_factor"] = [effect.viscous_factor(motion, values) for effect, values in zip(effects, p, strict=True)]
-    rows["shape"] = [effect.shape(motion, values) if effect.declared else 0.0
-                     for effect, values in zip(effects, p, strict=True)]  # fmt: skip
-    made = {slot: ca.Function(f"feeddrive_{slot}", [x, v, t, symbols.vector], [ca.vertcat(*map(ca.SX, row))])
-            for slot, row in rows.items()}  # fmt: skip
+    rows["shape"] = [
+        effect.shape(motion, values) if effect.declared else 0.0 for effect, values in zip(effects, p, strict=True)
+    ]
+    made = {
+        slot: ca.Function(f"feeddrive_{slot}", [x, v, t, symbols.vector], [ca.vertcat(*map(ca.SX, row))])
+        for slot, row in rows.items()
+    }
     return made, tuple(i for i, several in enumerate(terms) for _ in several)

@@ -12,14 +12,14 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from feeddrive.effects.base import ChainEffect, Effect, TravelEffect, Value
-from feeddrive.effects.heat.base import ThermalEffect
+from feeddrive.effects.heat.thermal_effect import ThermalEffect
 from feeddrive.errors import InputError
 from feeddrive.parts.screw.screw_drive import BallScrewDrive
 from feeddrive.plant.chain.chain import Chain
 from feeddrive.plant.chain.table_mode import with_modes
 from feeddrive.plant.composition import refuse_what_cannot_compose, refuse_what_misses_values
-from feeddrive.thermal.coupling import Coupling
-from feeddrive.thermal.heat import Heat
+from feeddrive.thermal.machine_heat import Heat
+from feeddrive.thermal.thermal_coupling import Coupling
 
 if TYPE_CHECKING:
     from feeddrive.plant.analysis.lumping import Lumped

@@ -53,9 +53,14 @@ class NutForce:
 
 
 def nut_force(
-    plant: Plant, symbols: Symbols, nut: Spring, rows: tuple[Expression, Expression], q: Expression, rate: Expression,
+    plant: Plant,
+    symbols: Symbols,
+    nut: Spring,
+    rows: tuple[Expression, Expression],
+    q: Expression,
+    rate: Expression,
     time: Expression,
-) -> NutForce:  # fmt: skip
+) -> NutForce:
     """Force of the nut, and what of it the linear chain does not hold.
 
     Args:

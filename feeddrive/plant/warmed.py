@@ -10,7 +10,7 @@ from feeddrive.effects.friction.shaft_drag import BearingDrag, NutDrag
 from feeddrive.effects.travel.lead_error_cumulative import LeadErrorCumulative
 from feeddrive.plant.equations import parameter_names
 from feeddrive.plant.plant import Plant
-from feeddrive.thermal.coupling import Changes
+from feeddrive.thermal.thermal_coupling import Changes
 
 LOAD, NUT_OIL, BEARING_OIL = 0, 1, 2
 """Rows of `feeddrive.thermal.laws.laws.Laws.factors`."""

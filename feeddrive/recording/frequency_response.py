@@ -87,7 +87,7 @@ def read_response(content: FileContent) -> FrequencyResponse:
     Raises:
         InputError: a column that is missing or has another unit, or as `FrequencyResponse`.
     """
-    text, said = decode(content)
+    text, remarks = decode(content)
     where = str(content.path)
     table = find_table(iter((text,)), Layout(), where).numbers(None)
     columns: dict[str, tuple[str, FloatArray]] = {}
@@ -118,7 +118,7 @@ def read_response(content: FileContent) -> FrequencyResponse:
         frequency.copy(),
         values,
         coherence.copy(),
-        (*said, *table.notes),
+        (*remarks, *table.notes),
         where,
         content.sha256,
     )

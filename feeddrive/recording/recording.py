@@ -27,7 +27,7 @@ class Recording:
         sample_time: mean distance of the samples [s].
         source: where it was read from; empty if it was simulated.
         sha256: checksum of the file as it was read; empty if there is none.
-        notes: what was found on reading and is said: quantisation, saturation, separator, clock drift.
+        notes: what was found on reading: quantisation, saturation, separator, clock drift.
         flaws: samples that are not what the machine did; bad and held ones are filled, clipped ones are not.
 
     Raises:

@@ -45,7 +45,7 @@ def correlation_section(diagnosis: Diagnosis) -> str:
     known = diagnosis.correlation
     if known is None:
         return ""
-    warned = bullets(known.told) if known.told else paragraph("No two parameters are known only together.")
+    warned = bullets(known.remarks) if known.remarks else paragraph("No two parameters are known only together.")
     condition = paragraph(f"Condition number of what was fitted: {significant(known.condition, 2)}.")
     note = (
         "Correlation of the errors of two parameters: near ±1 they can be changed together at hardly any cost, and "

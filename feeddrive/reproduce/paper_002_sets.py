@@ -20,9 +20,9 @@ import numpy as np
 from feeddrive.thermal.full.full_model import NUT, discretise, model_of
 from feeddrive.thermal.full.grid import Cells
 from feeddrive.thermal.full.moving import moving_system
-from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.laws.films import Films
 from feeddrive.thermal.laws.friction import Friction, nut_load_torque
+from feeddrive.thermal.machine_heat import Heat
 from feeddrive.thermal.reduced.reduction import compressed_basis
 from feeddrive.thermal.rig import Nut, Rig, Seat, Steel, Travel
 from feeddrive.typing import FloatArray

@@ -1,4 +1,4 @@
-"""Keys of a mapping file; `feeddrive.recording.files.mapping` reads them."""
+"""Keys of a mapping file; `feeddrive.recording.files.channel_mapping` reads them."""
 
 from __future__ import annotations
 

@@ -22,7 +22,6 @@ from feeddrive.plant.analysis.linear import INPUTS
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade, FeedForward
 from feeddrive.servo.cascade_function import REFERENCES
-from feeddrive.servo.frequency_response import UNITS, Case, Response, grid, refuse_no_range, refuse_unknown
 from feeddrive.servo.linear_loop import (
     closed_loop,
     closed_velocity_loop,
@@ -31,6 +30,7 @@ from feeddrive.servo.linear_loop import (
     worst_eigenvalue,
 )
 from feeddrive.servo.margins import GROWTH, Margins, frequency_response, margins
+from feeddrive.servo.mechanics_response import UNITS, Case, Response, grid, refuse_no_range, refuse_unknown
 from feeddrive.typing import FloatArray
 
 _LOOP_UNITS = UNITS | {

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade
-from feeddrive.servo.frequency_response import Case, Response, mechanics
 from feeddrive.servo.loop_response import (
     ClosedFigures,
     Loop,
@@ -17,6 +16,7 @@ from feeddrive.servo.loop_response import (
     open_response,
 )
 from feeddrive.servo.margins import Margins
+from feeddrive.servo.mechanics_response import Case, Response, mechanics
 from feeddrive.servo.resonances import Extremum, extrema
 
 
@@ -58,7 +58,7 @@ def mechanics_family(plant: Plant, given: str, output: str, cases: Sequence[Case
     """The mechanics in every case, between two frequencies [Hz].
 
     Raises:
-        InputError: as `servo.frequency_response.mechanics`.
+        InputError: as `servo.mechanics_response.mechanics`.
     """
     responses = [mechanics(plant, given, output, case, low, high) for case in cases]
     return Family("mechanics", f"{_words(output)} over {_words(given)}", _curves(cases, responses))

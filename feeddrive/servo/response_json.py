@@ -6,8 +6,8 @@ import math
 from dataclasses import asdict
 from typing import Any
 
-from feeddrive.servo.frequency_response import decibel, degrees
 from feeddrive.servo.margins import Margins
+from feeddrive.servo.mechanics_response import decibel, degrees
 from feeddrive.servo.resonances import Resonance, on_curve
 from feeddrive.servo.response_family import Curve, Family
 from feeddrive.typing import ComplexArray, FloatArray

@@ -7,9 +7,11 @@ from dataclasses import dataclass
 from feeddrive.thermal.full.full_model import FRONT, NUT, REAR, SHAFT, growth_name
 
 CHANNELS = {
-    NUT: "nut_temperature", FRONT: "front_bearing_temperature", REAR: "rear_bearing_temperature",
+    NUT: "nut_temperature",
+    FRONT: "front_bearing_temperature",
+    REAR: "rear_bearing_temperature",
     SHAFT: "shaft_travel_temperature",
-}  # fmt: skip
+}
 """Outputs and their names in recordings where no sensor is declared; "growth_200mm" is "table_growth_200mm"."""
 
 THERMOMETER, SCALE = "thermometer", "scale"

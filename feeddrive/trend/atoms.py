@@ -19,7 +19,7 @@ from feeddrive.typing import FloatArray
 JUMP, SLOPE, SETTLING, ODD = "jump", "slope", "settling", "odd"
 
 FEWEST_AFTER = 2
-"""Recordings that a jump or a slope needs on either side: one alone cannot be told from an odd recording."""
+"""Recordings that a jump or a slope needs on either side: one alone cannot be distinguished from an odd recording."""
 
 POWERS = (1.0, 1.5, 2.0)
 """How slopes rise: wear is even, but what it moves is seldom linear in it (compliance goes with 1 / stiffness), and a

@@ -20,18 +20,18 @@ from scipy.optimize import minimize, minimize_scalar
 from scipy.special import logsumexp
 
 from feeddrive.trend.atoms import JUMP, ODD, SETTLING, SLOPE, Atom
-from feeddrive.trend.evidence import Series
+from feeddrive.trend.series_evidence import Series
 from feeddrive.typing import FloatArray
 
 ASSERTED = 100.0
-"""Odds from which a change is told: at most one false one in a hundred watches, see above."""
+"""Odds from which a change is reported: at most one false one in a hundred watches, see above."""
 
 KINDS = (JUMP, SLOPE, SETTLING, ODD)
 FEWEST = 8
 """Recordings from which changes are looked for: two before, two after, and a scatter known to a third."""
 
 MOST = 12
-"""Courses of one series at most; a machine on which more happened is told by its graph."""
+"""Courses of one series at most; a machine on which more happened is shown by its graph."""
 
 AHEAD = 2
 """Courses that are added beyond the likeliest set before growing ends: a loss and a jump back pay together only."""

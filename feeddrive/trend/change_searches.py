@@ -19,11 +19,17 @@ from feeddrive.trend.watch import Options, Trend
 
 
 def searched_events(
-    plant: Plant, trend: Trend, kept: Checkpoint, folder: Path, own: Path, options: Options, said: Callable[[str], None]
+    plant: Plant,
+    trend: Trend,
+    kept: Checkpoint,
+    folder: Path,
+    own: Path,
+    options: Options,
+    progress: Callable[[str], None],
 ) -> tuple[dict[int, str], Checkpoint]:
     """What the full search says at each event, by its number, and the checkpoint that remembers it.
 
-    A recording that is no longer there, or that the search refuses, is told in place of an answer.
+    A recording that is no longer there, or that the search refuses, is named in place of an answer.
     """
     found: dict[int, str] = {}
     there = {one.key: one for one in sources(folder, own) if isinstance(one, Source)}
@@ -33,13 +39,13 @@ def searched_events(
             continue
         name = f"{before.digest}+{after.digest}"
         if name not in kept.searched:
-            said(f"searching what changed between {before.key} and {after.key}")
+            progress(f"searching what changed between {before.key} and {after.key}")
             try:
-                told = _told(plant, *(_read(one, there, options) for one in (before, after)))
+                answer = _answer(plant, *(_read(one, there, options) for one in (before, after)))
             except InputError as error:
                 found[number] = f"not searched: {error}"
                 continue
-            kept = replace(kept, searched={**kept.searched, name: told})
+            kept = replace(kept, searched={**kept.searched, name: answer})
         found[number] = kept.searched[name]
     return found, kept
 
@@ -68,7 +74,7 @@ def _read(entry: Entry, there: dict[str, Source], options: Options) -> Recording
     return replace(found, name=entry.key)
 
 
-def _told(plant: Plant, before: Recording, after: Recording) -> str:
+def _answer(plant: Plant, before: Recording, after: Recording) -> str:
     """What differs between two recordings, in the words of the search."""
     found, _ = diagnose(plant, [before, after])
     statements = [change.statement for change in found.changes.changes]

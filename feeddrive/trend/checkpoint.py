@@ -19,7 +19,7 @@ from feeddrive.trend.regressors import Grid, Pass
 from feeddrive.typing import FloatArray
 
 NAME = "watch.npz"
-FORMAT = "feeddrive-watch/1"
+FORMAT = "feeddrive-watch/2"
 
 USED, COPY, BROKEN, WAITING, UNDATED = "used", "copy", "broken", "waiting", "undated"
 """What becomes of a file; one that waits is asked again the next time."""
@@ -33,7 +33,7 @@ class Entry:
         key: of its source.
         size, changed: as it was when it was read.
         status: see above.
-        told: why, or where its date stands.
+        reason: why, or where its date stands.
         moment: when it was recorded, ISO; empty where it is not known.
         digest: of its samples.
         passes: of its channels.
@@ -44,7 +44,7 @@ class Entry:
     size: int
     changed: float
     status: str
-    told: str = ""
+    reason: str = ""
     moment: str = ""
     digest: str = ""
     passes: tuple[Pass, ...] = ()
@@ -59,7 +59,7 @@ class Checkpoint:
         plant: checksum of the plant and the options that the passes were taken with.
         grid: of the maps; None before the first recording.
         entries: by key.
-        searched: what full searches said, by the digests of their recordings.
+        searched: what full searches found, by the digests of their recordings.
     """
 
     plant: str
@@ -73,7 +73,7 @@ class Checkpoint:
 
 
 def load_checkpoint(folder: Path, plant: str) -> tuple[Checkpoint, str]:
-    """What was kept for this plant, and what is to be said where it is not used."""
+    """What was kept for this plant, and a remark where it is not used."""
     path = folder / NAME
     if not path.is_file():
         return Checkpoint(plant), ""
@@ -115,9 +115,12 @@ def save_checkpoint(folder: Path, kept: Checkpoint) -> None:
             at += len(packed)
         entries.append(plain)
     content = {
-        "format": FORMAT, "plant": kept.plant, "grid": asdict(kept.grid) if kept.grid else None, "entries": entries,
+        "format": FORMAT,
+        "plant": kept.plant,
+        "grid": asdict(kept.grid) if kept.grid else None,
+        "entries": entries,
         "searched": dict(kept.searched),
-    }  # fmt: skip
+    }
     index = np.frombuffer(json.dumps(content).encode(), dtype=np.uint8)
     file = io.BytesIO()
     np.savez(file, index=index, numbers=np.concatenate(parts) if parts else np.zeros(0))
@@ -133,5 +136,6 @@ def _pass(one: dict[str, Any], numbers: FloatArray) -> Pass:
     size, at = int(one["size"]), int(one["at"])
     triangle = np.zeros((size, size))
     triangle[np.triu_indices(size)] = numbers[at : at + size * (size + 1) // 2]
-    return Pass(one["channel"], triangle, one["first"], one["hats"], one["rows"], np.array(one["declared"]),
-                one["slow_force"])  # fmt: skip
+    return Pass(
+        one["channel"], triangle, one["first"], one["hats"], one["rows"], np.array(one["declared"]), one["slow_force"]
+    )

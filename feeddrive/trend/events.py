@@ -4,7 +4,7 @@ Growth seen from a scale alone: offset and slope of the table against the motor 
 
     growth(x, t) = o(t) + s(t) x,    fixed point: growth(x_f, end) = 0,  x_f = -o_end / s_end
 
-Without an absolute scale the offset is the zero of a scale and says nothing; the slope alone is told then.
+Without an absolute scale the offset is the zero of a scale and says nothing; the slope alone is reported then.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from scipy.special import logsumexp
 
 from feeddrive.trend.atoms import JUMP, ODD, SETTLING, SLOPE
 from feeddrive.trend.change_points import ASSERTED, Course, Found, most_likely
-from feeddrive.trend.quantities import Quantity
+from feeddrive.trend.watched_quantities import Quantity
 from feeddrive.typing import FloatArray
 
 
@@ -52,8 +52,8 @@ class Event:
 def events_of(changes: Sequence[Change]) -> tuple[Event, ...]:
     """Group changes of a kind whose dates may be the same, by date; odd recordings are no events."""
     groups: list[list[Change]] = []
-    told = [one for one in changes if one.found.atom.kind != ODD]
-    for one in sorted(told, key=lambda change: change.found.dates[1] - change.found.dates[0]):
+    reported = [one for one in changes if one.found.atom.kind != ODD]
+    for one in sorted(reported, key=lambda change: change.found.dates[1] - change.found.dates[0]):
         group = next((group for group in groups if _together(group[0].found, one.found)), None)
         if group is None:
             groups.append([one])
@@ -63,7 +63,7 @@ def events_of(changes: Sequence[Change]) -> tuple[Event, ...]:
 
 
 def _together(one: Found, other: Found) -> bool:
-    """Whether two changes of a kind (slow or sudden) may have begun together: two are told at odds of 100 as well.
+    """Whether two changes of a kind (slow or sudden) may have begun together: two are reported at odds of 100 as well.
 
     Odds of one date against two: sum over d of p(d) q(d), times the dates that a second event could have.
     """

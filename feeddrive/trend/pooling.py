@@ -25,7 +25,7 @@ INFLATION = 30.0
 stroke. Sets how a prior weighs against rows, no result."""
 
 SHOWN = 0.5
-"""Share of the prior's width below which a term is told by a recording: its rows say more than the prior does."""
+"""Share of the prior's width below which a term is known by a recording: its rows say more than the prior does."""
 
 SCALES = 1.0
 """Width of the prior of the share by which a recording's friction map is another one than the usual: from none to

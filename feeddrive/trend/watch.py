@@ -32,13 +32,13 @@ from feeddrive.trend.checkpoint import (
     save_checkpoint,
 )
 from feeddrive.trend.events import Change, Event, Growth, events_of, growth_of
-from feeddrive.trend.evidence import Series, Timeline
 from feeddrive.trend.folder import UNFINISHED, Source, opened, sources
 from feeddrive.trend.limits import Limit, limit_of
 from feeddrive.trend.pooling import Pooled, pool
-from feeddrive.trend.quantities import Quantity, means_of, prior_widths, quantities_of
 from feeddrive.trend.regressors import TERMS, grid_for, linear_pass
+from feeddrive.trend.series_evidence import Series, Timeline
 from feeddrive.trend.stamps import stamp_of
+from feeddrive.trend.watched_quantities import Quantity, means_of, prior_widths, quantities_of
 from feeddrive.typing import FloatArray
 
 SAVED_EVERY = 60.0
@@ -47,7 +47,7 @@ SAVED_EVERY = 60.0
 LONGEST_SEARCHED = 500
 """Values of a series that are searched at a time; more are averaged to so many, and dates are as coarse as that."""
 
-Said = Callable[[str], None]
+Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,7 @@ class Trend:
         odd: quantity and number of a recording that stands alone.
         growth: seen by a scale; None where nothing settles.
         pooled: maps and rests by channel.
-        notes: what is to be said.
+        notes: remarks.
         seconds: reading and passing the new files, and all of it.
         fresh: how many were new.
     """
@@ -119,7 +119,7 @@ class Trend:
 
 @one_thread()
 def follow(
-    plant: Plant, text: str, entries: Mapping[str, Any], folder: Path, out: Path, options: Options, said: Said
+    plant: Plant, text: str, entries: Mapping[str, Any], folder: Path, out: Path, options: Options, progress: Progress
 ) -> tuple[Trend, Checkpoint]:
     """Read what is new in a folder and say what all of it says.
 
@@ -130,7 +130,7 @@ def follow(
         folder: of recordings.
         out: where the checkpoint is kept.
         options: how the folder is to be understood.
-        said: told what is going on.
+        progress: called with a line that says what is going on.
 
     Raises:
         InputError: no folder, or no recording in it that can be used.
@@ -138,9 +138,9 @@ def follow(
     begun = time.monotonic()
     identity = _identity(text, options)
     kept, remark = load_checkpoint(out, identity)
-    kept, fresh, notes = _read_new(plant, folder, out, options, kept, said)
+    kept, fresh, notes = _read_new(plant, folder, out, options, kept, progress)
     reading = time.monotonic() - begun
-    said("comparing at equal positions")
+    progress("comparing at equal positions")
     trend = trend_of(plant, entries, options, kept, (remark, *notes))
     return replace(trend, seconds=(reading, time.monotonic() - begun), fresh=fresh), kept
 
@@ -152,7 +152,7 @@ def _identity(text: str, options: Options) -> str:
 
 
 def _read_new(
-    plant: Plant, folder: Path, out: Path, options: Options, kept: Checkpoint, said: Said
+    plant: Plant, folder: Path, out: Path, options: Options, kept: Checkpoint, progress: Progress
 ) -> tuple[Checkpoint, int, tuple[str, ...]]:
     """The checkpoint with what is new in the folder, and how much of it there was."""
     notes: list[str] = []
@@ -170,7 +170,7 @@ def _read_new(
     new = [one for key, one in there.items() if not _known(kept.entries.get(key), one)]
     saved = time.monotonic()
     for number, source in enumerate(new, 1):
-        said(f"reading {number} of {len(new)}: {source.key}")
+        progress(f"reading {number} of {len(new)}: {source.key}")
         kept = _with_source(plant, source, options, kept)
         if time.monotonic() - saved > SAVED_EVERY:
             save_checkpoint(out, kept)
@@ -190,8 +190,8 @@ def _known(entry: Entry | None, source: Source) -> bool:
 def _with_source(plant: Plant, source: Source, options: Options, kept: Checkpoint) -> Checkpoint:
     """The checkpoint with what one file says."""
 
-    def ended(status: str, told: str) -> Checkpoint:
-        return kept.with_entry(Entry(source.key, source.size, source.changed, status, told))
+    def ended(status: str, reason: str) -> Checkpoint:
+        return kept.with_entry(Entry(source.key, source.size, source.changed, status, reason))
 
     if Path(source.member or source.path.name).suffix.lower() in UNFINISHED:
         return ended(WAITING, "it is being written under this name")
@@ -221,8 +221,8 @@ def _with_source(plant: Plant, source: Source, options: Options, kept: Checkpoin
         if not means:
             return ended(BROKEN, str(error))
         passes = ()
-    moment, told = ("", "by name") if stamp is None else (stamp[0].isoformat(), stamp[1])
-    entry = Entry(source.key, source.size, source.changed, USED, told, moment, found.digest, passes, means)
+    moment, reason = ("", "by name") if stamp is None else (stamp[0].isoformat(), stamp[1])
+    entry = Entry(source.key, source.size, source.changed, USED, reason, moment, found.digest, passes, means)
     return replace(kept, grid=grid).with_entry(entry)
 
 
@@ -247,14 +247,14 @@ def trend_of(
         declared: entries of the plant file, for tolerances.
         options: how the folder is to be understood.
         kept: all passes.
-        notes: what is to be said beside.
+        notes: remarks beside.
 
     Raises:
         InputError: no recording can be used.
     """
     dated = _dated(kept, options)
     if not dated:
-        reasons = sorted({one.told for one in kept.entries.values()})
+        reasons = sorted({one.reason for one in kept.entries.values()})
         why = f"({reasons[0]})" if reasons else ""
         raise InputError(f"no recording can be used {why}", plant.name, "add recordings of the motion of this axis")
     begin = dated[0][0]
@@ -294,15 +294,13 @@ def _searched(
     for quantity in watched:
         here = np.flatnonzero(np.isfinite(quantity.values))
         times, values = days[here], quantity.values[here]
-        apart = np.concatenate([[True], np.diff(times) > 0])  # two of the same moment cannot be told in time
+        apart = np.concatenate([[True], np.diff(times) > 0])  # two of the same moment cannot be ordered in time
         here, times, values = here[apart], times[apart], values[apart]
         if len(times) < 3 or not np.ptp(values) > 0:
             continue
         course = _course(times, values, quantity.variance[here], len(watched), lines)
         courses[quantity.name] = course
-        limit = limit_of(
-            replace(quantity, values=values), course, times, options.limits or {}, declared, len(watched)
-        )  # fmt: skip
+        limit = limit_of(replace(quantity, values=values), course, times, options.limits or {}, declared, len(watched))
         if limit is not None:
             limits[quantity.name] = limit
         for found in course.found:
@@ -325,31 +323,38 @@ def _course(
     found = course_of(Series(line, y), watched)
     fitted, band = np.interp(times, t, found.fitted), np.interp(times, t, found.band)
     return Course(
-        (middle + size * found.level[0], size * found.level[1]), size * found.scatter,
+        (middle + size * found.level[0], size * found.level[1]),
+        size * found.scatter,
         tuple(replace(one, size=size * one.size, deviation=size * one.deviation) for one in found.found),
-        middle + size * fitted, size * band,
-    )  # fmt: skip
+        middle + size * fitted,
+        size * band,
+    )
 
 
 def _averaged(t: FloatArray, y: FloatArray, v: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Neighbours averaged to as many values as are searched at a time, each dated as its first."""
     groups = np.array_split(np.arange(len(t)), LONGEST_SEARCHED)
     return (
-        np.array([t[group[0]] for group in groups]), np.array([np.mean(y[group]) for group in groups]),
+        np.array([t[group[0]] for group in groups]),
+        np.array([np.mean(y[group]) for group in groups]),
         np.array([np.mean(v[group]) for group in groups]),
-    )  # fmt: skip
+    )
 
 
 def _remarks(quantities: tuple[Quantity, ...], options: Options, days: FloatArray) -> list[str]:
-    """What is to be said of what is shown."""
+    """Remarks on what is shown."""
     names = {one.name: one for one in quantities}
     found = []
     if "slope" in names and not options.absolute:
-        found.append("The zero of the scale is taken to be free: an offset that moves is not called growth. "
-                     "Say --absolute where scale and motor keep their zeros.")  # fmt: skip
+        found.append(
+            "The zero of the scale is taken to be free: an offset that moves is not called growth. "
+            "Say --absolute where scale and motor keep their zeros."
+        )
     if "offset" in names and np.nanstd(np.diff(names["offset"].values)) > 1e-3:
-        found.append("The table's zero against the motor scatters by more than 1 mm from recording to recording: "
-                     "the motor's zero is not kept, and growth cannot be told from it.")  # fmt: skip
+        found.append(
+            "The table's zero against the motor scatters by more than 1 mm from recording to recording: "
+            "the motor's zero is not kept, and growth cannot be told from it."
+        )
     if len(days) > 1 and np.any(np.diff(days) == 0):
         found.append("Some recordings have the same date and time; the first of each is followed.")
     if len(days) > LONGEST_SEARCHED:

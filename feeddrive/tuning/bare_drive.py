@@ -25,7 +25,7 @@ def bare_drive(
         current_bandwidth: -3 dB of the current loop [Hz].
         dead_time: of the torque [s].
         feedback: what the position loop reads, in place of the above.
-        where: what is told where the rates do not fit.
+        where: what the error names where the rates do not fit.
 
     Raises:
         InputError: rates that do not fit.

@@ -13,7 +13,7 @@ from feeddrive.errors import InputError
 from feeddrive.plant.analysis.linear import MOVING
 from feeddrive.plant.analysis.rest import ports_without_presliding
 from feeddrive.plant.plant import Plant
-from feeddrive.servo.frequency_response import Case, Friction
+from feeddrive.servo.mechanics_response import Case, Friction
 
 PHASE, GAIN = 45.0, 8.0
 """Usual margins of automatic tuning in drives: 45 degrees and 8 dB."""
@@ -45,8 +45,11 @@ class Demand:
             what = f"a phase margin of {self.phase:g}° is not between 0° and 90°"
             raise InputError(what, "--margin-phase", "usual are 45° to 60°")
         if not 0 < self.gain < 60:
-            raise InputError(f"a gain margin of {self.gain:g} dB is not between 0 dB and 60 dB", "--margin-gain",
-                             "usual are 6 dB to 12 dB")  # fmt: skip
+            raise InputError(
+                f"a gain margin of {self.gain:g} dB is not between 0 dB and 60 dB",
+                "--margin-gain",
+                "usual are 6 dB to 12 dB",
+            )
 
 
 def cases_of(
@@ -100,8 +103,11 @@ def refuse_off_stroke(plant: Plant, position: float) -> None:
     """
     if plant.stroke is not None and not plant.stroke[0] <= position <= plant.stroke[1]:
         low, high = (f"{1e3 * end:g} mm" for end in plant.stroke)
-        raise InputError(f"the table at {1e3 * position:g} mm is outside the stroke of {plant.name}", "--positions",
-                         f"choose from {low} to {high}")  # fmt: skip
+        raise InputError(
+            f"the table at {1e3 * position:g} mm is outside the stroke of {plant.name}",
+            "--positions",
+            f"choose from {low} to {high}",
+        )
     plant.chain.refuse_off_screw(position, "--positions")
 
 

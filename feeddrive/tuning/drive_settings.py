@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade
-from feeddrive.servo.frequency_response import Case
 from feeddrive.servo.margins import GROWTH
+from feeddrive.servo.mechanics_response import Case
 from feeddrive.tuning.demand import Demand
 from feeddrive.tuning.drive_forms.drive_file import Writer, drive_text, fits, writer_of
 from feeddrive.tuning.drive_forms.parameter import Facts, Line, LoopSettings
@@ -64,9 +64,9 @@ def drive_settings(plant: Plant, found: Recommendation, form: str) -> DriveSetti
     """
     writer, remarks = writer_of(form), []
     cases = [one.case for one in found.reached]
-    filters, said = as_low_passes(found.velocity.filters)
-    remarks += said
-    if said or not fits(filters, writer.limits):
+    filters, notes = as_low_passes(found.velocity.filters)
+    remarks += notes
+    if notes or not fits(filters, writer.limits):
         drive = replace(found.cascade, torque_filters=())
         found = recommend(plant, drive, cases, found.demand, writer.limits)
         filters = found.velocity.filters
@@ -86,20 +86,26 @@ def drive_settings(plant: Plant, found: Recommendation, form: str) -> DriveSetti
 
 def as_low_passes(filters: Sequence[FilterChoice]) -> tuple[tuple[FilterChoice, ...], list[str]]:
     """The filters, a notch wider than an octave as the low-pass that it is; and a sentence for each that was one."""
-    made, said = [], []
+    made, notes = [], []
     for one in filters:
         if one.kind == "notch" and is_low_pass(one.frequency, one.bandwidth):
-            said.append(f"a notch at {one.frequency:g} Hz that is {one.bandwidth:.4g} Hz wide is a low-pass, "
-                        "and is written as one")  # fmt: skip
+            notes.append(
+                f"a notch at {one.frequency:g} Hz that is {one.bandwidth:.4g} Hz wide is a low-pass, "
+                "and is written as one"
+            )
             one = FilterChoice("PT2", one.frequency, one.damping)
         made.append(one)
-    return tuple(made), said
+    return tuple(made), notes
 
 
 def _settled(
-    plant: Plant, found: Recommendation, filters: Sequence[FilterChoice], writer: Writer, facts: Facts,
+    plant: Plant,
+    found: Recommendation,
+    filters: Sequence[FilterChoice],
+    writer: Writer,
+    facts: Facts,
     cases: Sequence[Case],
-) -> tuple[list[Line], Cascade, tuple[Reached, ...]]:  # fmt: skip
+) -> tuple[list[Line], Cascade, tuple[Reached, ...]]:
     """Lines whose loop keeps the margins: of the recommendation, or slowed by a percent until it does."""
     whole, demand = found.cascade, found.demand
     loop = LoopSettings(whole.velocity_gain, whole.reset_time, whole.position_gain, tuple(filters))
@@ -114,8 +120,11 @@ def _settled(
         if not inner:
             loop = replace(loop, velocity_gain=_SLOWED * loop.velocity_gain, reset_time=loop.reset_time / _SLOWED)
         loop = replace(loop, position_gain=_SLOWED * loop.position_gain)
-    raise InputError(f"{writer.form.title} keeps {demand.phase:g}° and {demand.gain:g} dB in no way that was found",
-                     plant.name, "ask for less")  # fmt: skip
+    raise InputError(
+        f"{writer.form.title} keeps {demand.phase:g}° and {demand.gain:g} dB in no way that was found",
+        plant.name,
+        "ask for less",
+    )
 
 
 def _kept(reached: Sequence[Reached], demand: Demand) -> tuple[bool, bool]:

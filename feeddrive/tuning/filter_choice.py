@@ -65,7 +65,7 @@ class FilterLimits:
 
 
 NO_LIMITS = FilterLimits()
-"""Of a drive that is not known: three filters, notch or low-pass."""
+"""Filters of a drive that is not known: three filters, notch or low-pass."""
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,7 @@ class FilterChoice:
 
     @property
     def bandwidth(self) -> float:
-        """Of a notch, between its -3 dB points [Hz]."""
+        """Width of a notch between its -3 dB points [Hz]."""
         return 2 * self.damping * self.frequency
 
     @property

@@ -21,9 +21,9 @@ import numpy as np
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade, FeedForward
-from feeddrive.servo.frequency_response import Case, grid, transfer
 from feeddrive.servo.linear_loop import closed_loop
 from feeddrive.servo.margins import frequency_response
+from feeddrive.servo.mechanics_response import Case, grid, transfer
 from feeddrive.servo.resonances import Resonance, resonances
 from feeddrive.tuning.demand import Demand
 from feeddrive.tuning.largest_gain import GainLimit, Limit, largest_gain

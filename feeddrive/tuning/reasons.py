@@ -11,7 +11,7 @@ from feeddrive.plant.analysis.modes import braked_modes
 from feeddrive.plant.chain.moving_inertia import inertia_at_motor
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import KV_UNIT, Cascade
-from feeddrive.servo.frequency_response import Case, Friction
+from feeddrive.servo.mechanics_response import Case, Friction
 from feeddrive.tuning.filter_choice import FilterChoice
 from feeddrive.tuning.largest_gain import GainLimit, Limit
 from feeddrive.tuning.recommendation import Recommendation
@@ -22,9 +22,10 @@ _COMPLETE = 200.0
 
 
 _AT_REST = {
-    Friction.DECLARED: "at rest, held by its bristles", Friction.FREE: "at rest without friction",
+    Friction.DECLARED: "at rest, held by its bristles",
+    Friction.FREE: "at rest without friction",
     Friction.HELD: "at rest with the table held",
-}  # fmt: skip
+}
 
 
 @dataclass(frozen=True)
@@ -49,18 +50,23 @@ def settings(plant: Plant, found: Recommendation) -> tuple[Setting, ...]:
     cascade, demand = found.cascade, found.demand
     asked = f"{demand.phase:g}° and {demand.gain:g} dB in {_cases(len(found.reached))}"
     rows = [
-        Setting("velocity_gain", "K_p", f"{cascade.velocity_gain:.4g} N m s/rad",
-                f"most K_p/T_n that keeps {asked}; held back by {_held_back(found, found.velocity.limit)}"),
-        Setting("reset_time", "T_n", format_quantity(cascade.reset_time, "s"),
-                _why_reset(plant, found)),
+        Setting(
+            "velocity_gain",
+            "K_p",
+            f"{cascade.velocity_gain:.4g} N m s/rad",
+            f"most K_p/T_n that keeps {asked}; held back by {_held_back(found, found.velocity.limit)}",
+        ),
+        Setting("reset_time", "T_n", format_quantity(cascade.reset_time, "s"), _why_reset(plant, found)),
         *(_filter_setting(choice) for choice in found.velocity.filters),
-        Setting("position_gain", "K_v",
-                f"{_kv(cascade)} = {cascade.position_gain:.4g} 1/s",
-                _why_position(found)),
-        Setting("feed_forward", "k_s, k_a", "1, 1",
-                f"without it the table lags {format_quantity(1 / 6 / cascade.position_gain, 'm')} at 10 m/min; "
-                "changes no margin"),
-    ]  # fmt: skip
+        Setting("position_gain", "K_v", f"{_kv(cascade)} = {cascade.position_gain:.4g} 1/s", _why_position(found)),
+        Setting(
+            "feed_forward",
+            "k_s, k_a",
+            "1, 1",
+            f"without it the table lags {format_quantity(1 / 6 / cascade.position_gain, 'm')} at 10 m/min; "
+            "changes no margin",
+        ),
+    ]
     return tuple(rows)
 
 

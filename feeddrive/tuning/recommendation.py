@@ -17,9 +17,9 @@ from feeddrive.errors import InputError
 from feeddrive.plant.chain.moving_inertia import inertia_at_motor
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade, FeedForward
-from feeddrive.servo.frequency_response import Case
 from feeddrive.servo.linear_loop import open_position_loop, open_velocity_loop, worst_eigenvalue
 from feeddrive.servo.margins import GROWTH, Margins, margins
+from feeddrive.servo.mechanics_response import Case
 from feeddrive.tuning.demand import Demand
 from feeddrive.tuning.filter_choice import NO_LIMITS, FilterLimits
 from feeddrive.tuning.largest_gain import GainLimit
@@ -32,7 +32,7 @@ USABLE = 1.0
 _LOWERED, _SLOWED = 0.98, 0.99
 _TRIES = 12
 _POINTS = 4000
-"""Of the grid of margins; 5 times fewer than usual, and still 0.3 % of frequency apart."""
+"""Points of the frequency grid of margins; 5 times fewer than usual, and still 0.3 % of frequency apart."""
 
 
 @dataclass(frozen=True)
@@ -95,9 +95,12 @@ def recommend(
     found = velocity_gains(plant, bare, cases, demand, limits)
     reset = _rounded(found.reset_time)
     with_velocity = replace(
-        bare, velocity_gain=_rounded(found.gain), reset_time=reset, tracking_time=reset,
+        bare,
+        velocity_gain=_rounded(found.gain),
+        reset_time=reset,
+        tracking_time=reset,
         torque_filters=(*drive.torque_filters, *(choice.filter for choice in found.filters)),
-    )  # fmt: skip
+    )
     with_velocity = _lowered_velocity(plant, with_velocity, cases, demand)
     limit = position_gain(plant, with_velocity, cases, demand)
     if limit.gain < USABLE:
@@ -127,8 +130,9 @@ def _lowered_velocity(plant: Plant, cascade: Cascade, cases: Sequence[Case], dem
         if all(holds(one, demand) for one in every):
             return cascade
         reset = _rounded(cascade.reset_time / _SLOWED)
-        cascade = replace(cascade, velocity_gain=_rounded(_SLOWED * cascade.velocity_gain), reset_time=reset,
-                          tracking_time=reset)  # fmt: skip
+        cascade = replace(
+            cascade, velocity_gain=_rounded(_SLOWED * cascade.velocity_gain), reset_time=reset, tracking_time=reset
+        )
     raise _unmet(plant, demand, "velocity")
 
 

@@ -30,9 +30,9 @@ from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade
 from feeddrive.servo.filters import Filter
-from feeddrive.servo.frequency_response import Case, Friction, grid, transfer
 from feeddrive.servo.linear_loop import open_velocity_loop
 from feeddrive.servo.margins import frequency_response
+from feeddrive.servo.mechanics_response import Case, Friction, grid, transfer
 from feeddrive.servo.resonances import Kind, Resonance, resonances
 from feeddrive.tuning.demand import Demand
 from feeddrive.tuning.filter_choice import NO_LIMITS, FilterChoice, FilterLimits, low_pass, notches_about
@@ -40,7 +40,7 @@ from feeddrive.tuning.largest_gain import GainLimit, largest_gain
 from feeddrive.typing import ComplexArray, FloatArray
 
 LOWEST = 0.5
-"""Of the frequencies looked at [Hz]."""
+"""Lowest frequency looked at [Hz]."""
 
 WORTH = 1.2
 """Factor of integral gain that a further filter must bring: one that brings less costs K_v by its lag and asks to be
@@ -111,8 +111,11 @@ def velocity_gains(
     task = _task(plant, drive, cases, demand, limits)
     found = _best(task, (), _RESET_TIMES)
     if not found.gain:
-        raise InputError(f"no gain of the velocity loop keeps {demand.phase:g}° and {demand.gain:g} dB in every case",
-                         plant.name, _hint(task))  # fmt: skip
+        raise InputError(
+            f"no gain of the velocity loop keeps {demand.phase:g}° and {demand.gain:g} dB in every case",
+            plant.name,
+            _hint(task),
+        )
     while len(found.filters) < limits.most:
         better = _with_filter(task, found)
         if better is None:
@@ -148,7 +151,7 @@ def _best(task: _Task, filters: tuple[FilterChoice, ...], reset_times: FloatArra
 
 
 def _refined(task: _Task, found: VelocityGains) -> VelocityGains:
-    """The same filters, the reset time to half a percent."""
+    """Gains with the filters that were found and the reset time to half a percent."""
     for width in (0.2, 0.03):
         times = found.reset_time * np.geomspace(1 - width, 1 + width, 13)
         found = max(found, _best(task, found.filters, times), key=lambda one: one.integral)
@@ -191,9 +194,11 @@ def _offered(task: _Task, found: VelocityGains) -> list[FilterChoice]:
     """Filters about the resonance that limits, and a low-pass, as far as the drive has them."""
     spread, highest = _limiting_resonance(task, found), 0.4 / task.tick
     notches = [] if spread is None else notches_about(spread, task.limits)
-    passes = [] if any(choice.kind == "PT2" for choice in found.filters) else [
-        low_pass(factor * found.limit.frequency, task.limits) for factor in (0.7, 1.5, 3.0)
-    ]  # fmt: skip
+    passes = (
+        []
+        if any(choice.kind == "PT2" for choice in found.filters)
+        else [low_pass(factor * found.limit.frequency, task.limits) for factor in (0.7, 1.5, 3.0)]
+    )
     return [one for one in (*notches, *passes) if one is not None and one.frequency < highest]
 
 

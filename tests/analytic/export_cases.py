@@ -5,7 +5,7 @@ from __future__ import annotations
 from feeddrive.effects.base import Effect
 from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.files import plants_folder
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
 
 BENCH = read_plant(plants_folder() / "bench_axis.toml")

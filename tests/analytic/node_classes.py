@@ -20,7 +20,7 @@ import numpy as np
 
 from feeddrive.thermal.full.full_model import Discretisation
 from feeddrive.thermal.full.grid import Cylinder
-from feeddrive.thermal.reduced.model import Path
+from feeddrive.thermal.reduced.parametric_model import Path
 from feeddrive.typing import FloatArray, IntegerArray
 
 

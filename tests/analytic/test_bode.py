@@ -16,15 +16,15 @@ from feeddrive.errors import InputError
 from feeddrive.files import find_plant
 from feeddrive.metrology.recorded_response import recorded_response
 from feeddrive.plant.chain.chain import Rigid, ThreeInertias
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
 from feeddrive.recording.recording import Recording
 from feeddrive.servo.cascade import Cascade, Feedback
 from feeddrive.servo.filters import pt2
-from feeddrive.servo.frequency_response import Case, delay_of, mechanics
 from feeddrive.servo.linear_loop import closed_loop, open_velocity_loop
 from feeddrive.servo.loop_response import Loop, closed_figures, closed_response, controlled_response, open_response
 from feeddrive.servo.margins import frequency_response, margins
+from feeddrive.servo.mechanics_response import Case, delay_of, mechanics
 from feeddrive.servo.resonances import Kind, extrema, on_curve
 from feeddrive.servo.response_family import mechanics_family
 from feeddrive.simulate.controlled.controller_file import read_controller

@@ -20,7 +20,7 @@ from feeddrive.effects.chain.inertia_deviation import InertiaDeviation
 from feeddrive.effects.chain.payload import Payload
 from feeddrive.effects.timing.drive_delay import DriveDelay
 from feeddrive.files import plants_folder
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from tests.analytic.test_effects import NEUTRAL, PLACES
 from tests.analytic.test_thermal_effects import NEUTRAL as THERMAL_NEUTRAL
 

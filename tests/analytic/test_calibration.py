@@ -19,7 +19,7 @@ from feeddrive.effects.chain.payload import Payload
 from feeddrive.effects.friction.friction_deviation import FrictionDeviation
 from feeddrive.effects.source.constant_force import ConstantForce
 from feeddrive.files import plants_folder
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
 from tests.generator.drawn_drives import drawn_drive
 from tests.recovery.rigid_runs import MASS as RIGID_MASS

@@ -13,12 +13,12 @@ import pytest
 import feeddrive as fd
 from feeddrive.errors import InputError
 from feeddrive.files import plants_folder
-from feeddrive.parts.catalogue.reading import CataloguePart, catalogue
+from feeddrive.parts.catalogue.part_files import CataloguePart, catalogue
 from feeddrive.parts.guide.guide_rating import rated_friction
 from feeddrive.parts.values import check_values
 from feeddrive.plant.file.drive_sections import BEARING_VALUES, PART_VALUES
 from feeddrive.plant.file.entries import read_toml
-from feeddrive.plant.file.files import plant_from_entries
+from feeddrive.plant.file.plant_file import plant_from_entries
 from feeddrive.plant.file.ratings import RATINGS
 from feeddrive.units.quantity import parse
 

@@ -13,7 +13,7 @@ from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.effects.base import Effect, number
 from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.files import find_plant
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.typing import FloatArray
 
 ROWS = 400

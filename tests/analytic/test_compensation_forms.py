@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from feeddrive.compensation.applied import AxisLimits, motor_setpoint, ramped
-from feeddrive.compensation.forms.catalogue import FORMS, HEAT, as_held, control
+from feeddrive.compensation.forms.all_forms import FORMS, HEAT, as_held, control
 from feeddrive.compensation.forms.control import checked_axis
 from feeddrive.compensation.table import CompensationTable, Deviations, fitted, grid, measured
 from feeddrive.errors import InputError

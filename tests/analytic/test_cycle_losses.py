@@ -9,7 +9,7 @@ import pytest
 
 from feeddrive.effects.base import Effect
 from feeddrive.effects.catalogue import EFFECTS
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade_function import cascade_controller
 from feeddrive.simulate.controlled.controlled import ControlledRun, TorqueLoop, resting_state, simulate_controlled

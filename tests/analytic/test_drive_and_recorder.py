@@ -28,7 +28,7 @@ from feeddrive.files import find_scenario_file, plants_folder
 from feeddrive.plant.analysis.linear import linear_matrices, steady_motion
 from feeddrive.plant.chain.chain import CHAINS
 from feeddrive.plant.file.effect_text import plant_text_with_effects
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.motor_torque import acting_torques, asked_torques
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording

@@ -19,7 +19,7 @@ from feeddrive.files import plants_folder
 from feeddrive.plant.analysis.linear import ode, ode_parameters, state_names
 from feeddrive.plant.analysis.stiffness_budget import stiffness_budget
 from feeddrive.plant.equations import friction_force, parameter_symbols, parameter_values
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
 
 BENCH = read_plant(plants_folder() / "bench_axis.toml")

@@ -18,10 +18,10 @@ from feeddrive.effects.base import Value
 from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.export.c_source import source_text
 from feeddrive.export.casadi_file import casadi_function
-from feeddrive.export.model import Model, model_of
+from feeddrive.export.exported_plant import Form, write_export
+from feeddrive.export.nonlinear_model import Model, model_of
 from feeddrive.export.notes import changes_with_time, left_out
 from feeddrive.export.point import Point
-from feeddrive.export.writing import Form, write_export
 from feeddrive.plant.analysis.linear import ode_parameters, state_space, timed_ode
 from feeddrive.plant.plant import Plant
 from tests.analytic.export_cases import BENCH, EMPS, LEAD_ERROR, MANY, PLANTS, TESTBED

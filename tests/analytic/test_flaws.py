@@ -14,7 +14,7 @@ from feeddrive.diagnosis.preparation import prepared
 from feeddrive.diagnosis.suspicion.flawed_rows import refuse_little_left, sound_rows, without_copied_position
 from feeddrive.errors import InputError
 from feeddrive.files import plants_folder
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.recording import Recording, read_recording, write_recording
 from feeddrive.recording.checks.copies import is_copy
 from feeddrive.recording.checks.find_flaws import find_flaws

@@ -21,7 +21,7 @@ from feeddrive.parts.guide.guide_carriage import table_friction
 from feeddrive.parts.guide.guide_coefficients import SET_A, SET_B
 from feeddrive.parts.guide.guide_geometry import HSR_20R, HSR_30R
 from feeddrive.plant.equations import friction_force, parameter_symbols, parameter_values
-from feeddrive.plant.file.files import plant_text_with_effects, read_plant
+from feeddrive.plant.file.plant_file import plant_text_with_effects, read_plant
 from feeddrive.plant.plant import Plant
 
 BENCH = plants_folder() / "bench_axis.toml"

@@ -26,7 +26,7 @@ from feeddrive.plant.analysis.linear import (
 from feeddrive.plant.analysis.modes import braked_modes, free_modes
 from feeddrive.plant.analysis.summary import summarise
 from feeddrive.plant.chain.chain import Rigid, ThreeInertias
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
 
 BENCH = read_plant(plants_folder() / "bench_axis.toml")

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from feeddrive.files import find_plant, scenarios_folder
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.servo.linear_loop import open_velocity_loop
 from feeddrive.servo.margins import frequency_response, margins
 from feeddrive.simulate.controlled.controller_file import read_controller

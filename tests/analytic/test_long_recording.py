@@ -15,8 +15,8 @@ from feeddrive.recording.checks.flaws import BAD, JOINED, flaw
 from feeddrive.recording.long import joined
 from feeddrive.recording.long.stretches import informative_windows
 from feeddrive.trend.pooling import pool
-from feeddrive.trend.quantities import prior_widths
 from feeddrive.trend.regressors import TRAVEL, grid_for, linear_pass
+from feeddrive.trend.watched_quantities import prior_widths
 from tests.recovery import trend_machine as machine
 
 RADIUS = machine.LEAD / (2 * math.pi)

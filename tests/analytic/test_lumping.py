@@ -18,7 +18,7 @@ from feeddrive.plant.analysis.modes import braked_modes, free_modes
 from feeddrive.plant.analysis.steady import steady_motion
 from feeddrive.plant.chain.chain import ThreeInertias
 from feeddrive.plant.chain.moving_inertia import inertia_at_motor
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
 from tests.generator.drawn_drives import drawn_drive
 from tests.generator.screw_elements import Drive, at_nut, chains, drive_of, frequencies, matrices

@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from feeddrive.diagnosis.heat.evidence import GAIN_ERROR, MODEL_ERROR, HeatEvidence, prepare_heat
+from feeddrive.diagnosis.heat.heat_evidence import GAIN_ERROR, MODEL_ERROR, HeatEvidence, prepare_heat
 from feeddrive.diagnosis.likelihood.cross_validation import gain_of_model_error, model_error_rows
 from feeddrive.files import plants_folder
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.recording import Recording
 
 PLANT = read_plant(plants_folder() / "thermal_bench.toml").heat

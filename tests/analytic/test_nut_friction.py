@@ -19,7 +19,7 @@ from feeddrive.errors import InputError
 from feeddrive.files import plants_folder
 from feeddrive.parts.screw.screw_friction import ScrewFriction, ScrewGeometry
 from feeddrive.plant.equations import effect_forces, parameter_symbols, parameter_values
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
 from feeddrive.simulate.held_torque import simulate_torque
 

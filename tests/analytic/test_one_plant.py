@@ -12,7 +12,7 @@ from feeddrive.errors import InputError
 from feeddrive.files import find_plant
 from feeddrive.plant.analysis.lumping import lump
 from feeddrive.plant.analysis.plausibility import check_plant
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.structure import structure_key
 from feeddrive.plant.symbols import parameter_names
 

@@ -17,7 +17,7 @@ from feeddrive.effects.base import Effect, FrictionEffect, Motion, Port, Value, 
 from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.errors import InputError
 from feeddrive.files import plants_folder, shipped_plants
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.friction_law import friction_force, friction_level
 from feeddrive.plant.passive_friction import is_passive, least_friction, refuse_active_friction
 from feeddrive.plant.plant import Plant

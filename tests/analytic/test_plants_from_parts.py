@@ -23,7 +23,7 @@ from feeddrive.plant.analysis.screw_limits import buckling_force, critical_speed
 from feeddrive.plant.analysis.stiffness_budget import stiffness_budget
 from feeddrive.plant.analysis.summary import summarise
 from feeddrive.plant.composition import refuse_what_cannot_compose
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
 from tests.analytic.screw_fem import ScrewDrive, frequencies
 

@@ -12,7 +12,7 @@ from feeddrive.files import plants_folder
 from feeddrive.parts.life.life import life_together
 from feeddrive.parts.screw.double_nut import rigid_sharing
 from feeddrive.plant.analysis.rated_life import rated_life
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 
 HSR = (plants_folder() / "hsr_axis.toml").read_text(encoding="utf-8")
 PRELOAD, RATING, LEAD, SLOPE = 3600.0, 52e3, 0.016, 3.6

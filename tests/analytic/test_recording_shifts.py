@@ -20,7 +20,7 @@ from feeddrive.effects.friction.friction_deviation import FrictionDeviation
 from feeddrive.effects.source.torque_ripple import TorqueRipple
 from feeddrive.effects.transmission.backlash import Backlash
 from feeddrive.files import plants_folder
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
 
 

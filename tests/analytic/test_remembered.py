@@ -8,13 +8,13 @@ from dataclasses import replace
 import numpy as np
 
 from feeddrive.diagnosis.finding.remembered import LEAST, Remembered
-from feeddrive.diagnosis.heat.evidence import prepare_heat
-from feeddrive.diagnosis.heat.prediction import heat_predictor
+from feeddrive.diagnosis.heat.heat_evidence import prepare_heat
+from feeddrive.diagnosis.heat.heat_prediction import heat_predictor
 from feeddrive.diagnosis.likelihood.evidence import prepare
 from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
 from feeddrive.diagnosis.recordings.recordings import RecordingPredictor
 from feeddrive.files import plants_folder
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.recording import Recording
 from feeddrive.typing import FloatArray
 

@@ -11,7 +11,7 @@ import feeddrive as fd
 from feeddrive.compensation.actions import Actions, actions, recorded_stroke, values_to_set
 from feeddrive.compensation.compensate import Prediction, Wishes, plant_table
 from feeddrive.compensation.cures import CURES, ORDER, cure, in_order
-from feeddrive.compensation.prediction import Figures
+from feeddrive.compensation.predicted_accuracy import Figures
 from feeddrive.diagnosis.judging.result import Diagnosis, EffectResult, ParameterResult
 from feeddrive.effects.catalogue import EFFECTS, THERMAL_EFFECTS
 from feeddrive.interface.benching import bench_of_diagnosis

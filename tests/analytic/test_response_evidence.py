@@ -14,7 +14,7 @@ import feeddrive as fd
 from feeddrive.diagnosis.responses.response_result import ResponseResult, diagnose_response
 from feeddrive.interface.axis import axis_of_text
 from feeddrive.recording.frequency_response import FrequencyResponse, write_response
-from feeddrive.servo.frequency_response import Case
+from feeddrive.servo.mechanics_response import Case
 from feeddrive.typing import ComplexArray, FloatArray
 
 ROOT = Path(__file__).parents[2]

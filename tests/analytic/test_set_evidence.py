@@ -15,7 +15,7 @@ from feeddrive.diagnosis.finding.sets import Neighbour, neighbours, odds_of_memb
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, linear_step
 from feeddrive.diagnosis.likelihood.set_evidence import log_odds, log_prior_of_size, log_volume
-from feeddrive.diagnosis.numbers.rows import MeasuredRows
+from feeddrive.diagnosis.numbers.number_rows import MeasuredRows
 from feeddrive.effects.base import Effect
 from feeddrive.effects.chain.payload import Payload
 from feeddrive.effects.source.constant_force import ConstantForce

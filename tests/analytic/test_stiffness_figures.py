@@ -10,7 +10,7 @@ import pytest
 from feeddrive.errors import InputError
 from feeddrive.files import plants_folder
 from feeddrive.parts.combined_stiffness import combined_stiffness, stiffness_along
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.report.figures.drawing import ReportFigure, render
 from feeddrive.report.figures.figure_stiffness import participation_figure, stiffness_position_figure
 from tests.analytic.stiffness_cases import AT_NUT, paper_drive

@@ -19,7 +19,7 @@ from feeddrive.effects.friction.presliding import Presliding
 from feeddrive.export.c_source import source_text
 from feeddrive.export.casadi_file import casadi_function
 from feeddrive.export.fmu_description import description_text
-from feeddrive.export.model import model_of
+from feeddrive.export.nonlinear_model import model_of
 from feeddrive.export.notes import changes_with_time
 from feeddrive.export.point import export_point
 from feeddrive.files import shipped_scenarios

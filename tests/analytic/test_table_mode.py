@@ -17,7 +17,7 @@ from feeddrive.plant.analysis.modes import braked_modes, free_modes
 from feeddrive.plant.analysis.summary import summarise
 from feeddrive.plant.chain.chain import Rigid, ThreeInertias
 from feeddrive.plant.file.effect_text import plant_text_with_effects
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
 from feeddrive.simulate.driven import motor_motion, simulate_driven
 from tests.analytic.test_energy import free_run

@@ -17,7 +17,7 @@ from feeddrive.errors import InputError
 from feeddrive.files import plants_folder
 from feeddrive.plant.analysis.linear import ode, ode_parameters, state_names
 from feeddrive.plant.file.effect_text import plant_text_with_effects
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 
 BENCH = read_plant(plants_folder() / "bench_axis.toml")
 FORCE = TabulatedForce.of(place="position", position=(0.1, 0.2, 0.4), force=(1.0, 5.0, -3.0))

@@ -13,14 +13,14 @@ from feeddrive.errors import InputError
 from feeddrive.files import find_plant
 from feeddrive.parts.bearings.bearing_friction import viscous_torque
 from feeddrive.parts.lubricant import Lubricant
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.warmed import warmed
 from feeddrive.servo.cascade_function import cascade_controller
 from feeddrive.simulate.controlled.controlled import ControlledRun, TorqueLoop, resting_state, simulate_controlled
 from feeddrive.simulate.scenario.cycle_losses import CycleLosses, cycle_losses
-from feeddrive.thermal.coupling import Changes, Coupling, Temperatures, viscous_share
 from feeddrive.thermal.laws.nut_preload import Spacer
+from feeddrive.thermal.thermal_coupling import Changes, Coupling, Temperatures, viscous_share
 from tests.analytic.warm_cases import COUPLING, PLANT_FILE, THERMAL, short_cycle
 
 PITCH, PRELOAD, STEEL = 0.0335, 2200.0, 11.7e-6

@@ -12,13 +12,13 @@ import pytest
 from feeddrive.diagnosis.judging.physical_reading import READINGS
 from feeddrive.effects.base import Parameter
 from feeddrive.effects.catalogue import EFFECTS, THERMAL_EFFECTS
-from feeddrive.effects.heat.base import Operation, ThermalEffect
 from feeddrive.effects.heat.bearing_heat import reference_torque
+from feeddrive.effects.heat.thermal_effect import Operation, ThermalEffect
 from feeddrive.errors import InputError
 from feeddrive.files import plants_folder
-from feeddrive.plant.file.files import plant_text_with_effects, read_plant
+from feeddrive.plant.file.plant_file import plant_text_with_effects, read_plant
 from feeddrive.thermal.laws.friction import Friction
-from feeddrive.thermal.reduced.model import HeatModel
+from feeddrive.thermal.reduced.parametric_model import HeatModel
 from feeddrive.thermal.reduced.reduction import reduce_model
 from feeddrive.thermal.run.warm_up import declared_rows, lagging, simulate
 from tests.analytic.thermal_cases import BENCH, RPM, with_effects

@@ -15,8 +15,8 @@ from feeddrive.compiler import find_compiler
 from feeddrive.effects.catalogue import THERMAL_EFFECTS
 from feeddrive.errors import InputError
 from feeddrive.interface.axis import load
-from feeddrive.thermal.equations import heat_equations, linear_heat
-from feeddrive.thermal.reduced.model import HeatModel
+from feeddrive.thermal.heat_equations import heat_equations, linear_heat
+from feeddrive.thermal.reduced.parametric_model import HeatModel
 from feeddrive.thermal.reduced.reduction import reduce_model
 from feeddrive.thermal.run.warm_up import simulate
 from tests.analytic.thermal_cases import BENCH, RPM, with_effects

@@ -18,7 +18,7 @@ from feeddrive.thermal.full.explicit import places_of, run_explicitly, stability
 from feeddrive.thermal.full.full_model import Discretisation, discretise, full_model, model_of
 from feeddrive.thermal.full.grid import Cells, cylinder
 from feeddrive.thermal.full.occupancy import cell_edges, overlap
-from feeddrive.thermal.reduced.model import Path
+from feeddrive.thermal.reduced.parametric_model import Path
 from feeddrive.thermal.reduced.system import HeatSystem
 from feeddrive.thermal.rig import Body, Nut, Seat, Steel, Travel
 from tests.analytic.node_classes import node_classes, printed_rates, stability_by_class

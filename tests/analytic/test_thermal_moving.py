@@ -14,7 +14,7 @@ from feeddrive.thermal.full.full_model import discretise, model_of
 from feeddrive.thermal.full.grid import Cells
 from feeddrive.thermal.full.moving import moving_system, ripple_number
 from feeddrive.thermal.full.moving_family import moving_family
-from feeddrive.thermal.reduced.model import Path
+from feeddrive.thermal.reduced.parametric_model import Path
 from feeddrive.thermal.reduced.reduction import Sizes, compressed_basis, reduced_system
 from feeddrive.thermal.reduced.system import HeatSystem
 from feeddrive.thermal.rig import Travel

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from feeddrive.errors import InputError, ValidityWarning
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.thermal.full.full_model import full_model
 from feeddrive.thermal.full.occupancy import cell_edges
 from feeddrive.thermal.laws.expansion import FIXED_FREE, Supports, expansion, fixed_fixed, fixed_supported

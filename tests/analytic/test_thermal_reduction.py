@@ -8,8 +8,8 @@ import pytest
 from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.thermal.full.full_model import full_model
 from feeddrive.thermal.full.grid import Cells
-from feeddrive.thermal.reduced.model import HeatModel, Path
 from feeddrive.thermal.reduced.network import network
+from feeddrive.thermal.reduced.parametric_model import HeatModel, Path
 from feeddrive.thermal.reduced.reduction import Sizes, compressed, reduce_model, reduced_system
 from feeddrive.thermal.reduced.reduction_error import reduction_error
 from feeddrive.thermal.rig import Body, Travel

@@ -12,12 +12,12 @@ import scipy.linalg
 
 from feeddrive.effects.base import Effect, Value
 from feeddrive.effects.catalogue import THERMAL_EFFECTS
-from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.laws.laws import laws_of
-from feeddrive.thermal.reduced.model import HeatModel
-from feeddrive.thermal.reduced.propagators import propagator
+from feeddrive.thermal.machine_heat import Heat
+from feeddrive.thermal.reduced.heat_propagators import propagator
+from feeddrive.thermal.reduced.parametric_model import HeatModel
 from feeddrive.thermal.reduced.reduction import reduce_model
-from feeddrive.thermal.run.sensitivity import simulate_with_slopes
+from feeddrive.thermal.run.heat_sensitivity import simulate_with_slopes
 from feeddrive.thermal.run.warm_up import simulate
 from tests.analytic.test_thermal_effects import AMBIENT, NEUTRAL, PLACE, SPEEDS, STEP, STRONG
 from tests.analytic.thermal_cases import BENCH, with_effects

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from feeddrive.thermal.full.full_model import NUT
-from feeddrive.thermal.reduced.model import AMBIENT, Path
+from feeddrive.thermal.reduced.parametric_model import AMBIENT, Path
 from feeddrive.thermal.rig import Body
 from feeddrive.thermal.run.duty import Duty, constant_duty
-from feeddrive.thermal.run.ledger import with_ledger
+from feeddrive.thermal.run.energy_balance import with_ledger
 from feeddrive.thermal.run.study import study
 from feeddrive.thermal.run.warm_up import Rows, run
 from tests.analytic.thermal_cases import BENCH, QUICK, RPM

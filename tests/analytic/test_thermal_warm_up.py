@@ -11,7 +11,7 @@ import pytest
 
 from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.thermal.full.full_model import FRONT, NUT, full_model
-from feeddrive.thermal.reduced.model import HeatModel
+from feeddrive.thermal.reduced.parametric_model import HeatModel
 from feeddrive.thermal.reduced.reduction import reduce_model
 from feeddrive.thermal.run.warm_up import Rows, declared_rows, grouped, readings, run, simulate
 from feeddrive.typing import FloatArray

@@ -18,7 +18,7 @@ import pytest
 from feeddrive.errors import InputError
 from feeddrive.recording import read_recording
 from feeddrive.recording.files.opening import open_file
-from feeddrive.recording.traces.choosing import Wishes
+from feeddrive.recording.traces.channel_choice import Wishes
 from feeddrive.recording.traces.opened import Understood, read_trace, understand
 from feeddrive.recording.traces.trace import Signal, Trace
 from tests.analytic.trace_files import current, motion

@@ -12,7 +12,7 @@ from feeddrive.errors import InputError
 from feeddrive.recording import read_recording
 from feeddrive.recording.files.opening import open_file
 from feeddrive.recording.frequency_response import FrequencyResponse, write_response
-from feeddrive.recording.traces.choosing import Wishes
+from feeddrive.recording.traces.channel_choice import Wishes
 from feeddrive.recording.traces.opened import Understood, columns_of, read_trace, understand
 from feeddrive.recording.traces.trace import Signal, Trace
 from tests.analytic import trace_files as made

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from feeddrive.recording.files.opening import first_bytes, open_file
-from feeddrive.recording.traces.choosing import Wishes
+from feeddrive.recording.traces.channel_choice import Wishes
 from feeddrive.recording.traces.opened import Understood, could_be_trace, read_trace, understand
 from feeddrive.recording.traces.trace import Trace
 from tests.analytic import trace_files as made

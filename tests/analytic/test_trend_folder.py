@@ -94,7 +94,7 @@ def test_a_folder_as_it_comes(tmp_path: Path, axis: fd.Axis) -> None:
     }  # fmt: skip
     assert [str(found.trend.when(one)) for one in found.trend.days] == [f"2026-01-0{k} 00:00:00" for k in (1, 2, 3)]
     assert any("torn.zip" in note for note in found.trend.notes)
-    told = {one.key: one.told for one in found.trend.entries}
+    told = {one.key: one.reason for one in found.trend.entries}
     assert "spindle" in told["x_2026-01-05.csv"] and "--stamp" in told["x.csv"]
 
 

@@ -16,12 +16,12 @@ from feeddrive.errors import InputError
 from feeddrive.files import find_plant
 from feeddrive.plant.analysis.linear import linear_matrices
 from feeddrive.plant.chain.chain import Rigid
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade, Feedback
-from feeddrive.servo.frequency_response import Case, Friction
 from feeddrive.servo.linear_loop import open_position_loop, open_velocity_loop, worst_eigenvalue
 from feeddrive.servo.margins import margins
+from feeddrive.servo.mechanics_response import Case, Friction
 from feeddrive.simulate.controlled.controller_file import read_controller
 from feeddrive.tuning.demand import Demand, cases_of, operating_points
 from feeddrive.tuning.largest_gain import Limit, largest_gain

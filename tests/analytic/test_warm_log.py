@@ -15,9 +15,9 @@ from feeddrive.plant.analysis.steady import steady_motion
 from feeddrive.recording import Recording
 from feeddrive.simulate.uniform_motion import uniform_motion
 from feeddrive.simulate.warm.warm_log import friction_powers, warm_log
-from feeddrive.thermal.coupling import Temperatures
 from feeddrive.thermal.laws.friction import Friction
 from feeddrive.thermal.laws.laws import laws_of, values_of
+from feeddrive.thermal.thermal_coupling import Temperatures
 
 VALUES: dict[str, dict[str, float]] = {
     "backlash": {"width": 8e-6},

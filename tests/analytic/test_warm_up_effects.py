@@ -10,8 +10,8 @@ from feeddrive.effects.catalogue import THERMAL_EFFECTS
 from feeddrive.simulate.warm.warm_up_cycle import Cycle, ServoCycle
 from feeddrive.simulate.warm.warm_up_result import CLOSES
 from feeddrive.simulate.warm.warm_up_run import MacroSteps, run_warm_up
-from feeddrive.thermal.reduced.model import Path
-from feeddrive.thermal.run.ledger import with_ledger
+from feeddrive.thermal.reduced.parametric_model import Path
+from feeddrive.thermal.run.energy_balance import with_ledger
 from tests.analytic.warm_cases import short_cycle
 
 

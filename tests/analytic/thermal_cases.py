@@ -8,11 +8,11 @@ import numpy as np
 
 from feeddrive.effects.base import Effect
 from feeddrive.files import plants_folder
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.thermal.full.full_model import Discretisation, discretise
 from feeddrive.thermal.full.grid import Cells
-from feeddrive.thermal.heat import Heat
-from feeddrive.thermal.reduced.model import Path
+from feeddrive.thermal.machine_heat import Heat
+from feeddrive.thermal.reduced.parametric_model import Path
 
 BENCH_FILE = plants_folder() / "thermal_bench.toml"
 PLANT = read_plant(BENCH_FILE)

@@ -11,7 +11,7 @@ from feeddrive.compensation.heat.thermal_error import table_error
 from feeddrive.compensation.heat.thermal_open_loop import compensation_model
 from feeddrive.compensation.heat.thermal_trial import TriedMachine, random_duty, tried_machine
 from feeddrive.files import find_plant
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.thermal.full.full_model import full_model
 from feeddrive.thermal.full.grid import Cells
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from feeddrive.effects.base import Effect
 from feeddrive.files import find_plant, find_scenario_file
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
 from feeddrive.simulate.scenario.scenario import Scenario
 from feeddrive.simulate.scenario.scenario_file import read_scenario

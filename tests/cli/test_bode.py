@@ -11,7 +11,7 @@ import pytest
 from feeddrive.cli.main import main
 from feeddrive.files import find_plant, scenarios_folder
 from feeddrive.plant.analysis.linear import steady_motion
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.simulate.held_torque import simulate_torque
 
 OPEN = ["--loop", "open", "--scenario", "step_position"]

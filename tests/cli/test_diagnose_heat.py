@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 
 from feeddrive.cli.main import main
-from feeddrive.diagnosis.heat.evidence import prepare_heat
-from feeddrive.diagnosis.heat.prediction import heat_predictor
+from feeddrive.diagnosis.heat.heat_evidence import prepare_heat
+from feeddrive.diagnosis.heat.heat_prediction import heat_predictor
 from feeddrive.diagnosis.ledger.continued import earlier_run
 from feeddrive.files import plants_folder
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.recording import read_recording
 from feeddrive.thermal.run.warm_up import simulate
 

@@ -17,14 +17,14 @@ from feeddrive.compiler import find_compiler
 from feeddrive.export.c_source import header_text, source_text
 from feeddrive.export.fmu_description import description_text
 from feeddrive.export.linear_model import linear_model_of
-from feeddrive.export.model import model_of
+from feeddrive.export.nonlinear_model import model_of
 from feeddrive.export.point import Point
 from feeddrive.export.python_file import python_text
 from feeddrive.files import plants_folder
 from feeddrive.plant.file.entries import read_toml
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.report.pages.html import report_page
-from feeddrive.servo.frequency_response import Case
+from feeddrive.servo.mechanics_response import Case
 from feeddrive.simulate.controlled.controller_file import read_controller
 from feeddrive.tuning.demand import Demand
 from feeddrive.tuning.reasons import controller_text

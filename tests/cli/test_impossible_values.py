@@ -14,7 +14,7 @@ import pytest
 from feeddrive.cli.main import main
 from feeddrive.errors import InputError
 from feeddrive.files import plants_folder, shipped_plants
-from feeddrive.plant.file.files import plant_from_entries
+from feeddrive.plant.file.plant_file import plant_from_entries
 
 _QUANTITY = re.compile(r"[+-]?[\d.]+(?:[eE][+-]?\d+)?(?P<unit>\s*[A-Za-z°µ%].*)")
 _WORDS = ("source", "tolerance", "format", "name", "structure", "description", "kind", "carriage")

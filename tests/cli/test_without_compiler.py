@@ -15,7 +15,7 @@ from feeddrive.compiler import find_compiler
 from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.effects.chain.payload import Payload
 from feeddrive.files import plants_folder
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from tests.recovery.planted import pair
 from tests.recovery.test_refinement import PLANTED, case, controlled_plant
 

@@ -11,7 +11,7 @@ import pytest
 
 from feeddrive.errors import InputError
 from feeddrive.files import plants_folder
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import PositionVelocityController
 from feeddrive.recording import read_recording
 from feeddrive.simulate.controlled.declared_loop import DeclaredLoop, declared_loop

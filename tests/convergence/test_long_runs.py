@@ -13,7 +13,7 @@ from feeddrive.diagnosis.finding.search import search
 from feeddrive.diagnosis.preparation import prepared
 from feeddrive.effects.base import Effect
 from feeddrive.effects.transmission.backlash import Backlash
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.simulate import driven
 from feeddrive.simulate.driven import MotorMotion, motor_motion, simulate_driven
 from tests.convergence.test_simulate import SAMPLE, bench

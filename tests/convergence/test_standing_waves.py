@@ -16,9 +16,9 @@ from feeddrive.plant.analysis.modes import braked_modes, free_modes
 from feeddrive.plant.chain.drive_values import without_brake
 from feeddrive.plant.chain.resolution import ACCURACY, GOOD, resolved, resolved_modes
 from feeddrive.plant.chain.standing_waves import reach
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
-from feeddrive.servo.frequency_response import Case, mechanics
+from feeddrive.servo.mechanics_response import Case, mechanics
 from tests.generator.drawn_drives import drawn_drive
 from tests.generator.screw_elements import Drive, drive_of, frequencies, motor_response
 

@@ -10,7 +10,7 @@ import pytest
 
 import feeddrive as fd
 from feeddrive.cli.main import main
-from feeddrive.compensation.forms.catalogue import FORMS
+from feeddrive.compensation.forms.all_forms import FORMS
 from tests.analytic import compensation_readers as read
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "compensation.md").read_text(encoding="utf-8")

@@ -16,7 +16,7 @@ from scipy.io import savemat
 
 from feeddrive.diagnosis.preparation import prepared
 from feeddrive.files import plants_folder
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import read_recording
 from tests.fuzz.harness import Attempt

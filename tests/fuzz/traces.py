@@ -21,7 +21,7 @@ from feeddrive.cli.main import main
 from feeddrive.errors import InputError
 from feeddrive.recording import read_recording
 from feeddrive.recording.files.opening import open_file
-from feeddrive.recording.traces.choosing import Wishes
+from feeddrive.recording.traces.channel_choice import Wishes
 from feeddrive.recording.traces.opened import read_trace, understand
 from feeddrive.recording.traces.trace import Trace
 from tests.analytic import test_trace_containers as containers

@@ -51,26 +51,36 @@ class Mesh:
     half: float
 
 
-def _mesh(inner: float, outer: float, rings: int, length: float, cells: int) -> Mesh:
+def mesh(inner: float, outer: float, rings: int, length: float, cells: int, conductivity: float) -> Mesh:
+    """Volumes and links of a shaft or nut [m], [W/(m K)]."""
     faces = np.linspace(inner, outer, rings + 1)
     spacing, width = length / cells, (outer - inner) / rings
     area = math.pi * np.diff(faces**2)
-    across = CONDUCTIVITY * 2 * math.pi * faces[1:-1] * spacing / width
+    across = conductivity * 2 * math.pi * faces[1:-1] * spacing / width
     # A shaft that warms evenly has a parabola over its radius: there the mean of the last ring lies this deep.
     half = (outer**2 - faces[-2] ** 2) / (4 * outer) if inner == 0 else width / 2
-    return Mesh(CONDUCTIVITY * area / spacing, across, area * spacing, spacing, half)
+    return Mesh(conductivity * area / spacing, across, area * spacing, spacing, half)
 
 
-def mean_overlap(centres: int = 4000) -> np.ndarray:
-    """Mean length on which nut cells face shaft cells, the centre uniform on its travel, (nut, shaft) [m]."""
-    shaft = np.linspace(0, LENGTH, SHAFT_CELLS + 1)
-    nut = np.linspace(-NUT_LENGTH / 2, NUT_LENGTH / 2, NUT_CELLS + 1)
-    found = np.zeros((NUT_CELLS, SHAFT_CELLS))
-    for centre in LOW + (HIGH - LOW) * (np.arange(centres) + 0.5) / centres:
+def mean_overlap(shaft: np.ndarray, nut: np.ndarray, travel: tuple[float, float], centres: int = 4000) -> np.ndarray:
+    """Mean length on which nut cells face shaft cells, the centre uniform on its travel, (nut, shaft) [m].
+
+    Args:
+        shaft, nut: edges of the cells, those of the nut about its centre [m].
+        travel: lowest and highest place of the centre [m].
+        centres: places that are averaged.
+    """
+    found = np.zeros((len(nut) - 1, len(shaft) - 1))
+    for centre in travel[0] + (travel[1] - travel[0]) * (np.arange(centres) + 0.5) / centres:
         low = np.maximum(shaft[None, :-1], centre + nut[:-1, None])
         high = np.minimum(shaft[None, 1:], centre + nut[1:, None])
         found += np.clip(high - low, 0, None)
     return found / centres
+
+
+def _overlap() -> np.ndarray:
+    nut = np.linspace(-NUT_LENGTH / 2, NUT_LENGTH / 2, NUT_CELLS + 1)
+    return mean_overlap(np.linspace(0, LENGTH, SHAFT_CELLS + 1), nut, (LOW, HIGH))
 
 
 @numba.njit(cache=True)
@@ -140,9 +150,9 @@ def _advance(
 class Rig:
     """The declared rig, its mesh made once."""
 
-    shaft: Mesh = field(default_factory=lambda: _mesh(0.0, RADIUS, SHAFT_RINGS, LENGTH, SHAFT_CELLS))
-    nut: Mesh = field(default_factory=lambda: _mesh(RADIUS, NUT_RADIUS, NUT_RINGS, NUT_LENGTH, NUT_CELLS))
-    overlap: np.ndarray = field(default_factory=mean_overlap)
+    shaft: Mesh = field(default_factory=lambda: mesh(0.0, RADIUS, SHAFT_RINGS, LENGTH, SHAFT_CELLS, CONDUCTIVITY))
+    nut: Mesh = field(default_factory=lambda: mesh(RADIUS, NUT_RADIUS, NUT_RINGS, NUT_LENGTH, NUT_CELLS, CONDUCTIVITY))
+    overlap: np.ndarray = field(default_factory=_overlap)
 
 
 def torques(rpm: float) -> tuple[float, float]:

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tests.generator.thermal import Mesh, _advance
+from tests.generator.thermal import Mesh, _advance, mean_overlap, mesh
 from tests.generator.thermal_effects import CURVES, Planted
 
 RADIUS, LENGTH, NUT_RADIUS, NUT_LENGTH = 0.01675, 0.900, 0.032, 0.130
@@ -49,27 +49,6 @@ class Truth:
     def of(self, name: str, key: str, default: float = 0.0) -> float:
         """A planted value."""
         return float(self.planted.get(name, {}).get(key, default))
-
-
-def _mesh(inner: float, outer: float, rings: int, length: float, cells: int) -> Mesh:
-    faces, spacing, width = np.linspace(inner, outer, rings + 1), length / cells, (outer - inner) / rings
-    area = math.pi * np.diff(faces**2)
-    across = CONDUCTIVITY * 2 * math.pi * faces[1:-1] * spacing / width
-    half = (outer**2 - faces[-2] ** 2) / (4 * outer) if inner == 0 else width / 2
-    return Mesh(CONDUCTIVITY * area / spacing, across, area * spacing, spacing, half)
-
-
-def _overlap(centres: int = 4000) -> np.ndarray:
-    shaft = np.linspace(0, LENGTH, SHAFT_CELLS + 1)
-    nut = np.linspace(-NUT_LENGTH / 2, NUT_LENGTH / 2, NUT_CELLS + 1)
-    found = np.zeros((NUT_CELLS, SHAFT_CELLS))
-    for centre in LOW + (HIGH - LOW) * (np.arange(centres) + 0.5) / centres:
-        low, high = (
-            np.maximum(shaft[None, :-1], centre + nut[:-1, None]),
-            np.minimum(shaft[None, 1:], centre + nut[1:, None]),
-        )
-        found += np.clip(high - low, 0, None)
-    return found / centres
 
 
 def viscosity(celsius: float, at_40: float, at_100: float) -> float:
@@ -151,10 +130,13 @@ def simulate(truth: Truth, seed: int) -> dict[str, np.ndarray]:
     """Channels of the log with noise, SI and degC, once a second."""
     random = np.random.default_rng(seed)
     shaft_mesh, nut_mesh = (
-        _mesh(0, RADIUS, SHAFT_RINGS, LENGTH, SHAFT_CELLS),
-        _mesh(RADIUS, NUT_RADIUS, NUT_RINGS, NUT_LENGTH, NUT_CELLS),
+        mesh(0, RADIUS, SHAFT_RINGS, LENGTH, SHAFT_CELLS, CONDUCTIVITY),
+        mesh(RADIUS, NUT_RADIUS, NUT_RINGS, NUT_LENGTH, NUT_CELLS, CONDUCTIVITY),
     )
-    world = _World(truth, shaft_mesh, nut_mesh, _overlap())
+    nut_edges = np.linspace(-NUT_LENGTH / 2, NUT_LENGTH / 2, NUT_CELLS + 1)
+    world = _World(
+        truth, shaft_mesh, nut_mesh, mean_overlap(np.linspace(0, LENGTH, SHAFT_CELLS + 1), nut_edges, (LOW, HIGH))
+    )
     rows: list[list[float]] = []
     begun = 0.0
     for metres, seconds in PROGRAMME:

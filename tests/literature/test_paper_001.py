@@ -40,7 +40,7 @@ from feeddrive.parts.life.weibull import WeibullLaw, life_sample, line_fit, rank
 from feeddrive.parts.life.weibull_interval import complete_slope_interval
 from feeddrive.parts.screw.double_nut import OPENING
 from feeddrive.parts.screw.load_distribution import Loading, continuum_extremes, load_distribution, nut_body
-from feeddrive.parts.screw.preload_loss import stiffness_share
+from feeddrive.parts.screw.preload_monitoring import stiffness_share
 from feeddrive.parts.screw.screw_contact import BallTrack, nut_contact, screw_contact
 from feeddrive.reproduce.paper_001 import rows
 from feeddrive.reproduce.row import Paper, Status

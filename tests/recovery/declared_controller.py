@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from feeddrive.files import plants_folder
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
 from tests.generator.axis import AXES
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from feeddrive.effects.base import Motion, Port
 from feeddrive.files import find_plant
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.friction_law import friction_level
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.symbols import parameter_symbols, parameter_values

@@ -18,7 +18,7 @@ from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
 from feeddrive.effects.base import Effect
 from feeddrive.files import plants_folder
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording, read_recording
 from tests.recovery.suite.planting import in_the_package

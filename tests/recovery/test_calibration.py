@@ -11,7 +11,7 @@ import pytest
 from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.judging.result import Diagnosis
 from feeddrive.diagnosis.plant_text import with_calibrated_values
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from tests.generator.axis import BENCH
 from tests.generator.pair import recording_pair
 from tests.recovery.planted import axis_plant

@@ -13,7 +13,7 @@ import pytest
 from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.judging.result import Diagnosis
 from feeddrive.files import plants_folder
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 from tests.generator import BENCH, recording_pair

@@ -15,8 +15,8 @@ import pytest
 
 import feeddrive as fd
 from feeddrive.compensation.compensate import Compensated, Wishes, cascade_of, compensate_plant, plant_table
-from feeddrive.compensation.forms.catalogue import FORMS, HEAT
-from feeddrive.compensation.prediction import Applied, circle_figures, contour, sticking
+from feeddrive.compensation.forms.all_forms import FORMS, HEAT
+from feeddrive.compensation.predicted_accuracy import Applied, circle_figures, contour, sticking
 from feeddrive.compensation.sheet import left, predicted_rows, sections, sheet_text, text
 from feeddrive.compensation.temperature import HeatTable
 from feeddrive.servo.cascade import Feedback

@@ -20,7 +20,7 @@ from feeddrive.effects.chain.payload import Payload
 from feeddrive.effects.friction.coulomb_asymmetry import CoulombAsymmetry
 from feeddrive.effects.friction.stribeck import Stribeck
 from feeddrive.effects.source.torque_ripple import TorqueRipple
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
 from tests.recovery.rigid_runs import PLANT, Truth, rigid_run
 

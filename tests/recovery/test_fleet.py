@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from tests.generator.drawn_effects import MAKERS, OFF_GROUPS, TOLERANCES
 from tests.generator.machines import drawn_machine
 from tests.generator.runs import impedance, visible

@@ -13,7 +13,7 @@ from feeddrive.diagnosis.preparation import prepared
 from feeddrive.diagnosis.simulated.loop_evidence import loop_evidence
 from feeddrive.diagnosis.simulated.simulation import loop_errors
 from feeddrive.files import plants_folder
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.recording import Recording
 from feeddrive.simulate.controlled.declared_loop import declared_loop
 from feeddrive.simulate.controlled.replay import replayed_command

@@ -17,7 +17,7 @@ from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
 from feeddrive.diagnosis.likelihood.folds import FOLDS, block_numbers, blocks_in_time
 from feeddrive.diagnosis.numbers.measurable import MEASURABLE, Setting
 from feeddrive.diagnosis.numbers.measured_file import MeasuredNumber
-from feeddrive.diagnosis.numbers.rows import MeasuredRows
+from feeddrive.diagnosis.numbers.number_rows import MeasuredRows
 from feeddrive.diagnosis.preparation import prepared
 from feeddrive.effects.chain.payload import Payload
 from feeddrive.errors import InputError

@@ -17,7 +17,7 @@ from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
 from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.recording import Recording
 from tests.generator.screw_elements import Recorder, drive_of
 from tests.recovery.parts_runs import made, softer

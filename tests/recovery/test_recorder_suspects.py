@@ -17,7 +17,7 @@ from feeddrive.diagnosis.judging.result import Diagnosis
 from feeddrive.diagnosis.likelihood.outputs import diagnosis_record
 from feeddrive.diagnosis.suspicion.logged_rows import rhythm
 from feeddrive.diagnosis.suspicion.quality import Quality
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 from tests.recovery.rigid_runs import PLANT, Truth, rigid_run

@@ -18,7 +18,7 @@ from pathlib import Path
 from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.finding import round
 from feeddrive.diagnosis.likelihood.outputs import diagnosis_json
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from tests.recovery.rigid_runs import PLANT, Truth, rigid_run
 
 round.WORKERS = int(sys.argv[1])

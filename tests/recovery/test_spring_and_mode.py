@@ -16,7 +16,7 @@ from feeddrive.diagnosis.finding.scene import scene_of
 from feeddrive.diagnosis.likelihood.evidence import prepare
 from feeddrive.diagnosis.likelihood.fit import Problem, fit
 from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
-from feeddrive.diagnosis.starts import mode, transmission
+from feeddrive.diagnosis.starts import mode, transmission_starts
 from feeddrive.effects.base import Effect
 from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.recording import Recording
@@ -28,8 +28,8 @@ from tests.recovery.planted import SIZE, Verdict, axis_plant, declared_errors
 
 SECONDS = (7.0, 6.0)
 STARTS = {
-    "preload_loss": transmission.preload_loss,
-    "stiffness_vs_position": transmission.stiffness_vs_position,
+    "preload_loss": transmission_starts.preload_loss,
+    "stiffness_vs_position": transmission_starts.stiffness_vs_position,
     "structural_mode": mode.structural_mode,
 }
 LOADS = {"bench": (16.0, 150.0), "light": (7.0, 90.0)}

@@ -17,7 +17,7 @@ import pytest
 
 from feeddrive.cli.main import main
 from feeddrive.files import plants_folder
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.recording import Recording, write_recording
 from tests.generator.axis import BENCH, Sensors
 from tests.generator.effects import CoulombAsymmetry, FrictionDeviation, Stribeck

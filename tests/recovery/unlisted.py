@@ -12,8 +12,8 @@ from feeddrive.diagnosis.judging.result import ChannelResult
 from feeddrive.diagnosis.likelihood.evidence import prepare
 from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
-from feeddrive.diagnosis.unexplained.result import Dependence
 from feeddrive.diagnosis.unexplained.unexplained import Rest, explain_rest
+from feeddrive.diagnosis.unexplained.unexplained_result import Dependence
 from feeddrive.recording import Recording
 from tests.generator.axis import AXES
 from tests.generator.effects import Effect

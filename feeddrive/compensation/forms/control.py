@@ -90,8 +90,8 @@ class Control:
 
     def loading(self, table: CompensationTable, axis: str) -> tuple[str, ...]:
         """What to do with the file, and which settings it needs, that of the reversal among them."""
-        told = self.reversal.setting
-        play = () if told is None or not table.directions_differ else (told(table, axis, self.reversal),)
+        setting = self.reversal.setting
+        play = () if setting is None or not table.directions_differ else (setting(table, axis, self.reversal),)
         return (*self.load(table, axis), *play)
 
     def refuse_beyond_limits(self, table: CompensationTable) -> None:
@@ -136,6 +136,11 @@ def plain_line(text: str) -> str:
     """A text as one line of a comment: printable ASCII alone, so that nothing in it ends the comment."""
     one = text.replace("\N{MICRO SIGN}", "u").replace("\N{GREEK SMALL LETTER MU}", "u")
     return "".join(letter if " " <= letter <= "~" else "?" for letter in " ".join(one.split()))
+
+
+def comments(lines: Sequence[str], mark: str = "#") -> list[str]:
+    """Lines of a comment behind the mark of a file's language."""
+    return [f"{mark} {plain_line(one)}" for one in lines]
 
 
 def millimetres(value: float, digits: int) -> str:

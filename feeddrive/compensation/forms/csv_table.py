@@ -6,13 +6,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from feeddrive.compensation.forms.control import Control, Reversal, millimetres, plain_line
+from feeddrive.compensation.forms.control import Control, Reversal, comments, millimetres
 from feeddrive.compensation.table import CompensationTable
 
 
 def _write(table: CompensationTable, head: Sequence[str], _: str) -> str:
     rows = np.column_stack([table.positions, 1e3 * table.forward, 1e3 * table.reverse])
-    lines = [*(f"# {plain_line(one)}" for one in head), "position [mm],forward [um],reverse [um]"]
+    lines = [*comments(head), "position [mm],forward [um],reverse [um]"]
     lines += [f"{millimetres(x, 6)},{millimetres(a, 3)},{millimetres(b, 3)}" for x, a, b in rows.tolist()]
     return "\n".join(lines) + "\n"
 

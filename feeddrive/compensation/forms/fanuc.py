@@ -69,9 +69,14 @@ def writer(unit: float) -> Control:
         first = at_reference - before + 1
         play = round(table.play / unit)
         parameters = {
-            3620: at_reference, 3621: first, 3622: first + len(found) - 1, 3623: magnification,
-            3624: steps(table.step, unit), 1851: play, 1852: play,
-        }  # fmt: skip
+            3620: at_reference,
+            3621: first,
+            3622: first + len(found) - 1,
+            3623: magnification,
+            3624: steps(table.step, unit),
+            1851: play,
+            1852: play,
+        }
         lines = [f"N{number:05d}A1P{value}" for number, value in parameters.items()]
         lines += [f"N{10000 + first + i:05d}P{one}" for i, one in enumerate(found)]
         return "\n".join(["%", *lines, "%"]) + "\n"

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from feeddrive.compensation.forms.control import Control, Reversal, plain_line, steps
+from feeddrive.compensation.forms.control import Control, Reversal, comments, steps
 from feeddrive.compensation.table import CompensationTable
 
 _UNIT = 1e-7
@@ -26,13 +26,17 @@ def _write(table: CompensationTable, head: Sequence[str], axis: str) -> str:
     rows = [steps(float(one), _UNIT) for one in table.positions]
     pos, neg = ([steps(float(one), _UNIT) for one in way] for way in (table.forward, table.reverse))
     lines = [
-        *(f"# {plain_line(one)}" for one in head),
-        line("kopf.log_achs_name", axis), line("kw.ssfk.interval", 0), line("kw.ssfk.kw_startpos", rows[0]),
-        line("kw.ssfk.kw_nr_max", len(rows)), line("kw.ssfk.unit", 1), line("kw.ssfk.bilateral", 1),
+        *comments(head),
+        line("kopf.log_achs_name", axis),
+        line("kw.ssfk.interval", 0),
+        line("kw.ssfk.kw_startpos", rows[0]),
+        line("kw.ssfk.kw_nr_max", len(rows)),
+        line("kw.ssfk.unit", 1),
+        line("kw.ssfk.bilateral", 1),
         *(line(f"kw.ssfk.table[{i}].setpoint", one) for i, one in enumerate(rows)),
         *(line(f"kw.ssfk.table[{i}].pos", one) for i, one in enumerate(pos)),
         *(line(f"kw.ssfk.table[{i}].neg", one) for i, one in enumerate(neg)),
-    ]  # fmt: skip
+    ]
     return "\n".join(lines) + "\n"
 
 

@@ -20,17 +20,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from feeddrive.compensation.forms.control import Control, Reversal, Side, millimetres, plain_line
+from feeddrive.compensation.forms.control import Control, Reversal, Side, comments, millimetres
 from feeddrive.compensation.table import CompensationTable
 from feeddrive.typing import FloatArray
 
 _DIGITS = 4
 _ENCODER = 0
 """Index of the measuring system; 0 is the first, the motor's where there are two."""
-
-
-def _head(lines: Sequence[str]) -> list[str]:
-    return [f"; {plain_line(line)}" for line in lines]
 
 
 def _number(value: float) -> str:
@@ -40,24 +36,27 @@ def _number(value: float) -> str:
 
 
 def _write_encoder(table: CompensationTable, head: Sequence[str], axis: str) -> str:
-    values = [
-        f"$AA_ENC_COMP[{_ENCODER},{i},{axis}]={millimetres(one, _DIGITS)}" for i, one in enumerate(table.mean)
-    ]  # fmt: skip
+    values = [f"$AA_ENC_COMP[{_ENCODER},{i},{axis}]={millimetres(one, _DIGITS)}" for i, one in enumerate(table.mean)]
     lines = [
-        "%_N_AX_EEC_INI", *_head(head), "CHANDATA(1)", *values,
+        "%_N_AX_EEC_INI",
+        *comments(head, ";"),
+        "CHANDATA(1)",
+        *values,
         f"$AA_ENC_COMP_STEP[{_ENCODER},{axis}]={_number(table.step)}",
         f"$AA_ENC_COMP_MIN[{_ENCODER},{axis}]={_number(float(table.positions[0]))}",
         f"$AA_ENC_COMP_MAX[{_ENCODER},{axis}]={_number(float(table.positions[-1]))}",
         f"$AA_ENC_COMP_IS_MODULO[{_ENCODER},{axis}]=0",
         "M17",
-    ]  # fmt: skip
+    ]
     return "\n".join(lines) + "\n"
 
 
 def _write_cec(table: CompensationTable, head: Sequence[str], axis: str) -> str:
-    blocks = [_cec_block(table, values, axis, number, way)
-              for number, (values, way) in enumerate(((table.forward, 1), (table.reverse, -1)))]  # fmt: skip
-    lines = ["%_N_NC_CEC_INI", *_head(head), "CHANDATA(1)", *blocks[0], *blocks[1], "M17"]
+    blocks = [
+        _cec_block(table, values, axis, number, way)
+        for number, (values, way) in enumerate(((table.forward, 1), (table.reverse, -1)))
+    ]
+    lines = ["%_N_NC_CEC_INI", *comments(head, ";"), "CHANDATA(1)", *blocks[0], *blocks[1], "M17"]
     return "\n".join(lines) + "\n"
 
 

@@ -53,9 +53,11 @@ def heat_text(done: HeatTable, axis: str) -> str:
     name = checked_axis(axis)
     lines = [
         f"SINUMERIK temperature compensation, axis {name} of {plain_line(done.name)}, feeddrive {__version__}",
-        f"Sign: {sinumerik_temp.SIGN_RULE}", f"Source: {sinumerik_temp.SOURCE}", *heat_check(name),
+        f"Sign: {sinumerik_temp.SIGN_RULE}",
+        f"Source: {sinumerik_temp.SOURCE}",
+        *heat_check(name),
         *sinumerik_temp.load(name, done.sensor, done.table.reference),
-    ]  # fmt: skip
+    ]
     return sinumerik_temp.text(done.table, lines)
 
 

@@ -26,12 +26,12 @@ from feeddrive.compensation.heat.thermal_deviation import NUT_FILMS, SCREW_FILMS
 from feeddrive.compensation.heat.thermal_sensors import Sensor
 from feeddrive.compensation.heat.thermal_unknowns import Unknowns, stationary_step
 from feeddrive.errors import InputError
-from feeddrive.thermal.reduced.model import AMBIENT, HeatModel, Path
+from feeddrive.thermal.reduced.parametric_model import AMBIENT, HeatModel, Path
 from feeddrive.thermal.reduced.stepping import exact_propagator
 from feeddrive.typing import FloatArray
 
 _LEAST_LAG = 0.01
-"""Of a row: a sensor that follows at once is given so much lag, which nobody can tell from none."""
+"""Least lag of a sensor, in rows: one that follows at once is given so much lag, which nobody can tell from none."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from feeddrive.thermal.reduced.model import AMBIENT, COOLANT, Path
+from feeddrive.thermal.reduced.parametric_model import AMBIENT, COOLANT, Path
 from feeddrive.thermal.rig import refuse_negative
 from feeddrive.thermal.run.warm_up import Rows
 from feeddrive.typing import FloatArray

@@ -15,9 +15,9 @@ import numpy as np
 import scipy.sparse as sparse
 
 from feeddrive.errors import InputError
-from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.laws.expansion import FIXED_FREE, Supports, expansion
-from feeddrive.thermal.reduced.model import HeatModel
+from feeddrive.thermal.machine_heat import Heat
+from feeddrive.thermal.reduced.parametric_model import HeatModel
 from feeddrive.thermal.rig import refuse_unless
 from feeddrive.typing import FloatArray
 
@@ -42,9 +42,7 @@ class TableError:
         return np.asarray(states @ self.rows.T)
 
 
-def table_error(
-    heat: Heat, model: HeatModel, supports: Supports = FIXED_FREE, count: int = POSITIONS
-) -> TableError:  # fmt: skip
+def table_error(heat: Heat, model: HeatModel, supports: Supports = FIXED_FREE, count: int = POSITIONS) -> TableError:
     """The error along the plant's travel.
 
     Args:
@@ -96,8 +94,8 @@ def left_over(error: FloatArray, compensation: FloatArray) -> LeftOver:
         InputError: arrays of unequal shape, or without values.
     """
     if np.shape(error) != np.shape(compensation) or np.size(error) == 0:
-        told = f"errors of shape {np.shape(error)} and a compensation of shape {np.shape(compensation)}"
-        raise InputError(told, "compensation", "give one value for each error")
+        what = f"errors of shape {np.shape(error)} and a compensation of shape {np.shape(compensation)}"
+        raise InputError(what, "compensation", "give one value for each error")
     after = error - compensation
     return LeftOver(_rms(error), _rms(after), float(np.abs(error).max()), float(np.abs(after).max()))
 

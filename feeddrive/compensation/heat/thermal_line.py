@@ -12,7 +12,7 @@
 
 Also known as: MD32750 (type), SD43900 K₀, SD43910 tan β, SD43920 P₀; temp_comp_offset_0, temp_comp_coefficient,
 temp_comp_position_0. Inside K is the measured error, actual minus commanded position. Whether a control wants that or
-what it is to add to the set-point (its negative) must be said (`Convention`); controls of one maker differ by release,
+what it is to add to the set-point (its negative) is stated by `Convention`; controls of one maker differ by release,
 so move the axis by hand with a large K₀ and look before trusting either.
 
 Two uses: the line through the estimate of model or observer, sent every minute (`straight_line`), leaves only the
@@ -121,7 +121,7 @@ class LineTable:
 
 def line_table(
     readings: FloatArray, error: FloatArray, positions: FloatArray, reference: float, count: int = 6
-) -> LineTable:  # fmt: skip
+) -> LineTable:
     """The table of least squares over runs of the machine or of its model.
 
     Args:
@@ -155,5 +155,5 @@ def line_table(
 
 def _refuse_misfit(error: FloatArray, positions: FloatArray) -> None:
     fits = np.ndim(error) == 2 and np.shape(error)[1:] == np.shape(positions) and len(positions) >= 2
-    told = f"errors of shape {np.shape(error)} at {np.size(positions)} positions"
-    refuse_unless(fits, told, "error", "give a row a time with one error a position, two positions at least")
+    what = f"errors of shape {np.shape(error)} at {np.size(positions)} positions"
+    refuse_unless(fits, what, "error", "give a row a time with one error a position, two positions at least")

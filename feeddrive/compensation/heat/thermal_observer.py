@@ -26,8 +26,8 @@ from feeddrive.compensation.heat.thermal_error import TableError
 from feeddrive.compensation.heat.thermal_sensors import Sensor, refuse_unmountable
 from feeddrive.compensation.heat.thermal_unknowns import Unknowns
 from feeddrive.errors import InputError
-from feeddrive.thermal.heat import Heat
-from feeddrive.thermal.reduced.model import AMBIENT, HeatModel
+from feeddrive.thermal.machine_heat import Heat
+from feeddrive.thermal.reduced.parametric_model import AMBIENT, HeatModel
 from feeddrive.thermal.rig import refuse_unless_positive
 from feeddrive.thermal.run.warm_up import declared_rows, grouped
 from feeddrive.typing import FloatArray
@@ -66,9 +66,13 @@ class ThermalObserver:
     error: TableError
 
     def observe(
-        self, speeds: FloatArray, ambient: FloatArray, readings: FloatArray,
-        start: tuple[FloatArray, FloatArray] | None = None, reference: float | None = None,
-    ) -> Observation:  # fmt: skip
+        self,
+        speeds: FloatArray,
+        ambient: FloatArray,
+        readings: FloatArray,
+        start: tuple[FloatArray, FloatArray] | None = None,
+        reference: float | None = None,
+    ) -> Observation:
         """Run the filter.
 
         Args:
@@ -86,8 +90,8 @@ class ThermalObserver:
             ValidityWarning: a speed above the highest that the plant declares.
         """
         if np.shape(readings) != (len(speeds), len(self.system.sensors)):
-            told = f"readings of shape {np.shape(readings)} for {len(speeds)} rows"
-            raise InputError(told, "readings", f"give {len(self.system.sensors)} columns, a row each")
+            what = f"readings of shape {np.shape(readings)} for {len(speeds)} rows"
+            raise InputError(what, "readings", f"give {len(self.system.sensors)} columns, a row each")
         rows, transitions = self.rows(speeds, ambient, reference)
         z, P = self.system.cold() if start is None else start
         states, spread = np.empty((len(rows), len(z))), np.empty((len(rows), len(self.error.positions)))
@@ -110,8 +114,9 @@ class ThermalObserver:
         given, model = declared_rows(self.plant, self.system.step, speeds, ambient), self.system.model
         heat = sum(
             np.multiply.outer(given.inputs[name], vector)
-            for name, vector in model.heats.items() if name in given.inputs
-        )  # fmt: skip
+            for name, vector in model.heats.items()
+            if name in given.inputs
+        )
         distinct, which = grouped(np.column_stack(list(given.conductances.values())))
         kinds = [
             self.system.transition(dict(zip(given.conductances, map(float, values), strict=True)))
@@ -123,9 +128,13 @@ class ThermalObserver:
 
 
 def thermal_observer(
-    heat: Heat, model: HeatModel, error: TableError, sensors: Sequence[Sensor],
-    unknowns: Unknowns | None = None, step: float = 30.0,
-) -> ThermalObserver:  # fmt: skip
+    heat: Heat,
+    model: HeatModel,
+    error: TableError,
+    sensors: Sequence[Sensor],
+    unknowns: Unknowns | None = None,
+    step: float = 30.0,
+) -> ThermalObserver:
     """An observer.
 
     Args:
@@ -146,7 +155,7 @@ def thermal_observer(
 
 def advance(
     system: Augmented, z: FloatArray, P: FloatArray, row: Row, at: Transition, readings: FloatArray
-) -> tuple[FloatArray, FloatArray]:  # fmt: skip
+) -> tuple[FloatArray, FloatArray]:
     """One row of the filter: z and P at its end, with the readings taken there, (m,) [K], nan where there is none."""
     z, F = system.predicted(z, row, at)
     P = F @ P @ F.T + system.wandering()

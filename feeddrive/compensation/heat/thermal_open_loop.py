@@ -7,8 +7,8 @@ through in full. It costs no sensor, and it is the prediction inside the observe
 from __future__ import annotations
 
 from feeddrive.compensation.heat.thermal_error import TableError
-from feeddrive.thermal.heat import Heat
-from feeddrive.thermal.reduced.model import HeatModel, Path
+from feeddrive.thermal.machine_heat import Heat
+from feeddrive.thermal.reduced.parametric_model import HeatModel, Path
 from feeddrive.thermal.reduced.reduction import Sizes, reduce_model
 from feeddrive.thermal.run.warm_up import declared_rows, run
 from feeddrive.typing import FloatArray
@@ -40,7 +40,7 @@ def compensation_model(heat: Heat, order: int = ORDER, sizes: Sizes | None = Non
 
 def model_alone(
     heat: Heat, model: HeatModel, error: TableError, step: float, speeds: FloatArray, ambient: FloatArray
-) -> FloatArray:  # fmt: skip
+) -> FloatArray:
     """Error of the table that the model foretells at the end of each row, (k, p) [m].
 
     Args:

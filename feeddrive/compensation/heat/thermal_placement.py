@@ -21,8 +21,8 @@ from feeddrive.compensation.heat.thermal_observer import ThermalObserver, therma
 from feeddrive.compensation.heat.thermal_sensors import Sensor, mountable_places
 from feeddrive.compensation.heat.thermal_unknowns import Unknowns
 from feeddrive.errors import InputError
-from feeddrive.thermal.heat import Heat
-from feeddrive.thermal.reduced.model import HeatModel
+from feeddrive.thermal.machine_heat import Heat
+from feeddrive.thermal.reduced.parametric_model import HeatModel
 from feeddrive.typing import FloatArray
 
 
@@ -42,9 +42,14 @@ class Placement:
 
 
 def placements(
-    heat: Heat, model: HeatModel, error: TableError, count: int, speeds: Sequence[float],
-    unknowns: Unknowns | None = None, kind: Sensor | None = None,
-) -> tuple[Placement, ...]:  # fmt: skip
+    heat: Heat,
+    model: HeatModel,
+    error: TableError,
+    count: int,
+    speeds: Sequence[float],
+    unknowns: Unknowns | None = None,
+    kind: Sensor | None = None,
+) -> tuple[Placement, ...]:
     """All sets of `count` mountable places, the best first.
 
     Args:
@@ -61,8 +66,8 @@ def placements(
     """
     places, kind = mountable_places(heat), kind or Sensor("nut")
     if not 0 <= count <= len(places) or not len(speeds):
-        told = f"{count} sensors at {len(speeds)} speeds"
-        raise InputError(told, "placement", f"give at least one speed, and sensors up to the {len(places)} places")
+        what = f"{count} sensors at {len(speeds)} speeds"
+        raise InputError(what, "placement", f"give at least one speed, and sensors up to the {len(places)} places")
     found = []
     for chosen in combinations(places, count):
         sensors = [Sensor(place, kind.noise, kind.lag) for place in chosen]

@@ -17,7 +17,7 @@ import numpy as np
 
 from feeddrive.errors import InputError
 from feeddrive.thermal.full.full_model import FRONT, NUT, REAR
-from feeddrive.thermal.heat import Heat
+from feeddrive.thermal.machine_heat import Heat
 from feeddrive.thermal.rig import refuse_negative, refuse_unless_positive
 from feeddrive.typing import FloatArray
 
@@ -57,8 +57,8 @@ def refuse_unmountable(heat: Heat, sensors: Sequence[Sensor]) -> None:
     known = mountable_places(heat)
     for sensor in sensors:
         if sensor.place not in known:
-            told = f'no sensor can be mounted at "{sensor.place}"'
-            raise InputError(told, "sensors", f"the screw turns; choose among {', '.join(known)}")
+            what = f'no sensor can be mounted at "{sensor.place}"'
+            raise InputError(what, "sensors", f"the screw turns; choose among {', '.join(known)}")
     if len({sensor.place for sensor in sensors}) < len(sensors):
         raise InputError("two sensors at one place", "sensors", "name each place once")
 

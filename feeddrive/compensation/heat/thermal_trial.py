@@ -10,9 +10,9 @@ import numpy as np
 from feeddrive.compensation.heat.thermal_deviation import deviating
 from feeddrive.compensation.heat.thermal_error import table_error
 from feeddrive.compensation.heat.thermal_sensors import Sensor, mountable_places, simulated_readings
-from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.laws.expansion import FIXED_FREE, Supports
-from feeddrive.thermal.reduced.model import HeatModel
+from feeddrive.thermal.machine_heat import Heat
+from feeddrive.thermal.reduced.parametric_model import HeatModel
 from feeddrive.thermal.rig import refuse_unless
 from feeddrive.thermal.run.warm_up import declared_rows, run
 from feeddrive.typing import FloatArray

@@ -1,4 +1,4 @@
-"""Declared values that an effect says to be other: named where they are beyond their tolerances, and said once."""
+"""Declared values that an effect says to be other: named where they are beyond their tolerances, and stated once."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def _together(problem: Problem, effects: Sequence[Effect]) -> tuple[Problem, Eff
 
 
 def said_by_effects(problem: Problem, effects: Sequence[Effect]) -> tuple[Problem, tuple[Effect, ...]]:
-    """Every declared value that an effect of a set says to be other is said by it alone.
+    """Every declared value that an effect of a set says to be other is stated by it alone.
 
     Value and effect would be one unknown twice, each free to take back what the other says.
 

@@ -21,7 +21,7 @@ STEP = 1e-3
 """Change of the logarithm of a value from which its slope is taken; ten times that of a coordinate of size one."""
 
 LONG = 30 * STEP
-"""The same where a prediction goes from cell to cell (`fit.COARSE`)."""
+"""Change of the logarithm where a prediction goes from cell to cell (`fit.COARSE`)."""
 
 ENOUGH = 0.1
 """Move of a value over its deviation that needs no new slopes: it moves the evidence by a two-hundredth."""
@@ -159,8 +159,8 @@ def _variance(problem: Problem, residual: FloatArray) -> float:
     columns = problem.whitener.columns
     score = score_covariance(problem.evidence, [e.fit_rows for e in problem.evidence], residual, columns)
     squares = np.sum(columns**2, axis=0)
-    told = squares > 0
-    return float(np.median(np.diag(score)[told] / squares[told])) if told.any() else 1.0
+    informed = squares > 0
+    return float(np.median(np.diag(score)[informed] / squares[informed])) if informed.any() else 1.0
 
 
 def _without_unseen(problem: Problem) -> Problem:

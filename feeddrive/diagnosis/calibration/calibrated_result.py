@@ -64,17 +64,17 @@ def known_together(problem: Problem, found: Fit) -> tuple[str, ...]:
         return ()
     deviations = np.sqrt(np.diag(known.covariance))
     alike = known.covariance / np.outer(deviations, deviations) < -HALVED
-    told = []
+    remarks = []
     for i, first in enumerate(known.values):
         for j in range(i + 1, len(known.values)):
             second, keys = known.values[j], (first.key, known.values[j].key)
             if alike[i, j] and deviations[[i, j]].min() < TOLD and set(keys) <= set(PARTS.values()):
                 shares = [f"{participation(plant, key, plant.middle):.0%}".replace("%", " %") for key in keys]
-                told.append(
+                remarks.append(
                     f"{first.words} and {second.words}: these recordings tell what both give way together much better "
                     f"than either; of the compliance at the table they have {shares[0]} and {shares[1]} in mid-stroke"
                 )
-    return tuple(told)
+    return tuple(remarks)
 
 
 def calibrated_record(results: tuple[CalibratedResult, ...]) -> list[dict[str, Any]]:

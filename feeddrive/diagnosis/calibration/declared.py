@@ -9,7 +9,7 @@
 | Coulomb and viscous friction of table and of screw | friction_deviation |
 | torsional stiffness, damping, width of the sign change of friction, torque constant | no effect says so |
 
-Friction is one factor a port, on all that is declared there. A rigid machine shows one mass: its inertias are not told
+Friction is one factor a port, on all that is declared there. A rigid machine shows one mass: its inertias are not known
 from it. Tolerances: `feeddrive.diagnosis.likelihood.tolerances`.
 """
 
@@ -20,7 +20,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from feeddrive.diagnosis.declared_friction import declared_level, declared_viscous
+from feeddrive.diagnosis.friction_at_port import declared_level, declared_viscous
 from feeddrive.diagnosis.likelihood.tolerances import (
     DAMPING,
     FRICTION,

@@ -40,7 +40,7 @@ TOLERANCE = 2.0
 NORMAL_95 = 1.96
 
 MOST = 1024.0
-"""Deviations beyond which a value is not told at all."""
+"""Deviations beyond which a value is not known at all."""
 
 
 @dataclass(frozen=True)
@@ -50,13 +50,13 @@ class Known:
     Attributes:
         values: that are fitted.
         at: coordinates c at which the slopes were taken, (k,).
-        slopes, told: A, (k, k), and b, (k,).
+        slopes, right_side: A, (k, k), and b, (k,).
     """
 
     values: tuple[CalibratedValue, ...]
     at: FloatArray
     slopes: FloatArray
-    told: FloatArray
+    right_side: FloatArray
 
     @cached_property
     def ends(self) -> FloatArray:
@@ -85,32 +85,32 @@ class Known:
 
     @cached_property
     def covariance(self) -> FloatArray:
-        """Of u under the tolerances as deviations, (k, k)."""
-        return np.asarray(np.linalg.inv(self.slopes.T @ self.slopes + np.eye(len(self.told))), dtype=np.float64)
+        """Covariance of u under the tolerances as deviations, (k, k)."""
+        return np.asarray(np.linalg.inv(self.slopes.T @ self.slopes + np.eye(len(self.right_side))), dtype=np.float64)
 
     def likeliest(self, place: int, deviation: float) -> tuple[FloatArray, float]:
         """Most likely u, (k,), with one value's deviation another one [of its own], and -2 log evidence of that."""
-        prior = np.ones(len(self.told))
+        prior = np.ones(len(self.right_side))
         prior[place] = deviation**-2
         normal = self.slopes.T @ self.slopes + np.diag(prior)
-        u = np.asarray(np.linalg.solve(normal, self.slopes.T @ self.told), dtype=np.float64)
-        left = self.slopes @ u - self.told
+        u = np.asarray(np.linalg.solve(normal, self.slopes.T @ self.right_side), dtype=np.float64)
+        left = self.slopes @ u - self.right_side
         cost = float(left @ left + prior @ u**2 + np.linalg.slogdet(normal)[1] - np.sum(np.log(prior)))
         return u, cost
 
     def least(self, *free: int) -> float:
         """T of the values at the places that are free."""
-        return _least(self.slopes, self.told, *_freed(self.ends, *free))[0]
+        return _least(self.slopes, self.right_side, *_freed(self.ends, *free))[0]
 
     def interval(self, place: int) -> tuple[float, float]:
         """Ends of the 95 % interval of a value as c, all others within their tolerances."""
-        others = np.arange(len(self.told)) != place
+        others = np.arange(len(self.right_side)) != place
         low, high = self.read_ends[:, others]
-        least, best = _least(self.slopes, self.told, *_freed(self.read_ends, place))
+        least, best = _least(self.slopes, self.right_side, *_freed(self.read_ends, place))
 
         def excess(u: float) -> float:
-            told = self.told - self.slopes[:, place] * u
-            return _least(self.slopes[:, others], told, low, high)[0] - least - NORMAL_95**2
+            right_side = self.right_side - self.slopes[:, place] * u
+            return _least(self.slopes[:, others], right_side, low, high)[0] - least - NORMAL_95**2
 
         ends = []
         for way in (-1.0, 1.0):
@@ -128,11 +128,11 @@ def _freed(ends: FloatArray, *free: int) -> FloatArray:
     return ends
 
 
-def _least(slopes: FloatArray, told: FloatArray, low: FloatArray, high: FloatArray) -> tuple[float, FloatArray]:
+def _least(slopes: FloatArray, right_side: FloatArray, low: FloatArray, high: FloatArray) -> tuple[float, FloatArray]:
     """The least chi² between ends, and where."""
     if not slopes.shape[1]:
-        return float(told @ told), np.zeros(0)
-    solved = lsq_linear(slopes, told, (low, high), method="bvls")
+        return float(right_side @ right_side), np.zeros(0)
+    solved = lsq_linear(slopes, right_side, (low, high), method="bvls")
     return 2 * float(solved.cost), solved.x
 
 
@@ -161,10 +161,10 @@ def known_values(problem: Problem, found: Fit) -> Known | None:
     sizes, directions = np.linalg.eigh(score / np.outer(scale, scale))
     usable = sizes > 1e-10
     half = (directions[:, usable] / np.sqrt(sizes[usable])).T / scale
-    told = half @ (columns.T @ (residual + whitened.offset))
+    right_side = half @ (columns.T @ (residual + whitened.offset))
     empty = len(known.values) - len(half)  # a direction that no row tells of
     slopes = np.vstack([half @ (columns.T @ columns), np.zeros((empty, len(known.values)))])
-    return Known(known.values, known.coordinates, slopes, np.concatenate([told, np.zeros(empty)]))
+    return Known(known.values, known.coordinates, slopes, np.concatenate([right_side, np.zeros(empty)]))
 
 
 def _own_slopes(problem: Problem, found: Fit) -> FloatArray:

@@ -1,4 +1,4 @@
-"""Effects that cannot be told apart: a rival in an effect's place, with the same error on data not fitted.
+"""Effects that cannot be distinguished: a rival in an effect's place, with the same error on data not fitted.
 
 A rival is in the set where the data give less than 20 to 1 against it (`rival_odds`). The true effect is left out of a
 set in less than one of a hundred cases, however near the rival is, and a rival five standard deviations away comes into
@@ -49,7 +49,7 @@ PLACED = ("inertia_deviation", "channel_delay", "stiffness_deviation")
 """Effects whose place is put to the question."""
 
 NEAR_END = 0.02
-"""Share of an end of a parameter's range within which it is said to stand there."""
+"""Share of an end of a parameter's range within which it counts as standing there."""
 
 AGAIN = 2
 """Times that declared values and a stiffness elsewhere are fitted in turn."""
@@ -120,8 +120,8 @@ def ambiguous_sets(found: Search, rivals: Sequence[list[Rival]]) -> tuple[Ambigu
         others.sort(key=lambda other: other[1])
         if others:
             names, distances = zip(*others[: LARGEST_SET - 1], strict=True)
-            told = [*(twin.reason for twin in twins), *([_reason(effect, alike)] if alike else [])]
-            sets.append(Ambiguity((effect.name, *names), distances, "; ".join(told)))
+            reasons = [*(twin.reason for twin in twins), *([_reason(effect, alike)] if alike else [])]
+            sets.append(Ambiguity((effect.name, *names), distances, "; ".join(reasons)))
     return tuple(sets)
 
 
@@ -136,7 +136,7 @@ def other_places(found: Search, judged: Sequence[Judged]) -> tuple[str, ...]:
     if not placed:
         return ()
     mine = Residuals.of(found.problem, found.fit, [(j.after, j) for j in judged])
-    told = []
+    remarks = []
     for index, effect in placed:
         taken = {e.place for e in found.fit.effects if e.name == effect.name}
         tried = [
@@ -147,8 +147,8 @@ def other_places(found: Search, judged: Sequence[Judged]) -> tuple[str, ...]:
         alike = [rival.effect.place for rival in tried if rival is not None and rival.as_good]
         if alike:
             where = f"{effect.place_key} = {joined(alike)} does as well as {effect.place}"
-            told.append(f"{effect.name}: {where}; these recordings cannot tell{_shares(effect, alike, found)}")
-    return tuple(told)
+            remarks.append(f"{effect.name}: {where}; these recordings cannot tell{_shares(effect, alike, found)}")
+    return tuple(remarks)
 
 
 def _elsewhere(effect: Effect, place: str, plant: Plant) -> Effect:
@@ -163,7 +163,7 @@ def _elsewhere(effect: Effect, place: str, plant: Plant) -> Effect:
 
 
 def _shares(effect: Effect, alike: Sequence[str], found: Search) -> str:
-    """How much of the compliance at the table parts that cannot be told apart have; empty for other effects."""
+    """How much of the compliance at the table parts that cannot be distinguished have; empty for other effects."""
     plant = found.problem.plant
     if not isinstance(effect, StiffnessDeviation) or effect.place not in PARTS:
         return ""

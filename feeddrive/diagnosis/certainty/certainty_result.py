@@ -13,13 +13,13 @@ class Correlation:
         names: `effect.key`, or `effect.key[i]` in a tabulated curve.
         matrix: correlations, symmetric, one on the diagonal.
         condition: condition number of the slopes, each of length one; infinite where a number does not show at all.
-        told: sentences about pairs that are known only together.
+        remarks: sentences about pairs that are known only together.
     """
 
     names: tuple[str, ...]
     matrix: tuple[tuple[float, ...], ...]
     condition: float
-    told: tuple[str, ...]
+    remarks: tuple[str, ...]
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,7 @@ from feeddrive.effects.base import Effect
 from feeddrive.typing import FloatArray
 
 TOGETHER = 0.95
-"""|rho| from which two numbers are said to be known only together."""
+"""|rho| from which two numbers count as known only together."""
 
 
 def correlation(problem: Problem, fitted: Fit, known: Certainty) -> Correlation | None:
@@ -39,7 +39,7 @@ def correlation(problem: Problem, fitted: Fit, known: Certainty) -> Correlation 
     deviation = np.sqrt(np.diag(covariance)[fitted_ones])
     matrix = np.clip(covariance[np.ix_(fitted_ones, fitted_ones)] / np.outer(deviation, deviation), -1.0, 1.0)
     return Correlation(
-        names, tuple(map(tuple, matrix.tolist())), condition(slopes(problem, fitted)), _told(names, matrix)
+        names, tuple(map(tuple, matrix.tolist())), condition(slopes(problem, fitted)), _remarks(names, matrix)
     )
 
 
@@ -65,9 +65,9 @@ def value_labels(effects: Sequence[Effect]) -> list[str]:
     return labels
 
 
-def _told(names: Sequence[str], matrix: FloatArray) -> tuple[str, ...]:
+def _remarks(names: Sequence[str], matrix: FloatArray) -> tuple[str, ...]:
     """A sentence for every pair that is known only together; neighbours of one tabulated curve are passed."""
-    told = []
+    remarks = []
     for i, first in enumerate(names):
         for j in range(i + 1, len(names)):
             second, rho = names[j], float(matrix[i, j])
@@ -76,5 +76,5 @@ def _told(names: Sequence[str], matrix: FloatArray) -> tuple[str, ...]:
             kept = "difference" if rho > 0 else "sum"
             same = first.split(".")[0] == second.split(".")[0]
             lost = "each is known only with the other" if same else "these two cannot be told apart here"
-            told.append(f"{first} and {second}: {lost} (correlation {rho:+.3f}); only their {kept} is well known")
-    return tuple(told)
+            remarks.append(f"{first} and {second}: {lost} (correlation {rho:+.3f}); only their {kept} is well known")
+    return tuple(remarks)

@@ -24,7 +24,7 @@ OPEN = 0.5 * AGAINST
 """Logarithm of the odds, either way, within which a name is possible: those that refuse a rival."""
 
 MOST = 1e6
-"""Odds that are told at most: beyond, the model that they are odds under is what is in doubt."""
+"""Odds that are reported at most: beyond, the model that they are odds under is what is in doubt."""
 
 
 def odds_for(found: Search, rivals: Sequence[Sequence[Rival]]) -> tuple[float, ...]:

@@ -22,7 +22,7 @@ from feeddrive.typing import FloatArray
 
 ROUNDED = 1e-11
 """Eigenvalue of a normal matrix of columns of length one, below which it is their rounding: slopes are differences of
-simulations, true to some parts in ten millions. The level of a curve that counts about its mean is told by nothing."""
+simulations, true to some parts in ten millions, and the level of a curve that counts about its mean is in no row."""
 
 
 def inverse_information(normal: FloatArray) -> FloatArray:

@@ -44,7 +44,7 @@ TELLS, HINTS = 5.0, 3.0
 """Distances [standard deviations] from which an experiment settles a question, and from which it may."""
 
 WIDE = 0.5
-"""Half width of an interval over the size of its value, from which the value is said to be hardly known."""
+"""Half width of an interval over the size of its value, from which the value counts as hardly known."""
 
 NARROWS = 0.7
 """Ratio of interval widths below which an experiment is worth naming."""
@@ -122,7 +122,7 @@ def _apart(found: Search, alike: Sequence[Rival], ready: Sequence[Rehearsal]) ->
     names = (effects[alike[0].place].name, *(rival.effect.name for rival in alike))
     ranking = [(one, min(distance(found.problem, effects, rival.fit, one) for rival in alike)) for one in ready]
     ranking.sort(key=lambda entry: -entry[1])
-    return _told(names, ranking, _apart_sentence(names, ranking), HINTS)
+    return _record(names, ranking, _apart_sentence(names, ranking), HINTS)
 
 
 def _apart_sentence(names: Sequence[str], ranking: Sequence[tuple[Rehearsal, float]]) -> str:
@@ -143,7 +143,7 @@ def _better_known(found: Search, doubt: Doubt, ready: Sequence[Rehearsal]) -> Ne
     before = fisher_information(found.problem, found.fit.jacobian)
     ranking = [(one, _narrowing(found, doubt, before, one)) for one in ready]
     ranking.sort(key=lambda entry: entry[1])
-    return _told((name,), ranking, _known_sentence(name, ranking), -NARROWS)
+    return _record((name,), ranking, _known_sentence(name, ranking), -NARROWS)
 
 
 def _narrowing(found: Search, doubt: Doubt, before: FloatArray, experiment: Rehearsal) -> float:
@@ -178,7 +178,7 @@ def _where(experiment: Rehearsal) -> str:
     return f", positions moved by {experiment.moved * 1e3:+.0f} mm" if experiment.moved else ""
 
 
-def _told(
+def _record(
     question: tuple[str, ...], ranking: Sequence[tuple[Rehearsal, float]], sentence: str, least: float
 ) -> NextExperiment:
     """The record; the scenario is named where its figure reaches `least`, or stays below it where that is negative."""

@@ -52,7 +52,7 @@ class Stretch:
 
     @property
     def size(self) -> int:
-        """Of a Fourier transform in which the end of the comb does not meet its beginning."""
+        """Length of a Fourier transform in which the end of the comb does not meet its beginning."""
         return int(next_fast_len(int(self.places[-1]) + 1 + self.lags, real=True))
 
     def on_comb(self, values: FloatArray) -> FloatArray:

@@ -30,7 +30,7 @@ from feeddrive.simulate.scenario.scenario_controller import read_cascade
 from feeddrive.simulate.scenario.scenario_file import read_scenario
 from feeddrive.simulate.scenario.scenario_run import run_scenario
 from feeddrive.simulate.setpoints.cutting_force import NoForce, held
-from feeddrive.simulate.setpoints.motion import Motion, Stop, Trajectory
+from feeddrive.simulate.setpoints.setpoint_motion import Motion, Stop, Trajectory
 from feeddrive.typing import FloatArray
 
 LOOKED_AT = 2000

@@ -40,7 +40,7 @@ class Residuals:
 
     @classmethod
     def of(cls, problem: Problem, fitted: Fit, plants: Sequence[tuple[Plant, Judged]]) -> Residuals:
-        """Of a fit, with the plant that it gives for each judged recording."""
+        """Residuals of a fit, with the plant that it gives for each judged recording."""
         judged = np.concatenate([_thinned_error(problem, plant, j) for plant, j in plants])
         return cls(fitted.residual, judged, len(fitted.coordinates))
 

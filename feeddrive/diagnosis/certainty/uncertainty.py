@@ -125,7 +125,7 @@ def _left(missed: FloatArray, whole: FloatArray) -> FloatArray:
 
 
 def _where_it_matters(problem: Problem, residual: FloatArray, influence: FloatArray) -> FloatArray:
-    """Residual square where a coordinate is told from, over that of the same channels at large, at least 1; (k,)."""
+    """Residual square where a coordinate is known from, over that of the same channels at large, at least 1; (k,)."""
     weight, level = influence**2, np.full_like(residual, float(np.mean(residual**2)))
     first = 0
     for evidence in problem.evidence:
@@ -141,13 +141,13 @@ def _where_it_matters(problem: Problem, residual: FloatArray, influence: FloatAr
 def _by_blocks(residual: FloatArray, influence: FloatArray, blocks: IntegerArray) -> tuple[FloatArray, FloatArray]:
     """Variance of each coordinate from its sums over blocks and half the products of neighbours, and its freedom."""
     count = int(blocks.max(initial=0)) + 1
-    sums, told = np.zeros((count, influence.shape[1])), np.zeros((count, influence.shape[1]))
+    sums, informative = np.zeros((count, influence.shape[1])), np.zeros((count, influence.shape[1]))
     np.add.at(sums, blocks, influence * residual[:, None])
-    np.add.at(told, blocks, influence**2)
+    np.add.at(informative, blocks, influence**2)
     # the neighbours may take variance away by chance; blocks alone are then the safer count
     variance = np.sum(sums**2, axis=0) + np.maximum(np.sum(sums[1:] * sums[:-1], axis=0), 0.0)
-    squares = np.sum(told**2, axis=0)
-    informed = np.sum(told, axis=0) ** 2 / np.where(squares > 0, squares, 1.0)
+    squares = np.sum(informative**2, axis=0)
+    informed = np.sum(informative, axis=0) ** 2 / np.where(squares > 0, squares, 1.0)
     return variance, np.maximum(informed - 1, 2.0)
 
 

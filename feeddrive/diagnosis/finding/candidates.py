@@ -7,7 +7,7 @@ position, velocities and stiffnesses from a short scan. Each candidate then is r
 from __future__ import annotations
 
 from feeddrive.diagnosis.finding.scene import Candidate
-from feeddrive.diagnosis.starts import drift, drive, mode, needs, starts, transmission
+from feeddrive.diagnosis.starts import drift, drive, mode, needs, starts, transmission_starts
 from feeddrive.effects.chain.payload import Payload
 from feeddrive.effects.friction.coulomb_asymmetry import CoulombAsymmetry
 from feeddrive.effects.friction.load_dependent_friction import LoadDependentFriction
@@ -31,9 +31,9 @@ CANDIDATES: tuple[Candidate, ...] = (
     Candidate("lead_error_periodic", starts.lead_error, needs.lead),
     Candidate("lead_error_cumulative", starts.plain(LeadErrorCumulative.of(slope=0.0)), needs.scale),
     Candidate("thermal_growth", drift.thermal_growth, needs.scale_duration),
-    Candidate("stiffness_deviation", transmission.stiffness, needs.elastic),
-    Candidate("stiffness_vs_position", transmission.stiffness_vs_position, needs.stiffness_along_stroke),
-    Candidate("preload_loss", transmission.preload_loss, needs.elastic, scanned=True),
+    Candidate("stiffness_deviation", transmission_starts.stiffness, needs.elastic),
+    Candidate("stiffness_vs_position", transmission_starts.stiffness_vs_position, needs.stiffness_along_stroke),
+    Candidate("preload_loss", transmission_starts.preload_loss, needs.elastic, scanned=True),
     Candidate("backlash", starts.backlash, needs.gap, scanned=True),
     Candidate("payload", starts.plain(Payload.of(mass=0.0)), needs.force),
     Candidate("structural_mode", mode.structural_mode, needs.elastic, scanned=True, brief=True),

@@ -44,7 +44,7 @@ class Remembered(Generic[Value]):
         """The result for a source and values, made if it is not there.
 
         Args:
-            source: such as a motion, told by its identity.
+            source: such as a motion, known by its identity.
             values: what else the result depends on.
             make: makes it; two threads that ask at once may both do so.
         """

@@ -79,19 +79,19 @@ class _Taken:
 
 
 def search(
-    problem: Problem, said: Callable[[str], None] = lambda text: None, start: Search | None = None
+    problem: Problem, progress: Callable[[str], None] = lambda text: None, start: Search | None = None
 ) -> Search:  # fmt: skip
     """Find the effects that the declared plant lacks.
 
     Args:
         problem: declared plant and recordings.
-        said: told what is going on, for a progress display.
+        progress: called with a line that says what is going on.
         start: a search to go on from, without the names that it says are impossible.
 
     Returns:
         The effects found, fitted together, and the ledger of the search.
     """
-    said("fitting declared values within their tolerances")
+    progress("fitting declared values within their tolerances")
     problem = calibrated(problem)
     found = fit(problem, start.fit.effects if start is not None else ())
     begun = (problem, found) if start is None or start.begun is None else start.begun
@@ -102,7 +102,7 @@ def search(
     met: set[tuple[str, ...]] = set()
     near: tuple[Near, ...] = ()
     while len(rounds) < MOST_ROUNDS:
-        said(f"round {len(rounds) + 1}: {len(found.effects)} effects so far")
+        progress(f"round {len(rounds) + 1}: {len(found.effects)} effects so far")
         now = one_round(scene_of(problem, found.effects), found, impossible, denied)
         taken, near = _likelier(problem, found, now)
         rounds.append(tuple(attempt.for_the_record() for attempt in now.attempts))
@@ -117,7 +117,7 @@ def search(
             trials.append(Trial(len(rounds), effect.name, 0.0, 0.0, True))
             continue
         problem, found = _refitted(taken.problem, taken.fit)
-        said(f"found so far: {', '.join(effect.name for effect in found.effects)}")
+        progress(f"found so far: {', '.join(effect.name for effect in found.effects)}")
         members = tuple(sorted(effect.name for effect in found.effects))
         if members in met:  # they only take each other's place
             break

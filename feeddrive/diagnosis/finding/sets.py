@@ -37,7 +37,7 @@ from feeddrive.effects.base import Effect
 from feeddrive.typing import FloatArray, IntegerArray
 
 BEAM = 12
-"""Sets from which the next move is tried; those beyond are hundreds of nats behind where anything is told."""
+"""Sets from which the next move is tried; those beyond are hundreds of nats behind where anything is decided."""
 
 
 ITERATIONS = 6

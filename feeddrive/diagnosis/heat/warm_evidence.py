@@ -11,12 +11,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from feeddrive.diagnosis.heat.evidence import HEAT_BLOCK, MODEL_ERROR, HeatEvidence, model_error_of, smooth_noise
+from feeddrive.diagnosis.heat.heat_evidence import HEAT_BLOCK, MODEL_ERROR, HeatEvidence, model_error_of, smooth_noise
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 from feeddrive.simulate.warm.warm_log import HEAT_STEP, WarmLog, steady_mean, thermometers, warm_log
-from feeddrive.thermal.heat import Heat
+from feeddrive.thermal.machine_heat import Heat
 from feeddrive.typing import BoolArray, FloatArray
 
 MOTION = ("motor_torque", "table_position")

@@ -10,16 +10,16 @@ import numpy as np
 from feeddrive.diagnosis.finding.candidates import CANDIDATES
 from feeddrive.diagnosis.finding.remembered import Remembered, effects_key
 from feeddrive.diagnosis.finding.scene import Candidate
-from feeddrive.diagnosis.heat.candidates import HEAT_CANDIDATES
-from feeddrive.diagnosis.heat.prediction import wide_model, with_bodies_of
+from feeddrive.diagnosis.heat.heat_candidates import HEAT_CANDIDATES
+from feeddrive.diagnosis.heat.heat_prediction import wide_model, with_bodies_of
 from feeddrive.diagnosis.heat.warm_evidence import WarmEvidence
 from feeddrive.diagnosis.likelihood.predictor import Predictor
 from feeddrive.engine.program import StepReport
 from feeddrive.plant.plant import Plant
 from feeddrive.simulate.driven import LoadMotion
 from feeddrive.simulate.warm.warm_log import WarmRun, friction_powers, simulate_log
-from feeddrive.thermal.heat import Heat
-from feeddrive.thermal.reduced.model import HeatModel
+from feeddrive.thermal.machine_heat import Heat
+from feeddrive.thermal.reduced.parametric_model import HeatModel
 from feeddrive.typing import FloatArray
 
 IN_UNIFORM_MOTION = (

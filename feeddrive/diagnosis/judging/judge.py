@@ -195,5 +195,5 @@ def judged_recordings(problem: Problem, judged: Sequence[Judged]) -> tuple[Judge
 
 
 def whole(evidence: Evidence) -> Evidence:
-    """The same recording with all of it judged."""
+    """A recording with all of it judged."""
     return replace(evidence, fitted=np.zeros(len(evidence.fitted), dtype=bool))

@@ -147,10 +147,10 @@ def _stiffness_deviation(place: str, v: Mapping[str, Value]) -> str:
     factor = _one(v["factor"])
     if place in _SOFT_PARTS:
         part, cause = _SOFT_PARTS[place]
-        told = f"The {part} has {factor:.0%} of the declared stiffness"
+        statement = f"The {part} has {factor:.0%} of the declared stiffness"
         if place == "nut":  # Hertz: the stiffness of a preloaded nut goes with the cube root of its preload
             cause += f" (by preload alone, {factor**3:.0%} of it)"
-        return f"{told}{f': {cause}' if factor < 1 else ''}."
+        return f"{statement}{f': {cause}' if factor < 1 else ''}."
     return _signed(
         _one(v["factor"]) - 1,
         "The drive is stiffer along its axis than declared.",

@@ -9,13 +9,13 @@ import numpy as np
 
 from feeddrive.diagnosis.calibration.calibrated_result import CalibratedResult
 from feeddrive.diagnosis.certainty.certainty_result import Ambiguity, Correlation, NextExperiment
-from feeddrive.diagnosis.ledger.result import Kept
-from feeddrive.diagnosis.numbers.rows import NumberResult
+from feeddrive.diagnosis.ledger.ledger_result import Kept
+from feeddrive.diagnosis.numbers.number_rows import NumberResult
 from feeddrive.diagnosis.recordings.change_result import RecordingChanges
 from feeddrive.diagnosis.simulated.simulation_result import SimulationResult as SimulationResult
 from feeddrive.diagnosis.suspicion.quality import Quality
-from feeddrive.diagnosis.unexplained.result import Dependence as Dependence
-from feeddrive.diagnosis.unexplained.result import Unexplained as Unexplained
+from feeddrive.diagnosis.unexplained.unexplained_result import Dependence as Dependence
+from feeddrive.diagnosis.unexplained.unexplained_result import Unexplained as Unexplained
 from feeddrive.typing import FloatArray
 
 

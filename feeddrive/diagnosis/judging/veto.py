@@ -227,14 +227,14 @@ def sizes_around_none(problem: Problem, fitted: Fit) -> list[str]:
         count = len(read_coordinates([effect], problem.plant))
         places = range(at, at + count)
         sizes = sorted({int(groups[i]) for i in places if not math.isnan(absent[i])})
-        told = [_is_told(known.half_covariance, beyond, half, np.flatnonzero(groups == group)) for group in sizes]
-        result.append("" if any(told) or not sizes or is_shift(effect) else "its interval holds no effect at all")
+        sure = [_is_not_none(known.half_covariance, beyond, half, np.flatnonzero(groups == group)) for group in sizes]
+        result.append("" if any(sure) or not sizes or is_shift(effect) else "its interval holds no effect at all")
         at += count
     return result
 
 
-def _is_told(covariance: FloatArray, beyond: FloatArray, half: FloatArray, group: IntegerArray) -> bool:
-    """Whether a group of coordinates is told from none."""
+def _is_not_none(covariance: FloatArray, beyond: FloatArray, half: FloatArray, group: IntegerArray) -> bool:
+    """Whether a group of coordinates is distinguished from none."""
     if len(group) == 1:
         return bool(abs(beyond[group[0]]) > half[group[0]])
     part = covariance[np.ix_(group, group)]

@@ -26,7 +26,7 @@ class Earlier:
         validate: recordings that were judged.
         split: share that was fitted where there were none.
         effects: found, with their values.
-        told: effects as they were reported, name to parameters.
+        reported: effects as they were reported, name to parameters.
     """
 
     runs: list[dict[str, Any]]
@@ -35,7 +35,7 @@ class Earlier:
     validate: tuple[FileUse, ...]
     split: float
     effects: tuple[Effect, ...]
-    told: tuple[dict[str, Any], ...]
+    reported: tuple[dict[str, Any], ...]
 
 
 def earlier_run(folder: Path) -> Earlier:
@@ -91,18 +91,18 @@ def changed_since(before: Sequence[dict[str, Any]], now: Sequence[EffectResult])
         before: effects as the ledger reported them.
         now: effects found.
     """
-    told = []
+    reported = []
     old = {_place(one["name"], one["parameters"]): one for one in before}
     new = {_place(one.name, {k: {"value": p.value} for k, p in one.parameters.items()}): one for one in now}
     for place, one in new.items():
         if place not in old:
-            told.append(f"{place} is new")
+            reported.append(f"{place} is new")
             continue
         values = [_moved(key, old[place]["parameters"].get(key), p) for key, p in one.parameters.items()]
-        said = [value for value in values if value]
-        told.append(f"{place} is confirmed" + (f": {', '.join(said)}" if said else ""))
-    told += [f"{place} no longer pays with all recordings" for place in old if place not in new]
-    return tuple(told)
+        moved = [value for value in values if value]
+        reported.append(f"{place} is confirmed" + (f": {', '.join(moved)}" if moved else ""))
+    reported += [f"{place} no longer pays with all recordings" for place in old if place not in new]
+    return tuple(reported)
 
 
 def _place(name: str, parameters: dict[str, Any]) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 from feeddrive.diagnosis.certainty.correlation import value_labels
 from feeddrive.diagnosis.certainty.uncertainty import Certainty
 from feeddrive.diagnosis.finding.search import Search
-from feeddrive.diagnosis.ledger.result import Covariance, Kept, Tried
+from feeddrive.diagnosis.ledger.ledger_result import Covariance, Kept, Tried
 from feeddrive.diagnosis.likelihood.coordinates import value_slopes
 from feeddrive.diagnosis.likelihood.cross_validation import SIGNIFICANCE, Comparison
 from feeddrive.diagnosis.recordings.recordings import RecordingShift, without_shifts

@@ -120,7 +120,7 @@ def written_earlier(runs: Sequence[dict[str, Any]]) -> tuple[str, ...]:
 def _run(
     number: int, result: Diagnosis, effects: Sequence[Effect], files: RunFiles, written: Sequence[str]
 ) -> dict[str, Any]:
-    told = diagnosis_record(result)
+    record = diagnosis_record(result)
     return {
         "run": number,
         "continues": files.continues,
@@ -129,7 +129,7 @@ def _run(
         "fit": [_file(one) for one in files.fit],
         "validate": [_file(one) for one in files.validate],
         "split": files.split,
-        **{key: told[key] for key in COPIED},
+        **{key: record[key] for key in COPIED},
         "tried": [_plain(vars(one)) for one in result.kept.tried],
         "values": [_effect(effect) for effect in effects],
         "covariance": {"values": list(result.kept.covariance.names),

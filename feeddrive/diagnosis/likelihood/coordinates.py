@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feeddrive.diagnosis.declared_friction import declared_level, declared_viscous
+from feeddrive.diagnosis.friction_at_port import declared_level, declared_viscous
 from feeddrive.effects.base import Effect, Value
 from feeddrive.effects.chain.inertia_deviation import InertiaDeviation, declared_inertia
 from feeddrive.effects.tabulated import Tabulated

@@ -42,7 +42,7 @@ from feeddrive.simulate.driven import MotorMotion, motor_motion, simulate_driven
 from feeddrive.typing import ComplexArray, FloatArray
 
 WINDOW = 0.128
-"""Length of a window [s]: motion keeps its spectrum that long, and 8 Hz are told from the next."""
+"""Length of a window [s]: motion keeps its spectrum that long, and 8 Hz are distinguished from the next."""
 
 ALONG_FREQUENCY, ALONG_TIME = 5, 3
 """Neighbours over which P is averaged: 15 values, of which those of overlapping windows are half independent, are
@@ -59,7 +59,7 @@ MATERIAL = 0.1
 """Variance that the encoder adds to a channel, over its sensor's, from which it is carried: errors grow by 5 %."""
 
 SEED = 12
-"""Of where the steps of the drawn encoder lie; all of them are passed, so that any will do."""
+"""Seed of the places of the drawn encoder's steps; all of them are passed, so that any will do."""
 
 
 @dataclass(frozen=True)

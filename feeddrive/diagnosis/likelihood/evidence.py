@@ -11,8 +11,8 @@ import numpy as np
 from feeddrive.diagnosis.likelihood.band import END_CUT, Band, comparison_band, held, sensor_noise
 from feeddrive.diagnosis.likelihood.encoder_error import encoder_error
 from feeddrive.diagnosis.likelihood.slow_rows import is_slow, known_motion, refuse_unknown_motion, sentence
+from feeddrive.diagnosis.suspicion.channel_timing import lagging
 from feeddrive.diagnosis.suspicion.flawed_rows import refuse_little_left, sound_rows, without_copied_position
-from feeddrive.diagnosis.suspicion.timing import lagging
 from feeddrive.diagnosis.suspicion.torque_channel import with_torque
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
@@ -84,7 +84,7 @@ class Evidence:
         return self.counted & ~self.fitted
 
     def thinned(self, rows: BoolArray) -> BoolArray:
-        """Of these samples, those that carry all that is in the band."""
+        """Those of these samples that carry all that is in the band."""
         comb = np.zeros(len(rows), dtype=bool)
         comb[:: self.thinning] = True
         return rows & comb

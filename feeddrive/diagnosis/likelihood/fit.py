@@ -30,7 +30,7 @@ from feeddrive.diagnosis.likelihood.coordinates import (
 )
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.predictor import Predictor
-from feeddrive.diagnosis.numbers.rows import MeasuredRows
+from feeddrive.diagnosis.numbers.number_rows import MeasuredRows
 from feeddrive.effects.base import Effect
 from feeddrive.plant.passive_friction import is_passive
 from feeddrive.plant.plant import Plant
@@ -58,7 +58,7 @@ BENT = 0.5
 """Bend above which the slope is computed anew; below, it is corrected along the step (Broyden, 1965)."""
 
 LEVEL = 0.8
-"""Residual over the noise that a channel is said to have, below which the noise is put right: a level that is read from
+"""Residual over the noise that a channel is stated to have, below which the noise is put right: a level read from
 the quietest tenth of the blocks is known to some per cent."""
 
 FREE = 1e-6

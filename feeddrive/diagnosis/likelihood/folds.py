@@ -18,7 +18,7 @@ FOLDS = 6
 """Folds to which the blocks are dealt; the number of a block modulo this is its fold."""
 
 SEED = 6
-"""Of the dealing; any number will do, and a recording is dealt alike every time."""
+"""Seed of the dealing; any number will do, and a recording is dealt alike every time."""
 
 AT_REST = 1e-3
 """Share of the highest speed below which a block is at rest."""

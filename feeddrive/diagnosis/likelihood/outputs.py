@@ -14,12 +14,12 @@ import numpy as np
 from feeddrive import __version__
 from feeddrive.diagnosis.calibration.calibrated_result import calibrated_record
 from feeddrive.diagnosis.judging.result import ChannelResult, Diagnosis, EffectResult, ErrorFigures, ParameterResult
-from feeddrive.diagnosis.numbers.rows import numbers_beside
+from feeddrive.diagnosis.numbers.number_rows import numbers_beside
 from feeddrive.diagnosis.plant_text import with_calibrated_values
 from feeddrive.diagnosis.recordings.change_outputs import changes_record
 from feeddrive.diagnosis.simulated.simulation_record import simulation_record
 from feeddrive.diagnosis.suspicion.quality import is_recorders, quality_record
-from feeddrive.diagnosis.unexplained.outputs import carried_remarks, unexplained_record
+from feeddrive.diagnosis.unexplained.unexplained_record import carried_remarks, unexplained_record
 from feeddrive.effects.base import Effect
 from feeddrive.files import write_text_atomically
 from feeddrive.plant.file.effect_text import plant_text_with_effects
@@ -104,7 +104,7 @@ def diagnosis_record(diagnosis: Diagnosis) -> dict[str, Any]:
             "parameters": list(known.names),
             "matrix": [list(row) for row in known.matrix],
             "condition": condition,
-            "known_only_together": list(known.told),
+            "known_only_together": list(known.remarks),
         }
     return record
 

@@ -49,7 +49,7 @@ def predictable_samples(plant: Plant, evidence: AxisEvidence) -> BoolArray:
 
 
 def samples_to_fit(plant: Plant, evidence: AxisEvidence) -> BoolArray:
-    """Of the samples that the plant can predict those that tell of the plant, shape (n,).
+    """Samples that the plant can predict and that tell of the plant, shape (n,).
 
     At a contact the encoder's own noise is magnified. Where it moves the table by more than the noise of the scale,
     what is missed is the encoder's, and effects would be named for it.

@@ -12,7 +12,7 @@ from feeddrive.diagnosis.finding.scene import Candidate
 from feeddrive.diagnosis.likelihood.evidence import AxisEvidence
 from feeddrive.diagnosis.likelihood.predictability import predictable_samples, samples_to_fit
 from feeddrive.diagnosis.likelihood.predictor import Predictor
-from feeddrive.diagnosis.suspicion.timing import lag_of, lagging, repeated
+from feeddrive.diagnosis.suspicion.channel_timing import lag_of, lagging, repeated
 from feeddrive.diagnosis.suspicion.torque_channel import scale_of, scale_sentence
 from feeddrive.effects.base import ChainEffect, DriveEffect, Effect, Kind, Motion, Port, SourceEffect
 from feeddrive.engine.step.step_constants import SimulationError
@@ -72,7 +72,7 @@ class AxisPredictor(Predictor[AxisEvidence]):
             measured.append(evidence.measured["motor_torque"][rows])
         return scale_of(np.concatenate(measured), np.concatenate(predicted))
 
-    def told(self, before: Plant, after: Plant) -> tuple[str, ...]:
+    def remarks(self, before: Plant, after: Plant) -> tuple[str, ...]:
         """The scale of the torque, where it is fitted."""
         scales = [self.declared_scale / self.scale(plant) for plant in (before, after)] if self.scaled else []
         return tuple(scale_sentence(self.scaled[0].scaled_from, *scales) for _ in scales[:1])

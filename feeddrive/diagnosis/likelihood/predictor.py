@@ -1,7 +1,7 @@
 """What the search needs to know of a kind of recording: how it is predicted, and which effects are tried.
 
-Three kinds are known: motion and torque (`prediction`), temperatures and growth (`heat.prediction`), and logs of hours
-with both (`heat.warm_prediction`). Search, fit, cross-validation and judging are the same for all of them.
+Three kinds are known: motion and torque (`prediction`), temperatures and growth (`heat_prediction`), and logs of hours
+with both (`warm_prediction`). Search, fit, cross-validation and judging are the same for all of them.
 """
 
 from __future__ import annotations
@@ -69,8 +69,8 @@ class Predictor(ABC, Generic[E]):
     def reference(self, name: str, plant: Plant, evidence: E) -> FloatArray:
         """Series of a channel whose rms a relative error refers to, over the judged samples."""
 
-    def told(self, before: Plant, after: Plant) -> tuple[str, ...]:
-        """What is to be said of this way to predict, with the declared plant and with what was found."""
+    def remarks(self, before: Plant, after: Plant) -> tuple[str, ...]:
+        """Remarks on this way to predict, with the declared plant and with what was found."""
         return ()
 
     def smooth(self, plant: Plant) -> bool:

@@ -42,7 +42,7 @@ VIBRATION = 2.0
 """Length of stretches [s] of which nothing is kept where the torque jumps at half of their rows."""
 
 FEWEST_ROWS = 100
-"""Rows with known motion from which an effect can be told from noise at all."""
+"""Rows with known motion from which an effect can be distinguished from noise at all."""
 
 
 def is_slow(recording: Recording) -> bool:
@@ -103,7 +103,7 @@ def refuse_unknown_motion(known: BoolArray, counted: BoolArray, recording: Recor
 
 
 def sentence(known: BoolArray, recording: Recording) -> str:
-    """What is to be said of a slow recording."""
+    """Remarks on a slow recording."""
     lost = 100 * (1 - float(np.mean(known)))
     return (
         f"rows are {recording.sample_time * 1e3:.3g} ms apart, further than a drive's cycles: a torque is that of its "

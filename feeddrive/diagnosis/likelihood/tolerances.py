@@ -29,7 +29,7 @@ from feeddrive.errors import InputError
 from feeddrive.units.quantity import parse
 
 WIDEST = math.log(4.0)
-"""Of a value beyond its tolerance, either way; more is another machine or a slip of a unit."""
+"""Logarithm of the widest factor by which a value misses, either way; more is another machine or a slip of a unit."""
 
 BEYOND = WIDEST / 1.96
 """Standard deviation of the logarithm of a value beyond its tolerance."""

@@ -53,7 +53,7 @@ class DeclaredValue:
 
     @property
     def exact(self) -> bool:
-        """Whether nothing within its tolerance can be told from it."""
+        """Whether nothing within its tolerance can be distinguished from it."""
         return not self.missing and self.deviation <= deviation_of(_LEAST_TOLERANCE)
 
     def at(self, coordinate: float) -> str | None:

@@ -45,7 +45,7 @@ from feeddrive.diagnosis.numbers.declared_values import DeclaredValue, declared_
 from feeddrive.diagnosis.numbers.measured_file import MeasuredNumber
 from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.plant.analysis.stiffness_budget import stiffness_budget
-from feeddrive.plant.file.files import plant_from_entries
+from feeddrive.plant.file.plant_file import plant_from_entries
 from feeddrive.plant.plant import Plant
 from feeddrive.simulate.scenario.scenario_overrides import with_overrides
 from feeddrive.typing import FloatArray
@@ -61,7 +61,7 @@ UNSEEN = 0.01
 value beyond it, some ten times as far, is lost in their noise."""
 
 STEP = 1e-3
-"""Of the differences, in coordinates whose tolerances are some hundredths."""
+"""Step of the differences, in coordinates whose tolerances are some hundredths."""
 
 
 @dataclass(frozen=True)
@@ -179,15 +179,17 @@ class SingleCause:
     meets: bool
 
 
-def explanations(problem: NumbersProblem, said: Callable[[str], None] = lambda text: None) -> tuple[Explanation, ...]:
+def explanations(
+    problem: NumbersProblem, progress: Callable[[str], None] = lambda text: None
+) -> tuple[Explanation, ...]:
     """Every set of at most `MOST` values beyond their tolerances, the most probable first; probabilities add to one."""
-    said("slopes of the numbers with the declared values")
+    progress("slopes of the numbers with the declared values")
     zero = np.zeros(len(problem.values))
     base, slopes = problem.predicted(zero), problem.slopes(zero)
     sets = [chosen for size in range(MOST + 1) for chosen in itertools.combinations(problem.seen, size)]
     found = [_explained(problem, chosen, zero, base, slopes) for chosen in sets]
     found.sort(key=lambda one: -(one.log_evidence + log_prior_of_size(len(one.beyond), len(problem.seen))))
-    said("the likeliest sets at their own values")
+    progress("the likeliest sets at their own values")
     ends = [_settled(problem, one) for one in found[:RELINEARISED]] + found[RELINEARISED:]
     logs = np.array([one.log_evidence + log_prior_of_size(len(one.beyond), len(problem.seen)) for one in ends])
     shares = np.exp(logs - np.max(logs))
@@ -252,7 +254,7 @@ def _explained(
 
 
 def _settled(problem: NumbersProblem, one: Explanation) -> Explanation:
-    """The same set, linearised at its own best values until they stay."""
+    """The set linearised at its own best values until they stay."""
     for _ in range(6):
         at = one.coordinates
         try:

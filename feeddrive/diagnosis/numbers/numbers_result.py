@@ -109,7 +109,7 @@ def diagnose_numbers(
     path: Path,
     plant: Plant,
     measured: Sequence[MeasuredNumber],
-    said: Callable[[str], None] = lambda text: None,
+    progress: Callable[[str], None] = lambda text: None,
 ) -> NumbersResult:
     """Trace the difference of measured numbers from a plant file to its declared values.
 
@@ -118,14 +118,14 @@ def diagnose_numbers(
         path: of it.
         plant: read from it.
         measured: the numbers.
-        said: told what is going on.
+        progress: called with a line that says what is going on.
 
     Raises:
         InputError: a number that this plant cannot give, or a file that declares nothing that could be other.
     """
     problem = numbers_problem(entries, path, plant, measured)
-    sets = explanations(problem, said)
-    said("each value alone, and what to measure next")
+    sets = explanations(problem, progress)
+    progress("each value alone, and what to measure next")
     chances = inclusion(problem, sets)
     within = sum(one.probability for one in sets if not one.beyond)
     likely = sorted(problem.seen, key=lambda place: -chances[place])

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from feeddrive.diagnosis.declared_friction import declared_level, declared_viscous
+from feeddrive.diagnosis.friction_at_port import declared_level, declared_viscous
 from feeddrive.diagnosis.likelihood.coordinates import coordinates_of
 from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.diagnosis.recordings.recordings import RecordingShift, Target, is_shift, shift_of, target_of

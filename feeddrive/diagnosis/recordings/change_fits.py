@@ -51,7 +51,7 @@ def set_free(
 
 
 def machine_first(problem: Problem, fitted: Fit) -> Fit:
-    """The same fit with the shifts at the end."""
+    """A copy of a fit with the shifts at the end."""
     machine = [effect for effect in fitted.effects if not is_shift(effect)]
     shifts = [effect for effect in fitted.effects if is_shift(effect)]
     return fit(problem, [*machine, *shifts], iterations=REFERENCE_STEPS)

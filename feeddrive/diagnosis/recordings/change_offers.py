@@ -35,7 +35,7 @@ def offers(problem: Problem, current: Fit, free: Sequence[Movable], recordings: 
         recordings: numbers of those that may differ.
 
     Returns:
-        The best first; before it a friction level that cannot be told from it, since that is what changes first.
+        The best first; before it a friction level like it to the recordings, since that changes first.
     """
     blocks, rows = block_numbers(problem), recording_of_rows(problem)
     without = _left_out(problem, current, blocks)

@@ -1,4 +1,4 @@
-"""From fitted shifts to what is said: every change with its values, and what all recordings share."""
+"""From fitted shifts to what is reported: every change with its values, and what all recordings share."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ WORDS = {
 """What a parameter is called in a sentence about a change; others by their own names."""
 
 FACTORS = ("coulomb_factor", "viscous_factor", "factor")
-"""Parameters whose change is said in per cent."""
+"""Parameters whose change is stated in per cent."""
 
 
 @dataclass(frozen=True)

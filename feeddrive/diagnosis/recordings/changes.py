@@ -36,7 +36,7 @@ FALSE_ALARMS = 0.05
 """Chance of one false change in a whole diagnosis, shared out among all parameters that are tried."""
 
 OFFERS = 2
-"""Parameters that are fitted before the recordings are said to share the rest."""
+"""Parameters that are fitted before the recordings are taken to share the rest."""
 
 MOST_CHANGES = 6
 """Parameters that may differ; a machine on which more did is another machine."""
@@ -58,7 +58,7 @@ class Changes:
     """The fit with what differs by recording.
 
     Attributes:
-        problem: of the fit; a declared value that differs is said by an effect and no more fitted beside it.
+        problem: of the fit; a declared value that differs is stated by an effect and no more fitted beside it.
         fit: effects of the machine, then the shifts of what differs.
         targets: what differs, in the order found.
         trials: all that was tried.

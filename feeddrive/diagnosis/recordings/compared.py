@@ -19,7 +19,7 @@ from feeddrive.diagnosis.recordings.change_report import (
 from feeddrive.diagnosis.recordings.change_result import ParameterChange, RecordingChanges
 from feeddrive.diagnosis.recordings.judged_changes import JudgedChanges, judged_changes
 from feeddrive.diagnosis.recordings.recordings import RecordingShift, without_shifts
-from feeddrive.diagnosis.recordings.search import Searched
+from feeddrive.diagnosis.recordings.recordings_search import Searched
 from feeddrive.effects.base import Effect
 
 
@@ -28,7 +28,7 @@ class Compared:
     """What differs, and what follows from it for the effects.
 
     Attributes:
-        changes: to be said.
+        changes: to be reported.
         judged: differences of the judged recordings; None where all were fitted.
         listed: which effects of the machine the declared plant lacks in every recording.
     """
@@ -90,7 +90,7 @@ def machine_as_last(searched: Searched, listed: Sequence[bool]) -> tuple[Effect,
 
 
 def last_state(searched: Searched) -> tuple[str, ...]:
-    """Of which recording the plant is that was found, where they differ."""
+    """Names the recording whose plant was found, where they differ."""
     if searched.changes is None or not searched.changes.targets:
         return ()
     last = searched.search.problem.evidence[-1].recording.name
@@ -98,9 +98,9 @@ def last_state(searched: Searched) -> tuple[str, ...]:
 
 
 def with_carrying(results: Sequence[EffectResult], compared: Compared) -> tuple[EffectResult, ...]:
-    """The listed effects; whether they carry is asked with the levels of the judged recordings, and that is said."""
+    """The listed effects; whether they carry is asked with the levels of the judged recordings, and that is stated."""
     carries = compared.judged.carries if compared.judged is not None else ()
-    told = []
+    kept = []
     for number, (result, named) in enumerate(zip(results, compared.listed, strict=True)):
         if not named:
             continue
@@ -110,8 +110,8 @@ def with_carrying(results: Sequence[EffectResult], compared: Compared) -> tuple[
             one = replace(one, carries=carries[number], evidence=f"{one.evidence} With the changes allowed for {seen}.")
         if not one.carries:
             one = replace(one, evidence=f"{one.evidence}{_why_not(one, compared)}")
-        told.append(one)
-    return tuple(told)
+        kept.append(one)
+    return tuple(kept)
 
 
 def _why_not(result: EffectResult, compared: Compared) -> str:

@@ -20,7 +20,7 @@ from feeddrive.diagnosis.recordings.change_report import Question, parameter_cha
 from feeddrive.diagnosis.recordings.change_result import ParameterChange
 from feeddrive.diagnosis.recordings.changes import Changes, find_changes
 from feeddrive.diagnosis.recordings.recordings import RecordingShift, without_shifts
-from feeddrive.diagnosis.recordings.search import numbered
+from feeddrive.diagnosis.recordings.recordings_search import numbered
 from feeddrive.effects.base import Effect
 
 FITTED = "the fitted recordings"

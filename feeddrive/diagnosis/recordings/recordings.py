@@ -16,7 +16,7 @@ from feeddrive.diagnosis.likelihood.coordinates import coordinates_of, read_coor
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.predictor import Predictor
 from feeddrive.effects.base import Effect, Kind, Parameter, Port, Signature
-from feeddrive.effects.heat.base import ThermalEffect
+from feeddrive.effects.heat.thermal_effect import ThermalEffect
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 from feeddrive.simulate.driven import LoadMotion
@@ -35,7 +35,7 @@ class Target:
         port: where it acts.
         place: the word that says where it acts, or an empty text.
         coordinate: number of the coordinate, in the order of `coordinates_of`.
-        order: of a sine, by which it is told from others of its name; None elsewhere.
+        order: of a sine, by which it is distinguished from others of its name; None elsewhere.
     """
 
     name: str
@@ -170,10 +170,10 @@ class RecordingPredictor(Predictor[Any]):
         """Series that a relative error refers to."""
         return self.inner.reference(name, plant, evidence)
 
-    def told(self, before: Plant, after: Plant) -> tuple[str, ...]:
-        """What is to be said of the way to predict, recordings without shifts."""
+    def remarks(self, before: Plant, after: Plant) -> tuple[str, ...]:
+        """Remarks on the way to predict, recordings without shifts."""
         plain = [replace(plant, effects=without_shifts(plant.effects)) for plant in (before, after)]
-        return self.inner.told(*plain)
+        return self.inner.remarks(*plain)
 
     def predictable(self, plant: Plant, evidence: Any) -> BoolArray:
         """Samples that can be predicted."""

@@ -33,13 +33,13 @@ from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.plant.analysis.linear import INPUTS, OUTPUTS
 from feeddrive.plant.analysis.stiffness_budget import stiffness_budget
 from feeddrive.plant.chain.resolution import resolved
-from feeddrive.plant.file.files import plant_from_entries
+from feeddrive.plant.file.plant_file import plant_from_entries
 from feeddrive.plant.plant import Plant
 from feeddrive.recording.frequency_response import FrequencyResponse
 from feeddrive.servo.cascade import Cascade
-from feeddrive.servo.frequency_response import Case, delay_of, transfer
 from feeddrive.servo.linear_loop import closed_velocity_loop, open_velocity_loop
 from feeddrive.servo.margins import frequency_response
+from feeddrive.servo.mechanics_response import Case, delay_of, transfer
 from feeddrive.simulate.scenario.scenario_overrides import with_overrides
 from feeddrive.typing import ComplexArray, FloatArray
 

@@ -27,7 +27,7 @@ from feeddrive.plant.file.effect_text import plant_text_with_effects
 from feeddrive.plant.plant import Plant
 from feeddrive.recording.frequency_response import FrequencyResponse
 from feeddrive.servo.cascade import Cascade
-from feeddrive.servo.frequency_response import Case
+from feeddrive.servo.mechanics_response import Case
 from feeddrive.typing import ComplexArray, FloatArray
 from feeddrive.units.quantity import format_quantity
 
@@ -115,7 +115,7 @@ def diagnose_response(
     plant: Plant,
     response: FrequencyResponse,
     case: Case,
-    said: Callable[[str], None] = lambda text: None,
+    progress: Callable[[str], None] = lambda text: None,
     cascade: Cascade | None = None,
 ) -> ResponseResult:
     """Trace the difference of a measured frequency response from a plant file.
@@ -126,13 +126,13 @@ def diagnose_response(
         plant: read from it.
         response: as measured, of the mechanics or of the speed loop.
         case: operating point at which it was measured.
-        said: told what is going on.
+        progress: called with a line that says what is going on.
         cascade: the controller, where the response is one of its speed loop.
 
     Raises:
         InputError: as `response_problem`, and a plant that cannot be linearised at the operating point.
     """
-    search = search_response(response_problem(entries, path, plant, response, case, cascade), said)
+    search = search_response(response_problem(entries, path, plant, response, case, cascade), progress)
     problem = search.problem
     fit = search.found
     weight = 1 / fit.variance

@@ -121,13 +121,13 @@ class ResponseSearch:
     steps: tuple[Step, ...]
 
 
-def search_response(problem: ResponseProblem, said: Callable[[str], None] = lambda text: None) -> ResponseSearch:
+def search_response(problem: ResponseProblem, progress: Callable[[str], None] = lambda text: None) -> ResponseSearch:
     """Find what the declared plant lacks for a measured frequency response.
 
     Raises:
         InputError: a plant that cannot be linearised at the operating point.
     """
-    said("fitting declared values within their tolerances")
+    progress("fitting declared values within their tolerances")
     zero = np.zeros(len(problem.values))
     declared = problem.residual(zero, Lines())
     problem = _of_seen_values(problem, declared)
@@ -137,7 +137,7 @@ def search_response(problem: ResponseProblem, said: Callable[[str], None] = lamb
     rivals: dict[str, tuple[str, ...]] = {}
     count = len(seen) + 2
     while found.size < MOST:
-        said(f"{found.size} found so far")
+        progress(f"{found.size} found so far")
         tried = [(name, one) for name, one in _candidates(problem, found, seen)]
         gains = [_gain(found, one, count) for _, one in tried]
         if not gains:
@@ -165,8 +165,8 @@ def _of_seen_values(problem: ResponseProblem, declared: FloatArray) -> ResponseP
     zero = np.zeros(len(problem.values))
     slopes = _slopes(problem, zero, Lines(), declared)
     deviations = np.array([BEYOND if one.exact else one.deviation for one in problem.values])
-    told = np.sqrt(np.sum((slopes * deviations) ** 2 / _variance(problem, declared)[:, None], axis=0))
-    kept = tuple(one for one, size in zip(problem.values, told, strict=True) if size > 0.1)
+    size_over_noise = np.sqrt(np.sum((slopes * deviations) ** 2 / _variance(problem, declared)[:, None], axis=0))
+    kept = tuple(one for one, size in zip(problem.values, size_over_noise, strict=True) if size > 0.1)
     return replace(problem, values=kept)
 
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from feeddrive.diagnosis.likelihood.band import white_noise
 from feeddrive.diagnosis.likelihood.evidence import AxisEvidence, Evidence
-from feeddrive.diagnosis.suspicion.timing import lagging
+from feeddrive.diagnosis.suspicion.channel_timing import lagging
 from feeddrive.effects.timing.channel_delay import lateness
 from feeddrive.engine.lateness import late_mean
 from feeddrive.engine.step.step_constants import SimulationError

@@ -66,21 +66,21 @@ class Refinement:
     loops: tuple[LoopEvidence, ...] = ()
 
     def saying(self, statement: str, kept_back: Mapping[str, str] | None = None) -> Refinement:
-        """The same, with a statement and the effects that could not be moved."""
+        """A copy with a statement and the effects that could not be moved."""
         assert self.simulation is not None
-        told = replace(self.simulation, statement=statement, not_refined=kept_back or {})
-        return replace(self, simulation=told)
+        simulation = replace(self.simulation, statement=statement, not_refined=kept_back or {})
+        return replace(self, simulation=simulation)
 
     def reported(self, judged: Sequence[Judged]) -> SimulationResult | None:
         """The result with `after` of these judged recordings, which may have more than the effects that were found."""
-        told = self.simulation
-        if told is None or all(new is old for new, old in zip(judged, self.outcome[0], strict=True)):
-            return told
+        simulation = self.simulation
+        if simulation is None or all(new is old for new, old in zip(judged, self.outcome[0], strict=True)):
+            return simulation
         after = _errors(self.found, self.loops, judged)
         if not _finite(after):
-            return told
-        channels = tuple(replace(channel, after=after[channel.name]) for channel in told.channels)
-        return replace(told, after=channels[0].after.relative, channels=channels)
+            return simulation
+        channels = tuple(replace(channel, after=after[channel.name]) for channel in simulation.channels)
+        return replace(simulation, after=channels[0].after.relative, channels=channels)
 
 
 def refined(found: Search, outcome: Outcome, judge: Judge) -> Refinement:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from feeddrive.diagnosis.declared_friction import declared_viscous
 from feeddrive.diagnosis.finding.scene import Scene
+from feeddrive.diagnosis.friction_at_port import declared_viscous
 from feeddrive.diagnosis.starts.periodogram import strongest_orders
 from feeddrive.diagnosis.starts.residual_force import residual_force
 from feeddrive.diagnosis.starts.starts import explains, highest_order, sine

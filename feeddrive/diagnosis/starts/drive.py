@@ -17,7 +17,7 @@ LONGEST = 0.1
 """Delays that are looked for [s]; a channel that is later than that belongs to another motion."""
 
 CONTINUOUS = 0.3
-"""Torque at which a droop is told, over the declared limit: about what a servo motor gives continuously."""
+"""Torque at which a droop is stated, over the declared limit: about what a servo motor gives continuously."""
 
 TORQUE, ANGLE, TABLE = "motor_torque", "motor_angle", "table_position"
 
@@ -55,7 +55,7 @@ def inertia(scene: Scene) -> list[list[Effect]]:
 
 
 def droop(scene: Scene) -> list[list[Effect]]:
-    """None, told at the same torque for every recording of a machine; at the largest recorded one where no limit is."""
+    """None, stated at the same torque for every recording of a machine; at the largest recorded one without a limit."""
     at = CONTINUOUS * scene.plant.torque_limit
     if not np.isfinite(at):
         at = max(float(np.abs(e.measured[TORQUE][e.fit_rows]).max()) for e in scene.problem.evidence)

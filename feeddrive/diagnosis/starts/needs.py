@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import numpy as np
 
-from feeddrive.diagnosis.declared_friction import declared_level
 from feeddrive.diagnosis.finding.scene import Scene
+from feeddrive.diagnosis.friction_at_port import declared_level
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.effects.base import Port
 from feeddrive.simulate.driven import LoadMotion
 
 LEAST_TURNS = 2.0
-"""Revolutions that must be travelled before a periodic effect can be told from a trend."""
+"""Revolutions that must be travelled before a periodic effect can be distinguished from a trend."""
 
 LEAST_SECONDS = 8.0
-"""Duration [s] below which a slow change of the machine cannot be told from the motion."""
+"""Duration [s] below which a slow change of the machine cannot be distinguished from the motion."""
 
 LEAST_STROKE_TURNS = 1.0
 """Stroke in revolutions of the screw from which position and angle are different things."""
@@ -50,7 +50,7 @@ def reversals(scene: Scene) -> str:
 
 
 def turns(scene: Scene) -> str:
-    """The motor must turn often enough for a period to be told from a trend."""
+    """The motor must turn often enough for a period to be distinguished from a trend."""
     travelled = max(
         float(np.ptp(run.motor_angle[e.fit_rows])) for run, e in zip(scene.runs, scene.problem.evidence, strict=True)
     )

@@ -16,7 +16,7 @@ def residual_force(scene: Scene, at: int) -> FloatArray:
 
 
 def residual_forces(scene: Scene, at: int) -> list[FloatArray]:
-    """The same force by every channel that shows it, the torque's first; shape (n,) each.
+    """The force that is left, by every channel that shows it, the torque's first; shape (n,) each.
 
     On a soft drive the lag of the table tells forces that are lost in the noise of the torque.
     """

@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from feeddrive.diagnosis.declared_friction import declared_level, declared_viscous
 from feeddrive.diagnosis.finding.scene import Scene
+from feeddrive.diagnosis.friction_at_port import declared_level, declared_viscous
 from feeddrive.diagnosis.starts.periodogram import sine_at, strongest_orders
 from feeddrive.diagnosis.starts.position_curve import bump_of, friction_over_position
 from feeddrive.diagnosis.starts.residual_force import residual_forces

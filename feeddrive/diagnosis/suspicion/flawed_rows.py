@@ -24,7 +24,7 @@ FILTER_PERIODS = 4.0
 """Periods of the band's edge that a flaw reaches through the filter; see above."""
 
 SAME_LIMIT = 0.01
-"""Of the declared torque limit, by which a torque at it may miss it: the constant of the motor is known to that."""
+"""Share of the declared torque limit by which a torque at it may miss it: the motor's constant is known to that."""
 
 LEAST_LEFT = 0.5
 """Share of the rows that is left at least: with more flawed than sound, it is another recording that is needed."""

@@ -7,7 +7,7 @@ Taken as held for a whole row h where it is held for h / m, a torque comes late 
 A delay of the recorded torque that is one of these is the recorder's way to write, not a fault of the machine. Asked
 only where rows are so far apart that loops are mostly faster. Where the plant declares its controller the cycle is
 known and taken from it. Where it does not, a delay d that is none of these is one of a machine and a recorder together:
-the rows alone do not tell m, and the machine's own part is from d - h/2 to d, which is said.
+the rows alone do not tell m, and the machine's own part is from d - h/2 to d, which is stated.
 """
 
 from __future__ import annotations
@@ -27,10 +27,10 @@ FASTEST_LOG = 0.9e-3
 """Time between rows [s] below which a recording is taken as one row a cycle."""
 
 MOST_CYCLES = 40
-"""Cycles in a row at most; more are not told apart."""
+"""Cycles in a row at most; more are not distinguished."""
 
 NEAR = 0.02
-"""Of a row, by which a lag may miss one of these where its interval is narrower: what the shape of the hold leaves."""
+"""Share of a row by which a lag may miss one of these where its interval is narrower: what the hold's shape leaves."""
 
 
 def may_be_logged(recordings: Sequence[Recording]) -> bool:
@@ -42,7 +42,7 @@ def may_be_logged(recordings: Sequence[Recording]) -> bool:
 def hold_of(
     effects: Sequence[Effect], spans: Sequence[Mapping[str, Sequence[Interval] | None]], recordings: Sequence[Recording]
 ) -> float | None:
-    """How long the torque of these recordings is held [s]; None where a whole row is as good or nothing is told.
+    """How long the torque of these recordings is held [s]; None where a whole row is as good or nothing is known.
 
     Args:
         effects: that were found with the torque held for a whole row.
@@ -79,7 +79,7 @@ def declared_hold(plant: Plant, recordings: Sequence[Recording]) -> float | None
 
 
 def open_lag(effects: Sequence[Effect], recordings: Sequence[Recording]) -> tuple[str, ...]:
-    """What is to be said of a delay of the torque, part of which may be the recorder's."""
+    """Remarks on a delay of the torque, part of which may be the recorder's."""
     if not may_be_logged(recordings):
         return ()
     step = recordings[0].sample_time
@@ -96,7 +96,7 @@ def open_lag(effects: Sequence[Effect], recordings: Sequence[Recording]) -> tupl
 
 
 def sentence(hold: float, step: float) -> str:
-    """What is to be said of it; both [s]."""
+    """Remarks on it; both [s]."""
     return (
         f"a torque is logged every {step * 1e3:.3g} ms, and comes as from a drive that holds it for "
         f"{hold * 1e3:.2g} ms; it is taken so, and no delay is named for it"
@@ -104,7 +104,7 @@ def sentence(hold: float, step: float) -> str:
 
 
 def declared_sentence(hold: float, step: float) -> str:
-    """What is to be said of a cycle that is declared; both [s]."""
+    """Remarks on a cycle that is declared; both [s]."""
     return (
         f"a torque is logged every {step * 1e3:.3g} ms; the declared controller holds it for {hold * 1e3:.2g} ms, and "
         "it is taken so"

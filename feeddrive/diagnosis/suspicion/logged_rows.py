@@ -59,8 +59,8 @@ def with_recorder_that_holds(
     if not after < before:
         return problem, list(judged), ()
     written = [e for e in known.values() if isinstance(e, AxisEvidence)]
-    said = tuple(_said(e, e.torque_rows[0], 1 - after / before) for e in written if e.torque_rows is not None)
-    return held, [known[e] for e in judged], said
+    remarks = tuple(_quality(e, e.torque_rows[0], 1 - after / before) for e in written if e.torque_rows is not None)
+    return held, [known[e] for e in judged], remarks
 
 
 def _as_written(evidence: Evidence) -> Evidence:
@@ -79,7 +79,7 @@ def _as_written(evidence: Evidence) -> Evidence:
     return replace(evidence, measured=measured, noise={**evidence.noise, name: noise}, torque_rows=found)
 
 
-def _said(evidence: Evidence, rows: int, explains: float) -> Quality:
+def _quality(evidence: Evidence, rows: int, explains: float) -> Quality:
     seconds, name = rows * evidence.recording.sample_time, evidence.recording.name
     what = f"{name}: the torque is written every {1e3 * seconds:.3g} ms, {rows} rows, and repeated between"
     mend = "let the recorder read it at every row; it is compared as it is written"

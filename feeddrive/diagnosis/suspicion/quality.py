@@ -1,9 +1,9 @@
-"""What a recording is said not to be: a fault of the recorder or of a mapping, and how to mend it.
+"""What a recording is found not to be: a fault of the recorder or of a mapping, and how to mend it.
 
 A fault is no effect of the machine. What is judged after it is the recording as mended, and `plant_after.toml` holds
-nothing of it. Where a law of the machine says the same in one value, both are said and neither is denied:
+nothing of it. Where a law of the machine says the same in one value, both are reported and neither is denied:
 
-| found | what the recorder may have done | told apart by |
+| found | what the recorder may have done | distinguished by |
 |---|---|---|
 | channel_delay | this channel is written late; nothing else says so | |
 | drive_delay | motor angle and table position are both written late | the times of the recorder |
@@ -85,7 +85,7 @@ def is_recorders(effect: Effect) -> bool:
 
 
 def quality_lines(found: Sequence[Quality]) -> list[str]:
-    """What is said of each."""
+    """Sentences on each."""
     return [f"{one.sentence[:1].upper()}{one.sentence[1:]}: {one.mend}." for one in found]
 
 
@@ -135,8 +135,8 @@ def _all_late(effect: Effect) -> Quality:
 
 def _offset(effect: Effect, plant: Plant) -> Quality:
     torque = number(effect.values["force"]) * plant.chain.motor_radius
-    told, back = (format_quantity(one, "N m") for one in (torque, -torque))
-    what = f"a constant force and an offset of the torque by {told} are the same on an axis where nothing hangs"
+    size, back = (format_quantity(one, "N m") for one in (torque, -torque))
+    what = f"a constant force and an offset of the torque by {size} are the same on an axis where nothing hangs"
     mend = f'record the torque at rest without control; an offset is mended by "offset = {back}" in the mapping'
     return Quality("channel_offset", "motor_torque", torque, "N m", what, mend, alternatives=(effect.name,))
 

@@ -92,7 +92,7 @@ class Suspect:
         names = [name for name in ("motor_torque", "motor_current", "motor_torque_share") if name in recording]
         return recording.with_channels({name: factor * recording[name] for name in names})
 
-    def said(self, recordings: Sequence[Recording]) -> Quality:
+    def quality(self, recordings: Sequence[Recording]) -> Quality:
         """What is reported; recordings are the mended ones."""
         factor = math.exp(self.size)
         low, high = (math.exp(self.size + way * 1.96 * self.deviation) for way in (-1, 1))

@@ -75,7 +75,7 @@ def refuse_what_is_no_torque(channel: str, measured: FloatArray, predicted: Floa
 
 
 def scale_sentence(channel: str, declared: float, found: float) -> str:
-    """What is to be said of a fitted scale [N m per unit of the channel], as declared and with what was found."""
+    """Remarks on a fitted scale [N m per unit of the channel], as declared and with what was found."""
     unit = "N m/A" if PROPORTIONAL[channel] == "A" else "N m"
     first, last = (format_quantity(value, unit) for value in (declared, found))
     return (

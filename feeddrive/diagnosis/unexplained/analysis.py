@@ -9,10 +9,8 @@ import numpy as np
 
 from feeddrive.diagnosis.likelihood.cross_validation import LEAST_GAIN, compare_left_out
 from feeddrive.diagnosis.likelihood.predictor import CHANCE
-from feeddrive.diagnosis.unexplained.candidates import finer_steps, sines, terms_of
 from feeddrive.diagnosis.unexplained.floor import Excess, excess
 from feeddrive.diagnosis.unexplained.functional_anova import Decomposition, Found, decompose
-from feeddrive.diagnosis.unexplained.result import Dependence
 from feeddrive.diagnosis.unexplained.shape import (
     in_travel,
     is_locked,
@@ -22,6 +20,8 @@ from feeddrive.diagnosis.unexplained.shape import (
     table_of,
 )
 from feeddrive.diagnosis.unexplained.term import Form, Term
+from feeddrive.diagnosis.unexplained.tried_terms import finer_steps, sines, terms_of
+from feeddrive.diagnosis.unexplained.unexplained_result import Dependence
 from feeddrive.diagnosis.unexplained.view import View, sample_of
 from feeddrive.typing import FloatArray, IntegerArray
 

@@ -17,9 +17,9 @@ from feeddrive.diagnosis.likelihood.coordinates import read_coordinates, write_c
 from feeddrive.diagnosis.likelihood.cross_validation import compare_left_out
 from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.diagnosis.unexplained.functional_anova import Found
-from feeddrive.diagnosis.unexplained.result import Carried, Table
 from feeddrive.diagnosis.unexplained.shape import table_of
 from feeddrive.diagnosis.unexplained.term import Form
+from feeddrive.diagnosis.unexplained.unexplained_result import Carried, Table
 from feeddrive.effects.base import Effect, Port
 from feeddrive.effects.friction.tabulated_friction import TabulatedFriction
 from feeddrive.effects.source.tabulated_force import TabulatedForce
@@ -31,7 +31,7 @@ from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray
 
 DAMPING = 0.01
-"""Of the step on all channels: breakpoints that the recordings hardly see keep the value of the residual."""
+"""Damping of the step on all channels: breakpoints that the recordings hardly see keep the value of the residual."""
 
 WORSE = 1.02
 """Factor by which the error of another channel may rise."""
@@ -170,7 +170,7 @@ def _rms(problem: Problem, judged: Sequence[Judged]) -> dict[str, float]:
 
 
 def carried_result(judgement: Judgement) -> Carried:
-    """The effect as it is said."""
+    """The effect as it is reported."""
     effect = judgement.effect
     key, values = effect.breakpoint_key, effect.tables[0]
     table = Table(

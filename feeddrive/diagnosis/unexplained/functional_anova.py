@@ -4,7 +4,7 @@
 
 Each f is a table (hat functions), a few sines, a step or a level; m is a direction or a velocity. Terms are added one
 at a time while they lower the error on blocks of time that were not fitted (folds as in `cross_validation`); of terms
-that cannot be told apart the simplest is taken, a function of one variable before a product.
+that cannot be distinguished the simplest is taken, a function of one variable before a product.
 Sources: Hoeffding, Ann. Math. Stat. 19 (1948) 293; Hooker, J. Comput. Graph. Stat. 16 (2007) 709 (dependent variables);
 Roberts et al., Ecography 40 (2017) 913 (blocks).
 """

@@ -18,7 +18,7 @@ from feeddrive.diagnosis.unexplained.term import Term
 from feeddrive.typing import FloatArray, IntegerArray
 
 RIDGE = 1e-8
-"""Of columns of length one: settles tables whose hats add up to another column, and moves no value."""
+"""Ridge for columns of length one: settles tables whose hats add up to another column, and moves no value."""
 
 
 @dataclass(frozen=True)

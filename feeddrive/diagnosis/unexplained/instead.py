@@ -2,7 +2,7 @@
 
 A drag with the square of the velocity looks like another viscous friction, another Coulomb level and a Stribeck curve
 together; friction that sets in at a time looks like a little of anything. One tabulated term in the declared plant is
-held against all named effects together on the judged data. Does it do as well as two or more of them, that is said.
+held against all named effects together on the judged data. Does it do as well as two or more of them, that is reported.
 Does it do better, the named ones that do not pay beside it are dropped: a name is worse than none where it is wrong.
 """
 
@@ -24,15 +24,15 @@ from feeddrive.diagnosis.likelihood.fit import Problem, fit
 from feeddrive.diagnosis.likelihood.folds import block_numbers
 from feeddrive.diagnosis.unexplained.carry import Judgement, carried_result, with_carried
 from feeddrive.diagnosis.unexplained.floor import excess
-from feeddrive.diagnosis.unexplained.result import Instead
 from feeddrive.diagnosis.unexplained.trial import analysis_of, finer_forms, tried
+from feeddrive.diagnosis.unexplained.unexplained_result import Instead
 from feeddrive.diagnosis.unexplained.view import views_of
 from feeddrive.effects.base import Effect
 from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.effects.tabulated import Tabulated
 
 FEWEST = 2
-"""Named effects from which a table that does as well is told."""
+"""Named effects from which a table that does as well is reported."""
 
 ITERATIONS = 4
 """Steps of a fit of what is kept beside a table."""

@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from feeddrive.diagnosis.unexplained.functional_anova import Found
-from feeddrive.diagnosis.unexplained.result import Seen, Table
 from feeddrive.diagnosis.unexplained.term import Form, Term
+from feeddrive.diagnosis.unexplained.unexplained_result import Seen, Table
 from feeddrive.diagnosis.unexplained.view import View
 from feeddrive.typing import FloatArray
 from feeddrive.units.quantity import format_quantity
@@ -97,8 +97,10 @@ def _harmonics(values: FloatArray) -> str:
     """How much of the square of one period each of its harmonics holds."""
     powers = np.abs(np.fft.rfft(values))[1:4] ** 2
     shares = powers / powers.sum() if powers.sum() > 0 else powers
-    told = [f"{share:.0%} of it {word}" for share, word in zip(shares, ("once", "twice", "three times"), strict=True)]
-    return f"{', '.join(told)} a period"
+    phrases = [
+        f"{share:.0%} of it {word}" for share, word in zip(shares, ("once", "twice", "three times"), strict=True)
+    ]
+    return f"{', '.join(phrases)} a period"
 
 
 def _odd(table: Table) -> str:

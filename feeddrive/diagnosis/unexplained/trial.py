@@ -19,8 +19,8 @@ from feeddrive.diagnosis.unexplained.carry import (
 )
 from feeddrive.diagnosis.unexplained.functional_anova import Found
 from feeddrive.diagnosis.unexplained.term import Form
+from feeddrive.diagnosis.unexplained.unexplained_words import no_effect, no_gain
 from feeddrive.diagnosis.unexplained.view import views_of
-from feeddrive.diagnosis.unexplained.words import no_effect, no_gain
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 
@@ -59,7 +59,7 @@ def tried(
 
 
 def finer_forms(found: Found, analyses: Mapping[str, Analysis]) -> list[Found]:
-    """The same term with the breakpoints that another channel shows, where these are more."""
+    """The found term with the breakpoints that another channel shows, where these are more."""
     if found.term.form is not Form.CURVE:
         return []
     others = [one for analysis in analyses.values() for one in analysis.found]

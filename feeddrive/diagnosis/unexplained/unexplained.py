@@ -11,14 +11,14 @@ from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.diagnosis.unexplained.analysis import Analysis
 from feeddrive.diagnosis.unexplained.carry import Judgement, carried_result, joint_step, judged_with, with_carried
 from feeddrive.diagnosis.unexplained.instead import instead_of
-from feeddrive.diagnosis.unexplained.result import Above, Dependence, Instead, Unexplained
 from feeddrive.diagnosis.unexplained.trial import analysis_of, finer_forms, tried
-from feeddrive.diagnosis.unexplained.words import rest_in_words, term_in_words
+from feeddrive.diagnosis.unexplained.unexplained_result import Above, Dependence, Instead, Unexplained
+from feeddrive.diagnosis.unexplained.unexplained_words import rest_in_words, term_in_words
 from feeddrive.effects.base import Effect
 from feeddrive.effects.tabulated import Tabulated
 
 EVENT = 0.1
-"""Share of the squared residual from which something that happened once is told, though the judged data lack it."""
+"""Share of the squared residual from which something that happened once is reported, though the judged data lack it."""
 
 
 @dataclass(frozen=True)
@@ -65,11 +65,13 @@ def explain_rest(
     own = [judgement.effect for _, judgement in carried]
     after = with_carried(judged, *own)
     other = instead_of(problem, effects, judged, channels)
-    said = {
-        c.name: _said(c, first[c.name], carried, reasons[c.name], other if other and other.channel == c.name else None)
+    by_channel = {
+        c.name: _unexplained(
+            c, first[c.name], carried, reasons[c.name], other if other and other.channel == c.name else None
+        )
         for c in channels
     }
-    return Rest(said, tuple(own), tuple(after))
+    return Rest(by_channel, tuple(own), tuple(after))
 
 
 def _together(
@@ -91,7 +93,7 @@ def _happened(one: Dependence) -> bool:
     return one.variable == "time" and one.share > EVENT and not one.alike
 
 
-def _said(
+def _unexplained(
     channel: ChannelResult, analysis: Analysis, carried: Sequence[tuple[str, Judgement]], reasons: Sequence[str],
     other: Instead | None,
 ) -> Unexplained:  # fmt: skip

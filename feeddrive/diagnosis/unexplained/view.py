@@ -68,7 +68,7 @@ class View:
 
     @property
     def dealt(self) -> IntegerArray:
-        """The same blocks under numbers whose remainder by `FOLDS` is their fold, (m,)."""
+        """The blocks under numbers whose remainder by `FOLDS` is their fold, (m,)."""
         return dealt_blocks(self.evidence)[self.blocks]
 
 

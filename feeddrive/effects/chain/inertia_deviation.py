@@ -12,7 +12,7 @@ Along a distributed screw it is spread evenly over the length, so that it moves 
 Which shaft: an inertia at the motor asks for J1 theta'' and nothing else. One at the screw asks for J1 phi'', behind
 the torsion spring, so that it differs by the share (f / f_a)^2 at frequencies f below the screw's anti-resonance f_a, a
 fifth at the upper edge of the comparison; recordings without a chirp or jerk cannot tell the two. A mass on the table
-moves the table against the scale besides (m x'' over the axial stiffness), and is told from both where a scale is
+moves the table against the scale besides (m x'' over the axial stiffness), and differs from both where a scale is
 recorded. A rigid structure has one mass for all three: `payload` is the name there, and the other is listed with it.
 """
 

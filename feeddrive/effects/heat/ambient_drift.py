@@ -18,7 +18,7 @@ from collections.abc import Mapping
 import casadi as ca
 
 from feeddrive.effects.base import Parameter, Signature
-from feeddrive.effects.heat.base import Operation, ThermalEffect
+from feeddrive.effects.heat.thermal_effect import Operation, ThermalEffect
 from feeddrive.typing import Expression
 
 

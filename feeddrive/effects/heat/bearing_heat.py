@@ -19,7 +19,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from feeddrive.effects.base import Parameter, Signature
-from feeddrive.effects.heat.base import FRONT, REAR, Operation, ThermalEffect
+from feeddrive.effects.heat.thermal_effect import FRONT, REAR, Operation, ThermalEffect
 from feeddrive.parts.bearings.bearing_friction import palmgren_torque
 from feeddrive.typing import Expression
 

@@ -20,7 +20,7 @@ from collections.abc import Mapping
 import casadi as ca
 
 from feeddrive.effects.base import Parameter, Signature
-from feeddrive.effects.heat.base import FRONT, Operation, ThermalEffect
+from feeddrive.effects.heat.thermal_effect import FRONT, Operation, ThermalEffect
 from feeddrive.typing import Expression
 
 

@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from feeddrive.effects.base import Parameter, Signature
-from feeddrive.effects.heat.base import ThermalEffect
+from feeddrive.effects.heat.thermal_effect import ThermalEffect
 from feeddrive.typing import Expression
 
 

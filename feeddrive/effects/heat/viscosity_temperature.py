@@ -18,7 +18,7 @@ from collections.abc import Mapping
 import casadi as ca
 
 from feeddrive.effects.base import Parameter, Signature
-from feeddrive.effects.heat.base import ThermalEffect
+from feeddrive.effects.heat.thermal_effect import ThermalEffect
 from feeddrive.typing import Expression
 
 

@@ -5,7 +5,7 @@
 | symbol | key | meaning | unit |
 |---|---|---|---|
 | s | share | of the torque that is lost at T0; at most 1/3, beyond which more current would give less torque | 1 |
-| T0 | at_torque | computed torque at which that share is told | N m |
+| T0 | at_torque | computed torque at which that share is stated | N m |
 | T | (recorded) | torque constant times current: what is asked for, limited and recorded | N m |
 | T_acts | | torque that acts on the rotor | N m |
 

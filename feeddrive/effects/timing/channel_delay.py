@@ -11,7 +11,7 @@ It acts on the recording alone: the controller reads its sensors in time, and eq
 and exported models know nothing of it. A held torque that is late by part of a sample is recorded as its mean over the
 late interval. Before the start a late channel holds its first value.
 
-What can be told apart. Three channels have two relative delays, and a delay is never negative, so that each sign has
+What can be distinguished. Three channels have two relative delays, and a delay is never negative, so that each sign has
 one name:
 
 * torque late against both positions: `channel_delay` of motor_torque. `drive_delay` with the other sign would say the

@@ -1,6 +1,6 @@
 """The constants of a step: how state, input and node forces reach the states at the Radau nodes, and what errors weigh.
 
-The error of a step is told as a table position. An error e in position and e' in velocity count
+The error of a step is stated as a table position. An error e in position and e' in velocity count
 
     sqrt(e M e / m) + sqrt(e' M e' / m) / omega,      m = 1 / (L M^-1 L')
 

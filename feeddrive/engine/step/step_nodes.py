@@ -149,5 +149,5 @@ def _rows_read(symbols: StepSymbols) -> list[int]:
     response = ca.SX.sym("response", symbols.rows)
     z = ca.SX.sym("z", symbols.layout.bristles)
     found = symbols.forces(response, z, symbols.time)
-    told = ca.vertcat(symbols.on_forced(found), found.bristle_rates)
-    return [k for k, used in enumerate(ca.which_depends(told, response, 1, False)) if used]
+    outputs = ca.vertcat(symbols.on_forced(found), found.bristle_rates)
+    return [k for k, used in enumerate(ca.which_depends(outputs, response, 1, False)) if used]

@@ -13,7 +13,7 @@ from feeddrive.interface.axis import Axis, axis_of_text
 from feeddrive.interface.machine.check import Check
 from feeddrive.interface.quantities import Quantity, si
 from feeddrive.interface.shown import Listing, Shown
-from feeddrive.parts.catalogue.reading import KINDS, CataloguePart, catalogue
+from feeddrive.parts.catalogue.part_files import KINDS, CataloguePart, catalogue
 from feeddrive.plant.file.draft_text import draft_text
 from feeddrive.plant.file.drafting import Wishes, drafted
 from feeddrive.plant.file.entries import nearest_choice

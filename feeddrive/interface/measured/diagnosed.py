@@ -148,7 +148,7 @@ class Diagnosed(Shown):
             f"cannot be told apart by these recordings: {', '.join(one.names)}: {one.reason}" for one in found.alike
         ]
         lines += experiment_sentences(found)
-        lines += found.correlation.told if found.correlation is not None else ()
+        lines += found.correlation.remarks if found.correlation is not None else ()
         lines += simulation_lines(found.simulation) if found.simulation is not None else ()
         return tuple(lines)
 

@@ -150,7 +150,7 @@ def diagnose_files(job: Job, progress: Callable[[str], None] = lambda _: None) -
     numbers = read_measured_numbers(job.measured, plant) if job.measured is not None else ()
     result, effects = diagnose(plant, fitted, judged, job.split, job.simulate, progress, job.start, numbers)
     if job.earlier is not None:
-        since = changed_since(job.earlier.told, result.effects)
+        since = changed_since(job.earlier.reported, result.effects)
         result = replace(result, kept=replace(result.kept, since=since))
     progress("predicting what a repair and a compensation bring")
     after = plant.with_effects(*effects)

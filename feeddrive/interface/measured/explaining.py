@@ -27,7 +27,7 @@ from feeddrive.plant.file.named_parts import with_named_parts
 from feeddrive.recording.frequency_response import FrequencyResponse
 from feeddrive.report.words.numbers_words import numbers_verdict, value_text
 from feeddrive.report.words.response_words import response_verdict
-from feeddrive.servo.frequency_response import Case
+from feeddrive.servo.mechanics_response import Case
 from feeddrive.units.quantity import format_quantity
 
 if TYPE_CHECKING:

@@ -15,13 +15,13 @@ from feeddrive.files import write_bytes_atomically, write_text_atomically
 from feeddrive.interface.quantities import Quantity, si
 from feeddrive.interface.shown import Listing, Shown, finite
 from feeddrive.recording.channels import channel_unit
-from feeddrive.recording.files.mapping import read_mapping
+from feeddrive.recording.files.channel_mapping import read_mapping
 from feeddrive.recording.files.opening import FileContent, open_file
 from feeddrive.recording.files.reading import checked_trace, read_recording
 from feeddrive.recording.files.writing import write_recording
 from feeddrive.recording.frequency_response import FrequencyResponse, write_response
 from feeddrive.recording.recording import Recording
-from feeddrive.recording.traces.choosing import Wishes
+from feeddrive.recording.traces.channel_choice import Wishes
 from feeddrive.recording.traces.mapping_text import mapping_text
 from feeddrive.recording.traces.opened import Understood, mapped, read_trace, understand
 from feeddrive.recording.traces.resampling import gaps

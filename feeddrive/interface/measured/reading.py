@@ -8,7 +8,7 @@ from feeddrive.errors import InputError
 from feeddrive.recording import Recording, read_recording
 from feeddrive.recording.files.opening import open_file
 from feeddrive.recording.frequency_response import FrequencyResponse
-from feeddrive.recording.traces.choosing import Wishes
+from feeddrive.recording.traces.channel_choice import Wishes
 from feeddrive.recording.traces.opened import read_trace
 
 

@@ -99,7 +99,7 @@ class Watched(Shown):
                 for one, day in zip(trend.used, trend.days, strict=True)
             ],
             "not_used": [
-                {"file": one.key, "status": one.status, "reason": one.told}
+                {"file": one.key, "status": one.status, "reason": one.reason}
                 for one in trend.entries
                 if one.status != USED
             ],

@@ -18,9 +18,9 @@ from feeddrive.plant.plant import Plant
 from feeddrive.servo import state_feedback as observed
 from feeddrive.servo.cascade import Cascade, Feedback, FeedForward
 from feeddrive.servo.cascade_function import cascade_controller, velocity_loop_of
-from feeddrive.servo.frequency_response import Case
 from feeddrive.servo.linear_loop import open_position_loop, open_velocity_loop
 from feeddrive.servo.margins import Margins, margins
+from feeddrive.servo.mechanics_response import Case
 from feeddrive.servo.sampled import SampledController
 from feeddrive.servo.sampled_plant import Matrices, sampled_plant
 from feeddrive.servo.scheduled import scheduled

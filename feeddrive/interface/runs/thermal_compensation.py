@@ -28,8 +28,8 @@ from feeddrive.interface.quantities import Quantity, si
 from feeddrive.interface.runs.thermal_trial import ThermalTrial, micrometres
 from feeddrive.interface.shown import Listing, Shown
 from feeddrive.thermal.full.grid import Cells
-from feeddrive.thermal.heat import Heat
-from feeddrive.thermal.reduced.model import HeatModel
+from feeddrive.thermal.machine_heat import Heat
+from feeddrive.thermal.reduced.parametric_model import HeatModel
 from feeddrive.typing import FloatArray
 
 if TYPE_CHECKING:

@@ -66,6 +66,8 @@ def laser_columns(text: str, where: str) -> dict[str, tuple[str, FloatArray]]:
             raise InputError(f"the targets of run {run} come in no order", where, _MEND)
         side[runs == run] = -1.0 if falls else 1.0
     return {
-        "target": ("mm", targets[at]), "run": ("", runs.astype(np.float64)), "direction": ("", side),
+        "target": ("mm", targets[at]),
+        "run": ("", runs.astype(np.float64)),
+        "direction": ("", side),
         "deviation": ("µm", deviation.astype(np.float64)),
-    }  # fmt: skip
+    }

@@ -31,9 +31,10 @@ _SIDES = {"up": "up", "forward": "up", "fwd": "up", "vor": "up", "vorwärts": "u
           "down": "down", "backward": "down", "reverse": "down", "rev": "down", "bwd": "down", "zurück": "down",
           "rückwärts": "down", "-": "down", "↓": "down"}  # fmt: skip
 _RUN = re.compile(
-    r"(?:(?:run|lauf) ?)?(?P<before>\d*) ?(?P<side>" + "|".join(map(re.escape, sorted(_SIDES, key=len, reverse=True)))
+    r"(?:(?:run|lauf) ?)?(?P<before>\d*) ?(?P<side>"
+    + "|".join(map(re.escape, sorted(_SIDES, key=len, reverse=True)))
     + r") ?(?P<behind>\d*)"
-)  # fmt: skip
+)
 _SPELLINGS = {
     "nominal": "target", "nominal position": "target", "target position": "target", "soll": "target",
     "sollposition": "target", "zielposition": "target", "actual position": "position", "measured position": "position",

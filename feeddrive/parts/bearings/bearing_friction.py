@@ -77,20 +77,26 @@ class BallBearingType:
 
 
 DEEP_GROOVE = BallBearingType(
-    "deep groove ball bearing, one row", 0.0005, 0.55,
+    "deep groove ball bearing, one row",
+    0.0005,
+    0.55,
     {Lubrication.GREASE: 1.4, Lubrication.OIL_MIST: 1.0, Lubrication.OIL_BATH: 2.0},
     "Harris after Palmgren: z 0.0004 to 0.0006, f_0 with grease 0.7 to 2",
-)  # fmt: skip
+)
 ANGULAR_CONTACT = BallBearingType(
-    "angular contact ball bearing, one row", 0.001, 0.33,
+    "angular contact ball bearing, one row",
+    0.001,
+    0.33,
     {Lubrication.GREASE: 2.0, Lubrication.OIL_MIST: 1.7, Lubrication.OIL_BATH: 3.3},
     "paper 002, eq. (16) and table 2, after Harris",
-)  # fmt: skip
+)
 THRUST = BallBearingType(
-    "thrust ball bearing", 0.0008, 0.33,
+    "thrust ball bearing",
+    0.0008,
+    0.33,
     {Lubrication.GREASE: 5.5, Lubrication.OIL_MIST: 0.8, Lubrication.OIL_BATH: 1.5},
     "Harris after Palmgren",
-)  # fmt: skip
+)
 BALL_BEARING_TYPES = (DEEP_GROOVE, ANGULAR_CONTACT, THRUST)
 
 

@@ -100,7 +100,7 @@ class ScrewSupports:
         return near**2 / self.near.axial_stiffness, shaft, far_bearing
 
     def axial_stiffness(self, screw: ScrewShaft, position: float) -> float:
-        """Of screw and bearings together at the nut [N/m]. Arguments and errors as `load_shares`."""
+        """Stiffness of screw and bearings together at the nut [N/m]. Arguments and errors as `load_shares`."""
         return 1.0 / sum(self.compliances(screw, position))
 
 

@@ -79,9 +79,13 @@ class GuideForces:
 
 
 def carriage_friction(
-    guide: BallGuide, coefficients: GuideCoefficients, speed: FloatArray | float,
-    vertical: float = 0.0, lateral: float = 0.0, seal_drag: float = 0.0,
-) -> GuideForces:  # fmt: skip
+    guide: BallGuide,
+    coefficients: GuideCoefficients,
+    speed: FloatArray | float,
+    vertical: float = 0.0,
+    lateral: float = 0.0,
+    seal_drag: float = 0.0,
+) -> GuideForces:
     """Friction of one carriage.
 
     Args:
@@ -115,9 +119,13 @@ def carriage_friction(
 
 
 def table_friction(
-    guide: BallGuide, coefficients: GuideCoefficients, carriages: int, speed: FloatArray | float,
-    load_per_carriage: float = 0.0, seal_drag: float = 0.0,
-) -> GuideForces:  # fmt: skip
+    guide: BallGuide,
+    coefficients: GuideCoefficients,
+    carriages: int,
+    speed: FloatArray | float,
+    load_per_carriage: float = 0.0,
+    seal_drag: float = 0.0,
+) -> GuideForces:
     """Friction of a table on equal carriages that share its load equally; arguments and errors as one carriage's.
 
     Args:

@@ -80,8 +80,9 @@ def guide_equilibrium(guide: BallGuide, vertical: float, lateral: float = 0.0) -
     if size > 0.5 * guide.centre_distance:
         raise InputError(
             f"{format_quantity(float(np.hypot(*load)), 'N')} presses the balls out of their grooves",
-            "guide load", "check its unit, it is that of one carriage",
-        )  # fmt: skip
+            "guide load",
+            "check its unit, it is that of one carriage",
+        )
     displacement = _solve(guide, load, size) if size > 0.0 else np.zeros(2)
     return _checked(guide, _state(guide, displacement))
 
@@ -148,6 +149,7 @@ def _checked(guide: BallGuide, state: GuideEquilibrium) -> GuideEquilibrium:
     highest = max(contact.maximum_pressure(float(state.ball_load.max())) for contact in guide.contacts)
     if highest > HIGHEST_PRESSURE:
         shown = f"{highest / 1e9:.3g} GPa"
-        warnings.warn(f"guide: contact pressure of {shown} dents the races (above 4.2 GPa)", ValidityWarning,
-                      stacklevel=3)  # fmt: skip
+        warnings.warn(
+            f"guide: contact pressure of {shown} dents the races (above 4.2 GPa)", ValidityWarning, stacklevel=3
+        )
     return state

@@ -60,9 +60,12 @@ class Rating:
 
 
 def rating(
-    track: BallTrack, loads: LoadDistribution, stroke: float, material_constant: float,
+    track: BallTrack,
+    loads: LoadDistribution,
+    stroke: float,
+    material_constant: float,
     exponents: LifeExponents = BALL_SCREW,
-) -> Rating:  # fmt: skip
+) -> Rating:
     """Ratings of a nut at a stroke as the paper computes them.
 
     Args:
@@ -80,9 +83,12 @@ def rating(
 
 
 def rating_along_screw(
-    track: BallTrack, loads: LoadDistribution, stroke: float, material_constant: float,
+    track: BallTrack,
+    loads: LoadDistribution,
+    stroke: float,
+    material_constant: float,
     exponents: LifeExponents = BALL_SCREW,
-) -> Rating:  # fmt: skip
+) -> Rating:
     """Ratings where every point of the screw counts with its own cycles, not as the most stressed; args as `rating`.
 
     Raises:
@@ -146,9 +152,13 @@ def groove_factor(contact: PointContact, exponents: LifeExponents = BALL_SCREW) 
 
 
 def _rating(
-    track: BallTrack, loads: LoadDistribution, stroke: float, screw_length: float, material_constant: float,
+    track: BallTrack,
+    loads: LoadDistribution,
+    stroke: float,
+    screw_length: float,
+    material_constant: float,
     exponents: LifeExponents,
-) -> Rating:  # fmt: skip
+) -> Rating:
     """Ratings with the stressed length of the screw given [m]."""
     check_values("rating", _CONSTANT, {"material_constant": material_constant})
     average, of_screw, of_nut = load_integrals(track, loads, exponents)

@@ -142,6 +142,11 @@ def greatest_shear_under_line(friction: float) -> ShearPeak:
     def loss(point: FloatArray) -> float:
         return -float(line_shear(point[0], point[1], friction))
 
-    found = minimize(loss, (x.flat[start], z.flat[start]), method="Nelder-Mead", bounds=((-1.0, 1.0), (0.0, 2.0)),
-                     options={"xatol": 1e-8, "fatol": 1e-12})  # fmt: skip
+    found = minimize(
+        loss,
+        (x.flat[start], z.flat[start]),
+        method="Nelder-Mead",
+        bounds=((-1.0, 1.0), (0.0, 2.0)),
+        options={"xatol": 1e-8, "fatol": 1e-12},
+    )
     return ShearPeak(-float(found.fun), float(found.x[1]), float(found.x[0]))

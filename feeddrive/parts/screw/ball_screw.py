@@ -122,7 +122,7 @@ class ScrewShaft:
 
     @property
     def mass(self) -> float:
-        """Of the whole shaft, with the stub [kg]."""
+        """Mass of the whole shaft, with the stub [kg]."""
         return self.mass_per_length * (self.length + self.stub)
 
     @property

@@ -41,7 +41,7 @@ CATALOGUE_VALUES = (
         meaning="share of the stated stiffness that real balls and grooves reach, f_ar",
     ),
 )
-"""Of a nut whose stiffness follows from a catalogue's value at another preload."""
+"""Values of a nut whose stiffness follows from a catalogue's value at another preload."""
 
 
 @dataclass(frozen=True)
@@ -93,8 +93,10 @@ def stiffness_at_preload(
     Validity: while the load leaves balls on both sides loaded. Source: ISO 3408-4 (symbols), Hertz contact (cube root).
     """
     given = {
-        "catalogue_stiffness": catalogue_stiffness, "catalogue_preload": catalogue_preload, "preload": preload,
+        "catalogue_stiffness": catalogue_stiffness,
+        "catalogue_preload": catalogue_preload,
+        "preload": preload,
         "accuracy_factor": accuracy_factor,
-    }  # fmt: skip
+    }
     check_values("nut", CATALOGUE_VALUES, given)
     return float(accuracy_factor * catalogue_stiffness * (preload / catalogue_preload) ** (1.0 / 3.0))

@@ -25,9 +25,14 @@ from feeddrive.typing import FloatArray
 
 
 def screw_moment(
-    load: ArrayLike, radius: ArrayLike, lead_angle: ArrayLike, contact_angle: ArrayLike, slip_angle: ArrayLike,
-    ball_ratio: ArrayLike, friction: ArrayLike,
-) -> FloatArray:  # fmt: skip
+    load: ArrayLike,
+    radius: ArrayLike,
+    lead_angle: ArrayLike,
+    contact_angle: ArrayLike,
+    slip_angle: ArrayLike,
+    ball_ratio: ArrayLike,
+    friction: ArrayLike,
+) -> FloatArray:
     """M [N m] of one ball, eq. (3); arguments broadcast.
 
     Args:

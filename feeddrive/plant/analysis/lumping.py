@@ -58,7 +58,7 @@ from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray
 
 LEAST_SHARE = 1e-3
-"""Of the turning inertia that motor and screw keep at least: none of the three may be without mass."""
+"""Least share of the turning inertia that motor and screw keep: none of the three may be without mass."""
 
 _TRIED = 60  # shares from which the best is refined; the sum is smooth, with one minimum on machines
 
@@ -123,7 +123,7 @@ def lump(plant: Plant, position: float, further: tuple[str, ...] = ()) -> Lumped
 
 
 def _read(text: str, plant: Plant) -> Plant:
-    from feeddrive.plant.file.files import plant_from_entries  # the reader of files imports plants
+    from feeddrive.plant.file.plant_file import plant_from_entries  # the reader of files imports plants
 
     return plant_from_entries(parse_toml(text, f"{plant.name}, lumped"), Path(f"{plant.name}, lumped"))
 

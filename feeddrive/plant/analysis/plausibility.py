@@ -18,8 +18,8 @@ from feeddrive.plant.analysis.screw_limits import buckling_force, critical_speed
 from feeddrive.plant.analysis.steady import steady_motions
 from feeddrive.plant.analysis.summary import Summary, summarise
 from feeddrive.plant.plant import Plant, PositionVelocityController
-from feeddrive.thermal.heat import Heat
-from feeddrive.thermal.run.summary import HeatRow, heat_rows
+from feeddrive.thermal.machine_heat import Heat
+from feeddrive.thermal.run.heat_figures import HeatRow, heat_rows
 
 USUAL_DN = 70_000 * 1e-3 * math.pi / 30
 """Ball circle times speed of a ground screw with return tubes [m rad/s]; 70 000 mm rev/min."""
@@ -135,9 +135,14 @@ def _frequencies(plant: Plant, gain: float | None) -> list[Finding]:
     first, anti = float(found.free[:, 0].min()), float(found.held[:, 0].min())
     rule = "first natural frequency in Hz, position gain in 1/s"
     usual = Finding(
-        "velocity loop: half the first anti-resonance", 0.5 * anti, None, "Hz", Sense.AT_LEAST, Verdict.NOTE,
+        "velocity loop: half the first anti-resonance",
+        0.5 * anti,
+        None,
+        "Hz",
+        Sense.AT_LEAST,
+        Verdict.NOTE,
         "bandwidth to expect (Kollmorgen)",
-    )  # fmt: skip
+    )
     if gain is None:
         return [Finding(rule, first, None, "Hz", Sense.AT_LEAST, Verdict.UNKNOWN, "needs --position-gain"), usual]
     return [_at_least(rule, first, gain, "Hz", "Fanuc αi manual"), usual]
@@ -268,16 +273,19 @@ def _unknown(rule: str, needs: str) -> Finding:
 def _of_heat(heat: Heat) -> tuple[Finding, ...]:
     rows = heat_rows(heat)
     return (
-        *(_between(key.replace("_", " "), getattr(heat.rig.steel, key), low, high, unit, "steels")
-          for key, (low, high, unit) in STEELS.items()),
+        *(
+            _between(key.replace("_", " "), getattr(heat.rig.steel, key), low, high, unit, "steels")
+            for key, (low, high, unit) in STEELS.items()
+        ),
         _between("expansion", heat.rig.steel.expansion, 8e-6, 20e-6, "1/K", "steels"),
         _between("smallest film coefficient", _films(rows)[0], *FILM, "W/(m^2 K)", "air, free to forced"),
         _between("largest film coefficient", _films(rows)[1], *FILM, "W/(m^2 K)", "air, free to forced"),
         _between("contact conductance", heat.contact, *CONTACT, "W/(m^2 K)", "paper 002, table 5, and ten times it"),
-        _at_most("settled rise of the nut at the highest speed", rows[-1].nut_rise, HOTTEST_RISE, "K",
-                 "grease, preload"),
+        _at_most(
+            "settled rise of the nut at the highest speed", rows[-1].nut_rise, HOTTEST_RISE, "K", "grease, preload"
+        ),
         _at_most("slowest time constant", rows[0].time_constants[0], LONGEST_WARM_UP, "s", "a screw without its frame"),
-    )  # fmt: skip
+    )
 
 
 def _films(rows: tuple[HeatRow, ...]) -> tuple[float, float]:

@@ -4,7 +4,7 @@
 
 Every spring's part is twice its strain energy under a unit force, so that the parts add up for series and parallel
 springs alike. Where the machine is described by its parts and none of their values is replaced by a measured one, the
-springs are told part by part (`feeddrive.parts.combined_stiffness`), the brake included.
+springs are listed part by part (`feeddrive.parts.combined_stiffness`), the brake included.
 Source: paper 004, eqs. (5) to (8): axial and torsional spring chain act in series on the table.
 """
 
@@ -126,7 +126,7 @@ def _deformation(plant: Plant, spring: Spring) -> str:
 
 
 def _of_parts(plant: Plant, position: float) -> list[tuple[str, str, float]]:
-    """The same part by part; none where there are no parts, or the chain differs from them."""
+    """Compliances part by part; none where there are no parts, or the chain differs from them."""
     if plant.drive is None or not plant.chain.varies:
         return []
     place = plant.chain.nut_at_zero + position

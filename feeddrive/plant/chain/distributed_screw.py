@@ -61,12 +61,23 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from feeddrive.errors import InputError
-from feeddrive.plant.chain.linear_chain import Chain, ChainValue, Matrix, Row, Spring, Values
+from feeddrive.plant.chain.linear_chain import (
+    LEAD,
+    MOTOR_INERTIA,
+    RATIO,
+    TABLE_MASS,
+    Chain,
+    ChainValue,
+    Matrix,
+    Row,
+    Spring,
+    Values,
+)
 from feeddrive.typing import Expression
 from feeddrive.units.quantity import format_quantity
 
 MIDDLE_SHARE = 1 / math.sqrt(3)
-"""Of a span's inertia that is put in its middle: (mu^2 / k_c = 1/24 with mu = share / 2, k_c = 2)."""
+"""Share of a span's inertia that is put in its middle (mu^2 / k_c = 1/24 with mu = share / 2, k_c = 2)."""
 
 _WITH_ONE = ("motor", "drive_end", "screw", "free_end", "axial", "table")
 _WITH_TWO = ("motor", "drive_end", "mid_span", "screw", "free_end", "axial", "far_axial", "table")
@@ -83,13 +94,9 @@ class DistributedScrew(Chain):
     structure = "distributed_screw"
     varies = True
     required = (
-        ChainValue("lead", "ball_screw", "m", usual=(5e-4, 0.2), meaning="table travel per turn of the screw"),
-        ChainValue(
-            "motor_inertia", "motor", "kg m^2", usual=(1e-8, 10.0), meaning="inertia at the motor: rotor and coupling"
-        ),
-        ChainValue(
-            "ratio", "transmission", "1", meaning="turns of the motor per turn of the screw; 1 where it is direct"
-        ),
+        LEAD,
+        MOTOR_INERTIA,
+        RATIO,
         ChainValue(
             "drive_stiffness",
             "transmission",
@@ -170,7 +177,7 @@ class DistributedScrew(Chain):
             written="damping",
             meaning="damping beside the nut stiffness",
         ),
-        ChainValue("table_mass", "table", "kg", usual=(0.2, 1e5), meaning="mass that moves with the table"),
+        TABLE_MASS,
         ChainValue(
             "first_nut_position",
             "table",

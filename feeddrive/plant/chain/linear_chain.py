@@ -77,6 +77,20 @@ class ChainValue:
         return self.written or self.key.removeprefix(_PREFIXES.get(self.section, ""))
 
 
+LEAD = ChainValue("lead", "ball_screw", "m", usual=(5e-4, 0.2), meaning="table travel per turn of the screw")
+MOTOR_INERTIA = ChainValue(
+    "motor_inertia", "motor", "kg m^2", usual=(1e-8, 10.0), meaning="inertia at the motor: rotor and coupling"
+)
+SCREW_INERTIA = ChainValue(
+    "screw_inertia", "ball_screw", "kg m^2", usual=(1e-8, 10.0), meaning="inertia that turns with the screw"
+)
+RATIO = ChainValue(
+    "ratio", "transmission", "1", meaning="turns of the motor per turn of the screw; 1 where it is direct"
+)
+TABLE_MASS = ChainValue("table_mass", "table", "kg", usual=(0.2, 1e5), meaning="mass that moves with the table")
+"""Values that several structures of a chain share."""
+
+
 @dataclass(frozen=True)
 class Spring:
     """A spring with a damper beside it.

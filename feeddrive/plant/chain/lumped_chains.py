@@ -26,9 +26,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from feeddrive.plant.chain.linear_chain import Chain, ChainValue, Matrix, Row, Spring, Values
+from feeddrive.plant.chain.linear_chain import (
+    LEAD,
+    MOTOR_INERTIA,
+    RATIO,
+    SCREW_INERTIA,
+    TABLE_MASS,
+    Chain,
+    ChainValue,
+    Matrix,
+    Row,
+    Spring,
+    Values,
+)
 from feeddrive.typing import Expression
 
 
@@ -38,24 +50,10 @@ class Rigid(Chain):
 
     structure = "rigid"
     required = (
-        ChainValue("lead", "ball_screw", "m", usual=(5e-4, 0.2), meaning="table travel per turn of the screw"),
-        ChainValue(
-            "motor_inertia",
-            "motor",
-            "kg m^2",
-            may_be_zero=True,
-            usual=(1e-8, 10.0),
-            meaning="inertia at the motor: rotor and coupling",
-        ),
-        ChainValue(
-            "screw_inertia",
-            "ball_screw",
-            "kg m^2",
-            may_be_zero=True,
-            usual=(1e-8, 10.0),
-            meaning="inertia that turns with the screw",
-        ),
-        ChainValue("table_mass", "table", "kg", usual=(0.2, 1e5), meaning="mass that moves with the table"),
+        LEAD,
+        replace(MOTOR_INERTIA, may_be_zero=True),
+        replace(SCREW_INERTIA, may_be_zero=True),
+        TABLE_MASS,
     )
 
     @property
@@ -85,13 +83,9 @@ class ThreeInertias(Chain):
 
     structure = "three_inertias"
     required = (
-        ChainValue("lead", "ball_screw", "m", usual=(5e-4, 0.2), meaning="table travel per turn of the screw"),
-        ChainValue(
-            "motor_inertia", "motor", "kg m^2", usual=(1e-8, 10.0), meaning="inertia at the motor: rotor and coupling"
-        ),
-        ChainValue(
-            "screw_inertia", "ball_screw", "kg m^2", usual=(1e-8, 10.0), meaning="inertia that turns with the screw"
-        ),
+        LEAD,
+        MOTOR_INERTIA,
+        SCREW_INERTIA,
         ChainValue(
             "torsional_stiffness",
             "transmission",
@@ -116,14 +110,10 @@ class ThreeInertias(Chain):
         ChainValue(
             "axial_damping", "transmission", "N s/m", may_be_zero=True, meaning="damping beside the axial stiffness"
         ),
-        ChainValue("table_mass", "table", "kg", usual=(0.2, 1e5), meaning="mass that moves with the table"),
+        TABLE_MASS,
     )
 
-    optional = (
-        ChainValue(
-            "ratio", "transmission", "1", meaning="turns of the motor per turn of the screw; 1 where it is direct"
-        ),
-    )
+    optional = (RATIO,)
 
     def nut_softened(self, share: float, stiffness: float) -> Mapping[str, float]:
         softer = 1 / (1 / self.values["axial_stiffness"] + (1 / share - 1) / stiffness)

@@ -104,8 +104,9 @@ class ScrewWithWaves(DistributedScrew):
                 own = 0.5 * (number * math.pi) ** 2 * k
                 springs.append(Spring(kind, self._row(**{f"{span.name}_wave_{number}": 1.0}), own, tau * own))
         for end, key in (("near_axial", "bearing_stiffness"), ("far_axial", "far_bearing_stiffness")):
-            springs.append(Spring("far_bearing" if "far" in key else "bearing", self._row(**{end: 1.0}), p[key],
-                                  tau * p[key]))  # fmt: skip
+            springs.append(
+                Spring("far_bearing" if "far" in key else "bearing", self._row(**{end: 1.0}), p[key], tau * p[key])
+            )
         return (*springs, self.nut(p))
 
     def mass(self, p: Values, position: Expression = 0.0) -> Matrix:

@@ -61,7 +61,10 @@ def _beyond(
 ) -> Expression:
     """Force of the spring at x beyond its force at the reference [N or N m]."""
     parts = [ca.SX(spring.stiffness), ca.SX(spring.damping)]
-    k, c = (here - there for here, there in zip(
-        ca.substitute(parts, [at], [x]), ca.substitute(parts, [at], [ca.SX(reference)]), strict=True
-    ))  # fmt: skip
+    k, c = (
+        here - there
+        for here, there in zip(
+            ca.substitute(parts, [at], [x]), ca.substitute(parts, [at], [ca.SX(reference)]), strict=True
+        )
+    )
     return k * stretch + c * rate

@@ -6,7 +6,7 @@ import textwrap
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from feeddrive.parts.catalogue.reading import catalogue
+from feeddrive.parts.catalogue.part_files import catalogue
 from feeddrive.plant.file.drafting import Drafted, Wishes
 from feeddrive.plant.file.plant_schema import OF_PARTS, PLANT
 from feeddrive.schema.key import Key, Kind

@@ -1,4 +1,4 @@
-"""A plant file from a few wishes: parts of the catalogue, and guesses where nothing was said, each marked as one.
+"""A plant file from a few wishes: parts of the catalogue, and guesses where nothing was stated, each marked as one.
 
 A guess stands in the file with `source = "guess: ..."`, so that it shows wherever origins are shown, and so that a
 diagnosis takes it for as uncertain as it is.
@@ -13,8 +13,8 @@ from typing import Any
 
 from feeddrive.errors import InputError
 from feeddrive.parts.bearings.supports import Support
-from feeddrive.parts.catalogue.choosing import away, chosen_motor, chosen_screw, newton, of_kind
-from feeddrive.parts.catalogue.reading import CataloguePart, catalogue, find_part
+from feeddrive.parts.catalogue.part_choice import away, chosen_motor, chosen_screw, newton, of_kind
+from feeddrive.parts.catalogue.part_files import CataloguePart, catalogue, find_part
 from feeddrive.parts.screw.preload_torque import ideal_torque
 from feeddrive.plant.file.entries import nearest_choice
 from feeddrive.plant.file.guide_section import CARRIAGES, TURNING
@@ -25,18 +25,18 @@ STRUCTURES = ("distributed_screw", "three_inertias")
 
 ORIENTATIONS = {"horizontal": 0.0, "vertical": math.pi / 2}
 _CLEARANCE = 0.1
-"""Of the nut's centre from either bearing at the ends of the stroke [m]: half a nut, a bearing, a bumper."""
+"""Distance of the nut's centre from either bearing at the ends of the stroke [m]: half a nut, a bearing, a bumper."""
 _EFFICIENCY = 0.95
-"""Of a ball screw; from it follows the preload torque, (1/eta - eta) F L / 2 pi (`parts.screw.preload_torque`)."""
+"""Efficiency of a ball screw; the preload torque follows: (1/eta - eta) F L / 2 pi (`parts.screw.preload_torque`)."""
 _PRELOAD_SHARE = 0.05
-"""Of the dynamic rating: half of what catalogues call the maximum possible preload."""
+"""Preload over the dynamic rating: half of what catalogues call the maximum possible preload."""
 _JOURNAL = 0.75
 """Greatest bore of a support bearing over the root diameter, so that the shoulder carries the inner ring."""
 
 
 @dataclass(frozen=True)
 class Wishes:
-    """What is asked for; a field that is empty is chosen, and said to be a guess.
+    """What is asked for; a field that is empty is chosen, and marked as a guess.
 
     Attributes:
         screw: name of the catalogue, or size such as "32 x 10 mm".

@@ -94,15 +94,20 @@ def read_drive(top: Table) -> BallScrewDrive:
     return placed(
         f"{top.where}, table",
         lambda: BallScrewDrive(
-            screw=screw, nut=nut, supports=supports, table_mass=mass,
-            motor=motor, coupling=coupling, transmission=transmission,
+            screw=screw,
+            nut=nut,
+            supports=supports,
+            table_mass=mass,
+            motor=motor,
+            coupling=coupling,
+            transmission=transmission,
             housing_stiffness=housing.get("housing_stiffness"),
         ),
-    )  # fmt: skip
+    )
 
 
 def placed(where: str, make: Callable[[], Made]) -> Made:
-    """What `make` makes, its errors and warnings told at their place in the file.
+    """What `make` makes, its errors and warnings reported at their place in the file.
 
     Parts tell `part.key: ...`; a person looks for file, section and key.
 

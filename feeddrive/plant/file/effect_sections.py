@@ -103,8 +103,8 @@ def _refuse_bad_curve(effect: Effect, where: str) -> None:
     tables = {p.key: effect.values[p.key] for p in effect.parameters if p.table and p.key in effect.values}
     lengths = {key: len(value) if isinstance(value, tuple) else 1 for key, value in tables.items()}
     if len(set(lengths.values())) > 1:
-        told = " and ".join(f"{key} has {length}" for key, length in lengths.items())
-        raise InputError(f"{told} values", where, "write lists of equal length")
+        what = " and ".join(f"{key} has {length}" for key, length in lengths.items())
+        raise InputError(f"{what} values", where, "write lists of equal length")
     for key in ("position", "time"):
         nodes = tables.get(key)
         if isinstance(nodes, tuple) and any(b <= a for a, b in pairwise(nodes)):

@@ -245,7 +245,7 @@ class Table:
         usual: tuple[float, float] | None,
         may_vanish: bool,
     ) -> float:
-        """A quantity; what is wrong with it is told with what the key means."""
+        """A quantity; what is wrong with it is reported with what the key means."""
         try:
             return parse(written, unit, where, usual, may_vanish)
         except InputError as error:

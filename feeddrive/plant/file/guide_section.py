@@ -31,7 +31,7 @@ from collections.abc import Mapping, Sequence
 from feeddrive.effects.base import Effect
 from feeddrive.effects.friction.guide_friction import GuideFriction, guide_effect
 from feeddrive.errors import InputError
-from feeddrive.parts.catalogue.reading import CataloguePart, catalogue, nearest_names
+from feeddrive.parts.catalogue.part_files import CataloguePart, catalogue, nearest_names
 from feeddrive.parts.guide.carriages import Carriages, RatedCarriage, RollingCarriage
 from feeddrive.parts.guide.guide_coefficients import SET_A, SET_B
 from feeddrive.parts.guide.guide_geometry import GUIDE_VALUES, HSR_20R, HSR_30R, BallGuide
@@ -50,10 +50,10 @@ _OF_GEOMETRY = (*_SHARED, "coefficients", *_GEOMETRY)
 _OF_RATING = (*_SHARED, "preload_class", "preload", "friction_coefficient")
 
 MOST = 1000
-"""Of carriages, and of balls in a row."""
+"""Most carriages, and most balls in a row, that a file may write."""
 
 TURNING = 5e-4
-"""Where tanh of the guide friction turns unless it is said [m/s]."""
+"""Where tanh of the guide friction turns unless it is stated [m/s]."""
 
 
 def guide_friction_of(top: Table, gravity: float, before: Sequence[Effect]) -> list[tuple[Effect, str]]:
@@ -131,10 +131,14 @@ def _carriage(table: Table) -> tuple[str, BallGuide]:
     return "as written", placed(
         table.where,
         lambda: BallGuide(
-            size["ball_diameter"], size["rail_conformity"], size["carriage_conformity"], size["contact_angle"],
-            size["preload_oversize"], balls,
+            size["ball_diameter"],
+            size["rail_conformity"],
+            size["carriage_conformity"],
+            size["contact_angle"],
+            size["preload_oversize"],
+            balls,
         ),
-    )  # fmt: skip
+    )
 
 
 def _known_carriages(name: str) -> str:
@@ -151,7 +155,7 @@ def _rated() -> Mapping[str, CataloguePart]:
 
 
 def _preload(table: Table, part: CataloguePart) -> float:
-    """Of one carriage [N]: written, or that of its class."""
+    """Preload of one carriage [N]: written, or that of its class."""
     if "preload" in table.entries:
         return table.quantity("preload", "N", "guide.preload")
     shares = part.further["preload_share"]

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from feeddrive.errors import InputError
-from feeddrive.parts.catalogue.reading import CataloguePart, catalogue, find_part
+from feeddrive.parts.catalogue.part_files import CataloguePart, catalogue, find_part
 from feeddrive.parts.screw.nut import CATALOGUE_VALUES
 from feeddrive.parts.values import PartValue
 from feeddrive.plant.file.drive_sections import BEARING_VALUES, PART_VALUES
@@ -96,7 +96,7 @@ def _differing(
     source: str,
 ) -> Iterator[Departure]:
     """Values of one section that are written otherwise than printed."""
-    for key, told in printed.items():
+    for key, listed in printed.items():
         if key not in section:
             continue
         dotted = ".".join((*place, key))
@@ -104,7 +104,7 @@ def _differing(
         if isinstance(entry, Mapping):
             named = str(entry.get("source", named))
         written = entry.get("value") if isinstance(entry, Mapping) else entry
-        number, catalogued = parse(written, units[key], dotted), parse(told, units[key], dotted)
+        number, catalogued = parse(written, units[key], dotted), parse(listed, units[key], dotted)
         if not math.isclose(number, catalogued, rel_tol=_SAME):
             yield Departure(dotted, part.name, number, catalogued, units[key], named)
 

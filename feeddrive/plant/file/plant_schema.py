@@ -114,8 +114,9 @@ def _chain_keys(section: str) -> list[Key]:
             key = Key(name, value.meaning, value.unit, minimum=0.0, open_ends=not value.may_be_zero, usual=value.usual)
             found.setdefault(name, key)
     alone = {name: f"with structure = {' or '.join(held)}" for name, held in structures.items()}
-    return [replace(key, when="" if len(structures[name]) == len(CHAINS) else alone[name])
-            for name, key in found.items()]  # fmt: skip
+    return [
+        replace(key, when="" if len(structures[name]) == len(CHAINS) else alone[name]) for name, key in found.items()
+    ]
 
 
 def _section(name: str) -> Section:
@@ -139,8 +140,12 @@ NAMED_PARTS = ("motor", "coupling", "ball_screw", "nut", "bearing")
 
 
 def _named_part(section: str) -> Key:
-    return Key("part", "of the catalogue (`feeddrive parts`); gives the values that are left out here",
-               kind=Kind.TEXT, when=OF_PARTS)  # fmt: skip
+    return Key(
+        "part",
+        "of the catalogue (`feeddrive parts`); gives the values that are left out here",
+        kind=Kind.TEXT,
+        when=OF_PARTS,
+    )
 
 
 def _bearing() -> Section:
@@ -156,8 +161,10 @@ def _bearing() -> Section:
 def _guide() -> Section:
     geometry = "where no carriage is named"
     catalogue = "with a carriage of the catalogue"
-    keys = [replace(_part_key("guide", value, geometry), kind=Kind.WHOLE if value.key == "balls_per_row" else
-            Kind.QUANTITY) for value in GUIDE_VALUES]  # fmt: skip
+    keys = [
+        replace(_part_key("guide", value, geometry), kind=Kind.WHOLE if value.key == "balls_per_row" else Kind.QUANTITY)
+        for value in GUIDE_VALUES
+    ]
     return Section(
         "plant.guide",
         "carriages under the table, from which guide friction follows",
@@ -221,10 +228,15 @@ def _parameter_key(effect: type[Effect], parameter: Parameter) -> Key:
     if parameter.table and parameter.default is not None:
         default = None
     return Key(
-        parameter.key, meaning_of(effect, parameter.key), parameter.unit,
-        Kind.QUANTITIES if parameter.table else Kind.QUANTITY, parameter.minimum, parameter.maximum,
-        default=default, required=parameter.default is None and parameter.key not in along,
-    )  # fmt: skip
+        parameter.key,
+        meaning_of(effect, parameter.key),
+        parameter.unit,
+        Kind.QUANTITIES if parameter.table else Kind.QUANTITY,
+        parameter.minimum,
+        parameter.maximum,
+        default=default,
+        required=parameter.default is None and parameter.key not in along,
+    )
 
 
 def _effect(known: Iterable[type[Effect]]) -> Section:
@@ -242,14 +254,18 @@ def _effect(known: Iterable[type[Effect]]) -> Section:
         "one effect",
         keyed(
             Key("name", "of the effect (`feeddrive list`)", kind=Kind.TEXT, required=True),
-            Key("port", "where it acts; its first possible one if left out", kind=Kind.TEXT,
-                choices=("motor", "screw", "transmission", "table", "sensor", "thermal")),
+            Key(
+                "port",
+                "where it acts; its first possible one if left out",
+                kind=Kind.TEXT,
+                choices=("motor", "screw", "transmission", "table", "sensor", "thermal"),
+            ),
             SOURCE,
         ),
         kinds=kinds,
         kind_key="name",
         listed=True,
-    )  # fmt: skip
+    )
 
 
 EFFECT = _effect((*EFFECTS.values(), *THERMAL_EFFECTS.values()))
@@ -261,8 +277,7 @@ PLANT = Section(
     keyed(
         Key("format", 'its first line, "feeddrive-plant/1"', kind=Kind.TEXT, required=True),
         Key("name", "of the machine; that of the file if left out", kind=Kind.TEXT),
-        Key("structure", "of the chain; left out where heat alone is declared", kind=Kind.TEXT,
-            choices=tuple(CHAINS)),
+        Key("structure", "of the chain; left out where heat alone is declared", kind=Kind.TEXT, choices=tuple(CHAINS)),
         Key("description", "in a sentence", kind=Kind.TEXT),
         SOURCE,
     ),
@@ -275,7 +290,7 @@ PLANT = Section(
         "controller": DECLARED_CONTROLLER,
         "thermal": THERMAL,
     },
-)  # fmt: skip
+)
 """A plant file."""
 
 

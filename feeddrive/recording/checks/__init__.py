@@ -1,1 +1,1 @@
-"""Checks of a recording: what no machine has made is found, said, left out or refused."""
+"""Checks of a recording: what no machine has made is found, reported, left out or refused."""

@@ -223,7 +223,7 @@ def _alone(samples: FloatArray, resolution: float, motion: FloatArray | None, sl
 
     Between slow rows a drive may accelerate and stop again: there a cell must be `FRICTION` times all others.
     """
-    away = np.zeros(samples.size)  # at the ends, which are left out anyway, a step is not told from a cell
+    away = np.zeros(samples.size)  # at the ends, which are left out anyway, a step is not distinguished from a cell
     for first in range(2, samples.size - 2, IN_PARTS):
         last = min(first + IN_PARTS, samples.size - 2)
         beside = np.stack([samples[first + shift : last + shift] for shift in (-2, -1, 1, 2)])

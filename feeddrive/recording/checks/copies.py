@@ -21,7 +21,7 @@ ROUNDED = 0.6
 """Share of a resolution by which a rounded value departs: half of it, and what the scale between the two loses."""
 
 WIDE = 1000.0
-"""Range over resolution from which a copy is told from two sensors that see next to nothing."""
+"""Range over resolution from which a copy is distinguished from two sensors that see next to nothing."""
 
 DIGITS = 1e-9
 """Share of the largest value: what ten significant digits in a file leave. No transmission gives so little."""

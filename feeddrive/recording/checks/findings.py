@@ -1,4 +1,4 @@
-"""What is found in usable samples and said: saturation and quantisation."""
+"""What is found in usable samples and reported: saturation and quantisation."""
 
 from __future__ import annotations
 

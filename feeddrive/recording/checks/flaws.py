@@ -99,7 +99,7 @@ def filled(channels: Mapping[str, FloatArray], flaws: Sequence[Flaw]) -> dict[st
 
 
 def sentence(one: Flaw, first_row: int) -> str:
-    """Return what is to be said of a flaw; first_row is the row in the file of sample 0."""
+    """Return a remark on a flaw; first_row is the row in the file of sample 0."""
     unit = channel_unit(one.channel, "")
     level, row = format_quantity(one.level, unit), first_row + int(one.rows[0])
     count = f"{one.rows.size} sample{'s' if one.rows.size > 1 else ''}"

@@ -1,4 +1,4 @@
-"""Is the time of a recording monotone and even? Refused if not, said if it drifts."""
+"""Is the time of a recording monotone and even? Refused if not, reported if it drifts."""
 
 from __future__ import annotations
 

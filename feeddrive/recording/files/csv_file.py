@@ -212,7 +212,7 @@ class _Columns:
 
 
 class _RowReader:
-    """Reads rows piece by piece, and knows what the pieces before have told of the decimal sign."""
+    """Reads rows piece by piece, and knows what the pieces before have shown of the decimal sign."""
 
     def __init__(self, table: TextTable, decimal: str | None) -> None:
         self.table, self.decimal = table, decimal

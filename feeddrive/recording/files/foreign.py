@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from feeddrive.errors import InputError, quoted
+from feeddrive.recording.files.channel_mapping import FileMapping, Hold, Variable
 from feeddrive.recording.files.csv_file import Table
-from feeddrive.recording.files.mapping import FileMapping, Hold, Variable
 from feeddrive.typing import FloatArray
 
 

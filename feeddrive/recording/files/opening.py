@@ -99,7 +99,7 @@ def is_hdf5(data: bytes) -> bool:
 
 
 def decode(content: FileContent) -> tuple[str, tuple[str, ...]]:
-    """Return the text of a file with line ends as \\n, and what is to be said about its encoding.
+    """Return the text of a file with line ends as \\n, and remarks about its encoding.
 
     Raises:
         InputError: the file is not text.

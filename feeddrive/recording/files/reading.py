@@ -20,16 +20,16 @@ from feeddrive.recording.checks.unusable_samples import (
     check_size,
 )
 from feeddrive.recording.derived import with_angle
+from feeddrive.recording.files.channel_mapping import FileMapping, read_mapping
 from feeddrive.recording.files.csv_faults import is_number
 from feeddrive.recording.files.csv_file import Layout, TextTable, find_table
 from feeddrive.recording.files.foreign import mapped_columns, table_variables
-from feeddrive.recording.files.mapping import FileMapping, read_mapping
 from feeddrive.recording.files.mat_file import read_variables
 from feeddrive.recording.files.opening import FileContent, first_bytes, open_file
 from feeddrive.recording.files.text_blocks import TextFile
 from feeddrive.recording.frequency_response import FrequencyResponse
 from feeddrive.recording.recording import Recording
-from feeddrive.recording.traces.choosing import Wishes
+from feeddrive.recording.traces.channel_choice import Wishes
 from feeddrive.recording.traces.opened import Understood, columns_of, could_be_trace, mapped, read_trace, understand
 from feeddrive.recording.traces.trace import Trace
 from feeddrive.typing import FloatArray
@@ -125,11 +125,11 @@ def _foreign(
 ) -> tuple[dict[str, FloatArray], int, tuple[str, ...]]:
     """Return the columns of a foreign file, the row they begin in (1 in a .mat file), and notes."""
     where = str(source.path)
-    said = f"read through the mapping {printable(mapping.name)}"
+    note = f"read through the mapping {printable(mapping.name)}"
     if isinstance(source, FileContent):
-        return mapped_columns(read_variables(source), mapping, where), 1, (said,)
+        return mapped_columns(read_variables(source), mapping, where), 1, (note,)
     table = find_table(source.blocks(), mapping.layout, where).numbers(decimal or mapping.layout.decimal)
-    notes = (said, *source.notes, *table.notes)
+    notes = (note, *source.notes, *table.notes)
     return mapped_columns(table_variables(table), mapping, where), table.first_row, notes
 
 

@@ -21,7 +21,7 @@ class TextFile:
     Attributes:
         path: of the file.
         where: the path, as errors show it.
-        notes: what is to be said about its encoding; complete when all is read.
+        notes: remarks about its encoding; complete when all is read.
     """
 
     def __init__(self, path: Path) -> None:

@@ -64,8 +64,9 @@ def read(text: str, where: str) -> Trace:
         notes = (*notes, "the names are no HAL pins or signals that tell a joint")
     time: FloatArray = np.arange(values.shape[0], dtype=np.float64) * period
     plain = unique_names(names)
-    signals = tuple(Signal(name, time, np.ascontiguousarray(values[:, i]), "", axis_in(name))
-                    for i, name in enumerate(plain))  # fmt: skip
+    signals = tuple(
+        Signal(name, time, np.ascontiguousarray(values[:, i]), "", axis_in(name)) for i, name in enumerate(plain)
+    )
     return Trace(NAME, signals, notes)
 
 
@@ -104,7 +105,7 @@ def _old(lines: list[str], where: str) -> tuple[list[str], FloatArray, tuple[str
     def split(line: str) -> list[str]:
         words = line.split()
         if words[0::2] != names or len(words) != 2 * len(names):
-            return words  # of another number than the values, which is told
+            return words  # of another number than the values, which is reported
         return [word.replace(",", ".") for word in words[1::2]]
 
     if len(lines[at].split()) != 2 * len(names) or any(map(_is_plain, names)):
@@ -163,15 +164,16 @@ def read_sampler(text: str, where: str, sample_time: float | None, columns: tupl
         separator="" if "," in kept[0] else None,
     )
     count = values[:, 0]
-    numbered = len(cells) > 1 and bool(np.all(count == np.round(count)) and np.all(np.diff(count) >= 1)
-                                  and np.mean(np.diff(count) == 1) > 0.5)  # fmt: skip
+    numbered = len(cells) > 1 and bool(
+        np.all(count == np.round(count)) and np.all(np.diff(count) >= 1) and np.mean(np.diff(count) == 1) > 0.5
+    )
     data = values[:, 1:] if numbered else values
     names = _columns(columns, data.shape[1], numbered, where)
     place: FloatArray = count - count[0] if numbered else np.arange(values.shape[0], dtype=np.float64)
     notes = (*notes, *_losses(losses, place, rows, numbered))
     if losses and not numbered:
-        data, place, said = _longest(data, place, losses)
-        notes = (*notes, said)
+        data, place, note = _longest(data, place, losses)
+        notes = (*notes, note)
     time = place * (sample_time or 1.0)
     timed = sample_time is not None
     signals = tuple(
@@ -203,8 +205,8 @@ def _longest(data: FloatArray, place: FloatArray, losses: list[int]) -> tuple[Fl
     """Return the longest stretch between overruns of unknown length."""
     edges = sorted({0, *losses, data.shape[0]})
     first, last = max(pairwise(edges), key=lambda pair: pair[1] - pair[0])
-    said = f"rows {first + 1} to {last} of the numbers, the longest stretch without an overrun, are read"
-    return data[first:last], place[first:last] - place[first], said
+    note = f"rows {first + 1} to {last} of the numbers, the longest stretch without an overrun, are read"
+    return data[first:last], place[first:last] - place[first], note
 
 
 def _is_plain(cell: str) -> bool:

@@ -39,9 +39,9 @@ def main() -> int:
                     names.append([str(one.name), str(one.unit or ""), str(one.comment or "")])
     except Exception:  # the library meets damage with errors of every kind
         return DAMAGED
-    told = np.frombuffer(json.dumps(names).encode(), dtype=np.uint8)
+    packed = np.frombuffer(json.dumps(names).encode(), dtype=np.uint8)
     buffer = io.BytesIO()
-    np.savez(buffer, names=told, **arrays)  # type: ignore[arg-type]
+    np.savez(buffer, names=packed, **arrays)  # type: ignore[arg-type]
     sys.stdout.buffer.write(buffer.getvalue())
     return FINISHED
 

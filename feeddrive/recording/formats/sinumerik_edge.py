@@ -63,15 +63,18 @@ def read(text: str, where: str, sample_time: float | None = None) -> Trace:
     listed = header.get("SignalListHFData") if isinstance(header, Mapping) else None
     payload = tree.get("Payload") if isinstance(tree, Mapping) else None
     if not isinstance(listed, list) or not isinstance(payload, list) or not isinstance(header, Mapping):
-        raise InputError("is JSON, but not a capture: Header.SignalListHFData or Payload is missing", where,
-                         "name a file of SINUMERIK Edge, or save the table as CSV")  # fmt: skip
+        raise InputError(
+            "is JSON, but not a capture: Header.SignalListHFData or Payload is missing",
+            where,
+            "name a file of SINUMERIK Edge, or save the table as CSV",
+        )
     names = [str(signal.get("Name", "")) if isinstance(signal, Mapping) else "" for signal in listed]
     axes = [str(signal.get("Axis", "")) if isinstance(signal, Mapping) else "" for signal in listed]
     rows = [row for item in payload if isinstance(item, Mapping) for row in _list(item.get("HFData"))]
     values = _table(rows, len(names), where)
     given = header.get("CycleTimeMs")
-    cycle, said = _cycle(given / 1e3 if isinstance(given, int | float) else None, sample_time, where)
-    trace = _trace(names, axes, values, cycle, said, where, "row of HFData")
+    cycle, remarks = _cycle(given / 1e3 if isinstance(given, int | float) else None, sample_time, where)
+    trace = _trace(names, axes, values, cycle, remarks, where, "row of HFData")
     stamps = [item["HFTimestamp"] for item in payload if isinstance(item, Mapping) and "HFTimestamp" in item]
     return Trace(
         trace.format, trace.signals, (*trace.notes, *_adapter_clock(stamps, values[:, names.index(_CLOCK)], cycle))
@@ -114,17 +117,17 @@ def read_table(text: str, where: str, sample_time: float | None = None) -> Trace
         fast = "" if comma else separator
         values, notes = number_rows(lines[begin:], split, len(names), begin + 1, where, gaps=True, separator=fast)
     else:
-        # A row of another length is told with all its cells: it does not reach the width of those that are kept.
+        # A row of another length is reported with all its cells: it does not reach the width of those that are kept.
         values, notes = number_rows(
             lines[begin:], lambda line: _as_wide(split_kept(line), len(kept)), len(kept), begin + 1, where, True
         )
         left = ", ".join(names[i] or f"column {i + 1}" for i in range(len(names)) if i not in kept)
         notes = (*notes, f"not signals of the capture and left out: {left}")
-    cycle, said = _cycle(None, sample_time, where)
+    cycle, remarks = _cycle(None, sample_time, where)
     chosen = [names[i] for i in kept]
     axes = [name.rsplit("|", 1)[-1] if "|" in name else "" for name in chosen]
     own = [units[i] if known_unit(units[i]) else "" for i in kept]
-    return _trace(chosen, axes, values, cycle, (*said, *notes), where, "row", begin + 1, own)
+    return _trace(chosen, axes, values, cycle, (*remarks, *notes), where, "row", begin + 1, own)
 
 
 def _is_word(cell: str) -> bool:
@@ -162,10 +165,10 @@ def _table(rows: Sequence[Any], width: int, where: str) -> FloatArray:
         raise InputError("a value of HFData is not a number", where, "record again") from None
 
 
-def _cycle(in_file: float | None, said: float | None, where: str) -> tuple[float, tuple[str, ...]]:
+def _cycle(in_file: float | None, wanted: float | None, where: str) -> tuple[float, tuple[str, ...]]:
     """Return the cycle time [s], and how it is known."""
-    if said is not None:
-        return said, (f"a cycle of {said * 1e3:g} ms, as given",)
+    if wanted is not None:
+        return wanted, (f"a cycle of {wanted * 1e3:g} ms, as given",)
     if in_file is None:
         return CYCLE, (f"a cycle of {CYCLE * 1e3:g} ms assumed, as Edge writes it; another by --sample-time",)
     if not 1e-5 <= in_file <= 10.0:
@@ -229,10 +232,10 @@ def _adapter_clock(stamps: Sequence[Any], clock: FloatArray, cycle: float) -> tu
             continue
     if not pairs or not np.all(np.isfinite(pairs)):
         return ()
-    counted, told = np.array(pairs).T
+    counted, stated = np.array(pairs).T
     lost = clock[:-1][np.diff(clock) > 1.5]
     stretch = np.searchsorted(lost, counted)
-    spread, late = counted * cycle, told - told[0]
+    spread, late = counted * cycle, stated - stated[0]
     for part in np.unique(stretch):
         inside = stretch == part
         spread[inside] -= spread[inside].mean()
@@ -245,5 +248,7 @@ def _adapter_clock(stamps: Sequence[Any], clock: FloatArray, cycle: float) -> tu
     deviation = float(np.sqrt(rest @ rest / freedom / power))
     if abs(slope - 1.0) <= 3.0 * deviation:  # not resolved: the stamps are those of a network, to 1 ms
         return ()
-    return (f"the adapter's clock runs {1e6 * (slope - 1.0):+.0f} ± {2e6 * deviation:.0f} ppm beside the control's; "
-            "the control's is used",)  # fmt: skip
+    return (
+        f"the adapter's clock runs {1e6 * (slope - 1.0):+.0f} ± {2e6 * deviation:.0f} ppm beside the control's; "
+        "the control's is used",
+    )

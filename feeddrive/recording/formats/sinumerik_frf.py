@@ -51,8 +51,11 @@ def read(content: FileContent, text: str) -> FrequencyResponse:
     if cross is None:
         cross = next(((once, f) for id_, once, f in given.crosses if id_ == output.id), None)
     if cross is None or given.spectrum is None or output.spectrum is None:
-        raise InputError("the spectra of the measurement are not in the file", where,
-                         "save them with it (option frequency spectra) at the control")  # fmt: skip
+        raise InputError(
+            "the spectra of the measurement are not in the file",
+            where,
+            "save them with it (option frequency spectra) at the control",
+        )
     values, frequency = cross
     if not values.size == frequency.size == given.spectrum.size == output.spectrum.size or not values.size:
         raise InputError("the spectra differ in length", where, "export it again")
@@ -60,8 +63,8 @@ def read(content: FileContent, text: str) -> FrequencyResponse:
         raise InputError("the input was not excited at every frequency", where, "measure again")
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         coherence = np.abs(values) ** 2 / (given.spectrum.real * output.spectrum.real)
-    names, unit, said = _names(root, given, output, (values / given.spectrum.real)[frequency > 0.0])
-    notes = (f"{NAME}: from {names[0]} to {names[1]}", *said, *_clock(root, frequency, given))
+    names, unit, remarks = _names(root, given, output, (values / given.spectrum.real)[frequency > 0.0])
+    notes = (f"{NAME}: from {names[0]} to {names[1]}", *remarks, *_clock(root, frequency, given))
     return FrequencyResponse(content.path.name, *names, unit, frequency, values / given.spectrum.real, coherence,
                              notes, where, content.sha256)  # fmt: skip
 
@@ -70,7 +73,7 @@ def _tuned(root: Element, content: FileContent, where: str) -> FrequencyResponse
     """Read the plant of the speed loop that automatic servo tuning (AST) keeps, with the coherence beside it.
 
     The file names neither signals nor units. The speed controller turns speed into torque, so its plant is taken as
-    the way from torque to speed, and that is said.
+    the way from torque to speed, and that is stated.
     """
     found: list[tuple[ComplexArray, FloatArray, FloatArray]] = []
     for parent in root.iter():
@@ -87,12 +90,16 @@ def _tuned(root: Element, content: FileContent, where: str) -> FrequencyResponse
     values, frequency, coherence = found[0]
     if values.size != frequency.size:
         raise InputError("the spectra differ in length", where, "export it again")
-    notes = [f"{NAME}, of automatic servo tuning: the plant of a speed loop, taken as motor_torque to motor_speed",
-             "the file does not say the unit of the magnitude: write it in the header of the CSV"]  # fmt: skip
+    notes = [
+        f"{NAME}, of automatic servo tuning: the plant of a speed loop, taken as motor_torque to motor_speed",
+        "the file does not say the unit of the magnitude: write it in the header of the CSV",
+    ]
     if len(found) > 1:
         notes.append(f"{len(found)} responses are in the file; the first is read")
-    notes += [f"a speed controller of the file has K_p {gain} and T_n {time}, in its own units"
-              for gain, time in _controllers(root)]  # fmt: skip
+    notes += [
+        f"a speed controller of the file has K_p {gain} and T_n {time}, in its own units"
+        for gain, time in _controllers(root)
+    ]
     return FrequencyResponse(content.path.name, "motor_torque", "motor_speed", "", frequency, values, coherence,
                              tuple(notes), where, content.sha256)  # fmt: skip
 
@@ -124,8 +131,13 @@ def _node(element: Element, where: str) -> _Node:
             crosses.append((_text(info, "m_uSignodeId"), *spectrum))
     own = _spectrum(auto, where) if auto is not None else None
     length = _text(element, "m_TimeVector.length", deep=True)
-    return _Node(_text(element, "m_uNodeId"), _text(element, "m_iUniqueInstanceId"), own[0] if own else None,
-                 tuple(crosses), int(length) if length.isdigit() else 0)  # fmt: skip
+    return _Node(
+        _text(element, "m_uNodeId"),
+        _text(element, "m_iUniqueInstanceId"),
+        own[0] if own else None,
+        tuple(crosses),
+        int(length) if length.isdigit() else 0,
+    )
 
 
 def _spectrum(info: Element, where: str) -> tuple[ComplexArray, FloatArray] | None:
@@ -182,8 +194,11 @@ def _sides(root: Element, nodes: list[_Node], where: str) -> tuple[_Node, _Node]
         output = by_instance.get(_text(pair, "m_iOutputSigNodeUniqueInstanceID"))
         if given is not None and output is not None and given is not output:
             return given, output
-    raise InputError("the file does not say which signal answers which, or holds no spectra", where,
-                     "save the spectra with the measurement at the control")  # fmt: skip
+    raise InputError(
+        "the file does not say which signal answers which, or holds no spectra",
+        where,
+        "save the spectra with the measurement at the control",
+    )
 
 
 def _names(
@@ -192,12 +207,12 @@ def _names(
     """Return the two channels, the unit of the magnitude, and what was inferred."""
     loop = _text(root, "m_eControlLoopType")
     if loop == _SPEED_LOOP and values.size and abs(abs(values[0]) - 1.0) < _ONE_QUANTITY:
-        said = (
+        note = (
             f"the magnitude at the lowest frequency is {abs(values[0]):.4f}: the closed speed loop, set-point to actual"
         )
-        return ("motor_speed_setpoint", "motor_speed"), "1", (said,)
-    said = "the file names no signals; write them in the first line of the CSV: # from = motor_torque, to = motor_speed"
-    return (f"signal {given.id}", f"signal {output.id}"), "", (said,)
+        return ("motor_speed_setpoint", "motor_speed"), "1", (note,)
+    note = "the file names no signals; write them in the first line of the CSV: # from = motor_torque, to = motor_speed"
+    return (f"signal {given.id}", f"signal {output.id}"), "", (note,)
 
 
 def _clock(root: Element, frequency: FloatArray, given: _Node) -> tuple[str, ...]:
@@ -207,13 +222,15 @@ def _clock(root: Element, frequency: FloatArray, given: _Node) -> tuple[str, ...
         step = float(tick)
     except ValueError:
         return ()
-    said = [f"sampled every {step * 1e6:g} µs"] if step > 0.0 else []
+    remarks = [f"sampled every {step * 1e6:g} µs"] if step > 0.0 else []
     if step > 0.0 and given.samples and frequency.size > 2 and frequency[1] > 0.0:
         off = frequency[1] * given.samples * step - 1.0
         if 1e-6 < abs(off) < 0.1:
-            said.append(f"the frequencies of the file lie {100 * off:+.3f} % off the lines of its own {given.samples} "
-                        "samples; kept as written")  # fmt: skip
-    return tuple(said)
+            remarks.append(
+                f"the frequencies of the file lie {100 * off:+.3f} % off the lines of its own {given.samples} "
+                "samples; kept as written"
+            )
+    return tuple(remarks)
 
 
 def _named(element: Element, name: str) -> Element | None:

@@ -2,7 +2,7 @@
 
 Each signal has a grid of its own: from its first value on, one point every `interval`, the last value held. The points
 of the interpolator cycle (4 ms, say) lie between those of the servo cycle, so channels keep their own times. Units are
-told by class alone (`unitsType`). The present points alone, joined by lines, would make ramps of steps.
+known by class alone (`unitsType`). The present points alone, joined by lines, would make ramps of steps.
 """
 
 from __future__ import annotations

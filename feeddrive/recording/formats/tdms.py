@@ -61,8 +61,9 @@ def read(content: FileContent, sample_time: float | None) -> Trace:
         if key not in times:
             times[key] = key[1] + (step or 1.0) * np.arange(values.size, dtype=np.float64)
         about = clean(f"{group} {channel.properties.get('description', '')}")
-        signals.append(Signal(name, times[key], values, _unit(channel), axis_in(name, plain_words(about)), about,
-                              timed=step > 0.0))  # fmt: skip
+        signals.append(
+            Signal(name, times[key], values, _unit(channel), axis_in(name, plain_words(about)), about, timed=step > 0.0)
+        )
     return Trace(NAME, tuple(signals))
 
 

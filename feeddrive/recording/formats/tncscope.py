@@ -127,8 +127,11 @@ def _control(keys: dict[str, str]) -> list[str]:
 
 def _counts(curves: list[_Curve], names: list[str], rows: int) -> list[str]:
     """Say curves that declare another number of values than the file holds."""
-    declared = [(name, int(curve.keys["COUNT"])) for name, curve in zip(names, curves, strict=True)
-                if curve.keys.get("COUNT", "").isdigit()]  # fmt: skip
+    declared = [
+        (name, int(curve.keys["COUNT"]))
+        for name, curve in zip(names, curves, strict=True)
+        if curve.keys.get("COUNT", "").isdigit()
+    ]
     return [f"{name} declares {count} values, the file holds {rows}" for name, count in declared if count > rows][:1]
 
 

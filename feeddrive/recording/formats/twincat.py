@@ -1,7 +1,7 @@
 """Beckhoff TwinCAT 3 Scope, text export (CSV or TXT), in all its variants.
 
 One time column [ms] for each group of channels; groups that were sampled more slowly end earlier. The decimal sign of
-the numbers is told by the numbers: that of the header follows the language of the computer. Layout: `twincat_header`.
+the numbers is known by the numbers: that of the header follows the language of the computer. Layout: `twincat_header`.
 """
 
 from __future__ import annotations
@@ -30,16 +30,17 @@ def recognises(head: str) -> bool:
     plain = head.removeprefix("\ufeff")
     plain = plain.replace('"', "") if plain.startswith('"Name"') else plain
     return (
-        plain.startswith("Name") and plain[4:5] in "\t ;:,"
+        plain.startswith("Name")
+        and plain[4:5] in "\t ;:,"
         and ("\nData-Type" in plain or "Starttime of export" in plain)
-    )  # fmt: skip
+    )
 
 
 def read(text: str, where: str) -> Trace:
     """Read an export.
 
     Raises:
-        InputError: header and numbers that do not fit each other, or cannot be told apart.
+        InputError: header and numbers that do not fit each other, or cannot be distinguished.
     """
     lines = _without_quotes(text.split("\n"))
     header = read_header(lines, where)
@@ -50,10 +51,11 @@ def read(text: str, where: str) -> Trace:
     for group, first in enumerate(_first_channels(header.groups)):
         time = _seconds(table.column(group, 0), header, where)
         _refuse_unordered(time, header.first_line + 1, names[first], where)
-        signals.extend(_signal(header, names, first + i, time, table.column(group, 1 + i))
-                       for i in range(header.groups[group]))  # fmt: skip
-    signals, said = scaled(signals, header)
-    return Trace(NAME, tuple(signals), (*header.notes, *table.notes, *said))
+        signals.extend(
+            _signal(header, names, first + i, time, table.column(group, 1 + i)) for i in range(header.groups[group])
+        )
+    signals, remarks = scaled(signals, header)
+    return Trace(NAME, tuple(signals), (*header.notes, *table.notes, *remarks))
 
 
 _QUOTED = "\ue000"

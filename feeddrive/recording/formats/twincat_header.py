@@ -64,13 +64,17 @@ def read_header(lines: list[str], where: str) -> Header:
     if any(width == 0 for width in groups):
         raise InputError("a time column has no channel", f"{where}, row {structure + 1}", "export it again")
     rows = {row: number for number in range(top, end) if (row := _attribute(lines[number], separator))}
-    attributes = {name: cells for name, number in rows.items() if name not in ("Name", "SymbolComment")
-                  if (cells := _attribute_cells(lines[number], name, separator, groups)) is not None}  # fmt: skip
-    names, said = _names(lines[top], separator, groups, attributes.get("SymbolName"), f"{where}, row {top + 1}")
+    attributes = {
+        name: cells
+        for name, number in rows.items()
+        if name not in ("Name", "SymbolComment")
+        if (cells := _attribute_cells(lines[number], name, separator, groups)) is not None
+    }
+    names, remarks = _names(lines[top], separator, groups, attributes.get("SymbolName"), f"{where}, row {top + 1}")
     first = end
     while first < len(lines) and not lines[first].strip(separator + " "):  # an export may add an empty line
         first += 1
-    return Header(separator, groups, {**attributes, "Name": names}, _start(lines[:top], separator), first, said)
+    return Header(separator, groups, {**attributes, "Name": names}, _start(lines[:top], separator), first, remarks)
 
 
 def _structure(lines: list[str], separator: str, where: str) -> tuple[int, str]:
@@ -142,16 +146,16 @@ def _names_between_blanks(
         raise InputError("the names of the channels cannot be told apart", where, mend)
     tails = [symbol.rsplit(".", 1)[-1] for symbol in symbols or [""] * sum(groups)]
     names: list[str] = []
-    said = False
+    joined = False
     for words, width in zip(parts, groups, strict=True):
         found = _joined(words, width, tails[len(names) : len(names) + width])
         if found is None:
             what = f"{len(words)} words make {width} names of channels, and which belong together cannot be told"
             raise InputError(what, where, mend)
-        said = said or len(words) > width
+        joined = joined or len(words) > width
         names.extend(found)
     note = "blanks separate words of names too: " + ", ".join(f'"{name}"' for name in names if " " in name)
-    return names, ((note + " were put together",) if said else ())
+    return names, ((note + " were put together",) if joined else ())
 
 
 def _joined(words: list[str], width: int, tails: list[str]) -> list[str] | None:

@@ -42,7 +42,7 @@ def scaled(signals: list[Signal], header: Header) -> tuple[list[Signal], tuple[s
     """Apply the scaling of the header if the export left it out, which no line of the file says.
 
     The option `Scale values before export` decides it. Two channels of one symbol tell: raw they are equal, scaled they
-    are as their scalings. Without such a pair the scaling is taken as applied, which is the usual export, and said.
+    are as their scalings. Without such a pair the scaling is taken as applied, which is the usual export, and stated.
     """
     scalings = _scalings(header, len(signals))
     shown = ", ".join(s.name for s, scaling in zip(signals, scalings, strict=True) if not scaling.neutral)
@@ -65,9 +65,14 @@ def scaled(signals: list[Signal], header: Header) -> tuple[list[Signal], tuple[s
     if votes == {False}:
         made = [replace(s, values=scaling.apply(s.values)) for s, scaling in zip(signals, scalings, strict=True)]
         return made, (f"exported without scaling, as channels of one symbol show; applied by the header to {shown}",)
-    how = "applied in the export, as channels of one symbol show" if votes == {True} else (
-        "taken as applied (the option Scale values before export); if it was off, give factor and offset in a mapping"
-    )  # fmt: skip
+    how = (
+        "applied in the export, as channels of one symbol show"
+        if votes == {True}
+        else (
+            "taken as applied (the option Scale values before export); "
+            "if it was off, give factor and offset in a mapping"
+        )
+    )
     return signals, (f"scale factors or offsets stand in the header for {shown}: {how}",)
 
 

@@ -120,11 +120,14 @@ def _joined(recording: Recording, name: str, stretches: list[tuple[int, int]], r
     channels = {channel: np.concatenate(parts[channel]) for channel in recording.channels}
     if bridged:
         flaws.append(flaw("motor_angle", JOINED, np.concatenate(bridged), channels[name]))
-    told = _told(recording, name, stretches, radius, fastest)
+    remarks = _remarks(recording, name, stretches, radius, fastest)
     return replace(
-        recording, time=np.concatenate(parts["time"]), channels=channels, flaws=tuple(flaws),
-        notes=(*recording.notes, *told),
-    )  # fmt: skip
+        recording,
+        time=np.concatenate(parts["time"]),
+        channels=channels,
+        flaws=tuple(flaws),
+        notes=(*recording.notes, *remarks),
+    )
 
 
 def _usual(position: FloatArray, step: float) -> tuple[float, float, float, float]:
@@ -177,7 +180,7 @@ def _between(
     return smooth
 
 
-def _told(
+def _remarks(
     recording: Recording, name: str, stretches: list[tuple[int, int]], radius: float, fastest: float
 ) -> tuple[str, ...]:
     """What was taken, and statistics of all of it."""
@@ -196,8 +199,10 @@ def _told(
     ]
     if "motor_torque" in recording:
         torque = recording["motor_torque"]
-        whole, part = (float(np.sqrt(np.mean(np.square(one)))) for one in (
-            torque[::every], np.concatenate([torque[first:last] for first, last in stretches])))  # fmt: skip
+        whole, part = (
+            float(np.sqrt(np.mean(np.square(one))))
+            for one in (torque[::every], np.concatenate([torque[first:last] for first, last in stretches]))
+        )
         notes.append(f"rms of motor_torque: {whole:.3g} N m in all of it, {part:.3g} N m in what is compared")
         even = moving[1:] & (np.abs(np.diff(speed)) < 0.02 * np.abs(speed[1:]))
         drag = (torque[: every * len(speed) : every] * np.sign(speed))[1:]
@@ -208,6 +213,6 @@ def _told(
             if np.sum(even & (hour == quarter)) > 100
         ]
         if len(levels) == 4:
-            told = ", ".join(f"{level:.3g}" for level in levels)
-            notes.append(f"drag at even speed, median of each quarter of the time: {told} N m")
+            written = ", ".join(f"{level:.3g}" for level in levels)
+            notes.append(f"drag at even speed, median of each quarter of the time: {written} N m")
     return tuple(notes)

@@ -96,18 +96,18 @@ def _hats(share: FloatArray, count: int) -> FloatArray:
 
 def _greedy(gram: FloatArray, most: int) -> list[int]:
     """Numbers of the windows, the most telling first."""
-    told = np.eye(gram.shape[1])
+    known = np.eye(gram.shape[1])
     base = 0.0
-    queue = [(-float(gain), window, 0) for window, gain in enumerate(np.linalg.slogdet(told + gram)[1])]
+    queue = [(-float(gain), window, 0) for window, gain in enumerate(np.linalg.slogdet(known + gram)[1])]
     heapq.heapify(queue)
     taken: list[int] = []
     while queue and len(taken) < most:
         _, window, asked = heapq.heappop(queue)
         if asked < len(taken):  # its gain was less than this when others were not yet taken
-            again = float(np.linalg.slogdet(told + gram[window])[1]) - base
+            again = float(np.linalg.slogdet(known + gram[window])[1]) - base
             heapq.heappush(queue, (-again, window, len(taken)))
             continue
         taken.append(window)
-        told = told + gram[window]
-        base = float(np.linalg.slogdet(told)[1])
+        known = known + gram[window]
+        base = float(np.linalg.slogdet(known)[1])
     return taken

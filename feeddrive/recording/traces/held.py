@@ -35,12 +35,12 @@ def held_rows(signal: Signal) -> int:
 
 
 def at_updates(signal: Signal) -> tuple[Signal, str]:
-    """Return a signal at its updates alone, and what is said; the signal itself and nothing where none is held."""
+    """Return a signal at its updates alone, and a note; the signal itself and nothing where none is held."""
     rows = held_rows(signal)
     if rows == 1:
         return signal, ""
     first = int(np.flatnonzero(np.diff(signal.values) != 0.0)[0] + 1) % rows
     kept = slice(first, None, rows)
     every = f"{rows} rows, {rows * signal.step * 1e3:.6g} ms"
-    said = f"{signal.name} is updated every {every}: held samples of a slow bus; read at its updates"
-    return replace(signal, time=signal.time[kept], values=signal.values[kept]), said
+    note = f"{signal.name} is updated every {every}: held samples of a slow bus; read at its updates"
+    return replace(signal, time=signal.time[kept], values=signal.values[kept]), note

@@ -1,4 +1,4 @@
-"""What a trace file does not say, from what must hold between its signals: said with factor and scatter.
+"""What a trace file does not say, from what must hold between its signals: stated with factor and scatter.
 
 | relation | what it tells |
 |---|---|
@@ -108,16 +108,16 @@ def _speeds(taken: Taken, signals: Sequence[Signal], fixed: set[str], found: lis
         unit = _position_unit(taken, factors, fixed)
     for signal, one in factors:
         name, written = signal.name, unit or "its unit"
-        told = _unit_of(signal, taken)
+        stated = _unit_of(signal, taken)
         fits = _speed_unit(one.factor, unit)
         text = (
             f"{name} is {one.factor:.5g} ± {one.scatter * abs(one.factor):.1g} of {place.name} in {written} per second"
         )
-        if told and unit:
-            to_si, of_place = conversion(told, "m/s"), conversion(unit, "m")
+        if stated and unit:
+            to_si, of_place = conversion(stated, "m/s"), conversion(unit, "m")
             if to_si is not None and of_place is not None:
                 ratio = one.factor * to_si.factor / of_place.factor
-                text += "" if abs(ratio - 1.0) < _NEAR else f": {ratio:.4g} times what its unit {told} says"
+                text += "" if abs(ratio - 1.0) < _NEAR else f": {ratio:.4g} times what its unit {stated} says"
         elif fits:
             text += f": {fits}"
             _give_unit(taken, signal, fits, one, fixed)
@@ -186,7 +186,7 @@ def _give_unit(taken: Taken, signal: Signal, unit: str, one: Fit, fixed: set[str
 
 
 def _settled(candidate: Candidate, channel: str, unit: str, reason: str) -> Candidate:
-    return replace(candidate, channel=channel, unit=unit, reason=f"{candidate.reason}; {reason}", told=True)
+    return replace(candidate, channel=channel, unit=unit, reason=f"{candidate.reason}; {reason}", stated=True)
 
 
 def _encoders(taken: Taken, found: list[Finding]) -> None:
@@ -217,9 +217,9 @@ def _lead(taken: Taken, found: list[Finding]) -> None:
 def _torque_constant(taken: Taken, signals: Sequence[Signal], fixed: set[str], found: list[Finding]) -> None:
     if "motor_torque" not in taken or "motor_current" not in taken:
         return
-    (torque, torque_told), (current, current_told) = taken["motor_torque"], taken["motor_current"]
+    (torque, torque_choice), (current, current_choice) = taken["motor_torque"], taken["motor_current"]
     one = fit(at_times(current, torque.time), torque.values)
-    to_torque, to_current = conversion(torque_told.unit or "?", "N m"), conversion(current_told.unit or "?", "A")
+    to_torque, to_current = conversion(torque_choice.unit or "?", "N m"), conversion(current_choice.unit or "?", "A")
     if one is None or to_torque is None or to_current is None or abs(one.correlation) < _EXPLAINS:
         return
     constant = one.factor * to_torque.factor / to_current.factor
@@ -234,7 +234,7 @@ def _torque_constant(taken: Taken, signals: Sequence[Signal], fixed: set[str], f
 
 def _sign(channel: str, taken: Taken, fixed: set[str], found: list[Finding]) -> None:
     """Judge the sign of a torque or current by acceleration and direction of motion."""
-    signal, told = taken[channel]
+    signal, choice = taken[channel]
     motion = _speed_and_acceleration(taken, signal.time)
     one_sided = signal.values.size > 0 and (np.min(signal.values) >= 0.0 or np.max(signal.values) <= 0.0)
     if motion is None or not np.any(signal.values):
@@ -259,7 +259,7 @@ def _sign(channel: str, taken: Taken, fixed: set[str], found: list[Finding]) -> 
         text = f"{signal.name} acts against acceleration and motion, which explain {100 * share:.0f} % of it: its sign"
         text += " is reversed"
         if channel not in fixed:
-            taken[channel] = signal, replace(told, reason=f"{told.reason}; sign turned, by acceleration", sign=-1.0)
+            taken[channel] = signal, replace(choice, reason=f"{choice.reason}; sign turned, by acceleration", sign=-1.0)
             text += ", and was turned"
         found.append(Finding("sign", text, -1.0, "1", math.sqrt(max(0.0, 1.0 - share))))
 
@@ -284,8 +284,8 @@ def _following(taken: Taken, found: list[Finding]) -> None:
     """Say following error and K_v where the position follows its set-point, and that it does not where not."""
     if "setpoint" not in taken or "table_position" not in taken:
         return
-    (wanted, wanted_told), (place, told) = taken["setpoint"], taken["table_position"]
-    if not told.unit or wanted_told.unit != told.unit or place.time.size < FEWEST:
+    (wanted, wanted_choice), (place, choice) = taken["setpoint"], taken["table_position"]
+    if not choice.unit or wanted_choice.unit != choice.unit or place.time.size < FEWEST:
         return
     target = at_times(wanted, place.time)
     kept = np.isfinite(target)
@@ -296,7 +296,7 @@ def _following(taken: Taken, found: list[Finding]) -> None:
         text = f"{place.name} does not follow {wanted.name}"
         found.append(Finding("following", text, one.correlation if one else 0.0, "1", one.scatter if one else 1.0))
         return
-    to_si = conversion(told.unit, "m")
+    to_si = conversion(choice.unit, "m")
     assert to_si is not None
     error = (target - place.values)[kept] * to_si.factor
     speed = smooth_slope(place.values[kept], place.time[kept]) * to_si.factor  # the position loop asks for K_v e

@@ -6,8 +6,8 @@ import json
 import math
 
 from feeddrive.recording.channels import channel_unit
-from feeddrive.recording.files.mapping import FORMAT
-from feeddrive.recording.traces.choosing import Choice, Pick, Wishes
+from feeddrive.recording.files.channel_mapping import FORMAT
+from feeddrive.recording.traces.channel_choice import Choice, Pick, Wishes
 from feeddrive.recording.traces.resampling import HELD
 from feeddrive.units.quantity import unit_conversion
 

@@ -56,7 +56,7 @@ class Candidate:
         unit: that its values are taken in; empty if nothing tells.
         reason: why, for people.
         rank: among signals that may be the same channel the lowest is taken.
-        told: whether the file itself tells the unit.
+        stated: whether the file itself states the unit.
         sign: -1 where the signal was found to be reversed.
     """
 
@@ -64,7 +64,7 @@ class Candidate:
     unit: str
     reason: str
     rank: int
-    told: bool
+    stated: bool
     sign: float = 1.0
 
 

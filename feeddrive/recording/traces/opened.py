@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feeddrive.errors import InputError
-from feeddrive.recording.files.mapping import FileMapping, Hold, Variable
+from feeddrive.recording.files.channel_mapping import FileMapping, Hold, Variable
 from feeddrive.recording.files.opening import FileContent, decode, head_of, is_hdf5
 from feeddrive.recording.formats import (
     halscope,
@@ -24,7 +24,7 @@ from feeddrive.recording.formats import (
     twincat,
 )
 from feeddrive.recording.frequency_response import FrequencyResponse, read_response, recognises_response
-from feeddrive.recording.traces.choosing import Choice, Pick, Wishes, choose
+from feeddrive.recording.traces.channel_choice import Choice, Pick, Wishes, choose
 from feeddrive.recording.traces.resampling import Series, gaps, on_one_grid, part_read, parts_of, same_time
 from feeddrive.recording.traces.trace import Signal, Trace, clean
 from feeddrive.typing import FloatArray
@@ -92,11 +92,11 @@ def read_trace(content: FileContent, wishes: Wishes) -> Trace | FrequencyRespons
         return sinumerik_frf.read(content, decode(content)[0])
     for recognises, read in _TEXTS:
         if recognises(head):
-            text, said = decode(content)
+            text, remarks = decode(content)
             trace = read(text, where, wishes)
             if not text.endswith("\n") and not text.endswith(("}", ">")):  # JSON and XML tell their end
-                said = (*said, "the file does not end with a line end: its last value may be cut short")
-            return _usable(replace(trace, notes=(*said, *trace.notes)), where)
+                remarks = (*remarks, "the file does not end with a line end: its last value may be cut short")
+            return _usable(replace(trace, notes=(*remarks, *trace.notes)), where)
     return None
 
 
@@ -149,8 +149,8 @@ def understand(trace: Trace, wishes: Wishes, where: str) -> Understood:
     if choice.blocking or not choice.picks:
         return Understood(trace, choice, np.empty(0), {}, tuple(notes))
     series = {pick.channel: pick.series for pick in choice.picks}
-    time, channels, said = _on_grid(series, wishes, where)
-    return Understood(trace, choice, time, channels, (*notes, *said))
+    time, channels, remarks = _on_grid(series, wishes, where)
+    return Understood(trace, choice, time, channels, (*notes, *remarks))
 
 
 def _on_grid(
@@ -171,8 +171,8 @@ def _on_grid(
             f"lost stretches leave {len(parts)} parts; part {number}{longest} is read: {part.start:.6g} s to "
             f"{part.stop:.6g} s; another by --part"
         )
-    time, channels, said = on_one_grid(series, part, wishes.rate, where)
-    return time, channels, (*notes, *said)
+    time, channels, remarks = on_one_grid(series, part, wishes.rate, where)
+    return time, channels, (*notes, *remarks)
 
 
 def columns_of(understood: Understood, where: str) -> dict[str, FloatArray]:
@@ -183,8 +183,8 @@ def columns_of(understood: Understood, where: str) -> dict[str, FloatArray]:
     """
     if understood.choice.blocking:
         what = understood.choice.blocking
-        said, _, option = what.partition(": ")
-        raise InputError(said, where, option)
+        problem, _, option = what.partition(": ")
+        raise InputError(problem, where, option)
     if not understood.channels:
         names = ", ".join(signal.name for signal in understood.trace.signals[:8])
         what = f"no signal of this {understood.trace.format} is known by its name (it holds {names})"
@@ -224,8 +224,8 @@ def mapped(trace: Trace, mapping: FileMapping, where: str) -> Understood:
         raise InputError(f"this {trace.format} holds no time", where, "add sample_time or [time] to the mapping")
     time, channels, notes = _on_grid(series, wishes, where)
     timing = _timing_notes([pick.signal for pick in picks])
-    said = (f"read through the mapping {mapping.name}", *trace.notes, *timing, *notes)
-    return Understood(trace, Choice("", tuple(picks), (), ()), time, channels, said)
+    remarks = (f"read through the mapping {mapping.name}", *trace.notes, *timing, *notes)
+    return Understood(trace, Choice("", tuple(picks), (), ()), time, channels, remarks)
 
 
 def _named(name: str, by_name: dict[str, Signal], where: str, column: int) -> Signal:

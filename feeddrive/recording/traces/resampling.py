@@ -1,4 +1,4 @@
-"""Signals with times of their own brought onto one even grid, knowingly: the rule is stated and what was done is said.
+"""Signals with times of their own brought onto one even grid, knowingly: the rule is stated, and so is what was done.
 
 The grid is that of the slowest channel of motion or torque, or the rate that is asked for: nothing is made up between
 its samples. Positions and speeds are read at the instants of the grid, between samples on the straight line. A torque
@@ -139,8 +139,8 @@ def on_one_grid(
         made[name], how = _on(name, one, grid, step)
         if how:
             done.setdefault(how, []).append(name)
-    said = [f"{', '.join(names)} {how}" for how, names in done.items()]
-    return grid, made, ((f"one grid of {step * 1e3:.6g} ms: " + "; ".join(said),) if said else ())
+    remarks = [f"{', '.join(names)} {how}" for how, names in done.items()]
+    return grid, made, ((f"one grid of {step * 1e3:.6g} ms: " + "; ".join(remarks),) if remarks else ())
 
 
 def _cut(one: Series, part: Part) -> Series:

@@ -22,7 +22,7 @@ def number_rows(
     gaps: bool = False,
     separator: str | None = "",
 ) -> tuple[FloatArray, tuple[str, ...]]:
-    """Return the numbers of lines, (rows, width), and what is to be said.
+    """Return the numbers of lines, (rows, width), and remarks.
 
     Args:
         lines: rows of numbers; blank ones at the end are passed over.

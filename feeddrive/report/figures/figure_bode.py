@@ -8,7 +8,7 @@ import numpy as np
 
 from feeddrive.metrology.response import Response as Measured
 from feeddrive.report.figures.drawing import AFTER, MEASURED, ReportFigure, dress, new_figure
-from feeddrive.servo.frequency_response import Case, decibel, degrees
+from feeddrive.servo.mechanics_response import Case, decibel, degrees
 from feeddrive.servo.resonances import Kind
 from feeddrive.servo.response_family import Curve, Family
 from feeddrive.typing import ComplexArray, FloatArray

@@ -25,7 +25,7 @@ from feeddrive.report.figures.drawing import (
     legend_above,
     new_figure,
 )
-from feeddrive.report.reduction import envelope
+from feeddrive.report.thinning import envelope
 from feeddrive.report.words.people import significant, with_unit
 from feeddrive.simulate.scenario.scenario_result import SERIES, ScenarioResult
 from feeddrive.typing import ComplexArray, FloatArray

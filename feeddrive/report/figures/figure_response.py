@@ -6,7 +6,7 @@ import numpy as np
 
 from feeddrive.recording.frequency_response import FrequencyResponse
 from feeddrive.report.figures.drawing import MEASURED, ReportFigure, dress, new_figure
-from feeddrive.servo.frequency_response import decibel, degrees
+from feeddrive.servo.mechanics_response import decibel, degrees
 
 _COHERENT = 0.8
 

@@ -19,7 +19,7 @@ from feeddrive.report.figures.figure_metrology import (
     step_figure,
     torque_loop_figure,
 )
-from feeddrive.report.reduction import envelope
+from feeddrive.report.thinning import envelope
 from feeddrive.simulate.scenario.scenario_result import ScenarioResult
 from feeddrive.typing import FloatArray
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from feeddrive.diagnosis.judging.result import ChannelResult, Diagnosis
-from feeddrive.diagnosis.unexplained.result import Dependence
+from feeddrive.diagnosis.unexplained.unexplained_result import Dependence
 from feeddrive.report.figures.drawing import AFTER, MEASURED, NOISE, ReportFigure, dress, legend_above, new_figure
 from feeddrive.report.selection import stem_of
 from feeddrive.report.words.people import axis_label, scale_for_signal, scale_for_value

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from feeddrive.diagnosis.judging.result import JudgedRecording
-from feeddrive.report.reduction import runs
+from feeddrive.report.thinning import runs
 from feeddrive.typing import FloatArray
 
 _BINS_PER_REVOLUTION = 160

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from feeddrive.diagnosis.judging.result import Diagnosis
-from feeddrive.diagnosis.numbers.rows import NumberResult
+from feeddrive.diagnosis.numbers.number_rows import NumberResult
 from feeddrive.report.pages.markup import number, paragraph, section, table, words
 from feeddrive.units.quantity import format_quantity
 

@@ -122,5 +122,5 @@ def _counted(trend: Trend) -> str:
 
 def _unused(trend: Trend) -> list[str]:
     others = [one for one in trend.entries if one.status != USED]
-    told = [f"{one.key}: {one.status}: {one.told}" for one in others[:_MOST_FILES]]
-    return [*told, f"and {len(others) - _MOST_FILES} more"] if len(others) > _MOST_FILES else told
+    lines = [f"{one.key}: {one.status}: {one.reason}" for one in others[:_MOST_FILES]]
+    return [*lines, f"and {len(others) - _MOST_FILES} more"] if len(others) > _MOST_FILES else lines

@@ -74,7 +74,7 @@ def state_from(vector: FloatArray) -> ControlledState:
 
 @dataclass(frozen=True)
 class ControlledRun:
-    """What happens at the ticks, shape (n,); what is measured is told as it is, before the sensors' steps.
+    """What happens at the ticks, shape (n,); what is measured is given as it is, before the sensors' steps.
 
     Attributes:
         time: of the ticks [s].

@@ -9,7 +9,7 @@ from enum import StrEnum
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade
 from feeddrive.simulate.setpoints.cutting_force import Force
-from feeddrive.simulate.setpoints.motion import Trajectory
+from feeddrive.simulate.setpoints.setpoint_motion import Trajectory
 from feeddrive.simulate.setpoints.waveforms import Waveform
 
 

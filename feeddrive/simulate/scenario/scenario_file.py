@@ -33,7 +33,7 @@ from feeddrive.errors import InputError
 from feeddrive.files import find_plant
 from feeddrive.plant.file.effect_sections import read_effects
 from feeddrive.plant.file.entries import Table, read_toml, whole_file
-from feeddrive.plant.file.files import plant_from_entries
+from feeddrive.plant.file.plant_file import plant_from_entries
 from feeddrive.plant.file.plant_schema import EFFECT
 from feeddrive.plant.passive_friction import refuse_active_friction
 from feeddrive.plant.plant import Plant

@@ -44,7 +44,7 @@ from feeddrive.simulate.setpoints.cutting_force import (
     TriangleForce,
 )
 from feeddrive.simulate.setpoints.jerk_limited import Limits
-from feeddrive.simulate.setpoints.motion import Pieces, Trajectory, rest
+from feeddrive.simulate.setpoints.setpoint_motion import Pieces, Trajectory, rest
 from feeddrive.simulate.setpoints.trajectories import (
     Circle,
     Sine,

@@ -46,7 +46,7 @@ def recorded(scenario: Scenario, time: FloatArray, series: Mapping[str, FloatArr
     """The recording of exact series: white noise added, then rounded to the sensor's resolution where asked for.
 
     Args:
-        scenario: says which channels, noise and seed; each channel has a random sequence of its own, told by its place
+        scenario: says which channels, noise and seed; each channel has a random sequence of its own, known by its place
             in the alphabet; those injected, which are commands, stand behind the measured ones.
         time: [s], shape (n,).
         series: exact, shape (n,); late channels as they are recorded.

@@ -58,7 +58,7 @@ _DAMAGE = (
 """What numpy and zipfile raise where bytes of an archive were lost or changed."""
 
 Progress = Callable[[float], None]
-"""Told the share of the run that is done."""
+"""Called with the share of the run that is done."""
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,7 @@ def run_scenario(
     Args:
         scenario: to run.
         checkpoint: file for the state of a long run; removed at the end. None writes none.
-        progress: told after every stretch.
+        progress: called after every stretch.
 
     Returns:
         The finished run.

@@ -22,7 +22,7 @@ import math
 from dataclasses import dataclass
 
 from feeddrive.errors import InputError
-from feeddrive.simulate.setpoints.motion import Piece, chained
+from feeddrive.simulate.setpoints.setpoint_motion import Piece, chained
 
 _ROUNDING = 1e-12
 """A share of the ramps that only rounding makes of constant velocity."""

@@ -18,7 +18,7 @@ import numpy as np
 
 from feeddrive.errors import InputError
 from feeddrive.simulate.setpoints.jerk_limited import Limits, move
-from feeddrive.simulate.setpoints.motion import Motion, Piece, Pieces, Stop, Trajectory, rest
+from feeddrive.simulate.setpoints.setpoint_motion import Motion, Piece, Pieces, Stop, Trajectory, rest
 from feeddrive.simulate.setpoints.waveforms import Waveform
 from feeddrive.typing import FloatArray
 

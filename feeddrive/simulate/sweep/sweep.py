@@ -30,8 +30,8 @@ _FEWEST_UNITS = 16
 _UNTIMED = 4
 """Runs of a unit where the first run failed, so that its time says nothing."""
 
-Told = Callable[[int, int], None]
-"""Told the runs that are done, and all."""
+Progress = Callable[[int, int], None]
+"""Called with the runs that are done, and all."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ def run_sweep(
     measure: Measure,
     folder: Path,
     workers: Workers,
-    told: Told | None = None,
+    progress: Progress | None = None,
     needed: Sequence[str] = (),
 ) -> Sweep:
     """All runs of a sweep, or those that an earlier start has left.
@@ -64,7 +64,7 @@ def run_sweep(
         measure: what is taken from each run.
         folder: for the units; that of an earlier start of the same sweep is gone on with.
         workers: `in_this_process`, `processes(n)` or `on_cluster(address)`; the results are the same, bit for bit.
-        told: of the progress.
+        progress: called as runs end.
         needed: metrics that must be among those of the first run, if that finishes.
 
     Raises:
@@ -74,8 +74,8 @@ def run_sweep(
     cut, total = read_cut(folder, design), len(design.rows)
     there = {} if cut is None else read_units(folder, design, cut)
     resumed = sum(len(runs) for runs in there.values())
-    if told is not None:
-        told(resumed, total)
+    if progress is not None:
+        progress(resumed, total)
     if cut is None or len(there) < cut.units:
         with workers(measure) as work:
             if cut is None:
@@ -87,8 +87,8 @@ def run_sweep(
             done = sum(len(runs) for runs in there.values())
             for count in work(units):
                 done += count
-                if told is not None:
-                    told(done, total)
+                if progress is not None:
+                    progress(done, total)
     found = read_units(folder, design, cut)
     return Sweep(design, table_of(design, [run for unit in range(cut.units) for run in found[unit]]), resumed)
 

@@ -56,7 +56,7 @@ def client_of(address: str) -> Any:
     except ImportError:
         mend = "pip install 'feeddrive[dask]', or leave out --scheduler"
         raise InputError("Dask is not installed", where, mend) from None
-    logging.getLogger("distributed").setLevel(logging.CRITICAL + 1)  # what goes wrong is told in one line instead
+    logging.getLogger("distributed").setLevel(logging.CRITICAL + 1)  # what goes wrong is reported in one line instead
     try:
         return distributed.Client(address, timeout=_PATIENCE, set_as_default=False)
     except (OSError, ValueError, TypeError) as error:

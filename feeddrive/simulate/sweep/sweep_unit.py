@@ -100,11 +100,11 @@ def is_list_of_runs(content: Any, numbers: Sequence[int]) -> bool:
 
 def _is_run(run: Mapping[str, Any]) -> bool:
     """Whether reason, warnings and metrics are what `_run` makes."""
-    told, metrics = run.get("warnings"), run.get("metrics")
+    messages, metrics = run.get("warnings"), run.get("metrics")
     return (
         isinstance(run.get("reason"), str)
-        and isinstance(told, list)
-        and all(isinstance(line, str) for line in told)
+        and isinstance(messages, list)
+        and all(isinstance(line, str) for line in messages)
         and isinstance(metrics, dict)
         and all(map(_is_metric, metrics.values()))
         and bool(metrics) != bool(run["reason"])
@@ -143,9 +143,9 @@ def _run(task: UnitTask, number: int, overrides: Mapping[str, str]) -> dict[str,
             reason = error.what
         except Exception as error:  # one run must not take the others with it; the row says what happened
             reason = " ".join(f"internal error: {type(error).__name__}: {error}".split())
-    told = [str(warning.message) for warning in caught if issubclass(warning.category, ValidityWarning)]
+    messages = [str(warning.message) for warning in caught if issubclass(warning.category, ValidityWarning)]
     plain = {name: [_plain(metric.value), metric.unit] for name, metric in metrics.items()}
-    return {"run": number, "reason": reason, "warnings": list(dict.fromkeys(told)), "metrics": plain}
+    return {"run": number, "reason": reason, "warnings": list(dict.fromkeys(messages)), "metrics": plain}
 
 
 def _plain(value: float) -> float | None:

@@ -33,10 +33,10 @@ from feeddrive.recording import Recording
 from feeddrive.simulate.uniform_motion import UniformMotion, uniform_motion
 from feeddrive.thermal.bound_function import BoundFunction
 from feeddrive.thermal.full.full_model import FRONT, NUT, REAR
-from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.laws.expansion import expansion
 from feeddrive.thermal.laws.laws import FOLLOWED, INPUTS, PATHS, Laws, laws_of, values_of
-from feeddrive.thermal.reduced.model import HeatModel
+from feeddrive.thermal.machine_heat import Heat
+from feeddrive.thermal.reduced.parametric_model import HeatModel
 from feeddrive.thermal.run.warm_up import Rows, channel_of, lagging, run
 from feeddrive.typing import BoolArray, FloatArray, IntegerArray
 
@@ -108,7 +108,7 @@ def warm_log(recording: Recording, ambient: float) -> WarmLog:
 def _stroke_speeds(turned: FloatArray) -> FloatArray:
     """Speed of the stroke that each row belongs to, (n,): the fastest of its rows that others have too; 0 at rest.
 
-    A stroke is a run of rows of one direction. One that no full row tells has the speed of the last that was told.
+    A stroke is a run of rows of one direction. One that no full row tells has the speed of the last that was known.
     """
     fastest = float(np.max(np.abs(turned), initial=0.0))
     moving = np.abs(turned) > 1e-4 * fastest
@@ -126,10 +126,10 @@ def _stroke_speeds(turned: FloatArray) -> FloatArray:
     for first, end in zip(starts, np.append(starts[1:], len(turned)), strict=True):
         if direction[first] == 0:
             continue
-        told = np.abs(turned[first:end])[equal[first:end]]
+        steady = np.abs(turned[first:end])[equal[first:end]]
         slowest = float(np.max(np.abs(turned[first:end])))
-        last = float(np.median(told)) if len(told) else max(last, slowest)
-        speed[first:end] = direction[first] * max(last, slowest) if not len(told) else direction[first] * last
+        last = float(np.median(steady)) if len(steady) else max(last, slowest)
+        speed[first:end] = direction[first] * max(last, slowest) if not len(steady) else direction[first] * last
     return speed
 
 

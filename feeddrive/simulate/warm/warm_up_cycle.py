@@ -22,14 +22,14 @@ from feeddrive.simulate.controlled.controlled import (
 from feeddrive.simulate.scenario.cycle_losses import CycleLosses, cycle_losses
 from feeddrive.simulate.scenario.scenario import Scenario
 from feeddrive.simulate.setpoints.cutting_force import held
-from feeddrive.thermal.coupling import Changes, Coupling, Temperatures
 from feeddrive.thermal.full.full_model import FRONT, NUT, REAR, SHAFT
-from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.laws.contact_conductance import conductance_at_preload
 from feeddrive.thermal.laws.expansion import expansion
 from feeddrive.thermal.laws.laws import FOLLOWED, INPUTS, PATHS, laws_of, values_of
-from feeddrive.thermal.reduced.model import AMBIENT, HeatModel, Path
+from feeddrive.thermal.machine_heat import Heat
+from feeddrive.thermal.reduced.parametric_model import AMBIENT, HeatModel, Path
 from feeddrive.thermal.rig import Travel
+from feeddrive.thermal.thermal_coupling import Changes, Coupling, Temperatures
 from feeddrive.typing import FloatArray
 
 _MOTOR = "motor"
@@ -137,8 +137,8 @@ class ServoCycle:
         places = [self.coupling.nut_at_zero + stop for stop in self.stops]
         growth = np.array([float(grown.growth(place)[0]) for place in places])
         frame = [sum(float(e.growth(place, time, e.values)) for e in self.thermal.effects) for place in places]
-        told = self._told(model, changes, plant, run, growth, slope, time)
-        return replace(told, stop_errors=told.stop_errors + np.array(frame))
+        cycle = self._result(model, changes, plant, run, growth, slope, time)
+        return replace(cycle, stop_errors=cycle.stop_errors + np.array(frame))
 
     def _run(self, plant: Plant) -> ControlledRun:
         """From where the last cycle ended; the very first one is run twice, so that it begins as it ends."""
@@ -150,7 +150,7 @@ class ServoCycle:
         self._state, self.count = replace(run.end, tick=0), self.count + 1
         return run
 
-    def _told(
+    def _result(
         self, model: HeatModel, changes: Changes, plant: Plant, run: ControlledRun, growth: FloatArray, slope: float,
         time: float,
     ) -> Cycle:  # fmt: skip

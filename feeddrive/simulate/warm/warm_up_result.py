@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feeddrive.simulate.warm.warm_up_cycle import Cycle
-from feeddrive.thermal.heat import Heat
+from feeddrive.thermal.machine_heat import Heat
 from feeddrive.typing import FloatArray
 
 CLOSES = 2e-4

@@ -27,8 +27,8 @@ from feeddrive.simulate.scenario.scenario import Scenario
 from feeddrive.simulate.warm.warm_up_cycle import Cycle, ServoCycle
 from feeddrive.simulate.warm.warm_up_result import RunEnergy, WarmUpPoint, WarmUpRun
 from feeddrive.thermal.full.full_model import FRONT, NUT, REAR, SHAFT
-from feeddrive.thermal.reduced.model import HeatModel, Path
-from feeddrive.thermal.run.ledger import with_ledger
+from feeddrive.thermal.reduced.parametric_model import HeatModel, Path
+from feeddrive.thermal.run.energy_balance import with_ledger
 from feeddrive.typing import FloatArray
 
 OBSERVED = (NUT, SHAFT, FRONT, REAR)
@@ -39,7 +39,7 @@ _FIRST, _LONGEST = 30.0, 1200.0
 _MOST_STEPS = 5000
 
 Progress = Callable[[float], None]
-"""Told the share of the run that is done."""
+"""Called with the share of the run that is done."""
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,7 @@ def run_warm_up(
             began, at rest; the ambient of its heat is that of the run, and the start.
         duration: of the run [s].
         steps: how macro steps are chosen; None for the default tolerance.
-        progress: told after every macro step.
+        progress: called after every macro step.
 
     Returns:
         What happened at the macro steps.

@@ -20,7 +20,7 @@ import scipy.sparse as sparse
 from feeddrive.errors import InputError
 from feeddrive.thermal.full.full_model import Discretisation, model_of
 from feeddrive.thermal.full.marching import March, Progressing, Step, march_of
-from feeddrive.thermal.reduced.model import HeatModel, Path
+from feeddrive.thermal.reduced.parametric_model import HeatModel, Path
 from feeddrive.thermal.reduced.system import HeatSystem
 from feeddrive.thermal.rig import Travel, refuse_unless, refuse_unless_positive
 from feeddrive.typing import FloatArray

@@ -15,7 +15,7 @@ import scipy.sparse as sparse
 
 from feeddrive.thermal.full.grid import Cells, Cylinder, cylinder
 from feeddrive.thermal.full.occupancy import covered_share, overlap
-from feeddrive.thermal.reduced.model import AMBIENT, COOLANT, HeatModel, Path, Way
+from feeddrive.thermal.reduced.parametric_model import AMBIENT, COOLANT, HeatModel, Path, Way
 from feeddrive.thermal.rig import Rig, Seat, Travel
 from feeddrive.typing import Expression, FloatArray
 
@@ -115,7 +115,7 @@ def model_of(parts: Discretisation, travel: Travel) -> HeatModel:
         edges=parts.shaft.edges,
         ports=_ports(parts),
         air=np.zeros(parts.nodes),
-    )  # fmt: skip
+    )
 
 
 def _profile(parts: Discretisation) -> Expression:

@@ -41,7 +41,7 @@ class Cells:
         refuse_unless(least >= 1, f"{least} cells are none", "cells", "write at least 1 in each direction")
 
     def refined(self, factor: int) -> Cells:
-        """The same grid with `factor` times as many cells in each direction."""
+        """A grid with `factor` times as many cells in each direction."""
         return Cells(*(factor * n for n in (self.shaft_axial, self.shaft_radial, self.nut_axial, self.nut_radial)))
 
     @staticmethod
@@ -49,9 +49,11 @@ class Cells:
         """Grid of paper 002: cells of 2.5 mm by 0.5 mm."""
         nut_wall = rig.nut.outer_radius - rig.radius
         return Cells(
-            round(rig.length / axial), round(rig.radius / radial), round(rig.nut.length / axial),
+            round(rig.length / axial),
+            round(rig.radius / radial),
+            round(rig.nut.length / axial),
             round(nut_wall / radial),
-        )  # fmt: skip
+        )
 
 
 @dataclass(frozen=True, eq=False)

@@ -104,8 +104,12 @@ def _augmented(step: Step) -> Expression:
 class _Band(ctypes.Structure):
     """`band` of explicit.c."""
 
-    _fields_ = [("offset", ctypes.c_longlong), ("first", ctypes.c_longlong), ("count", ctypes.c_longlong),
-                ("value", ctypes.c_void_p)]  # fmt: skip
+    _fields_ = [
+        ("offset", ctypes.c_longlong),
+        ("first", ctypes.c_longlong),
+        ("count", ctypes.c_longlong),
+        ("value", ctypes.c_void_p),
+    ]
 
 
 class _Place(ctypes.Structure):

@@ -32,7 +32,7 @@ import scipy.sparse as sparse
 from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.thermal.full.explicit import places_of
 from feeddrive.thermal.full.full_model import NUT, Discretisation, contact_way, model_of
-from feeddrive.thermal.reduced.model import AMBIENT, Path
+from feeddrive.thermal.reduced.parametric_model import AMBIENT, Path
 from feeddrive.thermal.reduced.system import HeatSystem
 from feeddrive.thermal.rig import Travel, refuse_unless_positive
 from feeddrive.typing import Expression, FloatArray
@@ -45,9 +45,13 @@ LARGEST_RIPPLE = 1.0
 
 
 def moving_system(
-    parts: Discretisation, conductances: Mapping[Path, float], feed: float, basis: FloatArray,
-    travel: Travel | None = None, harmonics: int = HARMONICS,
-) -> HeatSystem:  # fmt: skip
+    parts: Discretisation,
+    conductances: Mapping[Path, float],
+    feed: float,
+    basis: FloatArray,
+    travel: Travel | None = None,
+    harmonics: int = HARMONICS,
+) -> HeatSystem:
     """The slow system under a moving nut on a basis of its temperatures.
 
     Args:
@@ -90,9 +94,13 @@ def lowered(slow: HeatSystem, lost_K: FloatArray, lost_B: FloatArray) -> HeatSys
 
 
 def ripple_loss(
-    parts: Discretisation, conductances: Mapping[Path, float], feed: float, basis: FloatArray, travel: Travel,
+    parts: Discretisation,
+    conductances: Mapping[Path, float],
+    feed: float,
+    basis: FloatArray,
+    travel: Travel,
     harmonics: int = HARMONICS,
-) -> tuple[FloatArray, FloatArray]:  # fmt: skip
+) -> tuple[FloatArray, FloatArray]:
     """What the ripple takes from K₀ and B₀ on a basis, (r, r) symmetric and (r, m); arguments as `moving_system`.
 
     Warns:
@@ -118,8 +126,8 @@ def ripple_number(parts: Discretisation, conductances: Mapping[Path, float], fee
 
 def _warn_of_slowness(number: float) -> None:
     if number > LARGEST_RIPPLE:
-        told = f"the nut is slow for its contact (ripple number {number:.2g}, up to {LARGEST_RIPPLE} is covered)"
-        warnings.warn(f"{told}: the moving contact is extrapolated", ValidityWarning, stacklevel=4)
+        what = f"the nut is slow for its contact (ripple number {number:.2g}, up to {LARGEST_RIPPLE} is covered)"
+        warnings.warn(f"{what}: the moving contact is extrapolated", ValidityWarning, stacklevel=4)
 
 
 def _harmonic(

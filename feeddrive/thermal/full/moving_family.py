@@ -18,8 +18,8 @@ from feeddrive.errors import ValidityWarning
 from feeddrive.thermal.full.full_model import discretise, model_of
 from feeddrive.thermal.full.grid import Cells
 from feeddrive.thermal.full.moving import lowered, ripple_loss
-from feeddrive.thermal.heat import Heat
-from feeddrive.thermal.reduced.model import HeatModel, Path
+from feeddrive.thermal.machine_heat import Heat
+from feeddrive.thermal.reduced.parametric_model import HeatModel, Path
 from feeddrive.thermal.reduced.reduction import DEFAULT_ORDER, common_basis
 from feeddrive.thermal.reduced.system import HeatSystem
 from feeddrive.thermal.rig import Travel, refuse_unless
@@ -57,8 +57,8 @@ class MovingFamily:
             return averaged
         low, high = float(self.feeds[0]), float(self.feeds[-1])
         if not low * (1 - 1e-9) <= feed <= high * (1 + 1e-9):
-            told = f"a feed of {feed * 1e3:.4g} mm/s lies outside {low * 1e3:.4g} to {high * 1e3:.4g} mm/s"
-            warnings.warn(f"{told}: the ripple at the nearer end is taken", ValidityWarning, stacklevel=2)
+            what = f"a feed of {feed * 1e3:.4g} mm/s lies outside {low * 1e3:.4g} to {high * 1e3:.4g} mm/s"
+            warnings.warn(f"{what}: the ripple at the nearer end is taken", ValidityWarning, stacklevel=2)
         order = averaged.order
         curve = PchipInterpolator(np.log(self.feeds), self.losses)
         lost = curve(np.log(np.clip(feed, low, high))) * (conductances.get(Path.CONTACT, 0.0) / self.contact) ** 2
@@ -66,9 +66,12 @@ class MovingFamily:
 
 
 def moving_family(
-    heat: Heat, speeds: FloatArray, travel: Travel | None = None, order: int = DEFAULT_ORDER,
+    heat: Heat,
+    speeds: FloatArray,
+    travel: Travel | None = None,
+    order: int = DEFAULT_ORDER,
     cells: Cells | None = None,
-) -> MovingFamily:  # fmt: skip
+) -> MovingFamily:
     """Work out a family.
 
     Args:

@@ -19,8 +19,8 @@ from feeddrive.effects.base import Effect, FrictionEffect, Motion, number
 from feeddrive.effects.friction.nut_friction import NutFriction
 from feeddrive.effects.friction.shaft_drag import BearingDrag, NutDrag
 from feeddrive.parts.bearings.bearing_friction import palmgren_torque
-from feeddrive.thermal.coupling import Coupling
 from feeddrive.thermal.laws.friction import Friction
+from feeddrive.thermal.thermal_coupling import Coupling
 
 _FAST = 1e3
 """A speed in the range of the power 2/3 for any oil [rad/s]."""

@@ -139,7 +139,8 @@ def expansion(rig: Rig, profile: FloatArray, edges: FloatArray, supports: Suppor
         force = free[:, -1] / (rig.length / stiffness + 1 / supports.front + 1 / supports.rear)
     found = Expansion(edges, free, force, supports, stiffness)
     if supports.tension > 0 and np.any(found.tension_left < 0):
-        told = f"heat adds {format_quantity(float(force.max()), 'N')} to a stretch of"
-        warnings.warn(f"{told} {format_quantity(supports.tension, 'N')}: the shaft is compressed", ValidityWarning,
-                      stacklevel=2)  # fmt: skip
+        what = f"heat adds {format_quantity(float(force.max()), 'N')} to a stretch of"
+        warnings.warn(
+            f"{what} {format_quantity(supports.tension, 'N')}: the shaft is compressed", ValidityWarning, stacklevel=2
+        )
     return found

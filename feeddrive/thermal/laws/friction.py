@@ -27,7 +27,7 @@ from feeddrive.thermal.rig import refuse_negative, refuse_unless, refuse_unless_
 from feeddrive.typing import Expression, FloatArray
 
 LOAD_EXPONENT = 1.33
-"""Of the preload in the load torque: 1 + y, y = 0.33."""
+"""Exponent of the preload in the load torque: 1 + y, y = 0.33."""
 
 
 def nut_load_torque(constant: float, preload: float, mean_diameter: float, lead_angle: float) -> float:
@@ -75,8 +75,9 @@ class Friction:
         torques = ca.DM(oil_torque(ca.DM(turning.ravel()), vars(self))).full().reshape(turning.shape)
         return np.asarray(np.where(turning > 0, torques, 0.0))
 
-    def heats(self, speeds: FloatArray, load_factor: FloatArray | float = 1.0,
-              viscous_factor: FloatArray | float = 1.0) -> FloatArray:  # fmt: skip
+    def heats(
+        self, speeds: FloatArray, load_factor: FloatArray | float = 1.0, viscous_factor: FloatArray | float = 1.0
+    ) -> FloatArray:
         """Q at speeds [rad/s], of the same shape [W].
 
         Args:

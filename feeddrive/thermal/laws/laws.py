@@ -24,15 +24,15 @@ import casadi as ca
 import numpy as np
 
 from feeddrive.effects.base import Value
-from feeddrive.effects.heat.base import Operation
 from feeddrive.effects.heat.bearing_heat import reference_torque
+from feeddrive.effects.heat.thermal_effect import Operation
 from feeddrive.symbolic_turn import SYMBOLS, Holder
-from feeddrive.thermal.coupling import viscous_share
 from feeddrive.thermal.full.full_model import END, FRONT, NUT, REAR, SHAFT, growth_name
-from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.laws.films import film_on_nut, film_on_screw
 from feeddrive.thermal.laws.friction import torque_law
-from feeddrive.thermal.reduced.model import AMBIENT, Path
+from feeddrive.thermal.machine_heat import Heat
+from feeddrive.thermal.reduced.parametric_model import AMBIENT, Path
+from feeddrive.thermal.thermal_coupling import viscous_share
 from feeddrive.typing import Expression, FloatArray
 
 PATHS = tuple(Path)
@@ -104,8 +104,9 @@ def laws_of(heat: Heat) -> Laws:
     """The laws of a plant; plants that differ in values alone share them."""
     lengths = tuple(
         (name, key, len(value) if isinstance(value, tuple) else 0)
-        for name, group in groups_of(heat).items() for key, value in group.items()
-    )  # fmt: skip
+        for name, group in groups_of(heat).items()
+        for key, value in group.items()
+    )
     forms = tuple((effect.name, effect.place) for effect in heat.effects)
     joined = () if heat.coupling is None else (heat.coupling, heat.preload, heat.ambient, heat.rig)
     return _laws((lengths, forms, joined, tuple(heat.rig.growth_positions), heat.rig.length), Holder(heat))
@@ -133,8 +134,9 @@ def _made(heat: Heat) -> Laws:
     ]
     acting = ca.Function("heat_laws", arguments, shown, [*[*given][:4], "rises", "cold", "p"], ["g", "u"])
     named = dict(zip(FOLLOWED, ca.vertsplit(rises), strict=True))
-    factors = ca.Function("heat_factors", [rises, given["cold"], columns],
-                          [ca.vertcat(*_factors(heat, groups, named, given["cold"]))])  # fmt: skip
+    factors = ca.Function(
+        "heat_factors", [rises, given["cold"], columns], [ca.vertcat(*_factors(heat, groups, named, given["cold"]))]
+    )
     sensing, lagging, bodies = _sensing(heat, groups, columns)
     return Laws(names, acting, factors, sensing, lagging, bodies, bool(ca.depends_on(shown[1], rises)))
 
@@ -177,9 +179,13 @@ def _conductances(heat: Heat, groups: Mapping[str, Mapping[str, Expression]], ru
 
 
 def _inputs(
-    heat: Heat, groups: Mapping[str, Mapping[str, Expression]], run: Operation, air: Expression,
-    rises: Mapping[str, Expression], cold: Expression,
-) -> dict[str, Expression]:  # fmt: skip
+    heat: Heat,
+    groups: Mapping[str, Mapping[str, Expression]],
+    run: Operation,
+    air: Expression,
+    rises: Mapping[str, Expression],
+    cold: Expression,
+) -> dict[str, Expression]:
     load, oil, bearing_oil = _factors(heat, groups, rises, cold)
     found: dict[str, Expression] = {AMBIENT: air, FRONT: ca.SX(0), REAR: ca.SX(0)}
     for effect in heat.effects:
@@ -200,9 +206,11 @@ def _inputs(
 
 
 def _factors(
-    heat: Heat, groups: Mapping[str, Mapping[str, Expression]], rises: Mapping[str, Expression],
+    heat: Heat,
+    groups: Mapping[str, Mapping[str, Expression]],
+    rises: Mapping[str, Expression],
     cold: Expression,
-) -> tuple[Expression, Expression, Expression]:  # fmt: skip
+) -> tuple[Expression, Expression, Expression]:
     """On the nut's load torque, on its viscous torque, on that of the bearings."""
     load, oil, bearing_oil = ca.SX(1), ca.SX(1), ca.SX(1)
     joined = heat.coupling
@@ -237,6 +245,7 @@ def _sensing(
     bodies = {e.label: e.attached(groups[e.label]) for e in heat.effects}
     held = {label: body for label, body in bodies.items() if body is not None}
     shown = [ca.vertcat(ca.SX.zeros(0, 1), *of) for of in (frame, lags, [v for body in held.values() for v in body])]
-    function = ca.Function("heat_sensing", [time, columns], [ca.densify(one) for one in shown],
-                           ["time", "p"], ["frame", "lags", "bodies"])  # fmt: skip
+    function = ca.Function(
+        "heat_sensing", [time, columns], [ca.densify(one) for one in shown], ["time", "p"], ["frame", "lags", "bodies"]
+    )
     return function, lagging, tuple(held)

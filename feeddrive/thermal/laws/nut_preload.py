@@ -59,9 +59,13 @@ def preload_change(
     Warns:
         ValidityWarning: the whole preload is lost; the balls are loose then.
     """
-    for value, unit, where in ((preload, "N", "preload"), (stiffness, "N/m", "stiffness"),
-                               (group_distance, "m", "group_distance"), (pitch_diameter, "m", "pitch_diameter"),
-                               (contact_angle, "rad", "contact_angle")):  # fmt: skip
+    for value, unit, where in (
+        (preload, "N", "preload"),
+        (stiffness, "N/m", "stiffness"),
+        (group_distance, "m", "group_distance"),
+        (pitch_diameter, "m", "pitch_diameter"),
+        (contact_angle, "rad", "contact_angle"),
+    ):
         refuse_unless_positive(value, unit, where)
     if contact_angle >= math.pi / 2:
         what = f"{format_quantity(contact_angle, 'rad')} is no angle from the radial direction"
@@ -70,7 +74,8 @@ def preload_change(
     radial = stiffness * pitch_diameter / 2 / math.tan(contact_angle)
     change = expansion * difference * (axial - radial)
     if preload + change < 0:
-        told = f"{difference:.3g} K between nut and shaft take {format_quantity(-change, 'N')}"
-        warnings.warn(f"{told} of {format_quantity(preload, 'N')} preload: the nut is loose", ValidityWarning,
-                      stacklevel=2)  # fmt: skip
+        loss = f"{difference:.3g} K between nut and shaft take {format_quantity(-change, 'N')}"
+        warnings.warn(
+            f"{loss} of {format_quantity(preload, 'N')} preload: the nut is loose", ValidityWarning, stacklevel=2
+        )
     return change

@@ -20,7 +20,7 @@ import numpy as np
 
 from feeddrive.thermal.full.full_model import END, FRONT, NUT, REAR, SHAFT, growth_name
 from feeddrive.thermal.full.occupancy import covered_share, overlap
-from feeddrive.thermal.reduced.model import AMBIENT, COOLANT, Path
+from feeddrive.thermal.reduced.parametric_model import AMBIENT, COOLANT, Path
 from feeddrive.thermal.reduced.system import HeatSystem
 from feeddrive.thermal.rig import Body, Rig, Travel, refuse_unless
 from feeddrive.typing import FloatArray
@@ -83,9 +83,13 @@ class Network:
         none = np.zeros(len(names))
         heats = np.column_stack([self._nut_heat(), readings[FRONT], readings[REAR], *own, air, none])
         return HeatSystem(
-            np.array([lump.capacity for lump in self.lumps]), K, heats, np.vstack(list(readings.values())),
-            (NUT, FRONT, REAR, *bodies, AMBIENT, COOLANT), tuple(readings),
-        )  # fmt: skip
+            np.array([lump.capacity for lump in self.lumps]),
+            K,
+            heats,
+            np.vstack(list(readings.values())),
+            (NUT, FRONT, REAR, *bodies, AMBIENT, COOLANT),
+            tuple(readings),
+        )
 
     def _nut_heat(self) -> FloatArray:
         """The nut's friction heat: its share on the nut, the rest on the segments as long as they are covered."""
@@ -112,9 +116,7 @@ class Network:
         return {NUT: single[0], **ends, SHAFT: swept, **grown, END: end, **bodies}
 
 
-def network(
-    rig: Rig, conductances: Mapping[Path, float], segments: int = 10, bodies: tuple[Body, ...] = ()
-) -> Network:  # fmt: skip
+def network(rig: Rig, conductances: Mapping[Path, float], segments: int = 10, bodies: tuple[Body, ...] = ()) -> Network:
     """Lump a rig at one operating point.
 
     Args:

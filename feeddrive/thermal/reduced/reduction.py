@@ -19,7 +19,7 @@ import numpy as np
 
 from feeddrive.thermal.reduced.balancing import balance, truncated
 from feeddrive.thermal.reduced.krylov import moments, orthonormal
-from feeddrive.thermal.reduced.model import AMBIENT, COOLANT, HeatModel, Path
+from feeddrive.thermal.reduced.parametric_model import AMBIENT, COOLANT, HeatModel, Path
 from feeddrive.thermal.reduced.system import HeatSystem
 from feeddrive.typing import FloatArray
 
@@ -58,9 +58,11 @@ class Sizes:
 
 
 def reduce_model(
-    models: Iterable[HeatModel], limits: Mapping[Path, tuple[float, float]], order: int = DEFAULT_ORDER,
+    models: Iterable[HeatModel],
+    limits: Mapping[Path, tuple[float, float]],
+    order: int = DEFAULT_ORDER,
     sizes: Sizes | None = None,
-) -> tuple[HeatModel, ...]:  # fmt: skip
+) -> tuple[HeatModel, ...]:
     """Reduce full models of one rig at one or several travels on one common basis.
 
     Args:
@@ -78,9 +80,11 @@ def reduce_model(
 
 
 def common_basis(
-    models: Iterable[HeatModel], limits: Mapping[Path, tuple[float, float]], order: int = DEFAULT_ORDER,
+    models: Iterable[HeatModel],
+    limits: Mapping[Path, tuple[float, float]],
+    order: int = DEFAULT_ORDER,
     sizes: Sizes | None = None,
-) -> FloatArray:  # fmt: skip
+) -> FloatArray:
     """The basis V of `reduce_model`, (n, order), VᵀCV = 1; arguments as there."""
     full, sizes = tuple(models), sizes or Sizes()
     inputs, outputs = sizes.of_inputs(full[0].input_names), sizes.of_outputs(full[0].readings)
@@ -116,8 +120,13 @@ def compressed(system: HeatSystem, sizes: Sizes | None = None) -> HeatSystem:
     """A full system at one operating point on the basis of its moments: one-sided, stable and passive."""
     basis = compressed_basis(system, sizes)
     small = basis.T @ (system.conductance @ basis)
-    return replace(system, capacity=np.ones(basis.shape[1]), conductance=(small + small.T) / 2,
-                   gains=basis.T @ system.gains, rows=system.rows @ basis)  # fmt: skip
+    return replace(
+        system,
+        capacity=np.ones(basis.shape[1]),
+        conductance=(small + small.T) / 2,
+        gains=basis.T @ system.gains,
+        rows=system.rows @ basis,
+    )
 
 
 def reduced_system(system: HeatSystem, order: int, sizes: Sizes | None = None) -> HeatSystem:

@@ -15,7 +15,7 @@ import scipy.sparse as sparse
 import scipy.sparse.linalg
 
 from feeddrive.errors import InputError
-from feeddrive.thermal.reduced.propagators import held_states
+from feeddrive.thermal.reduced.heat_propagators import held_states
 from feeddrive.thermal.reduced.stepping import Stepper, stepper_of
 from feeddrive.typing import Expression, FloatArray
 
@@ -121,8 +121,8 @@ class HeatSystem:
             start: states before the first step, (n,); None for zero.
         """
         if np.ndim(inputs) != 2 or inputs.shape[1] != len(self.input_names):
-            told = f"inputs of shape {np.shape(inputs)}"
-            raise InputError(told, "inputs", f"give one column each of {', '.join(self.input_names)}")
+            what = f"inputs of shape {np.shape(inputs)}"
+            raise InputError(what, "inputs", f"give one column each of {', '.join(self.input_names)}")
         advance = self.stepper(step)
         state = np.zeros(self.order) if start is None else start
         states = np.empty((len(inputs), self.order))

@@ -65,8 +65,8 @@ def constant_duty(speed: float, duration: float, ambient: float) -> Duty:
         raise InputError(f"{format_quantity(speed, 'rad/s')} heats nothing", "--speed", mend)
     rows = max(math.ceil(duration / _ROW), _LEAST_ROWS)
     if rows > LONGEST:
-        told = f"{format_quantity(duration, 's')} is too long"
-        raise InputError(told, "--duration", f"write at most {format_quantity(LONGEST * _ROW, 's')}")
+        what = f"{format_quantity(duration, 's')} is too long"
+        raise InputError(what, "--duration", f"write at most {format_quantity(LONGEST * _ROW, 's')}")
     return Duty(duration / rows, np.full(rows, float(speed)), np.full(rows, float(ambient)))
 
 

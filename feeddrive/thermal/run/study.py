@@ -19,13 +19,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from feeddrive.thermal.full.full_model import NUT
-from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.laws.laws import FOLLOWED
-from feeddrive.thermal.reduced.model import HeatModel, Path
+from feeddrive.thermal.machine_heat import Heat
+from feeddrive.thermal.reduced.parametric_model import HeatModel, Path
 from feeddrive.thermal.reduced.reduction import DEFAULT_ORDER, compressed, reduce_model
 from feeddrive.thermal.reduced.system import HeatSystem
 from feeddrive.thermal.run.duty import Duty
-from feeddrive.thermal.run.ledger import EnergyBalance, balance_of, with_ledger
+from feeddrive.thermal.run.energy_balance import EnergyBalance, balance_of, with_ledger
 from feeddrive.thermal.run.warm_up import HEATED, Rows, declared_rows, readings, run
 from feeddrive.typing import FloatArray
 
@@ -155,8 +155,9 @@ class _Modes:
 def _modes(system: HeatSystem, heats: Mapping[str, float]) -> _Modes:
     """Modes of a dense symmetric system with every C one."""
     rates, vectors = np.linalg.eigh(system.conductance)
-    given = np.array([heats.get(name, 0.0) if name not in ("ambient", "coolant") else 0.0
-                      for name in system.input_names])  # fmt: skip
+    given = np.array(
+        [heats.get(name, 0.0) if name not in ("ambient", "coolant") else 0.0 for name in system.input_names]
+    )
     driven = vectors.T @ (system.gains @ given)
     rates = np.maximum(rates, 1e-12)
     return _Modes(rates, dict(zip(system.output_names, (system.rows @ vectors) * driven / rates, strict=True)))
@@ -185,7 +186,7 @@ def _warm_ups(modes: _Modes, series: Mapping[str, FloatArray], duty: Duty, withi
 
 
 def _approach(modes: _Modes, name: str, within: float) -> WarmUp:
-    """Of a constant duty, exact by the modes on a fine grid of time."""
+    """Warm-up of a constant duty, exact by the modes on a fine grid of time."""
     final = float(np.sum(modes.parts[name]))
     times = np.linspace(0.0, _LASTING / float(modes.rates[0]), 40_001)
     return _settling(times, final - modes.rest(name, times), final, within)

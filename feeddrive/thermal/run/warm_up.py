@@ -3,7 +3,7 @@
 The full model is stepped implicitly, a reduced one exactly row by row; 6 h in rows of 30 s take milliseconds. Rows
 whose conductances agree to 0.2 % share one propagator, at the mean of the group (`grouped`). A heat that follows a
 temperature (preload growing, oil thinning) is taken at the middle of its row, extrapolated from the two rows before.
-What acts is said by `laws` alone.
+What acts is stated by `laws` alone.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ from scipy.signal import lfilter
 from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.thermal.bound_function import BoundFunction
 from feeddrive.thermal.full.full_model import FRONT, NUT, REAR
-from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.laws.laws import FOLLOWED, INPUTS, PATHS, Laws, growth_places, laws_of, values_of
-from feeddrive.thermal.reduced.model import HeatModel, Path
-from feeddrive.thermal.reduced.propagators import propagator
+from feeddrive.thermal.machine_heat import Heat
+from feeddrive.thermal.reduced.heat_propagators import propagator
+from feeddrive.thermal.reduced.parametric_model import HeatModel, Path
 from feeddrive.thermal.reduced.stepping import Stepper
 from feeddrive.thermal.reduced.system import HeatSystem
 from feeddrive.thermal.sensors import CHANNELS
@@ -150,9 +150,13 @@ def grouped(table: FloatArray) -> tuple[FloatArray, IntegerArray]:
 
 
 def simulate(
-    heat: Heat, model: HeatModel, step: float, speeds: FloatArray, ambient: FloatArray,
+    heat: Heat,
+    model: HeatModel,
+    step: float,
+    speeds: FloatArray,
+    ambient: FloatArray,
     rows: Rows | None = None,
-) -> dict[str, FloatArray]:  # fmt: skip
+) -> dict[str, FloatArray]:
     """Temperatures and growth of a machine from the speed of its screw and the air around it.
 
     Args:
@@ -183,9 +187,9 @@ def declared_rows(heat: Heat, step: float, speeds: FloatArray, ambient: FloatArr
         raise InputError(f"{len(speeds)} speeds and {len(ambient)} ambient temperatures", "", "give one of each a row")
     fastest = float(np.max(np.abs(speeds)))
     if fastest > heat.highest_speed * (1 + 1e-9):
-        told = f"{format_quantity(fastest, 'rad/s')} is above the highest speed declared"
+        what = f"{format_quantity(fastest, 'rad/s')} is above the highest speed declared"
         shown = format_quantity(heat.highest_speed, "rad/s")
-        warnings.warn(f"{told}, {shown}: films and friction are extrapolated", ValidityWarning, stacklevel=2)
+        warnings.warn(f"{what}, {shown}: films and friction are extrapolated", ValidityWarning, stacklevel=2)
     laws, values, cold = laws_of(heat), values_of(heat), float(ambient[0])
     g, u = laws.acting(*row_arguments(step, speeds, ambient), cold, values)
     conductances = dict(zip(PATHS, np.asarray(ca.DM(g).full()), strict=True))

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from feeddrive.errors import InputError, printable
 from feeddrive.plant.file.entries import nearest
-from feeddrive.tuning.drive_forms import heidenhain, linuxcnc, sinamics, twincat
+from feeddrive.tuning.drive_forms import ax5000, heidenhain, linuxcnc, sinamics
 from feeddrive.tuning.drive_forms.parameter import DriveForm, Facts, Line, LoopSettings, Parameter
 from feeddrive.tuning.filter_choice import FilterChoice, FilterLimits
 
@@ -31,7 +31,7 @@ class Writer:
     settings: Callable[[dict[str, float], Facts], LoopSettings]
 
 
-_MODULES = (sinamics, twincat, heidenhain, linuxcnc)
+_MODULES = (sinamics, ax5000, heidenhain, linuxcnc)
 WRITERS: dict[str, Writer] = {
     one.FORM.name: Writer(one.FORM, one.LIMITS, one.lines, one.known, one.settings) for one in _MODULES
 }
@@ -76,10 +76,10 @@ def drive_text(form: DriveForm, lines: Sequence[Line], remarks: Sequence[str]) -
 
 def _written(form: DriveForm, line: Line) -> str:
     one = line.parameter
-    said = ", ".join(part for part in (one.unit, one.meaning) if part)
+    comment = ", ".join(part for part in (one.unit, one.meaning) if part)
     if form.name == "linuxcnc":
-        return f"setp {one.name} {line.text}    # {said}"
-    return f"{one.name} = {line.text}    # {said}"
+        return f"setp {one.name} {line.text}    # {comment}"
+    return f"{one.name} = {line.text}    # {comment}"
 
 
 def read_drive_file(path: Path, name: str, facts: Facts) -> LoopSettings:

@@ -24,13 +24,16 @@ from feeddrive.tuning.filter_choice import FilterLimits
 _SPEED = "Technical Manual TNC 426, TNC 430, December 2001, p. 6-135"
 _POSITION = "Technical Manual iTNC 530 HSCI p. 834"
 FORM = DriveForm(
-    "heidenhain", "HEIDENHAIN TNC 426, TNC 430, iTNC 530", "machine parameters; .0 is axis 1, write that of the axis",
+    "heidenhain",
+    "HEIDENHAIN TNC 426, TNC 430, iTNC 530",
+    "machine parameters; .0 is axis 1, write that of the axis",
     (_SPEED, _POSITION, "per revolution: Technical Manual MANUALplus 620 p. 856"),
-)  # fmt: skip
+)
 LIMITS = FilterLimits(most=0, notch=False, low_pass=False)
 
-_KV = Parameter("MP1810.0", "(m/min)/mm", "kv factor for control with following error", 1 / KV_UNIT, 3, 0.1, 20.0,
-                _POSITION)  # fmt: skip
+_KV = Parameter(
+    "MP1810.0", "(m/min)/mm", "kv factor for control with following error", 1 / KV_UNIT, 3, 0.1, 20.0, _POSITION
+)
 
 
 def _speed_parameters(facts: Facts) -> tuple[Parameter, Parameter]:

@@ -18,9 +18,11 @@ from feeddrive.tuning.filter_choice import FilterChoice, FilterLimits
 
 _PID, _BIQUAD = "manual page pid(9), LinuxCNC 2.9", "manual page biquad(9), LinuxCNC 2.9: 2 > Q > 0.5"
 FORM = DriveForm(
-    "linuxcnc", "LinuxCNC with a drive in torque mode", "HAL; load pid.position, pid.velocity, biquad.torque-k; mm",
+    "linuxcnc",
+    "LinuxCNC with a drive in torque mode",
+    "HAL; load pid.position, pid.velocity, biquad.torque-k; mm",
     (_PID, _BIQUAD),
-)  # fmt: skip
+)
 LIMITS = FilterLimits(most=3, damping=(0.26, 0.99), depth=(math.inf, math.inf))
 _MM = 1e-3
 _LOW_PASS, _NOTCH = 1, 2

@@ -31,9 +31,13 @@ class LoopSettings:
         """The cascade with these settings; its rates, delays, limits and feed-forward stay."""
         made: tuple[Filter, ...] = tuple(choice.filter for choice in self.filters)
         return replace(
-            cascade, velocity_gain=self.velocity_gain, reset_time=self.reset_time, tracking_time=self.reset_time,
-            position_gain=self.position_gain, torque_filters=made,
-        )  # fmt: skip
+            cascade,
+            velocity_gain=self.velocity_gain,
+            reset_time=self.reset_time,
+            tracking_time=self.reset_time,
+            position_gain=self.position_gain,
+            torque_filters=made,
+        )
 
 
 @dataclass(frozen=True)

@@ -22,9 +22,11 @@ _FUNCTIONS = "SINAMICS S120 Function Manual FH1 07/2007 p. 81, 06/2012 p. 137"
 _SERVO_GAIN = "SINUMERIK 808D Parameter Manual 08/2015 p. 234, 6FC5397-8EP40-0BA1"
 
 FORM = DriveForm(
-    "sinamics", "SINAMICS S120 with SINUMERIK", "drive parameters p... of the active data set; machine data MD...",
+    "sinamics",
+    "SINAMICS S120 with SINUMERIK",
+    "drive parameters p... of the active data set; machine data MD...",
     (_LIST, _NUMBERS, _FUNCTIONS, _SERVO_GAIN),
-)  # fmt: skip
+)
 LIMITS = FilterLimits(most=4, frequency=(0.5, 16000.0), damping=(0.001, 10.0), depth=(1.0, 60.0))
 
 _GAIN = Parameter("p1460[0]", "N m s/rad", "speed controller P gain", 1.0, 4, 0.0, 5e8, _LIST)
@@ -37,10 +39,13 @@ _LOW_PASS, _GENERAL = 1, 2
 def _filter_parameters(number: int) -> tuple[Parameter, ...]:
     first = 1652 + 5 * number
     what = f"current set-point filter {number}"
-    rows = (("", "type: 1 low-pass PT2, 2 general second order", 0, 1.0, 2.0),
-            ("Hz", "denominator natural frequency", 1, 0.5, 16000.0), ("", "denominator damping", 3, 0.001, 10.0),
-            ("Hz", "numerator natural frequency", 1, 0.5, 16000.0),
-            ("", "numerator damping", 3, 0.0, 10.0))  # fmt: skip
+    rows = (
+        ("", "type: 1 low-pass PT2, 2 general second order", 0, 1.0, 2.0),
+        ("Hz", "denominator natural frequency", 1, 0.5, 16000.0),
+        ("", "denominator damping", 3, 0.001, 10.0),
+        ("Hz", "numerator natural frequency", 1, 0.5, 16000.0),
+        ("", "numerator damping", 3, 0.0, 10.0),
+    )
     return tuple(
         Parameter(f"p{first + i}[0]", unit, f"{what}, {text}", 1.0, digits, low, high, _NUMBERS)
         for i, (unit, text, digits, low, high) in enumerate(rows)
@@ -55,8 +60,12 @@ def lines(loop: LoopSettings, facts: Facts) -> list[Line]:
     """
     del facts
     reset = loop.reset_time if math.isfinite(loop.reset_time) else 0.0
-    found = [_GAIN.line(loop.velocity_gain, -1), _RESET.line(reset, 1), _KV.line(loop.position_gain, -1),
-             _ACTIVE.line(2 ** len(loop.filters) - 1)]  # fmt: skip
+    found = [
+        _GAIN.line(loop.velocity_gain, -1),
+        _RESET.line(reset, 1),
+        _KV.line(loop.position_gain, -1),
+        _ACTIVE.line(2 ** len(loop.filters) - 1),
+    ]
     for number, choice in enumerate(loop.filters, 1):
         low_pass = choice.kind == "PT2"
         numerator = 0.7 if low_pass else choice.damping * 10 ** (-choice.depth / 20)

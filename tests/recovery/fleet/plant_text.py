@@ -15,6 +15,13 @@ def plant_text(machine: Machine, name: str) -> str:
     def number(value: float, unit: str, kind: str) -> str:
         return f'{{ value = "{value:.10g} {unit}", tolerance = "{100 * TOLERANCES[kind]:g} %" }}'
 
+    def drag(name: str, port: str, of: str, coulomb: float, smoothing: str, per: str = "", viscous: float = 0.0) -> str:
+        lines = ["[[effect]]", f'name = "{name}"', f'port = "{port}"', f"coulomb = {number(coulomb, of, 'friction')}"]
+        lines += [smoothing, *([f"viscous = {number(viscous, per, 'friction')}"] if per else [])]
+        return "\n".join(lines) + "\n"
+
+    velocity = f'smoothing_velocity = "{a.guide_velocity:.10g} m/s"'
+    speed = f'smoothing_speed = "{a.drag_speed:.10g} rad/s"'
     gear = f"ratio = {a.ratio:g}\n" if a.ratio != 1.0 else ""
     text = f"""format = "feeddrive-plant/1"
 name = "{name}"
@@ -39,26 +46,9 @@ axial_damping = {number(a.axial_damping, "N s/m", "damping")}
 mass = {number(a.table_mass, "kg", "mass")}
 stroke = ["{1e3 * a.travel[0]:g} mm", "{1e3 * a.travel[1]:g} mm"]
 {_vertical(machine)}
-[[effect]]
-name = "guide_friction"
-port = "table"
-coulomb = {number(a.guide_coulomb, "N", "friction")}
-smoothing_velocity = "{a.guide_velocity:.10g} m/s"
-viscous = {number(a.guide_viscous, "N s/m", "friction")}
-
-[[effect]]
-name = "nut_drag"
-port = "screw"
-coulomb = {number(a.nut_coulomb, "N m", "friction")}
-smoothing_speed = "{a.drag_speed:.10g} rad/s"
-viscous = {number(a.nut_power, "N m/(rad/s)^(2/3)", "friction")}
-
-[[effect]]
-name = "bearing_drag"
-port = "screw"
-coulomb = {number(a.bearing_coulomb, "N m", "friction")}
-smoothing_speed = "{a.drag_speed:.10g} rad/s"
-
+{drag("guide_friction", "table", "N", a.guide_coulomb, velocity, "N s/m", a.guide_viscous)}
+{drag("nut_drag", "screw", "N m", a.nut_coulomb, speed, "N m/(rad/s)^(2/3)", a.nut_power)}
+{drag("bearing_drag", "screw", "N m", a.bearing_coulomb, speed)}
 [[sensor]]
 channel = "motor_torque"
 kind = "current"

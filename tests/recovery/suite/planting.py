@@ -10,7 +10,7 @@ from feeddrive.effects.base import Port
 from feeddrive.effects.catalogue import EFFECTS, THERMAL_EFFECTS
 from feeddrive.errors import InputError
 from feeddrive.files import plants_folder
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
 from tests.generator.axis import AXES
 from tests.generator.effects import Effect

@@ -12,7 +12,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy.signal import lfilter
 
-from feeddrive.diagnosis.heat.evidence import HeatEvidence
+from feeddrive.diagnosis.heat.heat_evidence import HeatEvidence
 from feeddrive.diagnosis.likelihood.evidence import AxisEvidence, Evidence
 from tests.generator.axis import AxisParameters
 

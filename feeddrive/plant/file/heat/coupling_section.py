@@ -24,8 +24,8 @@ from typing import Any
 from feeddrive.errors import InputError
 from feeddrive.parts.lubricant import Lubricant
 from feeddrive.plant.file.entries import Table
-from feeddrive.thermal.coupling import Coupling
 from feeddrive.thermal.laws.nut_preload import Spacer
+from feeddrive.thermal.thermal_coupling import Coupling
 
 _KEYS = (
     "nut_at_zero", "nut_stiffness", "group_distance", "contact_angle", "spacer", "rear_share", "motor_constant",

@@ -58,12 +58,12 @@ from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 from feeddrive.plant.file.entries import Table, declares_heat_alone
 from feeddrive.plant.file.heat.sensor_sections import read_heat_sensors
-from feeddrive.thermal.coupling import Coupling
-from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.laws.declared_friction import bearings_of, nut_of
 from feeddrive.thermal.laws.films import Films
 from feeddrive.thermal.laws.friction import Friction
+from feeddrive.thermal.machine_heat import Heat
 from feeddrive.thermal.rig import Body, Nut, Rig, Seat, Steel, Travel, refuse_unless
+from feeddrive.thermal.thermal_coupling import Coupling
 
 SECTION = "thermal"
 _LENGTHS = ("shaft_radius", "shaft_length", "nut_outer_radius", "nut_length")
@@ -113,7 +113,7 @@ def read_heat(top: Table, name: str, effects: Sequence[Effect], joint: Coupling 
             origins=top.origins.found,
         )
     except InputError as error:
-        # What the rig refuses is told with the file and the section in front.
+        # What the rig refuses is reported with the file and the section in front.
         inside = error.where.startswith(table.where)
         raise error if inside else InputError(error.what, f"{table.where}, {error.where}", error.mend) from None
 

@@ -25,8 +25,8 @@ def read_heat_sensors(top: Table) -> tuple[HeatSensor, ...]:
         sensor = _sensor(table)
         for other in sensors:
             if sensor.channel == other.channel or sensor.output == other.output:
-                told = f"{sensor.channel} and {other.channel} are the same channel or the same place"
-                raise InputError(told, table.where, "keep one of them")
+                what = f"{sensor.channel} and {other.channel} are the same channel or the same place"
+                raise InputError(what, table.where, "keep one of them")
         sensors.append(sensor)
     return tuple(sensors)
 

@@ -19,9 +19,13 @@ KINDS = ("screw", "bearing", "guide", "coupling", "motor")
 """Kinds of parts, as `feeddrive parts` takes them."""
 
 SECTIONS = {
-    "ball_screw": "screw", "nut": "screw", "bearing": "bearing", "guide": "guide", "coupling": "coupling",
+    "ball_screw": "screw",
+    "nut": "screw",
+    "bearing": "bearing",
+    "guide": "guide",
+    "coupling": "coupling",
     "motor": "motor",
-}  # fmt: skip
+}
 """Section of a plant file to the kind of part that gives it values."""
 
 

@@ -18,7 +18,7 @@ from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 from feeddrive.recording.channels import channel_unit
 from feeddrive.thermal.full.full_model import growth_name
-from feeddrive.thermal.heat import Heat
+from feeddrive.thermal.machine_heat import Heat
 from feeddrive.thermal.run.warm_up import channel_of
 from feeddrive.typing import BoolArray, FloatArray
 
@@ -28,18 +28,18 @@ HEAT_BLOCK = 900.0
 """Length of a block of cross-validation [s]: some minutes' time constants of sensors and skin, short against a run."""
 
 FEWEST_ROWS = 60
-"""Rows from which an effect can be told from noise at all."""
+"""Rows from which an effect can be distinguished from noise at all."""
 
 GAIN_ERROR = 1e-3
 """Standard deviation of what sensor and model miss in proportion to a rise: two careful models of one rig differ by
-0.09 and 0.14 %, thermometers by as much. An effect that would only scale a channel by so little is not told from it."""
+0.09 and 0.14 %, thermometers by as much. An effect that would only scale a channel by so little is lost in it."""
 
 MODEL_ERROR = {"degC": 4e-3, "m": 1e-8}
 """What two careful models of one rig differ by beside a gain [K, m]: grids, rows, laws between their nodes. It is added
 to the sensor noise as its square, and an effect must explain more than it."""
 
 MODEL_SHARE = 4e-4
-"""The same as a share of the rms of a rise, where it rises high."""
+"""What two such models differ by, as a share of the rms of a rise, where it rises high."""
 
 KINK = 4.5
 """Fourth differences beyond this multiple of their usual size are no noise; of white noise none of 10^5 is."""
@@ -167,13 +167,13 @@ def same_speeds(speed: FloatArray) -> FloatArray:
 
 
 def within_range(plant: Plant, evidence: Sequence[HeatEvidence]) -> tuple[Plant, tuple[str, ...]]:
-    """The plant with its highest speed raised to the recordings', and what is to be said of it."""
+    """The plant with its highest speed raised to the recordings', and a remark on it."""
     fastest, declared = max(float(one.speed.max()) for one in evidence), plant.heat.highest_speed
     if fastest <= declared * (1 + 1e-9):
         return plant, ()
-    told = f"the screw turns at {fastest * 30 / np.pi:.0f} rev/min, declared are {declared * 30 / np.pi:.0f}"
+    what = f"the screw turns at {fastest * 30 / np.pi:.0f} rev/min, declared are {declared * 30 / np.pi:.0f}"
     return replace(plant, network=replace(plant.heat, highest_speed=fastest)), (
-        f"{told} at most: films and friction are extrapolated",
+        f"{what} at most: films and friction are extrapolated",
     )
 
 

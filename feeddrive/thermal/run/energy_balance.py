@@ -7,7 +7,7 @@ definition: the heat that is stored is summed over the capacities.
 | symbol | meaning | unit |
 |---|---|---|
 | J | heat given to the surroundings since the start | J |
-| K, a, θ, θ_i | as in `feeddrive.thermal.reduced.model` | |
+| K, a, θ, θ_i | as in `feeddrive.thermal.reduced.parametric_model` | |
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy.sparse as sparse
 
-from feeddrive.thermal.reduced.model import AMBIENT, COOLANT, HeatModel, Way
+from feeddrive.thermal.reduced.parametric_model import AMBIENT, COOLANT, HeatModel, Way
 from feeddrive.typing import Expression, FloatArray
 
 CLOSES = 1e-9

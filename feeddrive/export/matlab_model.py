@@ -19,9 +19,9 @@ import numpy as np
 from scipy.io import savemat
 
 from feeddrive import __version__
+from feeddrive.export.equation_quantities import Quantity, parameters
 from feeddrive.export.linear_model import LinearModel
 from feeddrive.export.notes import included, left_out, linear_notes
-from feeddrive.export.quantities import Quantity, parameters
 from feeddrive.typing import FloatArray
 
 

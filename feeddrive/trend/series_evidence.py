@@ -188,10 +188,13 @@ class Series:
         left = about - (basis @ (basis.transpose(0, 2, 1) @ about[:, :, None]))[:, :, 0]
         share = 1 - np.sum(left**2, axis=1) / total
         log = (
-            self.line.noise.log_prior - 0.5 * self.line.noise.log_determinant - 0.5 * np.log(size) - 0.5 * (count - 1)
-            * np.log(total) - 0.5 * (count - 1) * np.log(np.maximum(1 - count / (1 + count) * share, LEAST_LEFT))
+            self.line.noise.log_prior
+            - 0.5 * self.line.noise.log_determinant
+            - 0.5 * np.log(size)
+            - 0.5 * (count - 1) * np.log(total)
+            - 0.5 * (count - 1) * np.log(np.maximum(1 - count / (1 + count) * share, LEAST_LEFT))
             - 0.5 * (np.sum(kept, axis=1) - 1) * np.log(1 + count)
-        )  # fmt: skip
+        )
         return Parts(log, total, basis, left)
 
     def estimate(self, atoms: Sequence[Atom]) -> tuple[FloatArray, FloatArray, float]:

@@ -14,13 +14,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from feeddrive.compensation.forms.control import Control, Reversal, millimetres, plain_line
+from feeddrive.compensation.forms.control import Control, Reversal, comments, millimetres
 from feeddrive.compensation.table import CompensationTable
 
 
 def _write(table: CompensationTable, head: Sequence[str], axis: str) -> str:
     rows = np.column_stack([table.positions, table.reverse, table.forward])
-    lines = [*(f"# {plain_line(one)}" for one in head), f"AXISPOS,BACKLASH,{axis}"]
+    lines = [*comments(head), f"AXISPOS,BACKLASH,{axis}"]
     lines += [",".join(millimetres(float(one), 4) for one in row) for row in rows]
     return "\n".join(lines) + "\n"
 

@@ -8,16 +8,16 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from feeddrive.effects.heat.base import ThermalEffect
-from feeddrive.thermal.coupling import Coupling
+from feeddrive.effects.heat.thermal_effect import ThermalEffect
 from feeddrive.thermal.full.full_model import FRONT, NUT, REAR, full_model
 from feeddrive.thermal.full.grid import Cells
 from feeddrive.thermal.laws.contact_conductance import conductance_at_preload
 from feeddrive.thermal.laws.films import Films
 from feeddrive.thermal.laws.friction import LOAD_EXPONENT, Friction
-from feeddrive.thermal.reduced.model import HeatModel, Path
+from feeddrive.thermal.reduced.parametric_model import HeatModel, Path
 from feeddrive.thermal.rig import Body, Rig, Travel, refuse_negative, refuse_unless_positive
 from feeddrive.thermal.sensors import HeatSensor
+from feeddrive.thermal.thermal_coupling import Coupling
 from feeddrive.typing import FloatArray
 
 
@@ -69,7 +69,7 @@ class Heat:
         refuse_unless_positive(self.highest_speed, "rad/s", "highest_speed")
 
     def joined(self, coupling: Coupling) -> Heat:
-        """The same network heated by the friction of the motion in place of its own."""
+        """This network heated by the friction of the motion in place of its own."""
         nut, *ends = (
             None if one is None else replace(one, heat_share=0.0) for one in (self.nut, self.front, self.rear)
         )

@@ -125,10 +125,10 @@ def choose(trace: Trace, wishes: Wishes, where: str) -> Choice:
         taken[channel] = first[0]
     held: list[str] = []
     for channel in set(taken) & _SAMPLED:
-        signal, told = taken[channel]
-        plain, said = at_updates(signal)
-        taken[channel] = plain, told
-        held += [said] if said else []
+        signal, chosen = taken[channel]
+        plain, note = at_updates(signal)
+        taken[channel] = plain, chosen
+        held += [note] if note else []
     findings, taken = _inferred(taken, signals, set(named), wishes.part, where)
     picks: list[Pick] = []
     for channel, (signal, found) in taken.items():
@@ -141,7 +141,7 @@ def choose(trace: Trace, wishes: Wishes, where: str) -> Choice:
     if wishes.sample_time is None and any(not pick.signal.timed for pick in picks):
         questions.insert(0, "the file holds no time: say the distance of its samples by --sample-time '1 ms'")
         return Choice(axis, tuple(picks), tuple(questions), findings, questions[0])
-    findings = (*(Finding("held", said, 1.0, "", 0.0) for said in sorted(held)), *findings)
+    findings = (*(Finding("held", note, 1.0, "", 0.0) for note in sorted(held)), *findings)
     return Choice(axis, tuple(picks), tuple(questions), findings, _blocking(picks, undecided, questions, signals))
 
 
@@ -157,11 +157,11 @@ def _inferred(
     whole = {signal.name: signal for signal in signals} | {signal.name: signal for signal, _ in taken.values()}
     inside = {name: cut(signal, one) for name, signal in whole.items()}
     findings, found = infer(
-        {channel: (inside[signal.name], told) for channel, (signal, told) in taken.items()},
+        {channel: (inside[signal.name], chosen) for channel, (signal, chosen) in taken.items()},
         [inside[signal.name] for signal in signals],
         fixed,
     )
-    return findings, {channel: (whole[signal.name], told) for channel, (signal, told) in found.items()}
+    return findings, {channel: (whole[signal.name], chosen) for channel, (signal, chosen) in found.items()}
 
 
 def cut(signal: Signal, part: Part) -> Signal:
@@ -171,7 +171,7 @@ def cut(signal: Signal, part: Part) -> Signal:
 
 
 def _axis(trace: Trace, wishes: Wishes, where: str) -> tuple[str, str]:
-    """Return the axis that is read and, where it cannot be told, the question."""
+    """Return the axis that is read and, where it is not known, the question."""
     axes = trace.axes
     if wishes.axis is not None:
         by_name = {axis.upper(): axis for axis in axes}
@@ -195,7 +195,7 @@ def _useful(signal: Signal, axis: str) -> bool:
 
 def _of_rotary(found: Candidate, axis: str) -> bool:
     """A position or set-point of a rotary axis is an angle, and there is no channel for it."""
-    if not is_rotary(axis) or found.told:
+    if not is_rotary(axis) or found.stated:
         return False
     return found.channel in ("table_position", "setpoint", "table_velocity", MOTOR_SIDE)
 
@@ -210,13 +210,13 @@ def _wished(trace: Trace, wishes: Wishes, where: str) -> dict[str, tuple[Signal,
             mend = f'did you mean "{near[0]}"?' if near else "feeddrive read FILE shows their names"
             raise InputError(f'there is no signal "{name}"', where, mend)
         signal = by_name[name]
-        told = unit or known_unit(signal.unit)
-        if told and conversion(told, needed) is None:
-            what = f'"{name}" is in {told}, which is no unit of {channel}'
+        given = unit or known_unit(signal.unit)
+        if given and conversion(given, needed) is None:
+            what = f'"{name}" is in {given}, which is no unit of {channel}'
             raise InputError(what, where, f"give its unit by --channel '{channel}={name} [{needed}]'")
         guess = candidate(signal)
-        unit_of = told or (guess.unit if guess is not None and guess.channel == channel else "")
-        found[channel] = signal, Candidate(channel, unit_of, "as told", -2, bool(told))
+        unit_of = given or (guess.unit if guess is not None and guess.channel == channel else "")
+        found[channel] = signal, Candidate(channel, unit_of, "as told", -2, bool(given))
     return found
 
 
@@ -229,15 +229,15 @@ def _pick(channel: str, signal: Signal, found: Candidate, lead: float | None) ->
             return None, f"\"{signal.name}\" has no unit: say it by --channel 'table_position={signal.name} [mm]'"
         length = conversion(found.unit, "m")
         assert length is not None
-        told = f"{found.reason}, times 2 pi by the lead of {format_quantity(lead, 'm')}"
-        return Pick("motor_angle", signal, found.unit, length.factor * 2.0 * math.pi / lead, 0.0, told), ""
+        reason = f"{found.reason}, times 2 pi by the lead of {format_quantity(lead, 'm')}"
+        return Pick("motor_angle", signal, found.unit, length.factor * 2.0 * math.pi / lead, 0.0, reason), ""
     needed = channel_unit(channel, "")
     if not found.unit:
         usual = {"m": "mm", "rad": "deg", "rad/s": "rev/min", "m/s": "mm/min"}.get(needed, needed)
         return None, f"\"{signal.name}\" has no unit: say it by --channel '{channel}={signal.name} [{usual}]'"
     to_si = conversion(found.unit, needed)
     assert to_si is not None  # candidates are checked against their units
-    how = "" if found.told or found.rank == -2 else f"; {found.unit} assumed, the file does not say"
+    how = "" if found.stated or found.rank == -2 else f"; {found.unit} assumed, the file does not say"
     factor, offset = found.sign * to_si.factor, found.sign * to_si.offset
     return Pick(channel, signal, found.unit, factor, offset, found.reason + how), ""
 

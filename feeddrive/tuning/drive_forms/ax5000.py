@@ -15,12 +15,18 @@ from feeddrive.tuning.filter_choice import FilterChoice, FilterLimits
 
 _PAGES = "infosys.beckhoff.com/content/1033/ax5000_idn_description/"
 FORM = DriveForm(
-    "twincat", "Beckhoff AX5000", "IDNs of the drive; S-0-0100 counts in N m s/rad where bit 15 of P-0-0010 is set",
+    "twincat",
+    "Beckhoff AX5000",
+    "IDNs of the drive; S-0-0100 counts in N m s/rad where bit 15 of P-0-0010 is set",
     (f"{_PAGES}: S-0-0100 1000502539, S-0-0101 1000532747, S-0-0104 1000602379, P-0-0515 1400883851",),
-)  # fmt: skip
+)
 LIMITS = FilterLimits(
-    most=3, notch=False, frequency=(1.0, 3200.0), damping=(0.01, 0.99), whole_hertz=True,
-)  # fmt: skip
+    most=3,
+    notch=False,
+    frequency=(1.0, 3200.0),
+    damping=(0.01, 0.99),
+    whole_hertz=True,
+)
 
 _GAIN = Parameter("S-0-0100", "N m s/rad", "velocity loop proportional gain", 1.0, 3, 0.0, 1e6, _PAGES + "1000502539")
 _RESET = Parameter("S-0-0101", "ms", "velocity loop integral action time", 1e3, 1, 0.0, 6000.0, _PAGES + "1000532747")

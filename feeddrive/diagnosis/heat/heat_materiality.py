@@ -6,8 +6,8 @@ import numpy as np
 
 from feeddrive.effects.base import Effect, listed
 from feeddrive.effects.heat.bearing_heat import reference_torque
-from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.laws.friction import torque_law
+from feeddrive.thermal.machine_heat import Heat
 
 LEAST_HEAT_SHARE = 2e-4
 """A heat over that of the nut at the highest declared speed: a sensor on a flange shows milliwatts, and what shows is
@@ -18,22 +18,22 @@ LEAST_FACTOR, LEAST_CONTACT_FACTOR = 0.01, 0.03
 what thermometers just show."""
 
 LEAST_DRIFT = 0.03
-"""Of the surroundings [K]."""
+"""Least drift of the surroundings [K]."""
 
 LEAST_COEFFICIENT = 3e-4
-"""Of load or viscous torque [1/K]; over ten kelvin 0.3 % of the heat, as much as thermometers show."""
+"""Least slope of load or viscous torque [1/K]; over ten kelvin 0.3 % of the heat, which thermometers just show."""
 
 LEAST_CAPACITY_SHARE, LEAST_FILM_SHARE = 1e-2, 1e-3
 """A mass over the nut's capacity, a conductance over the film's of the nut."""
 
 LEAST_GROWTH = 0.1e-6
-"""Of the frame [m]."""
+"""Least growth of the frame [m]."""
 
 LONGEST_SINK = 3e5
 """Capacity over conductance [s]: a mass that stays cold for days is a coolant."""
 
 LEAST_LAG = 3.0
-"""Of a sensor [s]."""
+"""Least lag of a sensor [s]."""
 
 
 def is_material_heat(effect: Effect, heat: Heat) -> bool:
@@ -72,7 +72,7 @@ def _largest_shape(effect: Effect) -> float:
 
 
 def _bearing_torque(heat: Heat) -> float:
-    """Of the bearing that `bearing_heat` counts by, at the highest speed [N m]."""
+    """Torque of the bearing that `bearing_heat` counts by, at the highest speed [N m]."""
     speed = heat.highest_speed
     return float(reference_torque(speed) if heat.front is None else torque_law(speed, vars(heat.front)))
 

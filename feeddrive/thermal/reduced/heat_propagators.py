@@ -108,12 +108,17 @@ def _integral_slope(rates: FloatArray, h: float) -> FloatArray:
 
 
 def _quotients(
-    rates: FloatArray, h: float, law: Callable[[FloatArray, float], FloatArray],
+    rates: FloatArray,
+    h: float,
+    law: Callable[[FloatArray, float], FloatArray],
     slope: Callable[[FloatArray, float], FloatArray],
-) -> FloatArray:  # fmt: skip
+) -> FloatArray:
     """(f(λ_i) - f(λ_j)) / (λ_i - λ_j), (n, n)."""
     apart = rates[:, None] - rates[None, :]
     near = np.abs(apart) * h < _NEAR
     values = law(rates, h)
-    return np.where(near, slope((rates[:, None] + rates[None, :]) / 2, h),
-                    (values[:, None] - values[None, :]) / np.where(near, 1.0, apart))  # fmt: skip
+    return np.where(
+        near,
+        slope((rates[:, None] + rates[None, :]) / 2, h),
+        (values[:, None] - values[None, :]) / np.where(near, 1.0, apart),
+    )

@@ -55,40 +55,40 @@ class Searched:
 
 
 def search_recordings(
-    problem: Problem, said: Callable[[str], None] = lambda text: None, start: Sequence[Effect] = ()
+    problem: Problem, progress: Callable[[str], None] = lambda text: None, start: Sequence[Effect] = ()
 ) -> Searched:
     """Find the effects that the plant lacks, and the parameters that differ between the recordings.
 
     Args:
         problem: declared plant and recordings; the last one is the machine as it is now.
-        said: told what is going on.
+        progress: called with a line that says what is going on.
         start: effects found earlier; they are asked again with all recordings before others are searched.
     """
     if start:
-        continued = _continued(numbered(problem), start, said)
+        continued = _continued(numbered(problem), start, progress)
         kept = {(effect.name, effect.port, effect.place) for effect in continued.search.fit.effects}
         if _explained(continued) or all((effect.name, effect.port, effect.place) in kept for effect in start):
             return continued
-        return _better(continued, search_recordings(problem, said))
+        return _better(continued, search_recordings(problem, progress))
     if len(problem.evidence) < 2:
-        return Searched(normalised(search(problem, said)), None)
+        return Searched(normalised(search(problem, progress)), None)
     problem = numbered(problem)
     earlier = range(len(problem.evidence) - 1)
-    said("comparing the recordings")
+    progress("comparing the recordings")
     held = find_changes(problem, (), earlier)
-    best = _followed(problem, held if _plausible(held) else _nothing(problem), earlier, said)
+    best = _followed(problem, held if _plausible(held) else _nothing(problem), earlier, progress)
     assert best.changes is not None
     confirmed = _levels_of(problem, best.changes) == (_levels_of(problem, held) if _plausible(held) else set())
     if confirmed or _explained(best):
         return best
     other = _nothing(problem) if _plausible(held) and held.targets else _levels_alone(problem, best.changes, earlier)
-    return _better(best, _followed(problem, other, earlier, said))
+    return _better(best, _followed(problem, other, earlier, progress))
 
 
-def _followed(problem: Problem, held: Changes, earlier: Sequence[int], said: Callable[[str], None]) -> Searched:
+def _followed(problem: Problem, held: Changes, earlier: Sequence[int], progress: Callable[[str], None]) -> Searched:
     """Effects searched while some differences are held; then all differences, and the effects that still pay."""
-    found = normalised(_searched(problem, held, said))
-    said("comparing the recordings with the effects found")
+    found = normalised(_searched(problem, held, progress))
+    progress("comparing the recordings with the effects found")
     changes = find_changes(found.problem, found.fit.effects, earlier)
     if changes.targets:
         changes = _settled(replace(changes, fit=_still_needed(changes.problem, changes.fit)))
@@ -101,14 +101,14 @@ def _settled(changes: Changes) -> Changes:
     return replace(changes, problem=problem, fit=fit(problem, changes.fit.effects))
 
 
-def _continued(problem: Problem, start: Sequence[Effect], said: Callable[[str], None]) -> Searched:
+def _continued(problem: Problem, start: Sequence[Effect], progress: Callable[[str], None]) -> Searched:
     """The effects found earlier, those that still pay; then what else is lacking, and what differs."""
-    said("asking again for the effects found earlier")
+    progress("asking again for the effects found earlier")
     problem = with_predictable(problem, start)
     earlier = range(len(problem.evidence) - 1)
     again = find_changes(problem, fit(problem, start).effects, earlier)
     again = replace(again, fit=_still_needed(problem, again.fit))
-    more = _searched(problem, again, said)
+    more = _searched(problem, again, progress)
     effects = (*without_shifts(again.fit.effects), *more.fit.effects)
     changes = find_changes(more.problem, effects, earlier)
     together = _still_needed(changes.problem, fit(changes.problem, changes.fit.effects))
@@ -156,18 +156,18 @@ def numbered(problem: Problem, more: Sequence[Evidence] = ()) -> Problem:
     return replace(problem, predictor=RecordingPredictor(inner, numbers))
 
 
-def _searched(problem: Problem, held: Changes, said: Callable[[str], None]) -> Search:
+def _searched(problem: Problem, held: Changes, progress: Callable[[str], None]) -> Search:
     """The search on the declared plant with what differs held; its result on the declared plant."""
     if not held.fit.effects:
-        return search(problem, said)
+        return search(problem, progress)
     nuisance = problem.plant.with_effects(*held.fit.effects)
-    found = search(replace(problem, plant=nuisance), said)
+    found = search(replace(problem, plant=nuisance), progress)
     declared = with_new_slopes(replace(found.problem, plant=problem.plant), found.fit.effects)
     return replace(found, problem=declared, fit=fit(declared, found.fit.effects, iterations=0))
 
 
 def _levels_of(problem: Problem, changes: Changes) -> set[tuple[str, str]]:
-    """Of what differs, name and port of what differs without an effect that would have to be found first."""
+    """Names and ports of those differences that need no effect to be found first."""
     known = {(effect.name, effect.port) for effect in levels(problem, ())}
     return {(t.name, t.port) for t in changes.targets if (t.name, t.port) in known}
 

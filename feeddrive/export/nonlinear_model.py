@@ -13,9 +13,9 @@ from dataclasses import dataclass
 import casadi as ca
 
 from feeddrive import __version__
+from feeddrive.export.equation_quantities import Quantity, inputs, outputs, parameters, states
 from feeddrive.export.notes import included, left_out
 from feeddrive.export.point import Point, refuse_outside
-from feeddrive.export.quantities import Quantity, inputs, outputs, parameters, states
 from feeddrive.plant.analysis.linear import steady_motion, timed_ode
 from feeddrive.plant.plant import Plant
 from feeddrive.symbolic_turn import SYMBOLS

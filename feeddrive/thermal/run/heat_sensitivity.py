@@ -6,7 +6,7 @@
 |---|---|
 | p | parameters of `feeddrive.thermal.laws.laws` |
 | g, u | conductances and inputs of a row, with slopes u_p, u_θ, dg/dp that CasADi takes from the laws |
-| Φ_i, Γ_i | slopes of the exact step (`propagators`) with conductance i, or with a body's conductance or capacity |
+| Φ_i, Γ_i | slopes of the exact step (`heat_propagators`) with conductance i, or a body's conductance or capacity |
 
 The states are those of `warm_up.run`, of a reduced model; a group of rows that share a step is at the mean of its
 conductances, and its slopes are those of each row.
@@ -25,10 +25,10 @@ from scipy.signal import lfilter
 from feeddrive.symbolic_turn import SYMBOLS
 from feeddrive.thermal.bound_function import BoundFunction
 from feeddrive.thermal.full.full_model import NUT
-from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.laws.laws import FOLLOWED, INPUTS, PATHS, Laws, growth_places, laws_of, values_of
-from feeddrive.thermal.reduced.model import HeatModel, Path
-from feeddrive.thermal.reduced.propagators import Propagator, propagator
+from feeddrive.thermal.machine_heat import Heat
+from feeddrive.thermal.reduced.heat_propagators import Propagator, propagator
+from feeddrive.thermal.reduced.parametric_model import HeatModel, Path
 from feeddrive.thermal.run.warm_up import channel_of, grouped, lagging, row_arguments
 from feeddrive.typing import FloatArray
 
@@ -94,9 +94,14 @@ class _Step:
 
 
 def _states(
-    laws: Laws, network: _Network, step: float, speeds: FloatArray, ambient: FloatArray, values: FloatArray,
+    laws: Laws,
+    network: _Network,
+    step: float,
+    speeds: FloatArray,
+    ambient: FloatArray,
+    values: FloatArray,
     columns: tuple[int, ...],
-) -> tuple[FloatArray, FloatArray]:  # fmt: skip
+) -> tuple[FloatArray, FloatArray]:
     """C^(1/2) θ at the ends of the rows, (k, n), and the slopes of `readings`, (k, outputs, p)."""
     model, count = network.model, len(speeds)
     given = row_arguments(step, speeds, ambient)
@@ -182,9 +187,11 @@ def _rows(
     count = len(columns)
     # a column of CasADi stands column by column
     return (
-        g, g_slope.reshape(len(g), count, len(PATHS)).swapaxes(1, 2),
-        u, u_slope.reshape(len(u), count, len(INPUTS)).swapaxes(1, 2),
-    )  # fmt: skip
+        g,
+        g_slope.reshape(len(g), count, len(PATHS)).swapaxes(1, 2),
+        u,
+        u_slope.reshape(len(u), count, len(INPUTS)).swapaxes(1, 2),
+    )
 
 
 class _Follower:

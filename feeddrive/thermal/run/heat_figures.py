@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feeddrive.thermal.heat import Heat
-from feeddrive.thermal.reduced.model import HeatModel, Path
+from feeddrive.thermal.machine_heat import Heat
+from feeddrive.thermal.reduced.parametric_model import HeatModel, Path
 
 SHARES = (0.0, 0.25, 0.5, 1.0)
 """Speeds of the table over the highest declared one."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from feeddrive.diagnosis.judging.result import ChannelResult
-from feeddrive.diagnosis.unexplained.result import Above, Dependence, Instead, Unexplained
+from feeddrive.diagnosis.unexplained.unexplained_result import Above, Dependence, Instead, Unexplained
 from feeddrive.units.quantity import format_quantity
 
 WORDS = {
@@ -18,7 +18,7 @@ WORDS = {
 """Variables in a sentence."""
 
 CHANGE = 0.01
-"""Share of the rms by which an error must change to be told."""
+"""Share of the rms by which an error must change to be mentioned."""
 
 
 def variable_in_words(name: str) -> str:
@@ -50,20 +50,20 @@ def rest_in_words(channel: ChannelResult, rest: Unexplained, lost: Sequence[Depe
 
     Args:
         channel: with the named effects.
-        rest: what is said in numbers.
+        rest: figures of what is left.
         lost: dependences that the judged data do not confirm.
         after: rms with what is carried; None where nothing is.
     """
     assert rest.above is not None
     sentences = [_level(rest.above, channel.unit)]
     if rest.depends_on:
-        told = [_followed(one) for one in rest.depends_on]
-        sentences.append(f"It follows {'; '.join(told)}.")
+        phrases = [_followed(one) for one in rest.depends_on]
+        sentences.append(f"It follows {'; '.join(phrases)}.")
     elif rest.above.is_left:
         sentences.append("It follows none of the measured variables.")
     if lost:
-        told = [term_in_words(one) for one in lost]
-        sentences.append(f"Seen on the fitted data and not confirmed on the judged: {'; '.join(told)}.")
+        phrases = [term_in_words(one) for one in lost]
+        sentences.append(f"Seen on the fitted data and not confirmed on the judged: {'; '.join(phrases)}.")
     if after is not None and abs(after - rest.above.rms) > CHANGE * rest.above.rms:
         change = f"{_shown(rest.above.rms, channel.unit)} → {_shown(after, channel.unit)} rms"
         sentences.append(f"With what the plant carries as tables: {change}.")

@@ -7,9 +7,9 @@ from dataclasses import replace
 from feeddrive.compensation.forms import fanuc
 from feeddrive.compensation.forms.control import Control
 from feeddrive.compensation.forms.csv_table import CSV
-from feeddrive.compensation.forms.heidenhain import HEIDENHAIN
+from feeddrive.compensation.forms.heidenhain_table import HEIDENHAIN
 from feeddrive.compensation.forms.isg import ISG
-from feeddrive.compensation.forms.linuxcnc import LINUXCNC
+from feeddrive.compensation.forms.linuxcnc_table import LINUXCNC
 from feeddrive.compensation.forms.sinumerik import SINUMERIK_CEC, SINUMERIK_ENC
 from feeddrive.compensation.table import CompensationTable
 from feeddrive.errors import InputError

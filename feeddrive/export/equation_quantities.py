@@ -23,7 +23,7 @@ class Quantity:
         name: of the row.
         unit: SI unit; "1" for none.
         value: at the start, or of the parameter [unit].
-        comment: what else is to be said: what it is, or the source of a value.
+        comment: remarks: what it is, or the source of a value.
         of_chain: whether it is a parameter of inertias and springs, and not of an effect.
     """
 

@@ -22,9 +22,9 @@ import numpy as np
 
 from feeddrive.symbolic_turn import SYMBOLS
 from feeddrive.thermal.full.full_model import NUT
-from feeddrive.thermal.heat import Heat
 from feeddrive.thermal.laws.laws import FOLLOWED, INPUTS, PATHS, growth_places, laws_of, values_of
-from feeddrive.thermal.reduced.model import AMBIENT, HeatModel
+from feeddrive.thermal.machine_heat import Heat
+from feeddrive.thermal.reduced.parametric_model import AMBIENT, HeatModel
 from feeddrive.thermal.reduced.reduction import reduce_model
 from feeddrive.thermal.rig import refuse_unless
 from feeddrive.thermal.run.warm_up import channel_of
@@ -65,7 +65,7 @@ class HeatEquations:
 
     @property
     def values(self) -> FloatArray:
-        """Of the parameters, (p,)."""
+        """Values of the parameters, (p,)."""
         return np.array([value for _, value in self.parameters.values()])
 
 
@@ -111,8 +111,9 @@ def heat_equations(heat: Heat, model: HeatModel | None = None) -> HeatEquations:
     read = {**shown, **follows}
     y = [value if channel.startswith("table_growth") else cold + value for channel, value in read.items()]
     xdot = ca.vertcat(flow / ca.DM(model.capacity), *rates)
-    function = ca.Function("heat_ode", [time, x, u, p], [ca.densify(xdot), ca.vertcat(*y)],
-                           ["time", "x", "u", "p"], ["xdot", "y"])  # fmt: skip
+    function = ca.Function(
+        "heat_ode", [time, x, u, p], [ca.densify(xdot), ca.vertcat(*y)], ["time", "x", "u", "p"], ["xdot", "y"]
+    )
     sizes = {f"network_{i + 1}": float(np.sqrt(np.sum(heat.full_model().capacity))) for i in range(n)}
     sizes |= {f"{label}_rise": 1.0 for label in laws.bodies}
     sizes |= {f"{channel}_lag_{i + 1}": 1e-6 if channel.startswith("table_growth") else 1.0 for channel, i in lagged}
@@ -132,8 +133,12 @@ def linear_heat(heat: Heat, speed: float, model: HeatModel | None = None) -> con
         slopes = [ca.jacobian(of, to) for of in equations.function(*arguments) for to in arguments[1:3]]
         taken = ca.Function("heat_slopes", arguments, slopes)
     at = taken(0.0, np.zeros(len(equations.states)), [speed, heat.ambient], equations.values)
-    return control.ss(*(one.full() for one in at), states=list(equations.states), inputs=list(HEAT_INPUTS),
-                      outputs=list(equations.outputs))  # fmt: skip
+    return control.ss(
+        *(one.full() for one in at),
+        states=list(equations.states),
+        inputs=list(HEAT_INPUTS),
+        outputs=list(equations.outputs),
+    )
 
 
 def _flow(model: HeatModel, x: Expression, g: Expression, given: dict[str, Expression]) -> Expression:

@@ -102,7 +102,7 @@ class _Terms:
         return float(self.pooled.declared[TERMS[self.pooled.channel].index(name)])
 
     def amplitude(self, stem: str) -> tuple[FloatArray, FloatArray] | None:
-        """Length of a sine and cosine part, (n,); None where it is not told from none."""
+        """Length of a sine and cosine part, (n,); None where it is not distinguished from none."""
         (sine, variance), (cosine, _) = self[f"{stem}_sine"], self[f"{stem}_cosine"]
         size = np.hypot(sine, cosine)
         scatter = np.hypot(np.nanstd(np.diff(sine)), np.nanstd(np.diff(cosine))) / 2 if self.count > 2 else math.inf
@@ -134,8 +134,9 @@ def _travel(terms: _Terms, plant: Plant, grid: Grid, absolute: bool) -> list[Qua
     found.append(Quantity("delay", "table read later than the motor", "s", *terms["delay"], ("channel_delay",)))
     periodic = terms.amplitude("lead")
     if periodic is not None:
-        found.append(Quantity("lead_ripple", "lead error once per motor revolution", "m",
-                              *periodic, ("lead_error_periodic",)))  # fmt: skip
+        found.append(
+            Quantity("lead_ripple", "lead error once per motor revolution", "m", *periodic, ("lead_error_periodic",))
+        )
     return found
 
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from feeddrive.diagnosis.finding.scene import Candidate, Scene
-from feeddrive.diagnosis.heat.evidence import HeatEvidence
+from feeddrive.diagnosis.heat.heat_evidence import HeatEvidence
 from feeddrive.effects.base import Effect
 from feeddrive.effects.heat.ambient_drift import AmbientDrift
 from feeddrive.effects.heat.bearing_heat import BearingHeat
@@ -25,10 +25,10 @@ DRIFT_NODES = 9
 """Nodes of a tabulated drift of the surroundings over the longest run."""
 
 PERIODS = (0.25, 0.4, 0.6, 1.0, 1.6, 2.5, 4.0)
-"""Of sines of the surroundings, over the longest run."""
+"""Periods of sines of the surroundings, over the longest run."""
 
 CONDUCTANCES = (0.1, 0.003)
-"""Of coolants and masses at the nut [W/K]: as much as the film of a small nut, and what thermometers just show."""
+"""Conductances of coolants and masses at the nut [W/K]: the film of a small nut, and what thermometers just show."""
 
 SINK_TIMES = (500.0, 2e3, 8e3, 3e4)
 """Time constants of masses [s]."""
@@ -49,7 +49,7 @@ def _runs(scene: Scene) -> list[HeatEvidence]:
 
 
 def _duration(scene: Scene) -> float:
-    """Of the fitted part of the longest run, from its start [s]."""
+    """Length of the longest run from its start to the end of its fitted part [s]."""
     return max(float(np.flatnonzero(e.fit_rows)[-1] + 1) * e.recording.sample_time for e in _runs(scene))
 
 
@@ -71,7 +71,7 @@ def scales(scene: Scene) -> str:
 
 
 def several_channels(scene: Scene) -> str:
-    """A lag is told from a slow machine by the other channels."""
+    """A lag is distinguished from a slow machine by the other channels."""
     return "" if len(_channels(scene)) > 1 else "with one channel a slow sensor cannot be told from a slow machine"
 
 

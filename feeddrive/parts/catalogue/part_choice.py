@@ -6,7 +6,7 @@ import math
 import re
 
 from feeddrive.errors import InputError
-from feeddrive.parts.catalogue.reading import CataloguePart, catalogue, find_part
+from feeddrive.parts.catalogue.part_files import CataloguePart, catalogue, find_part
 from feeddrive.units.quantity import parse
 
 

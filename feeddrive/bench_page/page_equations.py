@@ -53,9 +53,12 @@ def bench_equations(plant: Plant, cascade: Cascade) -> tuple[str, dict[str, Any]
     machine, timing = machine_for(plant, controller, loop, resolutions_of(plant, controller))
     program = machine.program
     functions = {
-        "before": program.before, "watch": program.step.watch, "iterate": program.step.iterate,
-        **_linear_functions(plant), "cascade_linear": _cascade_linear(controller),
-    }  # fmt: skip
+        "before": program.before,
+        "watch": program.step.watch,
+        "iterate": program.step.iterate,
+        **_linear_functions(plant),
+        "cascade_linear": _cascade_linear(controller),
+    }
     text = "\n".join(javascript(function, name) for name, function in functions.items())
     delays = (effect.delay(effect.values) for effect in plant.effects if isinstance(effect, TimingEffect))
     slots = [effect for effect in plant.effects if isinstance(effect, TransmissionEffect)]

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 
 from feeddrive.errors import InputError
 from feeddrive.parts.lubricant import Lubricant
-from feeddrive.parts.screw.preload_loss import stiffness_share
+from feeddrive.parts.screw.preload_monitoring import stiffness_share
 from feeddrive.thermal.laws.nut_preload import Spacer, preload_change
 from feeddrive.thermal.rig import refuse_negative, refuse_unless, refuse_unless_positive
 from feeddrive.typing import Expression
@@ -33,7 +33,7 @@ LEAST_PRELOAD = 0.05
 
 @dataclass(frozen=True)
 class Temperatures:
-    """Of the parts whose laws depend on them [degC]: nut, shaft under it, front and rear bearing."""
+    """Temperatures of the parts whose laws depend on them [degC]: nut, shaft under it, front and rear bearing."""
 
     nut: float
     shaft: float
@@ -114,13 +114,15 @@ class Coupling:
         """
         share = 1 + self._gained(at.nut - at.shaft, preload, pitch_diameter, expansion) / preload
         if share < LEAST_PRELOAD:
-            told = f"a nut {at.nut - at.shaft:.3g} K warmer than its shaft keeps {share:.0%} of its preload"
-            raise InputError(told, "coupling", f"cool it, or preload it with more than {format_quantity(preload, 'N')}")
+            what = f"a nut {at.nut - at.shaft:.3g} K warmer than its shaft keeps {share:.0%} of its preload"
+            raise InputError(what, "coupling", f"cool it, or preload it with more than {format_quantity(preload, 'N')}")
         mean = (1 - self.rear_share) * at.front + self.rear_share * at.rear
         return Changes(
-            _warned_share(self.nut_oil, at.nut, reference), _warned_share(self.bearing_oil, mean, reference),
-            share, stiffness_share(share),
-        )  # fmt: skip
+            _warned_share(self.nut_oil, at.nut, reference),
+            _warned_share(self.bearing_oil, mean, reference),
+            share,
+            stiffness_share(share),
+        )
 
     def preload_slope(self, preload: float, pitch_diameter: float, expansion: float) -> float:
         """Change of the preload's share with the difference of nut and shaft [1/K]; arguments as `changes`."""

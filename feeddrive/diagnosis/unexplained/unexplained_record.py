@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from feeddrive.diagnosis.judging.result import Diagnosis
-from feeddrive.diagnosis.unexplained.result import Above, Carried, Dependence, Table, Unexplained
+from feeddrive.diagnosis.unexplained.unexplained_result import Above, Carried, Dependence, Table, Unexplained
 
 
 def unexplained_record(diagnosis: Diagnosis) -> dict[str, Any]:

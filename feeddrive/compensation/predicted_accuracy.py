@@ -29,7 +29,7 @@ from feeddrive.servo.cascade import Cascade
 from feeddrive.servo.cascade_function import REFERENCES, cascade_controller
 from feeddrive.simulate.controlled.controlled import TorqueLoop, resting_state, simulate_controlled
 from feeddrive.simulate.setpoints.jerk_limited import Limits
-from feeddrive.simulate.setpoints.motion import Motion, Pieces, Trajectory
+from feeddrive.simulate.setpoints.setpoint_motion import Motion, Pieces, Trajectory
 from feeddrive.simulate.setpoints.trajectories import Circle, staircase
 from feeddrive.typing import FloatArray
 
@@ -122,13 +122,11 @@ class Applied:
 
 
 _SHARES, _BETWEEN = (0.4, 0.65, 0.9), 0.125
-"""Of the time in which the table would cross the play by itself: reversals tried first, and on either side of the best
-of them; about the optimum the error changes by less than a tenth between two that are so near."""
+"""Shares of the time in which the table would cross the play by itself: reversals tried first, and those on either side
+of the best of them; about the optimum the error changes by less than a tenth between two that are so near."""
 
 
-def best_reversal(
-    plant: Plant, cascade: Cascade, test: TestMotion, applied: Applied
-) -> tuple[Applied, float | None]:  # fmt: skip
+def best_reversal(plant: Plant, cascade: Cascade, test: TestMotion, applied: Applied) -> tuple[Applied, float | None]:
     """The time within which the play goes over that leaves the least contour error, for controls that let it be set.
 
     At a quadrant the axis of the circle leaves its turning point with a = v^2 / R, and crosses a play w by itself in
@@ -195,7 +193,7 @@ def figures(plant: Plant, cascade: Cascade, test: TestMotion, applied: Applied |
 
 def circle_figures(
     plant: Plant, cascade: Cascade, circle: Circle, applied: Applied | None = None, extra: Extra | None = None
-) -> Circular:  # fmt: skip
+) -> Circular:
     """The figures of one axis of a circle; the last whole turn at constant feed counts."""
     time, position = run(plant, cascade, circle, applied, extra)
     angle = circle.angle(time)
@@ -208,7 +206,7 @@ def circle_figures(
 
 def run(
     plant: Plant, cascade: Cascade, trajectory: Trajectory, applied: Applied | None = None, extra: Extra | None = None
-) -> tuple[FloatArray, FloatArray]:  # fmt: skip
+) -> tuple[FloatArray, FloatArray]:
     """Time [s] and table position [m] at the ticks of the controller, shape (n,) each."""
     tick, divider = cascade.sample_time, cascade.position_divider
     cycles = math.ceil(trajectory.duration / (tick * divider))
@@ -217,11 +215,12 @@ def run(
     columns = {"position": motion.position, "velocity": motion.velocity, "acceleration": motion.acceleration}
     if applied is not None:
         slow = slice(None, None, divider)
-        told = motor_setpoint(applied.control, applied.table, motion.position[slow], motion.velocity[slow],
-                              tick * divider, applied.limits)  # fmt: skip
-        columns["position"] = np.repeat(told, divider)
+        commanded = motor_setpoint(
+            applied.control, applied.table, motion.position[slow], motion.velocity[slow], tick * divider, applied.limits
+        )
+        columns["position"] = np.repeat(commanded, divider)
         if applied.control.reversal.ramped:  # the whole command of the motor is differentiated by such a control
-            rate = np.diff(told - motion.position[slow], prepend=0.0) / (tick * divider)
+            rate = np.diff(commanded - motion.position[slow], prepend=0.0) / (tick * divider)
             rate[0] = 0.0
             columns["velocity"] = motion.velocity + np.repeat(rate, divider)
     if extra is not None:

@@ -10,14 +10,14 @@ import numpy as np
 
 from feeddrive.diagnosis.finding.remembered import Remembered, effects_key
 from feeddrive.diagnosis.finding.scene import Candidate
-from feeddrive.diagnosis.heat.candidates import HEAT_CANDIDATES
-from feeddrive.diagnosis.heat.evidence import HeatEvidence
+from feeddrive.diagnosis.heat.heat_candidates import HEAT_CANDIDATES
+from feeddrive.diagnosis.heat.heat_evidence import HeatEvidence
 from feeddrive.diagnosis.likelihood.predictor import Predictor
 from feeddrive.plant.plant import Plant
-from feeddrive.thermal.heat import Heat
-from feeddrive.thermal.reduced.model import HeatModel, Path
+from feeddrive.thermal.machine_heat import Heat
+from feeddrive.thermal.reduced.parametric_model import HeatModel, Path
 from feeddrive.thermal.reduced.reduction import reduce_model
-from feeddrive.thermal.run.sensitivity import simulate_with_slopes
+from feeddrive.thermal.run.heat_sensitivity import simulate_with_slopes
 from feeddrive.thermal.run.warm_up import channel_of, simulate
 from feeddrive.typing import FloatArray
 

@@ -1,4 +1,4 @@
-"""What is said of the part that no named effect explains: plain records behind `diagnosis.json` and the report."""
+"""What is reported of the part that no named effect explains: plain records behind `diagnosis.json` and the report."""
 
 from __future__ import annotations
 

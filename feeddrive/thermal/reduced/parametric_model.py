@@ -127,17 +127,21 @@ class HeatModel:
                     facing[way.source] = facing[way.source] + g * way.facing
         columns = [*self.heats.values(), facing[AMBIENT], facing[COOLANT]]
         return HeatSystem(
-            self.capacity, matrix, np.column_stack(columns), np.vstack(list(self.readings.values())),
-            self.input_names, tuple(self.readings),
-        )  # fmt: skip
+            self.capacity,
+            matrix,
+            np.column_stack(columns),
+            np.vstack(list(self.readings.values())),
+            self.input_names,
+            tuple(self.readings),
+        )
 
     def warn_of_extrapolation(self, conductances: Mapping[Path, float]) -> None:
         """Warn of conductances outside the range that a reduced model was made for; `limits` gives it."""
         for path, g in conductances.items():
             low, high = self.limits.get(path, (0.0, np.inf))
             if not low * (1 - 1e-9) <= g <= high * (1 + 1e-9):
-                told = f"{path} of {g:.4g} lies outside {low:.4g} to {high:.4g}, for which the reduced model was made"
-                warnings.warn(f"{told}: extrapolated, reduce it for a wider range", ValidityWarning, stacklevel=3)
+                what = f"{path} of {g:.4g} lies outside {low:.4g} to {high:.4g}, for which the reduced model was made"
+                warnings.warn(f"{what}: extrapolated, reduce it for a wider range", ValidityWarning, stacklevel=3)
 
     def projected(self, basis: FloatArray) -> HeatModel:
         """The model on the columns of `basis`, (n, r) with basisᵀ C basis = 1: stable and passive as this one is."""
