@@ -6,11 +6,13 @@ import json
 import math
 from pathlib import Path
 
+import casadi as ca
 import numpy as np
 import pytest
 
 from feeddrive.cli.main import main
 from feeddrive.effects.catalogue import EFFECTS
+from feeddrive.effects.transmission.stiffness_vs_position import StiffnessVsPosition
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant
 from feeddrive.plant.analysis.lumping import Lumped
@@ -20,6 +22,7 @@ from feeddrive.plant.chain.chain import ThreeInertias
 from feeddrive.plant.chain.moving_inertia import inertia_at_motor
 from feeddrive.plant.file.files import read_plant
 from feeddrive.plant.plant import Plant
+from feeddrive.units.quantity import format_quantity
 from tests.generator.drawn_drives import drawn_drive
 from tests.generator.screw_elements import Drive, at_nut, chains, drive_of, frequencies, matrices
 
@@ -64,6 +67,29 @@ def refuse_unlike(found: Lumped, drive: Drive, nearest: float) -> None:
         assert lumped[0] == pytest.approx(machine[0], rel=nearest)
 
 
+def refuse_unlike_along(found: Lumped, drive: Drive, stroke: tuple[float, float]) -> None:
+    """The stiffness at the table is the elements' everywhere on the stroke, and the one of the chain where it was made.
+
+    One end held or both: the compliance is a parabola of the place at most, so that nothing but rounding is left, and
+    what the angle between two nodes lacks.
+    """
+    (law,) = (effect for effect in found.plant.effects if isinstance(effect, StiffnessVsPosition))
+    values = found.plant.chain.values
+    for x in np.linspace(*stroke, 7):
+        axial = values["axial_stiffness"] * float(law.stiffness_factor(ca.DM(x), law.values))
+        lumped = 1 / axial + drive.radius**2 / values["torsional_stiffness"]
+        assert lumped == pytest.approx(compliance(drive, float(x))[1, 1], rel=1e-4)
+    assert float(law.stiffness_factor(ca.DM(found.position), law.values)) == 1.0
+    told = {row.name: row for row in found.compared}
+    assert abs(told["static stiffness, where along the stroke it is furthest off"].error) < 1e-6
+    for x in stroke:
+        at = f"table at {format_quantity(x, 'm')}"
+        assert told[f"static stiffness, {at}"].machine == pytest.approx(1 / compliance(drive, x)[1, 1], rel=1e-4)
+        for held, name in ((True, "first anti-resonance, motor held"), (False, "first resonance, motor free")):
+            row = told[f"{name}, {at}"]
+            assert row.machine == pytest.approx(frequencies(drive, x, held, 1)[0], rel=0.003)
+
+
 @pytest.mark.parametrize("name", SHIPPED)
 def test_shipped_machines(name: str) -> None:
     plant = read_plant(find_plant(name))
@@ -71,6 +97,7 @@ def test_shipped_machines(name: str) -> None:
     for x in (plant.stroke[0], plant.middle, plant.stroke[1]):
         # One value is free for two frequencies; on these machines both come to 1 %.
         refuse_unlike(plant.lumped(x), drive_of(find_plant(name)), 0.012)
+        refuse_unlike_along(plant.lumped(x), drive_of(find_plant(name)), plant.stroke)
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -78,7 +105,10 @@ def test_drawn_machines(seed: int, tmp_path: Path) -> None:
     path = tmp_path / "drawn.toml"
     path.write_text(drawn_drive(seed), encoding="utf-8")
     # A table no heavier than the screw is no three inertias any more; what is off is told in the file.
-    refuse_unlike(read_plant(path).lumped(), drive_of(path), 0.06)
+    plant = read_plant(path)
+    refuse_unlike(plant.lumped(), drive_of(path), 0.06)
+    assert plant.stroke is not None
+    refuse_unlike_along(plant.lumped(), drive_of(path), plant.stroke)
 
 
 @pytest.mark.parametrize("name", SHIPPED)
@@ -113,7 +143,9 @@ def test_declared_deviations_are_in_the_values() -> None:
     assert inertia_at_motor(found.plant) == pytest.approx(inertia_at_motor(plant) + 1e-3 + 40 * plant.chain.radius**2)
     before = plant.lumped(0.464).plant.chain.values["axial_stiffness"]
     assert found.plant.chain.values["axial_stiffness"] == pytest.approx(0.8 * before, rel=1e-9)
-    assert {effect.name for effect in found.plant.effects} == {"guide_friction", "nut_drag", "bearing_drag"}
+    assert {effect.name for effect in found.plant.effects} == {
+        "guide_friction", "nut_drag", "bearing_drag", "stiffness_vs_position",
+    }  # fmt: skip
     assert any("payload" in line for line in found.left_out)
 
 
@@ -127,6 +159,19 @@ def test_laws_of_the_nut_are_converted() -> None:
     ratio = next(e for e in lumped.effects if e.name == "preload_loss").values["ratio"]
     # springs in series: 1 / k = 1 / k_N + rest, with k_N softer by 0.3
     assert 1 / (axial * ratio) == pytest.approx(1 / (0.3 * nut) + 1 / axial - 1 / nut, rel=1e-9)
+
+
+def test_what_changes_along_the_stroke_by_itself_multiplies() -> None:
+    """A law of the nut's own spring stays one, converted; beside it the screw's."""
+    plant = read_plant(find_plant("kimm_testbed"))
+    worn = plant.with_effects(StiffnessVsPosition.of(share_over_stroke=0.4, low=0.0, high=1.0))
+    found = worn.lumped(0.0)
+    screw, nut = (effect for effect in found.plant.effects if isinstance(effect, StiffnessVsPosition))
+    assert screw.values == plant.lumped(0.0).plant.effects_of(StiffnessVsPosition)[0].values
+    axial = found.plant.chain.values["axial_stiffness"]
+    left = 1 - float(nut.values["share_over_stroke"])  # type: ignore[arg-type]
+    own = float(plant.chain.nut(plant.chain_values()).stiffness)
+    assert 1 / (axial * left) == pytest.approx(1 / axial + (1 / 0.6 - 1) / own, rel=1e-9)
 
 
 def test_a_gear_of_three_inertias_is_a_motor_counted_so_often() -> None:
