@@ -57,6 +57,7 @@ from feeddrive.effects.transmission.preload_loss import PreloadLoss
 from feeddrive.effects.transmission.stiffness_vs_position import StiffnessVsPosition
 from feeddrive.errors import InputError
 from feeddrive.plant.analysis.modes import braked_modes, free_modes
+from feeddrive.plant.analysis.steady import steady_motions
 from feeddrive.plant.analysis.stiffness_budget import nut_stiffness, static_stiffness, stiffness_budget
 from feeddrive.plant.chain.chain import ThreeInertias
 from feeddrive.plant.chain.drive_values import without_brake
@@ -64,6 +65,7 @@ from feeddrive.plant.chain.moving_inertia import inertia_at_motor
 from feeddrive.plant.chain.resolution import resolved_modes
 from feeddrive.plant.file.entries import parse_toml
 from feeddrive.plant.file.lumped_text import lumped_text
+from feeddrive.plant.passive_friction import top_speed
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray
 from feeddrive.units.quantity import format_quantity
@@ -76,6 +78,13 @@ _PLACES = 21
 
 _STRAIGHT = 1e-9
 """Rise of the parabola that is rounding: no machine is known to that."""
+
+_STEADY_PLACES = 5
+"""Table positions of the steady motions: what is missed bends little along the stroke, as the torsion does."""
+
+UNDECLARED_SPEED = 0.25
+"""Velocity at which the drag is taken where neither table nor motor declare a greatest one [m/s]: a rapid traverse of
+15 m/min. The error is told with it."""
 
 _TRIED = 60  # shares from which the best is refined; the sum is smooth, with one minimum on machines
 
@@ -134,10 +143,11 @@ def lump(plant: Plant, position: float, further: tuple[str, ...] = ()) -> Lumped
     along = _along_stroke(plant, bare, values, position)
     compared = (*_compared(bare, model, position), *_compared_along(bare, model, along))
     effects, remarks = _effects(plant, values, along)
-    left_out = (*_left_out(plant), *further)
-    text = lumped_text(plant, values, effects, remarks, _heading(plant, position, compared, left_out))
-    made = _read(text, plant)
-    return Lumped(made, position, compared, left_out, text)
+    missed = _missed(plant, replace(model, effects=effects))
+    left_out = (*_left_out(plant, missed), *further)
+    heading = _heading(plant, position, compared, left_out)
+    text = lumped_text(plant, values, effects, remarks, heading, missed)
+    return Lumped(_read(text, plant), position, compared, left_out, text)
 
 
 def _read(text: str, plant: Plant) -> Plant:
@@ -287,6 +297,22 @@ def _compared_along(machine: Plant, model: Plant, along: StiffnessVsPosition | N
     return (*rows, Compared("static stiffness, where along the stroke it is furthest off", "N/m", *worst))
 
 
+def _missed(machine: Plant, model: Plant) -> dict[str, float]:
+    """Rms [m] of what three inertias miss of the table behind the motor in steady motion along the stroke, both ways.
+
+    Exact under a force on the table; what is missed is the twist by the drag of the screw, whose way to the motor
+    changes along the stroke. It grows with the drag, so that the fastest motion bounds it.
+    """
+    if machine.stroke is None or not machine.chain.varies:
+        return {}
+    speed = top_speed(machine, UNDECLARED_SPEED)
+    behind = []
+    for x in np.linspace(*machine.stroke, _STEADY_PLACES):
+        pairs = zip(*(steady_motions(one, (speed, -speed), float(x)) for one in (machine, model)), strict=True)
+        behind.append([(one.state[0] - other.state[0]) * machine.chain.motor_radius for one, other in pairs])
+    return {"table_position": float(np.std(behind))}
+
+
 def _effects(
     plant: Plant, values: Mapping[str, float], along: StiffnessVsPosition | None
 ) -> tuple[tuple[Effect, ...], tuple[str, ...]]:
@@ -325,8 +351,14 @@ def _on_axial_spring(effect: Effect, nut: float, axial: float) -> Effect:
     return effect
 
 
-def _left_out(plant: Plant) -> tuple[str, ...]:
+def _left_out(plant: Plant, missed: Mapping[str, float]) -> tuple[str, ...]:
     lines = []
+    speed = format_quantity(top_speed(plant, UNDECLARED_SPEED), "m/s")
+    for channel, error in missed.items():
+        lines.append(
+            f"twist of the screw by its own drag, as it changes along the stroke: {channel} is missed by "
+            f"{format_quantity(error, 'm')} rms at {speed}; a diagnosis with this file names nothing within it"
+        )
     if plant.chain.varies:
         what = "torsional stiffness, damping and what turns" if plant.stroke is not None else "stiffness and damping"
         lines.append(f"{what} along the stroke: here and everywhere as with the table at this position")
