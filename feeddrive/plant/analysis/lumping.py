@@ -277,7 +277,7 @@ def _compared_along(machine: Plant, model: Plant, along: StiffnessVsPosition | N
     values = model.chain.values
 
     def there(x: float) -> Plant:
-        factor = float(along.stiffness_factor(ca.DM(x), along.values))  # type: ignore[arg-type]
+        factor = float(along.stiffness_factor(ca.DM(x), along.values))
         return replace(
             model, mechanics=ThreeInertias({**values, "axial_stiffness": factor * values["axial_stiffness"]})
         )
