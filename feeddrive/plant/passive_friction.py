@@ -291,13 +291,7 @@ class _Way:
 
     def _top_speed(self) -> float:
         """Greatest speed of the port [m/s or rad/s]."""
-        data, chain = self.plant.data, self.plant.chain
-        speed = USUAL_SPEED
-        if "table.max_velocity" in data:
-            speed = data["table.max_velocity"].value
-        elif "motor.max_speed" in data:
-            speed = data["motor.max_speed"].value * chain.motor_radius
-        return speed / (1.0 if self.port == Port.TABLE else chain.radius)
+        return top_speed(self.plant, USUAL_SPEED) / (1.0 if self.port == Port.TABLE else self.plant.chain.radius)
 
     def _read(self, slot: str, at: dict[str, FloatArray]) -> FloatArray:
         """One slot at arrays of what it reads, shape (effects, n), or (terms, n) of the level; n is 1 at no array."""
@@ -305,6 +299,15 @@ class _Way:
         rest = {_POSITIONS: 0.0, _SPEEDS: 1.0, _TIMES: 0.0}
         x, v, t = (np.broadcast_to(at.get(name, rest[name]), (1, count)) for name in rest)
         return np.array(self.slots[slot](x, v * self.direction, t, self.values)).reshape(-1, count)
+
+
+def top_speed(plant: Plant, undeclared: float) -> float:
+    """Greatest velocity of the table [m/s]: the declared one, that of the motor, or `undeclared`."""
+    if "table.max_velocity" in plant.data:
+        return plant.data["table.max_velocity"].value
+    if "motor.max_speed" in plant.data:
+        return plant.data["motor.max_speed"].value * plant.chain.motor_radius
+    return undeclared
 
 
 @per_structure

@@ -34,6 +34,8 @@ class Sensor:
         kind, at: what it is, and where it sits.
         resolution: [channel unit]; 0 where it is not declared.
         absolute: whether its zero is the same in every recording.
+        model_error: rms of what the plant itself may miss of the channel, noise aside [channel unit]; 0 where it is
+            exact.
     """
 
     channel: str
@@ -41,6 +43,7 @@ class Sensor:
     at: str
     resolution: float = 0.0
     absolute: bool = False
+    model_error: float = 0.0
 
 
 @dataclass(frozen=True)

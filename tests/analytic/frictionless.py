@@ -67,7 +67,8 @@ def nut_energy(screw: Array, x: Array, c: Constants) -> Array:
     """Return the energy (n,) [J] of the spring between nut and table: the area under its force."""
     e = c.transmission * screw + c.travel_amplitude * np.sin(c.travel_order * screw + c.travel_phase)
     size = np.maximum(np.abs(e - (1.0 - c.lead_slope) * x) - 0.5 * c.gap, 0.0)
-    k = c.axial_stiffness * (1.0 - c.stroke_share * (x - c.stroke_low) / (c.stroke_high - c.stroke_low))
+    along = (x - c.stroke_low) / (c.stroke_high - c.stroke_low)
+    k = c.axial_stiffness / (1.0 + c.stroke_share / (1.0 - c.stroke_share) * along)
     edge = c.preload_force / (c.preload_ratio * k)
     beyond = np.maximum(size - edge, 0.0)
     within = np.minimum(size, edge)

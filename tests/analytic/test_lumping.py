@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 
+import casadi as ca
 import numpy as np
 import pytest
 
 from feeddrive.cli.main import main
 from feeddrive.effects.catalogue import EFFECTS
+from feeddrive.effects.transmission.stiffness_vs_position import StiffnessVsPosition
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant
 from feeddrive.plant.analysis.lumping import Lumped
@@ -20,6 +23,7 @@ from feeddrive.plant.chain.chain import ThreeInertias
 from feeddrive.plant.chain.moving_inertia import inertia_at_motor
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
+from feeddrive.units.quantity import format_quantity
 from tests.generator.drawn_drives import drawn_drive
 from tests.generator.screw_elements import Drive, at_nut, chains, drive_of, frequencies, matrices
 
@@ -64,6 +68,29 @@ def refuse_unlike(found: Lumped, drive: Drive, nearest: float) -> None:
         assert lumped[0] == pytest.approx(machine[0], rel=nearest)
 
 
+def refuse_unlike_along(found: Lumped, drive: Drive, stroke: tuple[float, float]) -> None:
+    """The stiffness at the table is the elements' everywhere on the stroke, and the one of the chain where it was made.
+
+    One end held or both: the compliance is a parabola of the place at most, so that nothing but rounding is left, and
+    what the angle between two nodes lacks.
+    """
+    (law,) = (effect for effect in found.plant.effects if isinstance(effect, StiffnessVsPosition))
+    values = found.plant.chain.values
+    for x in np.linspace(*stroke, 7):
+        axial = values["axial_stiffness"] * float(law.stiffness_factor(ca.DM(x), law.values))
+        lumped = 1 / axial + drive.radius**2 / values["torsional_stiffness"]
+        assert lumped == pytest.approx(compliance(drive, float(x))[1, 1], rel=1e-4)
+    assert float(law.stiffness_factor(ca.DM(found.position), law.values)) == 1.0
+    told = {row.name: row for row in found.compared}
+    assert abs(told["static stiffness, where along the stroke it is furthest off"].error) < 1e-6
+    for x in stroke:
+        at = f"table at {format_quantity(x, 'm')}"
+        assert told[f"static stiffness, {at}"].machine == pytest.approx(1 / compliance(drive, x)[1, 1], rel=1e-4)
+        for held, name in ((True, "first anti-resonance, motor held"), (False, "first resonance, motor free")):
+            row = told[f"{name}, {at}"]
+            assert row.machine == pytest.approx(frequencies(drive, x, held, 1)[0], rel=0.003)
+
+
 @pytest.mark.parametrize("name", SHIPPED)
 def test_shipped_machines(name: str) -> None:
     plant = read_plant(find_plant(name))
@@ -71,6 +98,7 @@ def test_shipped_machines(name: str) -> None:
     for x in (plant.stroke[0], plant.middle, plant.stroke[1]):
         # One value is free for two frequencies; on these machines both come to 1 %.
         refuse_unlike(plant.lumped(x), drive_of(find_plant(name)), 0.012)
+        refuse_unlike_along(plant.lumped(x), drive_of(find_plant(name)), plant.stroke)
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -78,7 +106,10 @@ def test_drawn_machines(seed: int, tmp_path: Path) -> None:
     path = tmp_path / "drawn.toml"
     path.write_text(drawn_drive(seed), encoding="utf-8")
     # A table no heavier than the screw is no three inertias any more; what is off is told in the file.
-    refuse_unlike(read_plant(path).lumped(), drive_of(path), 0.06)
+    plant = read_plant(path)
+    refuse_unlike(plant.lumped(), drive_of(path), 0.06)
+    assert plant.stroke is not None
+    refuse_unlike_along(plant.lumped(), drive_of(path), plant.stroke)
 
 
 @pytest.mark.parametrize("name", SHIPPED)
@@ -96,7 +127,7 @@ def test_what_does_not_bend_moves_alike(name: str) -> None:
         assert other.state[0] == pytest.approx(one.state[0], abs=1e-6)
     assert lumped.torque_limit == plant.torque_limit
     assert lumped.stroke == pytest.approx(plant.stroke)
-    assert lumped.sensors == plant.sensors
+    assert tuple(replace(sensor, model_error=0.0) for sensor in lumped.sensors) == plant.sensors
     for key, datum in lumped.data.items():
         assert datum.value == pytest.approx(plant.data[key].value)
 
@@ -113,7 +144,9 @@ def test_declared_deviations_are_in_the_values() -> None:
     assert inertia_at_motor(found.plant) == pytest.approx(inertia_at_motor(plant) + 1e-3 + 40 * plant.chain.radius**2)
     before = plant.lumped(0.464).plant.chain.values["axial_stiffness"]
     assert found.plant.chain.values["axial_stiffness"] == pytest.approx(0.8 * before, rel=1e-9)
-    assert {effect.name for effect in found.plant.effects} == {"guide_friction", "nut_drag", "bearing_drag"}
+    assert {effect.name for effect in found.plant.effects} == {
+        "guide_friction", "nut_drag", "bearing_drag", "stiffness_vs_position",
+    }  # fmt: skip
     assert any("payload" in line for line in found.left_out)
 
 
@@ -127,6 +160,44 @@ def test_laws_of_the_nut_are_converted() -> None:
     ratio = next(e for e in lumped.effects if e.name == "preload_loss").values["ratio"]
     # springs in series: 1 / k = 1 / k_N + rest, with k_N softer by 0.3
     assert 1 / (axial * ratio) == pytest.approx(1 / (0.3 * nut) + 1 / axial - 1 / nut, rel=1e-9)
+
+
+def test_what_changes_along_the_stroke_by_itself_multiplies() -> None:
+    """A law of the nut's own spring stays one, converted; beside it the screw's."""
+    plant = read_plant(find_plant("kimm_testbed"))
+    worn = plant.with_effects(StiffnessVsPosition.of(share_over_stroke=0.4, low=0.0, high=1.0))
+    found = worn.lumped(0.0)
+    screw, nut = (effect for effect in found.plant.effects if isinstance(effect, StiffnessVsPosition))
+    assert screw.values == plant.lumped(0.0).plant.effects_of(StiffnessVsPosition)[0].values
+    axial = found.plant.chain.values["axial_stiffness"]
+    left = 1 - float(nut.values["share_over_stroke"])  # type: ignore[arg-type]
+    own = float(plant.chain.nut(plant.chain_values()).stiffness)
+    assert 1 / (axial * left) == pytest.approx(1 / axial + (1 / 0.6 - 1) / own, rel=1e-9)
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_what_is_missed_is_the_twist_by_the_drag_of_the_screw(name: str) -> None:
+    """r T (1 / k_TS(x) - 1 / k_TS) both ways, T being what the screw's own friction takes and k_TS(x) the elements'."""
+    plant, drive = read_plant(find_plant(name)), drive_of(find_plant(name))
+    found = plant.lumped()
+    assert plant.stroke is not None
+    (told,) = (sensor.model_error for sensor in found.plant.sensors if sensor.channel == "table_position")
+    assert {s.channel for s in found.plant.sensors if s.model_error} == {"table_position"}
+    declared = {"hsr_axis": 40 / 60, "vertical_axis": 24 / 60}
+    v, radius = declared.get(name, 0.25), plant.chain.motor_radius
+    twist = [
+        compliance(drive, x)[0, 0] - compliance(drive, found.position)[0, 0] for x in np.linspace(*plant.stroke, 5)
+    ]
+    drags = []
+    for way in (v, -v):
+        state, torque = (motion := steady_motion(found.plant, way, found.position)).state, motion.torque
+        stretch = found.plant.chain.radius * state[1] - found.position
+        force = found.plant.chain.values["axial_stiffness"] * stretch
+        drags.append(torque / radius * drive.radius - drive.radius * force)
+    missed = np.std(drive.radius * np.outer(twist, drags))
+    # the nut's drag changes a little with the load, and stands between two elements of the screw
+    assert told == pytest.approx(missed, rel=0.03)
+    assert any("twist of the screw by its own drag" in line for line in found.left_out)
 
 
 def test_a_gear_of_three_inertias_is_a_motor_counted_so_often() -> None:

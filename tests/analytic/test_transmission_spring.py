@@ -29,9 +29,11 @@ from tests.convergence.test_simulate import BENCH
 K = BENCH.values["axial_stiffness"]
 SOFT = PreloadLoss.of(ratio=0.3, force=200.0)
 ALONG = StiffnessVsPosition.of(share_over_stroke=0.4, low=0.0, high=0.4)
+HELD_TWICE = StiffnessVsPosition.of(share_over_stroke=-0.1, middle_compliance=0.3, low=0.2, high=0.0)
 PLAY = Backlash.of(width=4e-6)
 SETS: dict[str, tuple[Effect, ...]] = {
-    "soft": (SOFT,), "along": (ALONG,), "soft along": (SOFT, ALONG), "play soft along": (PLAY, SOFT, ALONG)
+    "soft": (SOFT,), "along": (ALONG,), "held twice": (HELD_TWICE,),
+    "soft along": (SOFT, ALONG), "play soft along": (PLAY, SOFT, ALONG)
 }  # fmt: skip
 
 
@@ -95,8 +97,32 @@ def test_beyond_its_force_lost_preload_is_a_free_play() -> None:
 
 def test_stiffness_falls_by_the_share_over_the_stroke() -> None:
     at = law(Plant("spring", BENCH, (ALONG,)))
-    forces = [at(1e-6, x)[0] / (K * 1e-6) for x in (0.0, 0.2, 0.4, 0.6, 3.0)]
-    assert forces == pytest.approx([1.0, 0.8, 0.6, 0.4, LEAST_FACTOR], rel=1e-12)
+    forces = [at(1e-6, x)[0] / (K * 1e-6) for x in (0.0, 0.2, 0.4, 0.6, 15.0, -3.0)]
+    # the compliance is a straight line: 1 at the low end, 1 / 0.6 at the high one, 20 where it ends, 1 / 20 before it
+    assert forces == pytest.approx([1.0, 0.75, 0.6, 0.5, LEAST_FACTOR, 1 / LEAST_FACTOR], rel=1e-12)
+
+
+def test_a_screw_held_at_both_ends_is_a_parabola_of_the_compliance() -> None:
+    """Two lengths in parallel, a nut in series: exact at every place, whichever end is counted from."""
+    near, far, rod, length, nut = 1 / 900e6, 1 / 700e6, 1 / 2.3e8, 0.9, 1 / K
+
+    def compliance(x: float) -> float:
+        return nut + 1 / (1 / (near + rod * x) + 1 / (far + rod * (length - x)))
+
+    for low, high in ((0.1, 0.6), (0.5, 0.0)):
+        first, last = compliance(low), compliance(high)
+        middle = compliance(0.5 * (low + high)) - 0.5 * (first + last)
+        effect = StiffnessVsPosition.of(
+            share_over_stroke=1 - first / last, middle_compliance=middle / first, low=low, high=high
+        )
+        at = law(Plant("spring", ThreeInertias({**BENCH.values, "axial_stiffness": 1 / first}), (effect,)))
+        for x in (0.0, 0.2, 0.37, 0.8):
+            assert at(1e-6, x)[0] == pytest.approx(1e-6 / compliance(x), rel=1e-9)
+
+
+def test_two_of_them_multiply() -> None:
+    at = law(Plant("spring", BENCH, (ALONG, ALONG)))
+    assert at(1e-6, 0.4)[0] == pytest.approx(0.36 * K * 1e-6, rel=1e-12)
 
 
 def test_steady_lag_and_linearised_slope() -> None:
@@ -135,8 +161,8 @@ def test_written_to_a_plant_file_it_predicts_the_same(case: str, tmp_path: Path)
 
 
 def test_refusals() -> None:
-    with pytest.raises(InputError, match="a stroke from 400 mm to 0 mm"):
-        StiffnessVsPosition.of(share_over_stroke=0.1, low=0.4, high=0.0)
+    with pytest.raises(InputError, match="a stroke from 400 mm to 400 mm"):
+        StiffnessVsPosition.of(share_over_stroke=0.1, low=0.4, high=0.4)
     rigid = Rigid({"lead": 0.02, "motor_inertia": 1e-3, "screw_inertia": 1e-3, "table_mass": 100.0})
     for effect in (SOFT, ALONG):
         with pytest.raises(InputError, match="needs an elastic transmission"):

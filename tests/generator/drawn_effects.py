@@ -338,7 +338,7 @@ def _curved(m: Machine, random: Random, seconds: float, effect: Effect) -> Chang
 
 
 def _stiffness_power(m: Machine, random: Random, seconds: float, effect: Effect) -> Changed:
-    return "the square of the position", {"stroke_power": 2.0}, ()
+    return "a compliance over the square of the position", {"stroke_power": 2.0}, ()
 
 
 def _smooth_preload(m: Machine, random: Random, seconds: float, effect: Effect) -> Changed:

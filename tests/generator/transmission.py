@@ -71,19 +71,21 @@ def side_of(state: State, c: Constants) -> int:
 def spring(e: float, position: float, c: Constants) -> tuple[float, float]:
     """Return the spring's force on the screw [N] and, of its force on the table, what k'(x) adds [N].
 
-    Stiffness k(x) = k (1 - share (x - low) / (high - low)). Around zero force it is ratio k(x), up to the force
+    Stiffness k(x) = k / (1 + soft_share u), u = (x - low) / (high - low), soft_share = share / (1 - share), so that
+    k(high) = (1 - share) k. Around zero force it is ratio k(x), up to the force
     F1 = preload_force, i.e. the stretch e1 = F1 / (ratio k(x)); beyond, F = sign(e) (F1 + k(x) (|e| - e1)).
     dU/dk at constant e: ratio e^2 / 2 within, (e^2 - (1 - ratio) e1^2) / 2 beyond.
     """
     k, slope = c.axial_stiffness, 0.0
     if c.stroke_share != 0.0:
-        slope = -c.stroke_share * c.axial_stiffness / (c.stroke_high - c.stroke_low)
-        if c.stroke_power == 1.0:
-            k += slope * (position - c.stroke_low)
-        else:
-            reach = max((position - c.stroke_low) / (c.stroke_high - c.stroke_low), 0.0)
-            k -= c.stroke_share * c.axial_stiffness * reach**c.stroke_power
-            slope *= c.stroke_power * reach ** (c.stroke_power - 1.0)
+        soft_share = c.stroke_share / (1.0 - c.stroke_share)
+        reach, turn = (position - c.stroke_low) / (c.stroke_high - c.stroke_low), 1.0
+        if c.stroke_power != 1.0:
+            reach = max(reach, 0.0)
+            turn = c.stroke_power * reach ** (c.stroke_power - 1.0)
+            reach = reach**c.stroke_power
+        k /= 1.0 + soft_share * reach
+        slope = -soft_share * turn / (c.stroke_high - c.stroke_low) * k * k / c.axial_stiffness
     if c.gap_softness != 0.0:
         half = 0.5 * c.gap
         above = math.sqrt((e - half) ** 2 + c.gap_softness**2)

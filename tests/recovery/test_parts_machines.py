@@ -110,6 +110,41 @@ def test_nothing_is_found_where_nothing_is_planted() -> None:
     assert [effect.name for effect in result.effects] == []
 
 
+def with_the_lumped_file(name: str, seed: int, *changes: tuple[str, object]) -> Diagnosis:
+    """Recordings of the parts, diagnosed with the three inertias that `feeddrive lump` writes."""
+    fitted, judged = made(name, SECONDS, False, seed, changes), made(name, JUDGED, True, seed + 1, changes)
+    lumped = read_plant(find_plant(name)).lumped()
+    return diagnose(lumped.plant, [fitted], validation=[judged])[0]
+
+
+@pytest.mark.parametrize("name", ["kimm_testbed", "hsr_axis", "vertical_axis"])
+def test_what_the_lumping_misses_is_within_what_its_file_says(name: str) -> None:
+    recording, plant = made(name, SECONDS, False, 1), read_plant(find_plant(name)).lumped().plant
+    evidence = prepare(recording, plant, 1.0)
+    left = evidence.measured["table_position"] - AxisPredictor().predict(plant, evidence)["table_position"]
+    missed = float(np.std(left[evidence.counted]))
+    # as a stiffness that is the same everywhere would leave: the rest of the file is as good as it can be
+    flat = replace(plant, effects=tuple(e for e in plant.effects if e.name != "stiffness_vs_position"))
+    same = evidence.measured["table_position"] - AxisPredictor().predict(flat, evidence)["table_position"]
+    assert missed < 0.5 * float(np.std(same[evidence.counted]))
+    assert missed < math.hypot(evidence.model_error["table_position"], evidence.noise["table_position"])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["kimm_testbed", "hsr_axis", "vertical_axis"])
+def test_nothing_is_found_with_the_lumped_file(name: str) -> None:
+    result = with_the_lumped_file(name, 1)
+    assert [effect.name for effect in result.effects] == []
+
+
+@pytest.mark.slow
+def test_a_free_play_is_found_with_the_lumped_file() -> None:
+    result = with_the_lumped_file("kimm_testbed", 1, ("backlash", 8e-6))
+    (effect,) = result.effects
+    assert effect.name == "backlash"
+    assert effect.parameters["width"].value == pytest.approx(8e-6, rel=0.05)
+
+
 def held(result: Diagnosis, truth: dict[str, float]) -> None:
     """The interval of every calibrated stiffness holds what was planted; others are as declared."""
     for one in result.calibrated:

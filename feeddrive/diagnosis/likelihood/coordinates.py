@@ -138,6 +138,7 @@ TWO_HEATS = {
 FIXED = {
     ("presliding", "break_away"),
     ("friction_vs_position", "position"),
+    ("stiffness_vs_position", "middle_compliance"),
     ("stiffness_vs_position", "low"),
     ("stiffness_vs_position", "high"),
     ("ambient_drift", "time"),

@@ -3,7 +3,7 @@
 Where the motor is given, the table lags by the stretch of the spring. What a softer spring adds to it, in the band,
 
     -x_left = b sat(F, F1) / k                 preload lost around zero force, b = 1 / ratio - 1
-    -x_left = a F (x - x_l) / (x_h - x_l) / k  to first order, stiffness falling along the stroke
+    -x_left = a / (1 - a) F (x - x_l) / (x_h - x_l) / k    stiffness falling along the stroke
 
 follows the transmitted force F; the first by least squares for a few F1, the second beside a softer spring everywhere.
 Where the lag does not follow, no simulation is spent on it.

@@ -19,7 +19,15 @@ is least over the first anti-resonance (motor held) and the first resonance (mot
 by half the relative error of its mode's kinetic energy, so that this is the share with the least error of the kinetic
 energy of the two lowest modes.
 
-Valid up to the first resonance, at this position: the second modes are told beside the machine's and need not agree.
+Along the stroke the axial spring of three inertias takes over what changes, the torsion's part included:
+
+    1 / k_XS(x) = H_0[x, x](x) - r^2 / k_TS
+
+It is a straight line where the screw is held at one end, a parabola where it is held at both, and the law of
+`stiffness_vs_position` is both: b and m by least squares over places along the stroke. Dampers, inertias and torsion
+stay as they are at the one position; what that costs is told by the first resonances at both ends.
+
+Valid up to the first resonance: the second modes are told beside the machine's and need not agree.
 A machine whose first mode is not the table on its springs (a table lighter than the screw) is told by its errors.
 
 | symbol | meaning | unit |
@@ -28,6 +36,7 @@ A machine whose first mode is not the table on its springs (a table lighter than
 | k_XS, c_XS | axial stiffness and damping of bearings, screw and nut | N/m, N s/m |
 | J_m, J_s, i | inertia at the motor, of the screw; motor turns per screw turn | kg m^2, kg m^2, 1 |
 | r | lead / 2 pi | m/rad |
+| b, m | as in `feeddrive.effects.transmission.stiffness_vs_position` | 1 |
 
 Source: series of axial and torsional chain, paper 004, eqs. (6)-(8); Rayleigh's quotient for the inertias.
 """
@@ -39,6 +48,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import casadi as ca
 import numpy as np
 from scipy.optimize import minimize_scalar
 
@@ -47,18 +57,34 @@ from feeddrive.effects.transmission.preload_loss import PreloadLoss
 from feeddrive.effects.transmission.stiffness_vs_position import StiffnessVsPosition
 from feeddrive.errors import InputError
 from feeddrive.plant.analysis.modes import braked_modes, free_modes
-from feeddrive.plant.analysis.stiffness_budget import nut_stiffness, stiffness_budget
+from feeddrive.plant.analysis.steady import steady_motions
+from feeddrive.plant.analysis.stiffness_budget import nut_stiffness, static_stiffness, stiffness_budget
 from feeddrive.plant.chain.chain import ThreeInertias
 from feeddrive.plant.chain.drive_values import without_brake
 from feeddrive.plant.chain.moving_inertia import inertia_at_motor
 from feeddrive.plant.chain.resolution import resolved_modes
 from feeddrive.plant.file.entries import parse_toml
 from feeddrive.plant.file.lumped_text import lumped_text
+from feeddrive.plant.passive_friction import top_speed
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray
+from feeddrive.units.quantity import format_quantity
 
 LEAST_SHARE = 1e-3
 """Least share of the turning inertia that motor and screw keep: none of the three may be without mass."""
+
+_PLACES = 21
+"""Table positions of the least squares along the stroke: a parabola needs three, the rest tells whether it is one."""
+
+_STRAIGHT = 1e-9
+"""Rise of the parabola that is rounding: no machine is known to that."""
+
+_STEADY_PLACES = 5
+"""Table positions of the steady motions: what is missed bends little along the stroke, as the torsion does."""
+
+UNDECLARED_SPEED = 0.25
+"""Velocity at which the drag is taken where neither table nor motor declare a greatest one [m/s]: a rapid traverse of
+15 m/min. The error is told with it."""
 
 _TRIED = 60  # shares from which the best is refined; the sum is smooth, with one minimum on machines
 
@@ -114,12 +140,14 @@ def lump(plant: Plant, position: float, further: tuple[str, ...] = ()) -> Lumped
     bare = _bare(plant)
     values = _chain_values(bare, position)
     model = replace(bare, mechanics=ThreeInertias(values), effects=(), drive=None)
-    compared = _compared(bare, model, position)
-    effects, remarks = _effects(plant, values)
-    left_out = (*_left_out(plant, bare, position), *further)
-    text = lumped_text(plant, values, effects, remarks, _heading(plant, position, compared, left_out))
-    made = _read(text, plant)
-    return Lumped(made, position, compared, left_out, text)
+    along = _along_stroke(plant, bare, values, position)
+    compared = (*_compared(bare, model, position), *_compared_along(bare, model, along))
+    effects, remarks = _effects(plant, values, along)
+    missed = _missed(plant, replace(model, effects=effects))
+    left_out = (*_left_out(plant, missed), *further)
+    heading = _heading(plant, position, compared, left_out)
+    text = lumped_text(plant, values, effects, remarks, heading, missed)
+    return Lumped(_read(text, plant), position, compared, left_out, text)
 
 
 def _read(text: str, plant: Plant) -> Plant:
@@ -221,10 +249,77 @@ def _compared(machine: Plant, model: Plant, position: float) -> tuple[Compared, 
     return tuple(rows)
 
 
-def _effects(plant: Plant, values: Mapping[str, float]) -> tuple[tuple[Effect, ...], tuple[str, ...]]:
+def _along_stroke(
+    plant: Plant, bare: Plant, values: Mapping[str, float], position: float
+) -> StiffnessVsPosition | None:
+    """The axial stiffness along the stroke, equal to the declared one at `position`; None where it does not change."""
+    if plant.stroke is None or not plant.chain.varies:
+        return None
+    far = max(reversed(plant.stroke), key=lambda end: abs(end - position))
+    places = np.linspace(*plant.stroke, _PLACES)
+    torsional = (plant.chain.radius**2) / values["torsional_stiffness"]
+    compliance = np.array([1 / static_stiffness(bare, float(x)) - torsional for x in places])
+    along = (places - position) / (far - position)
+    laws = np.column_stack([along, 4 * along * (1 - along)])
+    straight, middle = np.linalg.lstsq(laws, compliance * values["axial_stiffness"] - 1, rcond=None)[0]
+    return StiffnessVsPosition.of(
+        share_over_stroke=float(straight / (1 + straight)),
+        middle_compliance=float(middle) if abs(middle) > _STRAIGHT else 0.0,
+        low=position,
+        high=far,
+    )
+
+
+def _compared_along(machine: Plant, model: Plant, along: StiffnessVsPosition | None) -> tuple[Compared, ...]:
+    """Static stiffness and first modes at the ends of the stroke, and where the static stiffness is furthest off."""
+    if along is None or machine.stroke is None:
+        return ()
+    values = model.chain.values
+
+    def there(x: float) -> Plant:
+        factor = float(along.stiffness_factor(ca.DM(x), along.values))
+        return replace(
+            model, mechanics=ThreeInertias({**values, "axial_stiffness": factor * values["axial_stiffness"]})
+        )
+
+    def stiffnesses(x: float) -> tuple[float, float]:
+        return static_stiffness(machine, x), static_stiffness(there(x), x)
+
+    rows = []
+    for x in machine.stroke:
+        at = f"table at {format_quantity(x, 'm')}"
+        rows.append(Compared(f"static stiffness, {at}", "N/m", *stiffnesses(x)))
+        names = "first anti-resonance, motor held", "first resonance, motor free"
+        pairs = zip(names, _first_modes(machine, x), _first_modes(there(x), x), strict=True)
+        rows += [Compared(f"{name}, {at}", "Hz", float(one), float(other)) for name, one, other in pairs]
+    places = np.linspace(*machine.stroke, _PLACES)
+    worst = max(map(stiffnesses, map(float, places)), key=lambda pair: abs(pair[1] / pair[0] - 1))
+    return (*rows, Compared("static stiffness, where along the stroke it is furthest off", "N/m", *worst))
+
+
+def _missed(machine: Plant, model: Plant) -> dict[str, float]:
+    """Rms [m] of what three inertias miss of the table behind the motor in steady motion along the stroke, both ways.
+
+    Exact under a force on the table; what is missed is the twist by the drag of the screw, whose way to the motor
+    changes along the stroke. It grows with the drag, so that the fastest motion bounds it.
+    """
+    if machine.stroke is None or not machine.chain.varies:
+        return {}
+    speed = top_speed(machine, UNDECLARED_SPEED)
+    behind = []
+    for x in np.linspace(*machine.stroke, _STEADY_PLACES):
+        pairs = zip(*(steady_motions(one, (speed, -speed), float(x)) for one in (machine, model)), strict=True)
+        behind.append([(one.state[0] - other.state[0]) * machine.chain.motor_radius for one, other in pairs])
+    return {"table_position": float(np.std(behind))}
+
+
+def _effects(
+    plant: Plant, values: Mapping[str, float], along: StiffnessVsPosition | None
+) -> tuple[tuple[Effect, ...], tuple[str, ...]]:
     """The effects that stay effects, and where their values come from."""
     nut = nut_stiffness(plant)
-    kept, remarks = [], []
+    kept: list[Effect] = [along] if along is not None else []
+    remarks = ["screw, bearings and torsion along the stroke"] if along is not None else []
     for effect in plant.motion_effects:
         if isinstance(effect, ChainEffect) and not effect.adds_coordinate:
             continue
@@ -250,20 +345,23 @@ def _on_axial_spring(effect: Effect, nut: float, axial: float) -> Effect:
     if isinstance(effect, PreloadLoss):
         return effect.with_values(ratio=softened(float(effect.values["ratio"])))  # type: ignore[arg-type]
     if isinstance(effect, StiffnessVsPosition):
-        share = float(effect.values["share_over_stroke"])  # type: ignore[arg-type]
-        return effect.with_values(share_over_stroke=1 - softened(1 - share))
+        share, middle = (float(effect.values[key]) for key in ("share_over_stroke", "middle_compliance"))  # type: ignore[arg-type]
+        softer = middle * axial / nut
+        return effect.with_values(share_over_stroke=1 - softened(1 - share), middle_compliance=softer)
     return effect
 
 
-def _left_out(plant: Plant, bare: Plant, position: float) -> tuple[str, ...]:
+def _left_out(plant: Plant, missed: Mapping[str, float]) -> tuple[str, ...]:
     lines = []
-    if plant.chain.varies and plant.stroke is not None:
-        ends = [stiffness_budget(bare, x).total * 1e-6 for x in plant.stroke]
-        here = stiffness_budget(bare, position).total * 1e-6
+    speed = format_quantity(top_speed(plant, UNDECLARED_SPEED), "m/s")
+    for channel, error in missed.items():
         lines.append(
-            f"stiffness along the stroke: {ends[0]:.4g} N/µm at its low and {ends[1]:.4g} N/µm at its high end, "
-            f"{here:.4g} N/µm here and everywhere in this file"
+            f"twist of the screw by its own drag, as it changes along the stroke: {channel} is missed by "
+            f"{format_quantity(error, 'm')} rms at {speed}; a diagnosis with this file names nothing within it"
         )
+    if plant.chain.varies:
+        what = "torsional stiffness, damping and what turns" if plant.stroke is not None else "stiffness and damping"
+        lines.append(f"{what} along the stroke: here and everywhere as with the table at this position")
     if plant.drive is not None:
         lines.append("parts, and what is checked of them: critical speed and buckling of the screw, rated life")
         if plant.drive.motor.brake is not None:
@@ -281,7 +379,7 @@ def _heading(plant: Plant, position: float, compared: tuple[Compared, ...], left
     scale = {"N/m": (1e-6, "N/µm"), "1": (100.0, "%")}
     lines = [
         f"{plant.name} as three inertias with the table at {1e3 * position:g} mm, written by `feeddrive lump`.",
-        "Valid up to the first resonance, near this position.",
+        "Valid up to the first resonance.",
         "",
         "machine -> this file:",
     ]

@@ -11,7 +11,7 @@ from feeddrive.recording.channels import channel_unit
 
 SENSOR_KINDS = ("encoder", "scale", "tachometer", "current")
 SENSOR_PLACES = ("motor", "screw", "table")
-_SENSOR_KEYS = ("channel", "kind", "at", "resolution", "absolute", "source")
+_SENSOR_KEYS = ("channel", "kind", "at", "resolution", "absolute", "model_error", "source")
 _OF_HEAT = re.compile(r".*_temperature|table_growth_.*")
 _CONTROLLER_UNITS = {
     "position_gain": "1/s",
@@ -44,15 +44,17 @@ def _sensor(table: Table) -> Sensor:
     table.refuse_unknown(_SENSOR_KEYS)
     channel = table.text("channel")
     unit = channel_unit(channel, table.place("channel"))
-    resolution = 0.0
-    if "resolution" in table.entries:
-        resolution = table.quantity("resolution", unit, f"{channel}.resolution")
-    if resolution < 0:
-        raise InputError("the resolution is negative", table.place("resolution"), "write it positive")
+    sizes = dict.fromkeys(("resolution", "model_error"), 0.0)
+    for key in sizes:
+        if key in table.entries:
+            sizes[key] = table.quantity(key, unit, f"{channel}.{key}")
+        if sizes[key] < 0:
+            raise InputError(f"the {key} is negative", table.place(key), "write it positive")
     absolute = table.entries.get("absolute", False)
     if not isinstance(absolute, bool):
         raise InputError(f"{absolute!r} is neither true nor false", table.place("absolute"), "write absolute = true")
-    return Sensor(channel, table.choice("kind", SENSOR_KINDS), table.choice("at", SENSOR_PLACES), resolution, absolute)
+    kind, at = table.choice("kind", SENSOR_KINDS), table.choice("at", SENSOR_PLACES)
+    return Sensor(channel, kind, at, sizes["resolution"], absolute, sizes["model_error"])
 
 
 def read_controller(top: Table) -> PositionVelocityController | DeclaredCascade | None:

@@ -22,7 +22,12 @@ _SECTIONS = ("motor", "ball_screw", "transmission", "table")
 
 
 def lumped_text(
-    plant: Plant, values: Mapping[str, float], effects: Sequence[Effect], remarks: Sequence[str], heading: Sequence[str]
+    plant: Plant,
+    values: Mapping[str, float],
+    effects: Sequence[Effect],
+    remarks: Sequence[str],
+    heading: Sequence[str],
+    missed: Mapping[str, float],
 ) -> str:
     """The plant file of three inertias that stand for a machine.
 
@@ -31,6 +36,7 @@ def lumped_text(
         values: of the chain of three inertias, SI.
         effects, remarks: what acts on it, and a comment for each.
         heading: lines of the comment at the top.
+        missed: channel to the rms of what three inertias miss of it.
     """
     lines = [f"# {line}".rstrip() for line in heading]
     lines += [
@@ -44,8 +50,9 @@ def lumped_text(
     for sensor in plant.sensors:
         lines += ["", "[[sensor]]", f"channel = {_text(sensor.channel)}", f"kind = {_text(sensor.kind)}"]
         lines += [f"at = {_text(sensor.at)}"]
-        if sensor.resolution:
-            lines += [f"resolution = {_text(f'{sensor.resolution!r} {channel_unit(sensor.channel, sensor.channel)}')}"]
+        unit = channel_unit(sensor.channel, sensor.channel)
+        for key, value in (("resolution", sensor.resolution), ("model_error", missed.get(sensor.channel, 0.0))):
+            lines += [f"{key} = {_text(f'{value!r} {unit}')}"] if value else []
     lines += _controller(plant)
     return plant_text_with_effects("\n".join(lines) + "\n", effects, remarks)
 

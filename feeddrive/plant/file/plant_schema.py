@@ -203,6 +203,8 @@ def _sensor() -> Section:
             Key("noise", "rms of a thermometer or a growth scale; read off the recording if left out", minimum=0.0),
             Key("absolute", "whether its zero is the same in every recording, so that an offset that moves is growth",
                 kind=Kind.SWITCH, default="false"),
+            Key("model_error", "rms of what this plant may miss of a channel of motion, in its unit; nothing within it"
+                " is a finding", minimum=0.0),
             SOURCE,
         ),
         listed=True,

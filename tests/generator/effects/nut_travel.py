@@ -91,9 +91,10 @@ class StiffnessDeviation(Effect):
 
 @dataclass(frozen=True)
 class StiffnessVsPosition(Effect):
-    """Axial stiffness k * (1 - share_over_stroke * (x - low) / (high - low)), (low, high) being the axis' travel.
+    """Compliance (1 + s / (1 - s) * (x - low) / (high - low)) / k, s = share_over_stroke, over the axis' travel.
 
-    Declared at the low end. Conservative: the table feels -k'(x) e^2 / 2 as well. Outside the travel the line goes on.
+    So that k is declared at the low end and (1 - s) k is left at the high one. Conservative: the table feels
+    -k'(x) e^2 / 2 as well. Outside the travel the line goes on.
     """
 
     name: ClassVar[str] = "stiffness_vs_position"
