@@ -148,6 +148,8 @@ def test_what_no_tolerances_explain_is_named(part: str, factor: float) -> None:
     alone = 1 / (1 / stiffness[named] + (1 / factor - 1) / stiffness[planted]) / stiffness[named]
     ends = effect.parameters["factor"].ci95
     assert ends is not None and ends[0] < alone < ends[1]
+    if planted == "bearing":
+        assert any("does as well as" in note and planted in note for note in result.notes)
     held(result, {})
     (position,) = (one for one in result.channels if one.name == "table_position")
     assert position.after.rms < 1.2 * position.noise_rms
