@@ -51,6 +51,21 @@ def test_the_declared_machine_leaves_noise(name: str) -> None:
         assert error < most * noise, channel
 
 
+@pytest.mark.parametrize("name", ["kimm_testbed", "hsr_axis", "vertical_axis"])
+def test_what_few_coordinates_miss_is_no_evidence(name: str) -> None:
+    """Recorded without noise, 60 elements differ by less than one deviation of the noise, all samples together.
+
+    So no fitted value moves by more than one of its own deviations: intervals may know noise alone.
+    """
+    plant = read_plant(find_plant(name))
+    noise = prepare(made(name, SECONDS, False, 1), plant, 1.0).noise
+    ideal = (("torque_noise", 0.0), ("scale_noise", 0.0), ("scale_step", 1e-15), ("encoder", 1e-12))
+    evidence = replace(prepare(made(name, SECONDS, False, 1, ideal), plant, 1.0), noise=noise)
+    predicted, rows = AxisPredictor().predict(plant, evidence), evidence.thinned(evidence.fit_rows)
+    missed = evidence.weighted({key: evidence.measured[key] - predicted[key] for key in noise}, rows)
+    assert missed @ missed < 1.0
+
+
 def shifted(recording: Recording, by: float, name: str) -> Recording:
     """The recording of an encoder that counts from another place [m]."""
     angle = recording["motor_angle"] - by / read_plant(find_plant(name)).chain.motor_radius
