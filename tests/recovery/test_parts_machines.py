@@ -150,6 +150,14 @@ def test_a_soft_nut_within_the_tolerance_of_a_catalogue_is_calibrated() -> None:
 
 
 @pytest.mark.slow
+def test_the_intervals_of_a_screw_held_at_both_ends_hold_what_was_planted() -> None:
+    """Nut and both bearings are alike there, and all forces and springs together are poorly known."""
+    result = diagnosed("hsr_axis", "nut", 0.8)
+    assert [effect.name for effect in result.effects] == []
+    held(result, {"nut_stiffness": 0.8})
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize(("part", "factor"), [("nut", 0.5), ("near", 0.7)])
 def test_what_no_tolerances_explain_is_named(part: str, factor: float) -> None:
     """Nut and bearing are alike: either is named, with an interval in which all of it may be its own."""
