@@ -364,7 +364,11 @@ class DriveEffect(Effect):
 
     def droop(self, p: Mapping[str, Expression]) -> Expression:
         """Share of the torque that is lost, per square of the torque [1/(N m)^2]; those of several effects add."""
-        raise NotImplementedError
+        return 0.0
+
+    def gain(self, p: Mapping[str, Expression]) -> Expression:
+        """Torque that is recorded over the torque before droop; those of several effects multiply."""
+        return 1.0
 
 
 class TimingEffect(Effect):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -15,8 +16,9 @@ from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant, write_text_atomically
 from feeddrive.interface.machine.check import Check
+from feeddrive.interface.machine.life import Life, UsedLife
 from feeddrive.interface.machine.modes import Modes
-from feeddrive.interface.machine.summary import Life, Stiffness, Summary, UsedLife
+from feeddrive.interface.machine.summary import Stiffness, Summary
 from feeddrive.interface.quantities import Quantity, quantities, si
 from feeddrive.plant.analysis.lumping import lump
 from feeddrive.plant.analysis.mode_map import mode_map
@@ -25,10 +27,12 @@ from feeddrive.plant.analysis.rated_life import rated_life
 from feeddrive.plant.analysis.stiffness_budget import stiffness_budget
 from feeddrive.plant.analysis.summary import summarise
 from feeddrive.plant.chain.moving_inertia import inertia_at_motor
+from feeddrive.plant.derived_effects import GRAVITY
 from feeddrive.plant.file.declared_check import check_declared
 from feeddrive.plant.file.effect_text import plant_text_with_effects
 from feeddrive.plant.file.entries import parse_toml
 from feeddrive.plant.file.files import plant_from_entries
+from feeddrive.plant.file.plant_schema import plant_table
 from feeddrive.plant.plant import Plant
 from feeddrive.simulate.scenario.scenario_overrides import with_overrides
 from feeddrive.thermal.heat import Heat
@@ -201,6 +205,36 @@ class Axis:
         changed.refuse_unusable()
         return changed
 
+    def with_body(
+        self, name: str, port: str, *, capacity: Quantity, conductance: Quantity, to_air: Quantity = "0 W/K"
+    ) -> Axis:
+        """The axis with a further body that takes heat: motor, bearing housing, bed; a `[[thermal.body]]` of the file.
+
+        Args:
+            name: of the body, for its temperature and for heats that act on it.
+            port: "front", "rear" or "nut", where it is attached.
+            capacity: [J/K].
+            conductance: to the surface at the port [W/K].
+            to_air: to the surroundings [W/K].
+
+        Raises:
+            InputError: a machine without heat, an unknown port, a value that is not possible.
+
+        >>> import feeddrive as fd
+        >>> axis = fd.load("thermal_bench")
+        >>> axis.with_body("bed", "front", capacity="60 kJ/K", conductance="0.2 W/K").heat.bodies[0].capacity
+        60000.0
+        """
+        given = {"name": name, "port": port}
+        for key, value, unit in (("capacity", capacity, "J/K"), ("conductance", conductance, "W/K"),
+                                 ("to_air", to_air, "W/K")):  # fmt: skip
+            given[key] = f"{si(value, unit, key)!r} {unit}"
+        written = "".join(f"{key} = {json.dumps(value, ensure_ascii=False)}\n" for key, value in given.items())
+        _ = self.heat
+        changed = replace(self, text=f"{self.text.rstrip()}\n\n[[thermal.body]]\n{written}")
+        changed.refuse_unusable()
+        return changed
+
     def save(self, path: str | Path) -> Path:
         """Write the plant file, with the effects that were added at its end.
 
@@ -214,14 +248,17 @@ class Axis:
         write_text_atomically(target, plant_text_with_effects(self.text, self.added))
         return target
 
-    def summary(self, at: Quantity | None = None) -> Summary | HeatSummary:
+    def summary(
+        self, at: Quantity | None = None, recording: Recording | str | Path | None = None
+    ) -> Summary | HeatSummary:
         """Values with their sources, inertias, stiffness budget, friction, modes and life; of heat alone its own.
 
         Args:
             at: table position for stiffness and modes; the middle of the stroke if left out.
+            recording: of which the life that it takes is told, see `used_life`; none if left out.
 
         Raises:
-            InputError: a position off the screw.
+            InputError: a position off the screw, a recording without motor angle, or of a machine of heat alone.
 
         >>> import feeddrive as fd
         >>> [one.title for one in fd.load("bench_axis").summary().tables()][2]
@@ -230,9 +267,17 @@ class Axis:
         from feeddrive.interface.machine.heat_summary import HeatSummary
 
         if not self.has_motion:
+            if recording is not None:
+                raise InputError(
+                    "declares heat alone, so no load of a nut is known", self.name, "leave the recording out"
+                )
             return HeatSummary(self.heat)
+        from feeddrive.plant.file.guide_section import declared_carriages  # Hertz's contacts take time to import
+
         found = summarise(self.plant, None if at is None else si(at, "m", "at"))
-        return Summary(self.plant, found, rated_life(self.plant))
+        carriages = declared_carriages(plant_table(self.entries, str(self.path)), GRAVITY)
+        used = None if recording is None else self.used_life(recording)
+        return Summary(self.plant, found, rated_life(self.plant), carriages, used)
 
     def lumped(self, at: Quantity | None = None) -> Lumped:
         """The three inertias that are nearest to a machine of parts, and how near they are.
@@ -301,7 +346,7 @@ class Axis:
 
     def life(self) -> Life:
         """Rated life of the ball screw, survived by 90 %."""
-        return Life(self.name, rated_life(self.plant))
+        return Life(self.name, rated_life(self.plant), self.plant)
 
     def used_life(self, recording: Recording | str | Path) -> UsedLife:
         """What a recorded motion has taken of the life of each nut of the ball screw.
@@ -321,7 +366,7 @@ class Axis:
             raise InputError("no channel motor_angle", rec.name, "record it: its revolutions are what wears the nuts")
         angle = comparison_band(self.plant, 1 / rec.sample_time).filter(rec["motor_angle"])
         force = rec.channels.get("cutting_force")
-        return UsedLife(rec.name, used_life(self.plant, rec.time, angle, force))
+        return UsedLife(rec.name, rec.time, used_life(self.plant, rec.time, angle, force))
 
     def linear(self, at: str = "") -> control.StateSpace:
         """The axis linearised exactly about a steady motion, states, inputs and outputs named, SI.

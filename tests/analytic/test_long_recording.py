@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import feeddrive as fd
+from feeddrive.diagnosis.likelihood.evidence import prepare
 from feeddrive.recording.checks.flaws import BAD, JOINED, flaw
 from feeddrive.recording.long import joined
 from feeddrive.recording.long.stretches import informative_windows
@@ -118,3 +119,12 @@ def test_play_of_the_whole_is_found_in_what_is_kept(long_one: fd.Recording, tmp_
     assert travel.rows < 30_000
     play = pool([travel], grid, prior_widths(axis.plant)).values[0, TRAVEL.index("play")]
     assert play == pytest.approx(6e-6, abs=0.1e-6)
+
+
+def test_noise_of_the_sensors_is_that_of_recorded_rows(long_one: fd.Recording, tmp_path: Path) -> None:
+    """Bridges are smooth: a fifth of the rows, in which the quietest tenth would be found."""
+    plant = machine_of(tmp_path).plant
+    short = prepare(machine.recording(machine.State(play=6e-6, seed=5), seconds=60.0), plant, 1.0)
+    whole = prepare(joined.shortened(long_one, RADIUS), plant, 1.0)
+    for name, noise in short.noise.items():
+        assert whole.noise[name] == pytest.approx(noise, rel=0.1)

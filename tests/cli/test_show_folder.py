@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from feeddrive.cli.main import main
+from feeddrive.recording import Recording
+from feeddrive.recording.files.writing import write_recording
 
 PNG = b"\x89PNG"
 
@@ -17,17 +21,21 @@ def test_folder_holds_json_and_figures(tmp_path: Path, capsys: pytest.CaptureFix
     assert main(["show", "hsr_axis", "--out", str(folder)]) == 0
     shown = capsys.readouterr()
     assert "combined stiffness" in shown.out and shown.err == ""
-    assert sorted(path.name for path in folder.iterdir()) == [
-        "show.json", "stiffness_position.png", "stiffness_shares.png",
-    ]  # fmt: skip
-    assert all((folder / f"stiffness_{name}.png").read_bytes().startswith(PNG) for name in ("position", "shares"))
+    pictures = ["guide_shares", "screw_efficiency", "screw_life", "stiffness_position", "stiffness_shares"]
+    assert sorted(path.name for path in folder.iterdir()) == sorted(["show.json", *(f"{one}.png" for one in pictures)])
+    assert all((folder / f"{name}.png").read_bytes().startswith(PNG) for name in pictures)
+    assert "not drawn" not in shown.out
     content = json.loads((folder / "show.json").read_text(encoding="utf-8"))
     assert main(["show", "hsr_axis", "--json"]) == 0
     assert json.loads(capsys.readouterr().out) == content
 
 
-def test_machine_without_parts_has_no_figures(tmp_path: Path) -> None:
+def test_machine_without_parts_has_no_figures_and_says_what_they_need(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert main(["show", "bench_axis", "--out", str(tmp_path)]) == 0
+    shown = capsys.readouterr().out
+    assert shown.count("not drawn: ") == 4 and "declare ball_screw.dynamic_rating" in shown
     assert [path.name for path in tmp_path.iterdir()] == ["show.json"]
 
 
@@ -51,3 +59,23 @@ def test_life_is_told_with_its_loads(capsys: pytest.CaptureFixture[str]) -> None
 def test_no_rating_tells_no_life(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["show", "kimm_testbed"]) == 0
     assert "Rated life" not in capsys.readouterr().out
+
+
+def test_a_recording_tells_what_it_takes_of_each_nut(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    time = np.arange(0.0, 2.0, 1e-3)
+    turns = 10 * (1 - np.cos(math.pi * np.clip(time / 1.8, 0.0, 1.0)))
+    angle = 2 * math.pi * turns
+    write_recording(Recording("stroke", time, {"motor_angle": angle}, 1e-3), tmp_path / "stroke.csv")
+    asked = ["show", "hsr_axis", "--recording", str(tmp_path / "stroke.csv")]
+    assert main([*asked, "--out", str(tmp_path / "out")]) == 0
+    shown = capsys.readouterr().out
+    assert "life of the ball screw that it takes" in shown and "billionths" in shown and "million times" in shown
+    assert (tmp_path / "out" / "used_life.png").read_bytes().startswith(PNG)
+    told = json.loads((tmp_path / "out" / "show.json").read_text(encoding="utf-8"))["used_life"]
+    assert told["revolutions"] == pytest.approx(20.0, rel=1e-3)
+    used = [20 / 1e6 * (load / 52e3) ** 3 for load in told["equivalent_loads"]]
+    assert told["used"] == pytest.approx(used, rel=1e-3)
+    # preload 3.6 kN, and the force of 320 kg that speed up and slow down: neither nut is far from it on average
+    assert all(3400 < load < 3900 for load in told["equivalent_loads"])
+    assert main(["show", "thermal_bench", "--recording", str(tmp_path / "stroke.csv")]) == 2
+    assert "leave the recording out" in capsys.readouterr().err

@@ -21,11 +21,9 @@ def said(name: str, folder: Path, capsys: pytest.CaptureFixture[str]) -> str:
 
 
 ALL = sorted(path.stem for path in (ROOT / "scenarios").glob("*.py"))
-DEEP = ("iso230_3_warm_up",)
-"""What designs a thermal compensation has no public interface yet."""
 
 
-@pytest.mark.parametrize("name", [name for name in ALL if name not in DEEP])
+@pytest.mark.parametrize("name", ALL)
 def test_script_imports_the_public_interface_alone(name: str) -> None:
     text = (ROOT / "scenarios" / f"{name}.py").read_text(encoding="utf-8")
     imports = re.findall(r"^ *((?:from|import) feeddrive.*)$", text, re.MULTILINE)

@@ -31,41 +31,20 @@ from feeddrive.diagnosis.likelihood.tolerances import (
     deviation_of,
     written_share,
 )
-from feeddrive.effects.base import DriveEffect, Effect, FrictionEffect, Parameter, Port, Signature, Value, number
+from feeddrive.effects.base import Effect, FrictionEffect, Port, Value
 from feeddrive.effects.chain.inertia_deviation import InertiaDeviation, declared_inertia
 from feeddrive.effects.chain.payload import Payload
 from feeddrive.effects.chain.stiffness_deviation import StiffnessDeviation
 from feeddrive.effects.friction.friction_deviation import FrictionDeviation
+from feeddrive.plant.motor_torque import TorqueGain, declared_gain
 from feeddrive.plant.plant import Plant
-from feeddrive.typing import Expression, FloatArray
+from feeddrive.typing import FloatArray
 
 FARTHEST = 3.0
 """Logarithm of a value over the declared one at most: a factor of twenty, so that every plant tried is a machine."""
 
 _WRITTEN = re.compile(r"± ([^,(]+)")
 _COULOMB, _VISCOUS, _WIDTH = ("coulomb",), ("viscous",), ("smoothing_velocity", "smoothing_speed")
-
-
-class TorqueGain(DriveEffect):
-    """A torque constant other than declared: the torque that is recorded over the one that acts."""
-
-    name = "torque_gain"
-    parameters = (Parameter("gain", "1", 0.0, 100.0, size=1.0),)
-    signature = Signature(("motor_torque",), "motor torque")
-    additive = True
-
-    def droop(self, p: Mapping[str, Expression]) -> Expression:
-        """A gain is no loss."""
-        return 0.0
-
-
-def torque_gain(plant: Plant) -> float:
-    """Recorded over acting torque; 1 as declared."""
-    gain = 1.0
-    for effect in plant.effects:
-        if isinstance(effect, TorqueGain):
-            gain *= number(effect.values["gain"])
-    return gain
 
 
 @dataclass(frozen=True)
@@ -145,15 +124,13 @@ def calibrated_values(plant: Plant) -> tuple[CalibratedValue, ...]:
                 words = f"{words} of the {whose}"
                 written = _written(plant, port, keys)
                 found.append(CalibratedValue(key, words, "1", 1.0, deviation, name, str(port), written))
-    constant = plant.torque_constant or 1.0
-    unit = "N m/A" if plant.torque_constant else "1"
     if plant.torque_constant:
-        deviation = _deviation(plant, ("motor.torque_constant",), TORQUE_CONSTANT, constant, unit)
+        deviation = _deviation(plant, ("motor.torque_constant",), TORQUE_CONSTANT, plant.torque_constant, "N m/A")
     else:  # a torque that the drive records is its current times a constant of the same data sheet as the masses
         sources = {plant.origins.get(key, "") for key in ("motor_inertia", "table_mass") if key in chain}
         deviation = deviation_of(max(TORQUE_CONSTANT.usual(_WRITTEN.sub("", source)) for source in sources))
-    in_file = (("motor.torque_constant", unit, constant),) if plant.torque_constant else ()
-    found.append(CalibratedValue("torque_constant", "torque constant", unit, constant, deviation, written=in_file))
+    in_file = (("motor.torque_factor", "1", 1 / declared_gain(plant)),)
+    found.append(CalibratedValue("torque_constant", "torque constant", "1", 1.0, deviation, written=in_file))
     return tuple(one for one in found if one.deviation > 0)
 
 

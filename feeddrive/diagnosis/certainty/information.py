@@ -20,12 +20,16 @@ from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.effects.base import Effect
 from feeddrive.typing import FloatArray
 
+ROUNDED = 1e-11
+"""Eigenvalue of a normal matrix of columns of length one, below which it is their rounding: slopes are differences of
+simulations, true to some parts in ten millions. The level of a curve that counts about its mean is told by nothing."""
+
 
 def inverse_information(normal: FloatArray) -> FloatArray:
     """Inverse of a normal matrix (k, k), its columns brought to one length first; 0 in directions that are not seen."""
     scale = np.sqrt(np.maximum(np.diag(normal), 0.0))
     scale = np.where(scale > 0, scale, 1.0)
-    inverse: FloatArray = np.linalg.pinv(normal / np.outer(scale, scale), rcond=1e-13, hermitian=True)
+    inverse: FloatArray = np.linalg.pinv(normal / np.outer(scale, scale), rcond=ROUNDED, hermitian=True)
     unscaled: FloatArray = inverse / np.outer(scale, scale)
     return unscaled
 

@@ -17,7 +17,7 @@ from feeddrive.diagnosis.suspicion.torque_channel import with_torque
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
-from feeddrive.recording.long.joined import clock
+from feeddrive.recording.long.joined import clock, recorded
 from feeddrive.simulate.driven import MotorMotion, motor_motion
 from feeddrive.typing import BoolArray, FloatArray
 
@@ -230,7 +230,8 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
     if "motor_torque" in raw and "injected_torque" in recording and not scaled_from:
         # the jumps of an injected binary sequence are no noise of the torque's sensor
         sensed["motor_torque"] = raw["motor_torque"] - recording["injected_torque"]
-    noise = {name: sensor_noise(series, band) for name, series in sensed.items()}
+    own = recorded(recording)
+    noise = {name: sensor_noise(series[own], band) for name, series in sensed.items()}
     zero = _zero_of_angle(recording, plant)
     encoder = None if slow else encoder_error(_placed(plant, zero), recording, band, noise)
     motion = encoder.motion if encoder is not None else motor_motion(time, recording["motor_angle"])

@@ -6,7 +6,6 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from feeddrive.diagnosis.calibration.declared import torque_gain
 from feeddrive.diagnosis.finding.candidates import CANDIDATES
 from feeddrive.diagnosis.finding.remembered import Remembered, effects_key
 from feeddrive.diagnosis.finding.scene import Candidate
@@ -47,7 +46,7 @@ class AxisPredictor(Predictor[AxisEvidence]):
     def predict(self, plant: Plant, evidence: AxisEvidence) -> dict[str, FloatArray]:
         """Channel to predicted series in the band, shape (n,), SI."""
         run = self.load_motion(plant, evidence)
-        torque = torque_gain(plant) * asked_torques(plant, run.torque + motor_sources(plant, run))
+        torque = asked_torques(plant, run.torque + motor_sources(plant, run))
         step = evidence.recording.sample_time
         if evidence.torque_rows is not None:  # the drive's own row begins half a row before what it acts about
             torque = repeated(lagging(torque, -0.5 * step, step), evidence.torque_rows)

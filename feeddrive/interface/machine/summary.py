@@ -9,8 +9,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from feeddrive.interface.machine.heat_summary import HeatSummary
+from feeddrive.interface.machine.life import RATED, Life, UsedLife
 from feeddrive.interface.shown import Listing, Shown, finite, write_figures, write_json
-from feeddrive.parts.life.consumed_life import ConsumedLife
+from feeddrive.parts.guide.carriages import Carriages
 from feeddrive.plant.analysis.modes import Modes
 from feeddrive.plant.analysis.rated_life import LifeRow
 from feeddrive.plant.analysis.stiffness_budget import StiffnessBudget
@@ -24,10 +25,6 @@ if TYPE_CHECKING:
 
 _KNOWN = ("motor", "screw", "axial", "table")
 """Coordinates of the modes that people know; `record` has all."""
-
-_LIFE = "rated life of the ball screw, survived by 90 %"
-
-_HOUR, _KILOMETRE, _MILLION = 3600.0, 1e3, 1e6
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -81,72 +78,6 @@ class Stiffness(Shown):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Life(Shown):
-    """Rated life of the ball screw, survived by 90 %, by preload alone and at the declared axial load.
-
-    Attributes:
-        axis_name: of the machine.
-        rows: one per load; none where no dynamic rating is declared.
-    """
-
-    axis_name: str
-    rows: Sequence[LifeRow]
-
-    def listing(self) -> Listing:
-        """One row per load."""
-        records = [
-            {
-                "force [N]": one.force,
-                "nut + [N]": one.nut_loads[0],
-                "nut − [N]": one.nut_loads[1],
-                "revolutions": one.revolutions,
-                "travel [m]": one.travel,
-                "time [s]": one.time,
-            }
-            for one in self.rows
-        ]
-        rows = [
-            [
-                format_quantity(one.force, "N") if one.force else "preload alone",
-                *(format_quantity(load, "N") for load in one.nut_loads),
-                _digits(one.revolutions / _MILLION),
-                f"{_digits(one.travel / _KILOMETRE)} km",
-                "" if one.time is None else f"{_digits(one.time / _HOUR)} h",
-            ]
-            for one in self.rows
-        ]
-        headings = ("axial force", "load of nut +", "of nut −", "10⁶ rev", "travel", "at greatest velocity")
-        title = f"{self.axis_name}: {_LIFE}"
-        if not self.rows:
-            title += " (not known: ball_screw.dynamic_rating is not declared)"
-        return Listing(title, headings, rows, records)
-
-
-@dataclass(frozen=True, repr=False, eq=False)
-class UsedLife(Shown):
-    """What a motion takes of the life of each nut of the ball screw.
-
-    Attributes:
-        name: of the run or the recording.
-        used: along the samples; None where no dynamic rating is declared, or no force of a nut is known.
-    """
-
-    name: str
-    used: ConsumedLife | None
-
-    def listing(self) -> Listing:
-        """One row per nut, then how often 90 % survive the motion."""
-        title = f"{self.name}: life of the ball screw that it takes"
-        if self.used is None:
-            return Listing(f"{title} (not known: ball_screw.dynamic_rating is not declared)", ("nut", "used"), [], [])
-        totals = dict(zip(("nut +", "nut −"), map(float, self.used.total), strict=True))
-        rows = [[name, f"{1e6 * share:.3g} millionths of its rated life"] for name, share in totals.items()]
-        rows.append(["both, survived by 90 %", f"{_digits(self.used.repetitions)} times one after another"])
-        records = [{"nut": name, "used [1]": share} for name, share in totals.items()]
-        return Listing(title, ("nut", "used"), rows, [*records, {"repetitions": finite(self.used.repetitions)}])
-
-
-@dataclass(frozen=True, repr=False, eq=False)
 class Summary(Shown):
     """Values with their sources, inertias, stiffness budget, friction, modes and rated life of a machine, and its heat.
 
@@ -154,11 +85,15 @@ class Summary(Shown):
         plant: the machine.
         figures: everything that was computed, SI.
         life: rows of the rated life.
+        carriages: of its guide, where declared.
+        used: what a recording takes of the life, where one was given.
     """
 
     plant: Plant
     figures: Figures
     life: Sequence[LifeRow]
+    carriages: Carriages | None = None
+    used: UsedLife | None = None
 
     def listing(self) -> Listing:
         """The declared values."""
@@ -184,11 +119,13 @@ class Summary(Shown):
                 self._friction(),
             ),
             self._modes(at),
-            replace(Life(plant.name, self.life).listing(), title=_LIFE.capitalize()),
+            replace(Life(plant.name, self.life, plant).listing(), title=RATED.capitalize()),
         ]
         if found.stiffness is not None:
             stiffness = Stiffness(plant.name, found.position, found.stiffness, plant).listing()
             tables.insert(3, replace(stiffness, title=f"Stiffness, motor held{at}"))
+        if self.used is not None:
+            tables.append(self.used.listing())
         heat = HeatSummary(plant.heat).tables() if plant.has_heat else ()
         return (*(one for one in tables if one.rows), *heat)
 
@@ -213,6 +150,7 @@ class Summary(Shown):
             "stiffness": asdict(found.stiffness) if found.stiffness else None,
             "friction": [asdict(row) for row in found.friction],
             "life": [asdict(row) for row in self.life],
+            **({"used_life": self.used.record()} if self.used is not None else {}),
             "modes": {
                 "coordinates": list(found.modes.coordinates),
                 "braked": _modes_record(found.modes.braked),
@@ -223,7 +161,7 @@ class Summary(Shown):
         }
 
     def save(self, folder: str | Path) -> Path:
-        """Write `show.json`, and the figures of the stiffness of a machine that is described by parts.
+        """Write `show.json` and the figures that the declared values allow; `not_drawn` says which are left out.
 
         Raises:
             InputError: the folder cannot be written.
@@ -233,12 +171,26 @@ class Summary(Shown):
         write_figures(self._figures(), place)
         return place
 
+    @property
+    def not_drawn(self) -> tuple[str, ...]:
+        """A line for each figure that is left out, with what to declare for it."""
+        from feeddrive.report.figures.figure_parts import figures_left_out
+
+        stiffness = "stiffness along the stroke: describe a distributed screw by its parts"
+        return (*(() if self._has_places else (stiffness,)), *figures_left_out(self.plant, self.carriages))
+
+    @property
+    def _has_places(self) -> bool:
+        """Whether the stiffness follows the nut along a screw that is described by its parts."""
+        return self.plant.drive is not None and self.plant.chain.varies
+
     def _figures(self) -> Sequence[ReportFigure]:
-        if self.plant.drive is None or not self.plant.chain.varies:
-            return ()
+        from feeddrive.report.figures.figure_parts import parts_figures
         from feeddrive.report.figures.figure_stiffness import stiffness_figures
 
-        return stiffness_figures(self.plant, self.figures.position)
+        drawn = stiffness_figures(self.plant, self.figures.position) if self._has_places else ()
+        used = self.used._figures() if self.used is not None else ()
+        return (*drawn, *parts_figures(self.plant, self.carriages), *used)
 
     def _source(self, key: str) -> str:
         return self.plant.origins.get(key, "")
@@ -306,8 +258,3 @@ def _modes_record(modes: Modes) -> dict[str, Any]:
 
 def _several(value: Any) -> tuple[float, ...]:
     return value if isinstance(value, tuple) else (value,)
-
-
-def _digits(value: float) -> str:
-    """Three digits and no power of ten, which nobody reads in hours and kilometres."""
-    return f"{float(f'{value:.3g}'):.15g}"

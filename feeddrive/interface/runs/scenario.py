@@ -14,7 +14,7 @@ from feeddrive import __version__
 from feeddrive.errors import InputError
 from feeddrive.files import find_scenario
 from feeddrive.interface.axis import Axis, load
-from feeddrive.interface.machine.summary import UsedLife
+from feeddrive.interface.machine.life import UsedLife
 from feeddrive.interface.runs.figure_listing import figure_listing
 from feeddrive.interface.servo import Servo, controller_entries
 from feeddrive.interface.shown import Listing, Shown, finite, needed_pandas, write_figures, write_json
@@ -90,7 +90,7 @@ class Run(Shown):
         """
         series, plant = self.result.series, self.result.scenario.plant
         used = used_life(plant, self.result.time, series["motor_angle"], series["cutting_force"])
-        return UsedLife(self.result.scenario.name, used)
+        return UsedLife(self.result.scenario.name, self.result.time, used)
 
     def listing(self) -> Listing:
         """One row per number: following error, torque, and the figures that the scenario asks for."""

@@ -40,16 +40,28 @@ class ConsumedLife:
         revolutions: turned up to each sample, either way, (n,) [rev].
         used: D_j up to each sample, (nuts, n) [1].
         exponents: of the life law.
+        forces: loads of the nuts at each sample, (nuts, n) [N].
+        rating: C of a single nut [N].
     """
 
     revolutions: FloatArray
     used: FloatArray
     exponents: LifeExponents
+    forces: FloatArray
+    rating: float
 
     @property
     def total(self) -> FloatArray:
         """D_j of the whole recording, (nuts,) [1]."""
         return np.asarray(self.used[:, -1], dtype=float)
+
+    @property
+    def equivalent(self) -> FloatArray:
+        """Constant load of each nut that takes as much life over the same revolutions, (nuts,) [N]; 0 without any."""
+        turned = float(self.revolutions[-1])
+        if turned == 0.0:
+            return np.zeros(len(self.used))
+        return np.asarray(self.rating * (self.total * MILLION / turned) ** (1.0 / self.exponents.load), dtype=float)
 
     @property
     def survival(self) -> float:
@@ -87,7 +99,7 @@ def consumed_life(
     shares = steps / MILLION * (forces[:, :-1] / rating) ** exponents.load
     revolutions = np.concatenate(([0.0], np.cumsum(steps)))
     used = np.concatenate((np.zeros((forces.shape[0], 1)), np.cumsum(shares, axis=1)), axis=1)
-    return ConsumedLife(revolutions, used, exponents)
+    return ConsumedLife(revolutions, used, exponents, forces, rating)
 
 
 def rigid_nut_forces(axial_force: FloatArray, preload: float) -> FloatArray:

@@ -10,6 +10,7 @@
 | L_j, L | rated life of one nut, of both together | rev |
 | p, e | exponents of `feeddrive.parts.life.life_exponents` | 1 |
 
+Under a duty of several forces 1/L_j is the mean of (F_j/C)^p over the travel (Palmgren and Miner).
 The preload is that of [nut] or of `nut_friction`; it loads the nuts at all times, so life ends without any force too.
 Validity: as `feeddrive.parts.life.life`, so no factor for film or dirt. Source: paper 001, eqs. (9), (23), (24).
 """
@@ -17,10 +18,12 @@ Validity: as `feeddrive.parts.life.life`, so no factor for film or dirt. Source:
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import cast
 
 from feeddrive.effects.friction.nut_friction import NutFriction
+from feeddrive.errors import InputError
 from feeddrive.parts.life.life import distance, life_together, rated_revolutions, running_time
 from feeddrive.parts.screw.double_nut import rigid_sharing
 from feeddrive.plant.plant import Plant
@@ -54,30 +57,53 @@ def rated_life(plant: Plant) -> tuple[LifeRow, ...]:
     Warns:
         ValidityWarning: a load above half the rating.
     """
-    rating, load = _datum(plant, "ball_screw.dynamic_rating"), _datum(plant, "table.axial_load")
-    if rating is None:
+    load = datum(plant, "table.axial_load")
+    if datum(plant, "ball_screw.dynamic_rating") is None:
         return ()
-    preload = preload_of(plant)
-    forces = ([0.0] if preload > 0.0 else []) + ([load] if load is not None else [])
-    return tuple(_row(plant, rating, preload, force) for force in forces)
+    forces = ([0.0] if preload_of(plant) > 0.0 else []) + ([load] if load is not None else [])
+    return tuple(_row(plant, force) for force in forces)
+
+
+def life_under(plant: Plant, duty: Sequence[tuple[float, float]]) -> float:
+    """Revolutions that 90 % survive under a duty; infinite without any load [rev].
+
+    Args:
+        plant: that declares `ball_screw.dynamic_rating`.
+        duty: share of the travel and axial force [N] of each; shares of 1 together.
+
+    Raises:
+        InputError: no dynamic rating.
+
+    Warns:
+        ValidityWarning: a load above half the rating.
+    """
+    rating = datum(plant, "ball_screw.dynamic_rating")
+    if rating is None:
+        raise InputError("no dynamic rating", plant.name, "declare ball_screw.dynamic_rating")
+    worn = [0.0, 0.0]
+    for share, force in duty:
+        for nut, load in enumerate(rigid_sharing(force, preload_of(plant))):
+            worn[nut] += share / rated_revolutions(rating, float(load))
+    return life_together([1.0 / one if one > 0.0 else math.inf for one in worn])
 
 
 def preload_of(plant: Plant) -> float:
     """Preload of the nut, from [nut] or from its friction [N]; 0 where none is declared."""
-    declared = _datum(plant, "nut.preload")
+    declared = datum(plant, "nut.preload")
     if declared is not None:
         return declared
     return next((cast(float, e.values["preload"]) for e in plant.effects if isinstance(e, NutFriction)), 0.0)
 
 
-def _row(plant: Plant, rating: float, preload: float, force: float) -> LifeRow:
-    loads = tuple(float(nut) for nut in rigid_sharing(force, preload))
-    together = life_together([rated_revolutions(rating, load) for load in loads])
-    velocity = _datum(plant, "table.max_velocity")
+def _row(plant: Plant, force: float) -> LifeRow:
+    loads = tuple(float(nut) for nut in rigid_sharing(force, preload_of(plant)))
+    together = life_under(plant, [(1.0, force)])
+    velocity = datum(plant, "table.max_velocity")
     time = running_time(together, velocity / plant.chain.radius) if velocity is not None else None
     travel = distance(together, 2 * math.pi * plant.chain.radius)
     return LifeRow(force, (loads[0], loads[1]), together, travel, time)
 
 
-def _datum(plant: Plant, key: str) -> float | None:
+def datum(plant: Plant, key: str) -> float | None:
+    """A declared value of a part or a rating, `section.key` [SI]; None where the file gives none."""
     return plant.data[key].value if key in plant.data else None

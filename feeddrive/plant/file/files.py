@@ -82,6 +82,7 @@ from feeddrive.plant.file.heat.heat_section import read_heat
 from feeddrive.plant.file.plant_schema import NAMED_PARTS, plant_table
 from feeddrive.plant.file.ratings import RATINGS, read_data
 from feeddrive.plant.file.stroke import read_stroke
+from feeddrive.plant.motor_torque import TorqueGain
 from feeddrive.plant.passive_friction import refuse_active_friction
 from feeddrive.plant.plant import Plant
 from feeddrive.units.quantity import format_quantity
@@ -156,7 +157,9 @@ def plant_from_entries(entries: Mapping[str, Any], path: Path) -> Plant:
     constant = "torque_constant"
     per_ampere = positive(motor, constant, "N m/A", constant) if constant in motor.entries else None
     declared = read_effects(top)
-    effects = (*declared, *derived_effects(top, declared))
+    factor = positive(motor, "torque_factor", "1", "torque_factor") if "torque_factor" in motor.entries else 1.0
+    scaled = (TorqueGain.of(gain=1 / factor),) if factor != 1.0 else ()
+    effects = (*declared, *derived_effects(top, declared), *scaled)
     if chain is not None:
         refuse_what_cannot_compose(effects, chain.elastic, top.where)
     joint = read_coupling(top)
@@ -215,7 +218,7 @@ def _further(section: str, structure: type[Chain], parts: bool) -> tuple[str, ..
     """Keys of a section that are neither values of a chain nor of a part, where something reads them."""
     placed = structure is DistributedScrew or parts
     keys = {
-        "motor": ("torque_limit", "torque_constant"),
+        "motor": ("torque_limit", "torque_constant", "torque_factor"),
         "ball_screw": ("elements",) if structure is DistributedScrew else (),
         "transmission": ("nut_position",) if structure is ThreeInertias and parts else (),
         "table": ("stroke", *WEIGHT_KEYS, *(("first_nut_position",) if placed else ())),

@@ -32,6 +32,7 @@ from feeddrive.effects.base import Effect
 from feeddrive.effects.friction.guide_friction import GuideFriction, guide_effect
 from feeddrive.errors import InputError
 from feeddrive.parts.catalogue.reading import CataloguePart, catalogue, nearest_names
+from feeddrive.parts.guide.carriages import Carriages, RatedCarriage, RollingCarriage
 from feeddrive.parts.guide.guide_coefficients import SET_A, SET_B
 from feeddrive.parts.guide.guide_geometry import GUIDE_VALUES, HSR_20R, HSR_30R, BallGuide
 from feeddrive.parts.guide.guide_rating import rated_friction
@@ -66,24 +67,52 @@ def guide_friction_of(top: Table, gravity: float, before: Sequence[Effect]) -> l
     Raises:
         InputError: a value that is missing, without unit or not possible, or friction declared twice.
     """
-    if "guide" not in top.entries:
+    found = declared_carriages(top, gravity)
+    if found is None:
         return []
     table = top.table("guide")
     if any(isinstance(effect, GuideFriction) for effect in before):
         raise InputError("guide and guide_friction are both declared", table.where, "keep one of them")
+    turning = table.quantity("smoothing_velocity") if "smoothing_velocity" in table.entries else TURNING
+    one, count, load, seal = found.one, found.count, found.load, found.seal_drag
+    origin, under = f"computed from {count} carriages {found.name}", format_quantity(load, "N")
+    if isinstance(one, RatedCarriage):
+        drag = placed(table.where, lambda: rated_friction(load, one.preload, one.friction_coefficient, seal))
+        origin += (
+            f" under {under} and a preload of {format_quantity(one.preload, 'N')} each; {_rated()[found.name].source}"
+        )
+        return [(GuideFriction.of(coulomb=count * drag, smoothing_velocity=turning), origin)]
+    effect = placed(table.where, lambda: guide_effect(one.guide, one.coefficients, count, load, seal, turning))
+    return [(effect, f"{origin} with {under} and seals of {format_quantity(seal, 'N')} each")]
+
+
+def declared_carriages(top: Table, gravity: float) -> Carriages | None:
+    """The carriages of a plant file; None without a [guide].
+
+    Args:
+        top: the file.
+        gravity: acceleration of fall [m/s^2].
+
+    Raises:
+        InputError: a value that is missing, without unit or not possible.
+    """
+    if "guide" not in top.entries:
+        return None
+    table = top.table("guide")
     if "carriage" in table.entries and table.text("carriage") in _rated():
-        return [_rated_friction(top, gravity)]
+        table.refuse_unknown(_OF_RATING)
+        part = _rated()[table.text("carriage")]
+        count = table.whole("carriages", 1, MOST)
+        drag = _or_printed(table, "seal_drag", part.sections["guide"]["seal_drag"])
+        coefficient = _or_printed(table, "friction_coefficient", part.further["friction_coefficient"])
+        load = _load(top, gravity, count)
+        return Carriages(part.name, count, load, drag, RatedCarriage(_preload(table, part), coefficient))
     table.refuse_unknown(_OF_GEOMETRY)
     name, guide = _carriage(table)
     coefficients = COEFFICIENTS[table.choice("coefficients", COEFFICIENTS, "A")]
     count = table.whole("carriages", 1, MOST)
     seal = table.quantity("seal_drag", "N", "guide.seal_drag") if "seal_drag" in table.entries else 0.0
-    load, turning = _load(top, gravity, count), TURNING
-    if "smoothing_velocity" in table.entries:
-        turning = table.quantity("smoothing_velocity", "m/s", "guide.smoothing_velocity")
-    effect = placed(table.where, lambda: guide_effect(guide, coefficients, count, load, seal, turning))
-    origin = f"computed from {count} carriages {name} with {format_quantity(load, 'N')} and seals of"
-    return [(effect, f"{origin} {format_quantity(seal, 'N')} each")]
+    return Carriages(name, count, _load(top, gravity, count), seal, RollingCarriage(guide, coefficients))
 
 
 def _carriage(table: Table) -> tuple[str, BallGuide]:
@@ -119,22 +148,6 @@ def _known_carriages(name: str) -> str:
 def _rated() -> Mapping[str, CataloguePart]:
     """Carriages of the catalogue by their name."""
     return {name: part for name, part in catalogue().items() if part.kind == "guide"}
-
-
-def _rated_friction(top: Table, gravity: float) -> tuple[Effect, str]:
-    """Friction of carriages of the catalogue, from load, preload and seals, and where it comes from."""
-    table = top.table("guide")
-    table.refuse_unknown(_OF_RATING)
-    part = _rated()[table.text("carriage")]
-    count = table.whole("carriages", 1, MOST)
-    drag = _or_printed(table, "seal_drag", part.sections["guide"]["seal_drag"])
-    coefficient = _or_printed(table, "friction_coefficient", part.further["friction_coefficient"])
-    load, preload = _load(top, gravity, count), _preload(table, part)
-    turning = table.quantity("smoothing_velocity") if "smoothing_velocity" in table.entries else TURNING
-    one = placed(table.where, lambda: rated_friction(load, preload, coefficient, drag))
-    shown = f"{format_quantity(load, 'N')} and a preload of {format_quantity(preload, 'N')} each"
-    origin = f"computed from {count} carriages {part.name} under {shown}; {part.source}"
-    return GuideFriction.of(coulomb=count * one, smoothing_velocity=turning), origin
 
 
 def _preload(table: Table, part: CataloguePart) -> float:

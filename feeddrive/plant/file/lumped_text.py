@@ -11,6 +11,7 @@ from feeddrive.effects.base import Effect
 from feeddrive.plant.chain.chain import ThreeInertias
 from feeddrive.plant.file.effect_text import plant_text_with_effects
 from feeddrive.plant.file.ratings import RATINGS
+from feeddrive.plant.motor_torque import declared_gain
 from feeddrive.plant.plant import DeclaredCascade, Plant, PositionVelocityController
 from feeddrive.recording.channels import channel_unit
 
@@ -60,6 +61,8 @@ def _section(plant: Plant, section: str, values: Mapping[str, float]) -> list[st
         lines.append(f"torque_limit = {_quantity(plant.torque_limit, 'N m')}")
     if section == "motor" and plant.torque_constant is not None:
         lines.append(f"torque_constant = {_quantity(plant.torque_constant, 'N m/A')}")
+    if section == "motor" and declared_gain(plant) != 1.0:
+        lines.append(f"torque_factor = {1 / declared_gain(plant):.6g}")
     if section == "table" and plant.stroke is not None:
         lines.append(f"stroke = [{', '.join(_quantity(end, 'm') for end in plant.stroke)}]")
     for rating in RATINGS.get(section, ()):

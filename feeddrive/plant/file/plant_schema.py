@@ -56,6 +56,8 @@ _FURTHER: dict[str, tuple[Key, ...]] = {
         Key("torque_limit", "peak torque of the motor", "N m", minimum=0.0, open_ends=True),
         Key("torque_constant", "torque per current, where a recording holds the current", "N m/A", minimum=0.0,
             open_ends=True),
+        Key("torque_factor", "torque that acts over torque that the drive records", "1", minimum=0.0, open_ends=True,
+            default="1"),
     ),
     "ball_screw": (
         Key("elements", "of the main span: 1 or 2", "1", Kind.WHOLE, 1, 2, default="1",

@@ -14,7 +14,7 @@ import numpy as np
 from feeddrive.recording.checks.flaws import JOINED, Flaw, IndexArray, flaw
 from feeddrive.recording.long.stretches import informative_windows
 from feeddrive.recording.recording import Recording
-from feeddrive.typing import FloatArray
+from feeddrive.typing import BoolArray, FloatArray
 
 LONGEST = 400_000
 """Rows up to which a recording is taken whole: seven minutes at 1 kHz."""
@@ -61,6 +61,15 @@ def clock(recording: Recording) -> FloatArray:
         since: FloatArray = recording.time - recording.time[0]
         return since
     return np.arange(len(recording), dtype=np.float64) * recording.sample_time
+
+
+def recorded(recording: Recording) -> BoolArray:
+    """Tell the rows that were recorded, (n,): all but those between stretches, which have no noise of a sensor."""
+    found = np.ones(len(recording), dtype=bool)
+    for one in recording.flaws:
+        if one.kind == JOINED:
+            found[one.rows] = False
+    return found
 
 
 def _ended_slowly(position: FloatArray, windows: list[tuple[int, int]], sample_time: float) -> list[tuple[int, int]]:

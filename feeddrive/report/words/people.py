@@ -131,6 +131,14 @@ def with_unit(number: str, unit: str) -> str:
     return f"{number}{'' if unit in ('', '°') else SPACE}{unit.replace(' ', SPACE)}"
 
 
+def scale_for_share_of_life(largest: float) -> Scale:
+    """Unit in which shares of a rated life, which a motion takes in small bites, are readable."""
+    for least, scale in ((1e-4, Scale(1e2, "%")), (1e-7, Scale(1e6, "millionths"))):
+        if abs(largest) >= least:
+            return scale
+    return Scale(1e9, "billionths")
+
+
 def share_text(share: float) -> str:
     """A share as per cent with digits that suit its size."""
     if not math.isfinite(share):
