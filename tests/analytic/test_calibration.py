@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from feeddrive.diagnosis.calibration.beyond import is_within_tolerance, said_by_effects
+from feeddrive.diagnosis.calibration.beyond import given_back, is_within_tolerance, said_by_effects
 from feeddrive.diagnosis.calibration.calibration import Calibration, whitener
 from feeddrive.diagnosis.calibration.declared import CalibratedValue, as_effect, calibrated_values, with_values
 from feeddrive.diagnosis.likelihood.evidence import prepare
@@ -16,6 +16,7 @@ from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
 from feeddrive.diagnosis.likelihood.tolerances import MASS, deviation_of
 from feeddrive.effects.base import Port
 from feeddrive.effects.chain.payload import Payload
+from feeddrive.effects.chain.stiffness_deviation import StiffnessDeviation
 from feeddrive.effects.friction.friction_deviation import FrictionDeviation
 from feeddrive.effects.source.constant_force import ConstantForce
 from feeddrive.files import plants_folder
@@ -114,6 +115,19 @@ def test_a_declared_value_that_an_effect_says_is_fitted_by_it_alone_and_the_mach
     recorded = prepare(rigid_run("a", Truth(), seconds=6.0), plant, 1.0)
     torques = [AxisPredictor().predict(one, recorded)["motor_torque"] for one in (before, after)]
     assert torques[1] == pytest.approx(torques[0], rel=1e-9, abs=1e-9)
+
+
+def test_a_value_given_back_is_as_declared_and_the_others_stay(tmp_path: Path) -> None:
+    plant = plant_of(drawn_drive(5), tmp_path)
+    problem = beside(plant, RANDOM.standard_normal(len(calibrated_values(plant))))
+    assert problem.calibration is not None
+    was = dict(zip((one.key for one in problem.calibration.values), problem.calibration.coordinates, strict=True))
+    nut = StiffnessDeviation.of(None, "nut", factor=0.5)
+    without, _ = said_by_effects(problem, [nut])
+    again = given_back(without, nut).calibration
+    assert again is not None
+    now = dict(zip((one.key for one in again.values), again.coordinates, strict=True))
+    assert now == {**was, "nut_stiffness": 0.0}
 
 
 def test_an_effect_within_the_tolerance_of_a_declared_value_is_no_lack_of_the_plant(tmp_path: Path) -> None:

@@ -3,7 +3,8 @@
 It shares no code with feeddrive and reads the numbers of the parts themselves from the plant file. The screw is 60
 elements of a bar and a torsion rod with consistent mass, fixed to the screw: the nut travels over them. Between two
 nodes it stands on the line between them and on a spring in series, c = s (1 - s) h / R, which is what a rod gives way
-there beyond that line, so that the static stiffness is that of the rod at every place.
+there beyond that line, so that the static stiffness is that of the rod at every place. The drag of the screw twists it
+there as well: by T s (1 - s) h / GJ, which without it would be missing at every place but the nodes.
 
     order of the rotations: motor / ratio, hubs and wheels between motor and screw, nodes of the screw
 
@@ -406,6 +407,7 @@ def _run(z, start, turning, along, p, level, setpoint, chirp, gains, sample, ste
         for _ in range(steps):
             node, share, soft = at_nut(z, first + x + 0.5 * h * v, axial, torsional, radius)
             stiffness = nut / (1 + nut * soft)
+            by_drag = radius * share * (1 - share) * (z[node + 1] - z[node]) / torsional  # stretch by the twist there
             one, two = start + node, start + node + 1
             _times(m, mo, phi_rate, turned)
             _times(k, ko, phi, scratch)
@@ -442,6 +444,7 @@ def _run(z, start, turning, along, p, level, setpoint, chirp, gains, sample, ste
                     stretch
                     + amplitude * math.sin(order * turn + phase)
                     + 0.5 * h * (radius * w + u_free - force * g_a - rate)
+                    - by_drag * drag
                 )
                 f, by_e, by_rate = _spring(stiffness, tau, gap, e, e_rate)
                 t, t_w = _drag(p, level, force, w)
@@ -450,7 +453,7 @@ def _run(z, start, turning, along, p, level, setpoint, chirp, gains, sample, ste
                 r1, r2, r3 = force - f, drag - t, hold - b
                 through = by_rate + 0.5 * h * by_e
                 j11 = 1 + through * (arm * arm * g_t + g_a + inverse)
-                j12, j13 = through * arm * g_t, -through * inverse
+                j12, j13 = through * arm * g_t + by_e * by_drag, -through * inverse
                 j21, j22 = t_w * arm * g_t, 1 + t_w * g_t
                 j31, j33 = -b_v * inverse, 1 + b_v * inverse
                 # eliminate drag and hold: d2 = (-r2 - j21 d1) / j22, d3 = (-r3 - j31 d1) / j33

@@ -51,6 +51,21 @@ def test_the_declared_machine_leaves_noise(name: str) -> None:
         assert error < most * noise, channel
 
 
+@pytest.mark.parametrize("name", ["kimm_testbed", "hsr_axis", "vertical_axis"])
+def test_what_few_coordinates_miss_is_no_evidence(name: str) -> None:
+    """Recorded without noise, 60 elements differ by less than one deviation of the noise, all samples together.
+
+    So no fitted value moves by more than one of its own deviations: intervals may know noise alone.
+    """
+    plant = read_plant(find_plant(name))
+    noise = prepare(made(name, SECONDS, False, 1), plant, 1.0).noise
+    ideal = (("torque_noise", 0.0), ("scale_noise", 0.0), ("scale_step", 1e-15), ("encoder", 1e-12))
+    evidence = replace(prepare(made(name, SECONDS, False, 1, ideal), plant, 1.0), noise=noise)
+    predicted, rows = AxisPredictor().predict(plant, evidence), evidence.thinned(evidence.fit_rows)
+    missed = evidence.weighted({key: evidence.measured[key] - predicted[key] for key in noise}, rows)
+    assert missed @ missed < 1.0
+
+
 def shifted(recording: Recording, by: float, name: str) -> Recording:
     """The recording of an encoder that counts from another place [m]."""
     angle = recording["motor_angle"] - by / read_plant(find_plant(name)).chain.motor_radius
@@ -170,6 +185,14 @@ def test_a_soft_nut_within_the_tolerance_of_a_catalogue_is_calibrated() -> None:
 
 
 @pytest.mark.slow
+def test_the_intervals_of_a_screw_held_at_both_ends_hold_what_was_planted() -> None:
+    """Nut and both bearings are alike there, and all forces and springs together are poorly known."""
+    result = diagnosed("hsr_axis", "nut", 0.8)
+    assert [effect.name for effect in result.effects] == []
+    held(result, {"nut_stiffness": 0.8})
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize(("part", "factor"), [("nut", 0.5), ("near", 0.7)])
 def test_what_no_tolerances_explain_is_named(part: str, factor: float) -> None:
     """Nut and bearing are alike: either is named, with an interval in which all of it may be its own."""
@@ -183,6 +206,8 @@ def test_what_no_tolerances_explain_is_named(part: str, factor: float) -> None:
     alone = 1 / (1 / stiffness[named] + (1 / factor - 1) / stiffness[planted]) / stiffness[named]
     ends = effect.parameters["factor"].ci95
     assert ends is not None and ends[0] < alone < ends[1]
+    if planted == "bearing":
+        assert any("does as well as" in note and planted in note for note in result.notes)
     held(result, {})
     (position,) = (one for one in result.channels if one.name == "table_position")
     assert position.after.rms < 1.2 * position.noise_rms

@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from feeddrive.diagnosis.calibration.calibrate import ENOUGH, PASSES, moved, recalibrated, with_kept
+from feeddrive.diagnosis.calibration.calibration import Calibration
 from feeddrive.diagnosis.calibration.declared import CalibratedValue, as_effect, calibrated_values
 from feeddrive.diagnosis.calibration.known import TOLERANCE, known_values
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
@@ -17,6 +18,7 @@ from feeddrive.effects.base import Effect, Value, number
 from feeddrive.effects.chain.inertia_deviation import declared_inertia
 from feeddrive.effects.friction.friction_deviation import FrictionDeviation
 from feeddrive.plant.plant import Plant
+from feeddrive.typing import FloatArray
 
 SURE = 3.0
 """Deviations by which no values within their tolerances may explain the recordings, and one beyond its does: one of 700
@@ -49,10 +51,11 @@ def beyond_tolerance(problem: Problem, found: Fit) -> tuple[Problem, Effect] | N
     likeliest = np.array([known.c(i, float(u)) for i, u in enumerate(costs[place][0])])
     there = replace(problem, calibration=replace(problem.calibration, coordinates=likeliest))
     freed, (effect,) = said_by_effects(there, [as_effect(problem.plant, known.values[place], 0.0)])
-    return _together(freed, (*found.effects, effect))
+    freed, together = fitted_together(freed, (*found.effects, effect))
+    return freed, together[-1]
 
 
-def _together(problem: Problem, effects: Sequence[Effect]) -> tuple[Problem, Effect]:
+def fitted_together(problem: Problem, effects: Sequence[Effect]) -> tuple[Problem, list[Effect]]:
     """Effects and declared values fitted in turn until neither moves: alike, each bends what the other is told by."""
     for _ in range(PASSES):
         before = problem = recalibrated(problem, effects)
@@ -60,7 +63,28 @@ def _together(problem: Problem, effects: Sequence[Effect]) -> tuple[Problem, Eff
         problem = problem.settled(effects)
         if np.max(np.abs(moved(before, problem)), initial=0.0) < ENOUGH:
             break
-    return problem, effects[-1]
+    return problem, [*effects]
+
+
+def given_back(problem: Problem, effect: Effect) -> Problem:
+    """The problem with the declared value that an effect said to be other fitted within its tolerance again.
+
+    It begins as declared, with slopes of zero: they are to be taken anew (`calibrate.recalibrated`).
+    """
+    known = problem.calibration
+    if known is None:
+        return problem
+    old = {value.key: i for i, value in enumerate(known.values)}
+    values = [v for v in calibrated_values(problem.plant) if v.key in old or (v.name and _is_said_by(v, effect))]
+    from_old = [old.get(value.key, len(old)) for value in values]  # the last column is one of zeros
+
+    def placed(rows: FloatArray) -> FloatArray:
+        return np.pad(rows, [(0, 0)] * (rows.ndim - 1) + [(0, 1)])[..., from_old]
+
+    slopes = {of: {name: placed(rows) for name, rows in one.items()} for of, one in known.slopes.items()}
+    numbers = placed(known.number_slopes) if len(known.number_slopes) else np.zeros((0, len(values)))
+    given = Calibration(tuple(values), placed(known.coordinates), slopes, known.variance, numbers)
+    return replace(problem, calibration=given)
 
 
 def said_by_effects(problem: Problem, effects: Sequence[Effect]) -> tuple[Problem, tuple[Effect, ...]]:

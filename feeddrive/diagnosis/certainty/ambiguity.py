@@ -14,7 +14,7 @@ from math import log
 
 import numpy as np
 
-from feeddrive.diagnosis.calibration.calibrate import recalibrated
+from feeddrive.diagnosis.calibration.beyond import fitted_together, given_back, said_by_effects
 from feeddrive.diagnosis.certainty.certainty_result import Ambiguity
 from feeddrive.diagnosis.certainty.imitations import imitations_of
 from feeddrive.diagnosis.certainty.rival_odds import Residuals, odds_and_distance
@@ -50,9 +50,6 @@ PLACED = ("inertia_deviation", "channel_delay", "stiffness_deviation")
 
 NEAR_END = 0.02
 """Share of an end of a parameter's range within which it counts as standing there."""
-
-AGAIN = 2
-"""Times that declared values and a stiffness elsewhere are fitted in turn."""
 
 ITERATIONS = 12
 """Steps of that fit at most; it starts from values that were fitted in the round of the search, others with it."""
@@ -219,14 +216,15 @@ def _is_free(found: Search, effect: Effect) -> bool:
 def _in_place(found: Search, judged: Sequence[Judged], place: int, rival: Effect, mine: Residuals) -> Rival | None:
     """A rival in the place of an effect, all refitted; None where the plant cannot hold or follow it.
 
-    A stiffness elsewhere is another machine for the declared values as well: they get their slopes beside it.
+    A stiffness elsewhere is another machine for the declared values as well. What was named is one of them again, and
+    what the rival is about none: beside each, all others are free within their tolerances.
     """
-    effects, problem = [*found.fit.effects], found.problem
+    effects, problem, named = [*found.fit.effects], found.problem, found.fit.effects[place]
     effects[place] = rival
     try:
-        for _ in range(AGAIN if isinstance(rival, StiffnessDeviation) else 0):
-            problem = recalibrated(problem, effects)
-            effects = [*fit(problem, effects, iterations=ITERATIONS).effects]
+        if isinstance(rival, StiffnessDeviation):
+            problem, said = said_by_effects(problem, effects)
+            problem, effects = fitted_together(given_back(problem, named), said)
         swapped = fit(problem, effects, iterations=ITERATIONS)
         its = Residuals.of(problem, swapped, [(j.with_effects(problem, swapped.effects), j) for j in judged])
     except InputError:
