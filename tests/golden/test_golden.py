@@ -42,8 +42,8 @@ def test_counts_of_the_papers_are_those_that_are_claimed() -> None:
     CLAIMS["papers.reproduced"].check(summary["reproduced"])
 
 
-def differences(kept: Any, found: Any, place: str = "") -> list[str]:
-    """Where two outputs differ, in words."""
+def differences(kept: Any, found: Any, place: str = "", near: float = 1e-12) -> list[str]:
+    """Where two outputs differ, in words; `near` is what a number may differ by that is zero but for rounding."""
     if isinstance(kept, dict) and isinstance(found, dict):
         keys = dict.fromkeys((*kept, *found))
         return [
@@ -51,10 +51,12 @@ def differences(kept: Any, found: Any, place: str = "") -> list[str]:
         ]
     if isinstance(kept, list) and isinstance(found, list):
         count = max(len(kept), len(found))
+        # a component of an eigenvector that is none is rounding of its largest, times the spread of the eigenvalues
+        near = 1e-9 * max((abs(one) for one in kept if isinstance(one, float)), default=0.0) + 1e-12
         pairs = ((kept[i] if i < len(kept) else None, found[i] if i < len(found) else None) for i in range(count))
-        return [line for i, (a, b) in enumerate(pairs) for line in differences(a, b, f"{place}.{i}".strip("."))]
+        return [line for i, (a, b) in enumerate(pairs) for line in differences(a, b, f"{place}.{i}".strip("."), near)]
     if isinstance(kept, float) and isinstance(found, (int, float)):
-        same = math.isclose(kept, found, rel_tol=SAME, abs_tol=1e-12)
+        same = math.isclose(kept, found, rel_tol=SAME, abs_tol=near)
     else:
         same = kept == found
     return [] if same else [f"{place}: {kept!r} -> {found!r}"]
