@@ -13,7 +13,7 @@ import pytest
 
 from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.files import plants_folder
-from feeddrive.plant.file.files import read_plant
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.recording import read_recording
 from tests.claims.book import CLAIMS
 from tests.recovery.planted import Verdict, axis_plant, declared_errors
