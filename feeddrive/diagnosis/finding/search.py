@@ -17,6 +17,7 @@ from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.finding.round import Round, one_round
 from feeddrive.diagnosis.finding.scene import scene_of
 from feeddrive.diagnosis.finding.sets import Neighbour, neighbours
+from feeddrive.diagnosis.heat.heat_materiality import is_another
 from feeddrive.diagnosis.judging.result import Trial
 from feeddrive.diagnosis.likelihood.coordinates import write_coordinates
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
@@ -34,6 +35,10 @@ are near by design, so that slopes put the likeliest among the first."""
 
 SMALL = "the recordings show it, and it is too small to matter on this machine"
 """Why an effect is not reported that the search met beside the others."""
+
+
+ANOTHER = "its values have run to where it is another effect"
+"""Why an effect is not searched further."""
 
 
 @dataclass(frozen=True)
@@ -108,6 +113,12 @@ def search(
         rounds.append(tuple(attempt.for_the_record() for attempt in now.attempts))
         names = taken.name.split(" with ") if taken is not None else []
         trials += [_trial(len(rounds), attempt, attempt.name in names) for attempt in rounds[-1]]
+        others = [effect for effect in found.effects if is_another(effect)] if taken is None else []
+        if others:  # the search goes on with the name that the law has run to
+            denied |= dict.fromkeys((effect.name for effect in others), ANOTHER)
+            impossible |= denied
+            found = fit(problem, [one for one in found.effects if not any(one is other for other in others)])
+            continue
         if taken is None:
             beyond = beyond_tolerance(problem, found)
             if beyond is None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from feeddrive.effects.base import Effect, listed
+from feeddrive.effects.base import Effect, listed, number
 from feeddrive.effects.heat.bearing_heat import reference_torque
 from feeddrive.thermal.laws.friction import torque_law
 from feeddrive.thermal.machine_heat import Heat
@@ -57,13 +57,18 @@ def is_material_heat(effect: Effect, heat: Heat) -> bool:
         case "cooling":
             return v["conductance"] >= LEAST_FILM_SHARE * _film_of_nut(heat)
         case "heat_sink":
-            return v["conductance"] >= LEAST_FILM_SHARE * _film_of_nut(heat) and (
-                LEAST_CAPACITY_SHARE * _capacity_of_nut(heat) <= v["capacity"] <= LONGEST_SINK * v["conductance"]
-            )
+            enough = v["capacity"] >= LEAST_CAPACITY_SHARE * _capacity_of_nut(heat)
+            return enough and v["conductance"] >= LEAST_FILM_SHARE * _film_of_nut(heat)
         case "structure_growth":
             return abs(v["growth"]) + abs(v.get("slope", 0.0)) * heat.rig.length >= LEAST_GROWTH
         case _:
             return v.get("time_constant", LEAST_LAG) >= LEAST_LAG
+
+
+def is_another(effect: Effect) -> bool:
+    """Whether a thermal effect has run to where it is another one: a mass that stays cold is a coolant."""
+    values = effect.values
+    return effect.name == "heat_sink" and number(values["capacity"]) > LONGEST_SINK * number(values["conductance"])
 
 
 def _largest_shape(effect: Effect) -> float:
