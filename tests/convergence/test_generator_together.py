@@ -74,7 +74,9 @@ def nut(t: float, phi: float, nu: float, x: float, v: float) -> tuple[float, flo
     e = r * phi + 20e-6 * math.sin(3.0 * phi + 0.4) + g * x - x
     rate = lead * nu - (1.0 - g) * v + 1e-3 / 0.05 * math.exp(-t / 0.05) * x
     k0 = 0.8 * BENCH.axial_stiffness
-    k, dk = k0 * (1.0 - 0.5 * (x - 0.04) / 0.32), -k0 * 0.5 / 0.32
+    # a share of 0.5 lost at the far end: the compliance doubles along the stroke, in a straight line
+    k = k0 / (1.0 + (x - 0.04) / 0.32)
+    dk = -(k**2) / (k0 * 0.32)
     e1 = 150.0 / (0.35 * k)
     force = 0.35 * k * e if abs(e) < e1 else float(np.sign(e)) * (150.0 + k * (abs(e) - e1))
     pull = 0.35 * e**2 / 2.0 if abs(e) < e1 else (e**2 - 0.65 * e1**2) / 2.0

@@ -57,6 +57,8 @@ def beyond_tolerance(problem: Problem, found: Fit) -> tuple[Problem, Effect] | N
 
 def fitted_together(problem: Problem, effects: Sequence[Effect]) -> tuple[Problem, list[Effect]]:
     """Effects and declared values fitted in turn until neither moves: alike, each bends what the other is told by."""
+    if problem.calibration is None:  # all declared values are exact
+        return problem, [*fit(problem, effects).effects]
     for _ in range(PASSES):
         before = problem = recalibrated(problem, effects)
         effects = fit(problem, effects).effects
