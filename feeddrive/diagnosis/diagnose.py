@@ -272,7 +272,10 @@ def _without_fault(
     left: Suspect | None = fault
     for _ in range(2):
         mended = tuple([fault.mended(recording) for recording in part] for part in files)
-        other = begin((mended[0], mended[1]))
+        try:
+            other = begin((mended[0], mended[1]))
+        except InputError:  # what it makes of the recordings is none of any machine
+            return begun, settled, files
         left = again(calibrated(other.problem), fault.kind)
         if left is None or abs(left.size) < left.deviation:
             break
