@@ -112,6 +112,16 @@ def diagnose(
         ),
         lambda one: _settled(one.problem, one.judged, in_the_loop, progress, start),
     )
+    logged = () if hold is not None else open_lag(settled.searched.search.fit.effects, every)
+    begun = replace(begun, notes=(*begun.notes, *logged))
+    return _reported(plant, begun, settled, (recordings, validation), progress)
+
+
+def _reported(
+    plant: Plant, begun: _Begun, settled: _Settled, files: Files, progress: Progress
+) -> tuple[Diagnosis, tuple[Effect, ...]]:
+    """What was found, as it is reported, and the effects to add to the plant."""
+    recordings, validation = files
     searched, judged, refinement = settled.searched, settled.judged, settled.refinement
     found = searched.search
     progress("looking at what is left")
@@ -152,7 +162,6 @@ def diagnose(
         correlation=correlation(found.problem, found.fit, known),
         notes=(
             *begun.notes,
-            *(open_lag(found.fit.effects, every) if hold is None else ()),
             *other_places(found, judged),
             *known_together(found.problem, found.fit),
             *last_state(searched),
