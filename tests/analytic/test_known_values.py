@@ -80,3 +80,18 @@ def test_coordinates_go_there_and_back() -> None:
     found = known(1.0, -1.0)
     for c in (-3.0, -1.0, 0.0, 2.0):
         assert found.c(0, found.u(0, c)) == pytest.approx(c, abs=1e-12)
+
+
+@pytest.mark.parametrize("seed", [78, 143, 172])
+def test_an_interval_is_there_however_poorly_values_are_told(seed: int) -> None:
+    """Eight stiffnesses whose slopes are of sizes far apart, ten tolerances off: bounds are met and left many times."""
+    random = np.random.default_rng(seed)
+    values = tuple(
+        CalibratedValue(f"k{i}_stiffness", "k", "N/m", 1e8, DEVIATION, "stiffness_deviation", "") for i in range(8)
+    )
+    rows, columns = 10.0 ** random.uniform(-2, 3, 8), random.normal(0, 1, (8, 8))
+    slopes = rows[:, None] * columns * 10.0 ** random.uniform(-1, 1, 8)
+    found = Known(values, np.zeros(8), slopes, slopes @ random.uniform(-20, 20, 8) + random.normal(0, 30, 8))
+    for place in range(8):
+        low, high = found.interval(place)
+        assert np.isfinite([low, high]).all() and low <= high

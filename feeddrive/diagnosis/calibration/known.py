@@ -114,6 +114,9 @@ class Known:
 
         ends = []
         for way in (-1.0, 1.0):
+            if excess(best[place]) >= 0:  # so poorly told that not even the least is found twice
+                ends.append(best[place])
+                continue
             far = way
             while excess(best[place] + far) < 0 and abs(far) < MOST:
                 far *= 2
@@ -132,7 +135,8 @@ def _least(slopes: FloatArray, right_side: FloatArray, low: FloatArray, high: Fl
     """The least chi² between ends, and where."""
     if not slopes.shape[1]:
         return float(right_side @ right_side), np.zeros(0)
-    solved = lsq_linear(slopes, right_side, (low, high), method="bvls")
+    # a value may come to an end and leave it again: the library's own limit, as many turns as values, is too few
+    solved = lsq_linear(slopes, right_side, (low, high), method="bvls", max_iter=100 * slopes.shape[1])
     return 2 * float(solved.cost), solved.x
 
 
