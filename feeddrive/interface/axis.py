@@ -295,7 +295,7 @@ class Axis:
         from feeddrive.interface.machine.lumped import Lumped
 
         further = ("the [thermal] sections; temperatures are predicted with the file of the parts",)
-        place = self.plant.middle if at is None else si(at, "m", "at")
+        place = None if at is None else si(at, "m", "at")
         return Lumped(self.name, lump(self.plant, place, further if self.has_heat else ()))
 
     def modes(self, at: Quantity | Sequence[Quantity] | None = None) -> Modes:
