@@ -23,10 +23,10 @@ def warm_up_tables(found: ThermalStudy, lumps: Network) -> tuple[Listing, ...]:
 
 def _over_time(found: ThermalStudy) -> list[Listing]:
     """Temperatures, and the error at the table, at some times."""
-    duty, travel = found.duty, found.plant.rig.travel
+    duty, travel = found.duty, found.heat.rig.travel
     speed = format_quantity(float(np.mean(np.abs(duty.speeds))), "rad/s")
     what = f"{speed} constant" if duty.is_constant else f"{speed} on average ({duty.source})"
-    title = f"{found.plant.name}: {what}, nut from {travel.low * 1e3:.4g} to {travel.high * 1e3:.4g} mm"
+    title = f"{found.heat.name}: {what}, nut from {travel.low * 1e3:.4g} to {travel.high * 1e3:.4g} mm"
     grown = [name for name in found.series if name.startswith("table_growth")]
     others = [name for name in found.series if name not in grown]
     return [_series(title, others, found), _series("Error at the table, growth of the screw", grown, found)]

@@ -19,7 +19,7 @@ import numpy as np
 import scipy.sparse as sparse
 
 from feeddrive.thermal.full.occupancy import cell_edges
-from feeddrive.thermal.rig import Rig, Steel, refuse_unless
+from feeddrive.thermal.rig import Steel, refuse_unless
 from feeddrive.typing import Expression, FloatArray
 
 
@@ -43,17 +43,6 @@ class Cells:
     def refined(self, factor: int) -> Cells:
         """A grid with `factor` times as many cells in each direction."""
         return Cells(*(factor * n for n in (self.shaft_axial, self.shaft_radial, self.nut_axial, self.nut_radial)))
-
-    @staticmethod
-    def of_paper(rig: Rig, axial: float = 2.5e-3, radial: float = 0.5e-3) -> Cells:
-        """Grid of paper 002: cells of 2.5 mm by 0.5 mm."""
-        nut_wall = rig.nut.outer_radius - rig.radius
-        return Cells(
-            round(rig.length / axial),
-            round(rig.radius / radial),
-            round(rig.nut.length / axial),
-            round(nut_wall / radial),
-        )
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,6 +6,8 @@ the centre, so that their mean is a second difference of a quadratic and needs n
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from feeddrive.thermal.rig import Travel
@@ -15,6 +17,24 @@ from feeddrive.typing import FloatArray
 def cell_edges(length: float, cells: int) -> FloatArray:
     """Edges of equal cells from 0 to `length`, (cells + 1,) [m]."""
     return np.linspace(0.0, length, cells + 1)
+
+
+def places_of(travel: Travel, cell: float) -> tuple[FloatArray, FloatArray]:
+    """Places where the nut's centre stands on its way, a cell or less apart, and the share of time at each.
+
+    Args:
+        travel: of the nut's centre.
+        cell: axial cell of the nut [m].
+
+    Returns:
+        Places (k,) [m] and shares (k,); at the two ends it stands half as long as elsewhere.
+    """
+    stretches = math.ceil(travel.stroke / cell - 1e-9)
+    if stretches == 0:
+        return np.array([travel.low]), np.ones(1)
+    shares = np.full(stretches + 1, 1.0 / stretches)
+    shares[[0, -1]] /= 2
+    return np.linspace(travel.low, travel.high, stretches + 1), shares
 
 
 def overlap(nut_edges: FloatArray, shaft_edges: FloatArray, travel: Travel) -> FloatArray:

@@ -10,7 +10,7 @@ Source: Moore 1981; square-root form. A stable system stays stable. It is two-si
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg
@@ -54,18 +54,6 @@ def balance(system: HeatSystem, order: int, input_sizes: FloatArray, output_size
     u, strengths, vh = np.linalg.svd(seen.T @ reached)
     scale = 1 / np.sqrt(strengths[:order])
     return Balance(seen @ u[:, :order] * scale, reached @ vh[:order].T * scale, strengths)
-
-
-def truncated(system: HeatSystem, order: int, input_sizes: FloatArray, output_sizes: FloatArray) -> HeatSystem:
-    """The system on its strongest balanced states; args and errors as `balance`."""
-    found = balance(system, order, input_sizes, output_sizes)
-    return replace(
-        system,
-        capacity=np.ones(order),
-        conductance=found.left.T @ system.conductance @ found.right,
-        gains=found.left.T @ system.gains,
-        rows=system.rows @ found.right,
-    )
 
 
 def _root(gramian: FloatArray) -> FloatArray:

@@ -5,8 +5,6 @@
    basis V of the order that was asked for.
 3. Congruence: C_r = VᵀCV = 1, K_r(g) = VᵀK₀V + Σ gᵢ VᵀKᵢV. As every g ≥ 0 keeps K_r symmetric and not negative, the
    model is stable and passive at every operating point, also while conductances change within a run.
-
-At one operating point `reduced_system` is smaller still: two-sided balancing.
 """
 
 from __future__ import annotations
@@ -17,7 +15,7 @@ from itertools import product
 
 import numpy as np
 
-from feeddrive.thermal.reduced.balancing import balance, truncated
+from feeddrive.thermal.reduced.balancing import balance
 from feeddrive.thermal.reduced.krylov import moments, orthonormal
 from feeddrive.thermal.reduced.parametric_model import AMBIENT, COOLANT, HeatModel, Path
 from feeddrive.thermal.reduced.system import HeatSystem
@@ -127,22 +125,6 @@ def compressed(system: HeatSystem, sizes: Sizes | None = None) -> HeatSystem:
         gains=basis.T @ system.gains,
         rows=system.rows @ basis,
     )
-
-
-def reduced_system(system: HeatSystem, order: int, sizes: Sizes | None = None) -> HeatSystem:
-    """A system at one operating point, balanced to `order` states.
-
-    Args:
-        system: full, or dense with every C one.
-        order: number of states.
-        sizes: working sizes.
-
-    Raises:
-        InputError: an order that is not possible.
-    """
-    sizes = sizes or Sizes()
-    small = compressed(system, sizes) if system.is_sparse else system
-    return truncated(small, order, sizes.of_inputs(small.input_names), sizes.of_outputs(small.output_names))
 
 
 def _directions(system: HeatSystem, inputs: FloatArray, outputs: FloatArray) -> FloatArray:
