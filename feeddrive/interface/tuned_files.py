@@ -15,8 +15,7 @@ from feeddrive.interface.servo import HIGHEST, LOWEST, Servo
 from feeddrive.servo.cascade import KV_UNIT, Cascade
 from feeddrive.servo.loop_response import loops_of
 from feeddrive.servo.margins import Margins
-from feeddrive.servo.response_family import open_family
-from feeddrive.servo.response_json import margins_content
+from feeddrive.servo.response_family import margins_content, open_family
 from feeddrive.tuning.drive_settings import DriveSettings
 from feeddrive.tuning.reasons import describe, operating_points, rules
 from feeddrive.units.quantity import format_quantity

@@ -13,7 +13,7 @@ from feeddrive.effects.tabulated import TabulatedForce, TabulatedFriction, Tabul
 from feeddrive.errors import InputError
 from feeddrive.files import plants_folder
 from feeddrive.plant.analysis.linear import ode, ode_parameters, state_names
-from feeddrive.plant.file.effect_text import plant_text_with_effects
+from feeddrive.plant.file.lumped_text import plant_text_with_effects
 from feeddrive.plant.file.plant_file import read_plant
 
 BENCH = read_plant(plants_folder() / "bench_axis.toml")

@@ -15,8 +15,7 @@ from scipy.special import j0, j1
 
 from feeddrive.errors import InputError
 from feeddrive.thermal.full.full_model import Discretisation, discretise, full_model, model_of
-from feeddrive.thermal.full.grid import Cells, cylinder
-from feeddrive.thermal.full.occupancy import cell_edges, overlap, places_of
+from feeddrive.thermal.full.grid import Cells, cell_edges, cylinder, overlap, places_of
 from feeddrive.thermal.reduced.parametric_model import Path
 from feeddrive.thermal.reduced.system import HeatSystem
 from feeddrive.thermal.rig import Body, Nut, Seat, Steel, Travel

@@ -11,11 +11,11 @@ import pytest
 from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.thermal.full.full_model import full_model
-from feeddrive.thermal.full.occupancy import cell_edges
+from feeddrive.thermal.full.grid import cell_edges
 from feeddrive.thermal.laws.expansion import growths
 from feeddrive.thermal.laws.films import Films, rotating_cylinder_film
 from feeddrive.thermal.laws.friction import Friction
-from feeddrive.thermal.laws.nut_preload import Spacer, preload_change
+from feeddrive.thermal.thermal_coupling import Spacer, preload_change
 from tests.analytic.thermal_cases import BENCH, BENCH_FILE, RPM, conductances
 
 RIG = BENCH.rig

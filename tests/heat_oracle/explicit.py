@@ -19,8 +19,7 @@ import scipy.sparse as sparse
 
 from feeddrive.errors import InputError
 from feeddrive.thermal.full.full_model import Discretisation, model_of
-from feeddrive.thermal.full.grid import Cells
-from feeddrive.thermal.full.occupancy import places_of
+from feeddrive.thermal.full.grid import Cells, places_of
 from feeddrive.thermal.reduced.parametric_model import HeatModel, Path
 from feeddrive.thermal.reduced.system import HeatSystem
 from feeddrive.thermal.rig import Rig, Travel, refuse_unless, refuse_unless_positive

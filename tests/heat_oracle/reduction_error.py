@@ -10,8 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy.linalg
 
-from feeddrive.thermal.reduced.balancing import balance
-from feeddrive.thermal.reduced.reduction import Sizes, compressed
+from feeddrive.thermal.reduced.reduction import Sizes, balance, compressed
 from feeddrive.thermal.reduced.system import HeatSystem
 from feeddrive.typing import FloatArray
 

@@ -22,7 +22,7 @@ from feeddrive.diagnosis.suspicion.quality import is_recorders, quality_record
 from feeddrive.diagnosis.unexplained.unexplained_record import carried_remarks, unexplained_record
 from feeddrive.effects.base import Effect
 from feeddrive.files import write_text_atomically
-from feeddrive.plant.file.effect_text import plant_text_with_effects
+from feeddrive.plant.file.lumped_text import plant_text_with_effects
 
 FORMAT = "feeddrive-diagnosis/1"
 

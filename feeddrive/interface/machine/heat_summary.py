@@ -7,9 +7,8 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from feeddrive.interface.shown import Listing, Shown
-from feeddrive.thermal.machine_heat import Heat
+from feeddrive.thermal.machine_heat import Heat, HeatSensor
 from feeddrive.thermal.run.heat_figures import HeatRow, heat_rows
-from feeddrive.thermal.sensors import HeatSensor
 from feeddrive.units.quantity import format_quantity
 
 

@@ -23,8 +23,8 @@ from feeddrive.simulate.scenario.cycle_losses import CycleLosses, cycle_losses
 from feeddrive.simulate.scenario.scenario import Scenario
 from feeddrive.simulate.setpoints.cutting_force import held
 from feeddrive.thermal.full.full_model import FRONT, NUT, REAR, SHAFT
-from feeddrive.thermal.laws.contact_conductance import conductance_at_preload
 from feeddrive.thermal.laws.expansion import growths
+from feeddrive.thermal.laws.films import conductance_at_preload
 from feeddrive.thermal.laws.laws import FOLLOWED, INPUTS, PATHS, laws_of, values_of
 from feeddrive.thermal.machine_heat import Heat
 from feeddrive.thermal.reduced.parametric_model import AMBIENT, HeatModel, Path
