@@ -16,8 +16,8 @@ from feeddrive.export.point import export_point
 from feeddrive.interface.quantities import Quantity, quantities
 from feeddrive.interface.servo import Servo, cascade_for
 from feeddrive.interface.shown import Listing, Shown, finite, write_figures, write_json
-from feeddrive.metrology.recorded_response import recorded_response
 from feeddrive.metrology.response import Response as Measured
+from feeddrive.metrology.response import recorded_response
 from feeddrive.plant.analysis.linear import INPUTS, OUTPUTS
 from feeddrive.plant.chain.resolution import resolved, resolved_modes
 from feeddrive.plant.file.entries import nearest
