@@ -25,7 +25,7 @@ from feeddrive.plant.plant import Plant
 from feeddrive.recording.frequency_response import FrequencyResponse
 from feeddrive.recording.recording import Recording
 from feeddrive.report.figures.figure_bode import magnitude_unit
-from feeddrive.report.words.chain_words import chain_remark
+from feeddrive.report.words.words import chain_remark
 from feeddrive.servo.loop_response import loops_of, refuse_unstable_case
 from feeddrive.servo.mechanics_response import UNITS, Case, refuse_no_range
 from feeddrive.servo.resonances import on_curve

@@ -12,7 +12,7 @@ import numpy as np
 from feeddrive.interface.shown import Listing, Shown, finite, write_figures, write_json
 from feeddrive.plant.analysis.mode_map import ModeMap
 from feeddrive.plant.plant import Plant
-from feeddrive.report.words.chain_words import chain_remark
+from feeddrive.report.words.words import chain_remark
 from feeddrive.typing import FloatArray
 
 if TYPE_CHECKING:
@@ -98,7 +98,7 @@ class Modes(Shown):
         return place
 
     def _figures(self) -> Sequence[ReportFigure]:
-        from feeddrive.report.figures.figure_modes import modes_figure
+        from feeddrive.report.figures.figure_stiffness import modes_figure
 
         drawn = self.plant.chain.varies and self.plant.stroke is not None
         return (modes_figure(self.plant),) if drawn else ()

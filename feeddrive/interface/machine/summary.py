@@ -17,7 +17,7 @@ from feeddrive.plant.analysis.rated_life import LifeRow
 from feeddrive.plant.analysis.stiffness_budget import StiffnessBudget
 from feeddrive.plant.analysis.summary import Summary as Figures
 from feeddrive.plant.plant import Plant
-from feeddrive.report.words.chain_words import chain_remark
+from feeddrive.report.words.words import chain_remark
 from feeddrive.units.quantity import format_quantity
 
 if TYPE_CHECKING:

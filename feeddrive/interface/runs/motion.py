@@ -116,7 +116,7 @@ class Motion(Shown):
         return pandas.DataFrame(dict(self.series), index=pandas.Index(self.time, name="time [s]"))
 
     def _figures(self) -> list[ReportFigure]:
-        from feeddrive.report.figures.figure_run import run_figure
+        from feeddrive.report.figures.figure_scenario import run_figure
 
         return [run_figure(self.axis_name, self.time, self.series)]
 

@@ -141,7 +141,7 @@ class ThermalTrial(Shown):
         return place
 
     def _figures(self) -> Sequence[ReportFigure]:
-        from feeddrive.report.figures.figure_thermal_compensation import (
+        from feeddrive.report.figures.figure_compensation import (
             axis_heating_figure,
             compensation_figure,
             stroke_figure,
