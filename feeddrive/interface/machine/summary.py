@@ -8,8 +8,8 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from feeddrive.interface.machine.check import RATED, Life, UsedLife
 from feeddrive.interface.machine.heat_summary import HeatSummary
-from feeddrive.interface.machine.life import RATED, Life, UsedLife
 from feeddrive.interface.shown import Listing, Shown, finite, write_figures, write_json
 from feeddrive.parts.guide.carriages import Carriages
 from feeddrive.plant.analysis.modes import Modes
