@@ -19,8 +19,7 @@ from feeddrive.diagnosis.unexplained.shape import (
     statement_of,
     table_of,
 )
-from feeddrive.diagnosis.unexplained.term import Form, Term
-from feeddrive.diagnosis.unexplained.tried_terms import finer_steps, sines, terms_of
+from feeddrive.diagnosis.unexplained.terms import Form, Term, finer_steps, sines, terms_of
 from feeddrive.diagnosis.unexplained.unexplained_result import Dependence
 from feeddrive.diagnosis.unexplained.view import View, sample_of
 from feeddrive.typing import FloatArray, IntegerArray

@@ -18,7 +18,7 @@ from feeddrive.diagnosis.likelihood.cross_validation import compare_left_out
 from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.diagnosis.unexplained.functional_anova import Found
 from feeddrive.diagnosis.unexplained.shape import table_of
-from feeddrive.diagnosis.unexplained.term import Form
+from feeddrive.diagnosis.unexplained.terms import Form
 from feeddrive.diagnosis.unexplained.unexplained_result import Carried, Table
 from feeddrive.effects.base import Effect, Port
 from feeddrive.effects.friction.tabulated_friction import TabulatedFriction

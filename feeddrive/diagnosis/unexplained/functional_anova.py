@@ -19,7 +19,7 @@ import numpy as np
 
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.unexplained.functional_sums import Sample, Sums
-from feeddrive.diagnosis.unexplained.term import Term
+from feeddrive.diagnosis.unexplained.terms import Term
 from feeddrive.typing import FloatArray
 
 MOST_TERMS = 4

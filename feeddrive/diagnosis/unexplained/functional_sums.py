@@ -14,7 +14,7 @@ import numpy as np
 
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison, compare_left_out, prior_information
 from feeddrive.diagnosis.likelihood.folds import FOLDS
-from feeddrive.diagnosis.unexplained.term import Term
+from feeddrive.diagnosis.unexplained.terms import Term
 from feeddrive.typing import FloatArray, IntegerArray
 
 RIDGE = 1e-8

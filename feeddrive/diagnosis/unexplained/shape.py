@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from feeddrive.diagnosis.unexplained.functional_anova import Found
-from feeddrive.diagnosis.unexplained.term import Form, Term
+from feeddrive.diagnosis.unexplained.terms import Form, Term
 from feeddrive.diagnosis.unexplained.unexplained_result import Seen, Table
 from feeddrive.diagnosis.unexplained.view import View
 from feeddrive.typing import FloatArray

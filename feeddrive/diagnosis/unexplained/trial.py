@@ -18,7 +18,7 @@ from feeddrive.diagnosis.unexplained.carry import (
     with_carried,
 )
 from feeddrive.diagnosis.unexplained.functional_anova import Found
-from feeddrive.diagnosis.unexplained.term import Form
+from feeddrive.diagnosis.unexplained.terms import Form
 from feeddrive.diagnosis.unexplained.unexplained_words import no_effect, no_gain
 from feeddrive.diagnosis.unexplained.view import views_of
 from feeddrive.effects.base import Effect
