@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from feeddrive.diagnosis.unexplained.floor import Floor, excess
-from feeddrive.diagnosis.unexplained.functional_anova import Decomposition, decompose
-from feeddrive.diagnosis.unexplained.functional_sums import Sample
+from feeddrive.diagnosis.unexplained.functional_anova import Decomposition, Sample, decompose
 from feeddrive.diagnosis.unexplained.terms import Form, Term, hats
 from feeddrive.diagnosis.unexplained.view import travel_since_reversal
 from feeddrive.typing import FloatArray

@@ -15,7 +15,7 @@ from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.diagnosis.likelihood.folds import FOLDS, block_of_rows, dealt_blocks
 from feeddrive.diagnosis.unexplained.floor import Floor, noise_floor
-from feeddrive.diagnosis.unexplained.functional_sums import Sample
+from feeddrive.diagnosis.unexplained.functional_anova import Sample
 from feeddrive.diagnosis.unexplained.terms import Term
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import BoolArray, FloatArray, IntegerArray
