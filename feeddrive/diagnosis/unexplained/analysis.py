@@ -9,7 +9,6 @@ import numpy as np
 
 from feeddrive.diagnosis.likelihood.cross_validation import LEAST_GAIN, compare_left_out
 from feeddrive.diagnosis.likelihood.predictor import CHANCE
-from feeddrive.diagnosis.unexplained.floor import Excess, excess
 from feeddrive.diagnosis.unexplained.functional_anova import Decomposition, Found, decompose
 from feeddrive.diagnosis.unexplained.shape import (
     in_travel,
@@ -21,7 +20,7 @@ from feeddrive.diagnosis.unexplained.shape import (
 )
 from feeddrive.diagnosis.unexplained.terms import Form, Term, finer_steps, sines, terms_of
 from feeddrive.diagnosis.unexplained.unexplained_result import Dependence
-from feeddrive.diagnosis.unexplained.view import View, sample_of
+from feeddrive.diagnosis.unexplained.view import Excess, View, excess, sample_of
 from feeddrive.typing import FloatArray, IntegerArray
 
 FEWEST = 60
