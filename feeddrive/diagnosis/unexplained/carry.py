@@ -16,8 +16,8 @@ from feeddrive.diagnosis.judging.judge import Judged, error_series, judged_resid
 from feeddrive.diagnosis.likelihood.coordinates import read_coordinates, write_coordinates
 from feeddrive.diagnosis.likelihood.cross_validation import compare_left_out
 from feeddrive.diagnosis.likelihood.fit import Problem
+from feeddrive.diagnosis.unexplained.analysis import table_of
 from feeddrive.diagnosis.unexplained.functional_anova import Found
-from feeddrive.diagnosis.unexplained.shape import table_of
 from feeddrive.diagnosis.unexplained.terms import Form
 from feeddrive.diagnosis.unexplained.unexplained_result import Carried, Table
 from feeddrive.effects.base import Effect, Port
