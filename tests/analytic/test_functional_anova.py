@@ -7,11 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from feeddrive.diagnosis.unexplained.floor import Floor, excess
-from feeddrive.diagnosis.unexplained.functional_anova import Decomposition, decompose
-from feeddrive.diagnosis.unexplained.functional_sums import Sample
-from feeddrive.diagnosis.unexplained.term import Form, Term, hats
-from feeddrive.diagnosis.unexplained.view import travel_since_reversal
+from feeddrive.diagnosis.unexplained.functional_anova import Decomposition, Sample, decompose
+from feeddrive.diagnosis.unexplained.terms import Form, Term, hats
+from feeddrive.diagnosis.unexplained.view import Floor, excess, travel_since_reversal
 from feeddrive.typing import FloatArray
 
 RATE, SECONDS, BLOCK = 200.0, 24.0, 0.5

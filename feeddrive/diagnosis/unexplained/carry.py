@@ -7,24 +7,74 @@ asked of a named effect.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from feeddrive.diagnosis.judging.judge import Judged, error_series, judged_residual
+from feeddrive.diagnosis.judging.result import ChannelResult
 from feeddrive.diagnosis.likelihood.coordinates import read_coordinates, write_coordinates
 from feeddrive.diagnosis.likelihood.cross_validation import compare_left_out
 from feeddrive.diagnosis.likelihood.fit import Problem
+from feeddrive.diagnosis.unexplained.analysis import Analysis, analyse, table_of
 from feeddrive.diagnosis.unexplained.functional_anova import Found
-from feeddrive.diagnosis.unexplained.shape import table_of
-from feeddrive.diagnosis.unexplained.term import Form
+from feeddrive.diagnosis.unexplained.terms import Form
 from feeddrive.diagnosis.unexplained.unexplained_result import Carried, Table
+from feeddrive.diagnosis.unexplained.unexplained_words import no_effect, no_gain
+from feeddrive.diagnosis.unexplained.view import views_of
 from feeddrive.effects.base import Effect, Port
 from feeddrive.effects.tabulated import Tabulated, TabulatedForce, TabulatedFriction, TabulatedTorque, TabulatedTravel
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray
+
+
+def analysis_of(
+    problem: Problem, effects: Sequence[Effect], judged: Sequence[Judged], channel: ChannelResult
+) -> Analysis:
+    """What is left of a channel with these effects in the plant, taken apart; `judged` have them in the plant after."""
+    plant = problem.machine(effects)
+    fitted = views_of(problem, [(plant, evidence) for evidence in problem.evidence], channel.name, False)
+    seen = views_of(problem, [(j.after, j.evidence) for j in judged], channel.name, True)
+    radius = plant.chain.motor_radius if plant.has_motion else 0.0
+    return analyse(fitted, seen, channel.unit, radius)
+
+
+def tried(
+    problem: Problem, effects: Sequence[Effect], judged: Sequence[Judged], carried: Sequence[tuple[str, Judgement]],
+    forms: Sequence[Found], channel: ChannelResult,
+) -> Judgement | str:  # fmt: skip
+    """The term as an effect that pays on the judged data, or why there is none."""
+    if not problem.predictor.of_motion:
+        return no_effect()
+    before = [*effects, *(judgement.effect for _, judgement in carried)]
+    options = []
+    try:
+        for start in [one for form in forms for one in effects_of(form, channel.name, channel.unit, problem.plant)]:
+            fitted, error = fitted_step(problem, before, start)
+            options.append((fitted, error + DEAR * len(fitted.breakpoints)))
+    except InputError as wrong:  # nothing there to act on, as friction that is not declared, or beyond what is physical
+        return f"not carried: {wrong.what}"
+    if not options:
+        return no_effect()
+    best, _ = min(options, key=lambda option: option[1])
+    judgement = judged_with(problem, with_carried(judged, *(j.effect for _, j in carried)), best)
+    return judgement if judgement.pays else no_gain(judgement.explains)
+
+
+def finer_forms(found: Found, analyses: Mapping[str, Analysis]) -> list[Found]:
+    """The found term with the breakpoints that another channel shows, where these are more."""
+    if found.term.form is not Form.CURVE:
+        return []
+    others = [one for analysis in analyses.values() for one in analysis.found]
+    alike = [
+        o
+        for o in others
+        if (o.term.form, o.term.variable, o.term.times) == (Form.CURVE, found.term.variable, found.term.times)
+    ]
+    return [resampled(found, other) for other in alike if other.term.size > found.term.size]
+
 
 DAMPING = 0.01
 """Damping of the step on all channels: breakpoints that the recordings hardly see keep the value of the residual."""

@@ -22,11 +22,16 @@ from feeddrive.diagnosis.likelihood.cross_validation import (
 )
 from feeddrive.diagnosis.likelihood.fit import Problem, fit
 from feeddrive.diagnosis.likelihood.folds import block_numbers
-from feeddrive.diagnosis.unexplained.carry import Judgement, carried_result, with_carried
-from feeddrive.diagnosis.unexplained.floor import excess
-from feeddrive.diagnosis.unexplained.trial import analysis_of, finer_forms, tried
+from feeddrive.diagnosis.unexplained.carry import (
+    Judgement,
+    analysis_of,
+    carried_result,
+    finer_forms,
+    tried,
+    with_carried,
+)
 from feeddrive.diagnosis.unexplained.unexplained_result import Instead
-from feeddrive.diagnosis.unexplained.view import views_of
+from feeddrive.diagnosis.unexplained.view import excess, views_of
 from feeddrive.effects.base import Effect
 from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.effects.tabulated import Tabulated

@@ -9,9 +9,17 @@ from feeddrive.diagnosis.judging.judge import Judged
 from feeddrive.diagnosis.judging.result import ChannelResult
 from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.diagnosis.unexplained.analysis import Analysis
-from feeddrive.diagnosis.unexplained.carry import Judgement, carried_result, joint_step, judged_with, with_carried
+from feeddrive.diagnosis.unexplained.carry import (
+    Judgement,
+    analysis_of,
+    carried_result,
+    finer_forms,
+    joint_step,
+    judged_with,
+    tried,
+    with_carried,
+)
 from feeddrive.diagnosis.unexplained.instead import instead_of
-from feeddrive.diagnosis.unexplained.trial import analysis_of, finer_forms, tried
 from feeddrive.diagnosis.unexplained.unexplained_result import Above, Dependence, Instead, Unexplained
 from feeddrive.diagnosis.unexplained.unexplained_words import rest_in_words, term_in_words
 from feeddrive.effects.base import Effect
