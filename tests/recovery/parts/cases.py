@@ -25,7 +25,7 @@ SOFT = {"nut": ("nut", 0.8), "bearing": ("near", 0.7), "drive": ("coupling", 0.7
 """Part, as the diagnosis calls it, to the field of the generator's drive and its share of the declared stiffness."""
 
 WHAT = ("nothing", "nut", "bearing", "drive", "payload", "backlash", "bump", "lead", "stribeck")
-"""Nothing, a part that is softer (nut -20 %, bearing -30 %, coupling -25 %), or an effect of which the size is drawn."""
+"""Nothing, a softer part (nut -20 %, bearing -30 %, coupling -25 %), or an effect of which the size is drawn."""
 
 PUBLISHED = 100
 """Draws below are for development; those of the published table begin here."""

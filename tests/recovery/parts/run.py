@@ -131,7 +131,7 @@ class Row:
 
     @property
     def right(self) -> bool:
-        """Whether what was planted is named, alone or in a set of three, or is held by a calibrated value's interval."""
+        """Whether what was planted is named, alone or in a set of three, or a calibrated value's interval holds it."""
         if self.record["outcome"] != "done":
             return False
         planted, names = self.record["name"], [one["name"] for one in self.record["found"]]
