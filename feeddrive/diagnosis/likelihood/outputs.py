@@ -79,6 +79,7 @@ def diagnosis_record(diagnosis: Diagnosis) -> dict[str, Any]:
             for one in diagnosis.alike
         ],
         "rehomed": list(diagnosis.rehomed),
+        "recorded_stroke": None if diagnosis.recorded_stroke is None else list(diagnosis.recorded_stroke),
         "next_experiment": [
             {
                 "question": list(one.question),
