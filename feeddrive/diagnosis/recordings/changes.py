@@ -16,7 +16,7 @@ from scipy.stats import norm
 from feeddrive.diagnosis.calibration.beyond import said_by_effects
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
-from feeddrive.diagnosis.recordings.change_candidates import levels, movables
+from feeddrive.diagnosis.recordings.change_candidates import Offer, levels, movables, offers
 from feeddrive.diagnosis.recordings.change_fits import (
     JOINT_STEPS,
     REFERENCE_STEPS,
@@ -26,7 +26,6 @@ from feeddrive.diagnosis.recordings.change_fits import (
     machine_first,
     set_free,
 )
-from feeddrive.diagnosis.recordings.change_offers import Offer, offers
 from feeddrive.diagnosis.recordings.change_values import material_difference
 from feeddrive.diagnosis.recordings.recordings import Target
 from feeddrive.effects.base import Effect
