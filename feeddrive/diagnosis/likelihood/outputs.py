@@ -16,7 +16,6 @@ from feeddrive.diagnosis.calibration.calibrated_result import calibrated_record
 from feeddrive.diagnosis.judging.result import ChannelResult, Diagnosis, EffectResult, ErrorFigures, ParameterResult
 from feeddrive.diagnosis.numbers.number_rows import numbers_beside
 from feeddrive.diagnosis.plant_text import with_calibrated_values
-from feeddrive.diagnosis.recordings.change_outputs import changes_record
 from feeddrive.diagnosis.simulated.simulation_record import simulation_record
 from feeddrive.diagnosis.suspicion.quality import is_recorders, quality_record
 from feeddrive.effects.base import Effect
@@ -89,7 +88,7 @@ def diagnosis_record(diagnosis: Diagnosis) -> dict[str, Any]:
             }
             for one in diagnosis.next_experiments
         ],
-        **changes_record(diagnosis.changes),
+        **diagnosis.changes.record(),
         "unexplained": {name: left.record() for name, left in diagnosis.unexplained.items()},
         "notes": list(diagnosis.notes),
         "plant_after": "plant_after.toml",

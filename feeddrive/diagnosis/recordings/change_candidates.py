@@ -11,8 +11,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.friction_at_port import declared_level, declared_viscous
-from feeddrive.diagnosis.likelihood.coordinates import coordinates_of
+from feeddrive.diagnosis.likelihood.coordinates import Sine, TwoHeats, coordinates_of
 from feeddrive.diagnosis.likelihood.cross_validation import (
     Comparison,
     compare_left_out,
@@ -25,6 +26,7 @@ from feeddrive.diagnosis.recordings.recordings import (
     RecordingPredictor,
     RecordingShift,
     Target,
+    in_recording,
     is_shift,
     shift_of,
     target_of,
@@ -39,6 +41,11 @@ from feeddrive.typing import FloatArray, IntegerArray
 
 UNCHANGING = ("order",)
 """Parameters that no wear and no temperature changes."""
+
+LEVELS = (FrictionDeviation.name, ConstantForce.name, Payload.name, StiffnessDeviation.name)
+
+LEAST_CHANGE = 0.05
+"""Change over the larger value from which a parameter without a physical minimum of its own has changed."""
 
 
 @dataclass(frozen=True)
@@ -146,18 +153,52 @@ def _left_out(problem: Problem, fitted: Fit, blocks: IntegerArray) -> FloatArray
 
 
 def _with_shifts(problem: Problem, current: Fit, one: Movable, rows: IntegerArray, recordings: Sequence[int]) -> Fit:
-    """The fit with shifts of nothing yet."""
-    columns = _columns(current, one, rows, recordings)
-    shifts = one.shifts(recordings)
+    """The fit with shifts of nothing yet, their columns cut to the rows of their recordings."""
+    parts = current.jacobian[:, list(one.columns)]
+    columns = np.hstack([np.where((rows == number)[:, None], parts, 0.0) for number in recordings])
     return replace(
         current,
-        effects=(*current.effects, *shifts),
+        effects=(*current.effects, *one.shifts(recordings)),
         jacobian=np.hstack([current.jacobian, columns]),
         coordinates=np.concatenate([current.coordinates, np.zeros(columns.shape[1])]),
     )
 
 
-def _columns(current: Fit, one: Movable, rows: IntegerArray, recordings: Sequence[int]) -> FloatArray:
-    """Columns of the shifts, each cut to the rows of its recording."""
-    parts = current.jacobian[:, list(one.columns)]
-    return np.hstack([np.where((rows == number)[:, None], parts, 0.0) for number in recordings])
+def targeted(effects: Sequence[Effect], problem: Problem, target: Target, number: int | None) -> Effect:
+    """The effect of a target as it is in a recording."""
+    return [e for e in in_recording(effects, problem.plant, number) if target.meets(e)][-1]
+
+
+def keys_of(effects: Sequence[Effect], problem: Problem, target: Target) -> tuple[str, ...]:
+    """Parameters that the coordinate of a target stands for; none of a curve."""
+    effect = targeted(effects, problem, target, None)
+    coordinate = coordinates_of(effect, problem.plant)[target.coordinate]
+    if isinstance(coordinate, Sine):
+        return ("amplitude", "phase")
+    if isinstance(coordinate, TwoHeats):
+        return (coordinate.key, coordinate.share)
+    return () if isinstance(effect.values[coordinate.key], tuple) else (coordinate.key,)
+
+
+def material_difference(
+    problem: Problem, effects: Sequence[Effect], target: Target, number: int, other: int | None = None
+) -> bool:
+    """Whether a parameter differs between two recordings by as much as matters; None for one without shifts."""
+    here = targeted(effects, problem, target, number)
+    there = targeted(effects, problem, target, other)
+    coordinate = coordinates_of(there, problem.plant)[target.coordinate]
+    # levels have a physical minimum of their own, smaller than that of other parameters
+    certain = 0.0 if here.name in LEVELS else 1.0
+    a, b = np.array(coordinate.read(here)), np.array(coordinate.read(there))
+    if not np.linalg.norm(a - b) >= LEAST_CHANGE * max(np.linalg.norm(a), np.linalg.norm(b)) * certain:
+        return False
+    key = getattr(coordinate, "key", "")
+    values = here.values.get(key), there.values.get(key)
+    if not all(isinstance(value, float) for value in values):
+        return True
+    # the difference as an effect of its own meets the physical minimum, the other parameters being neutral
+    neutral = {p.key: p.default for p in here.parameters if p.default is not None and p.key in here.values}
+    change = float(values[0]) - float(values[1])  # type: ignore[arg-type]
+    at_rest = neutral.get(key, 1.0 if here.name == StiffnessDeviation.name else 0.0)
+    alone = here.with_values(**{**neutral, key: change + at_rest})
+    return is_material(alone, problem.plant)

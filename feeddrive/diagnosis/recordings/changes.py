@@ -1,7 +1,7 @@
 """What changed between recordings: parameters that must differ by recording for the blocks left out to be met.
 
 The reference has every fitted parameter and every level in common. One parameter after the other is set free in the
-recordings asked about: ranked by one linear step (`change_offers`), fitted, and taken if it pays by the rule of the
+recordings asked about: ranked by one linear step (`change_candidates`), fitted, and taken if it pays by the rule of the
 search, more strictly by the number that was tried. Levels that did not differ are then taken out, and what no longer
 pays or is too small to matter is put back.
 """
@@ -22,8 +22,15 @@ from feeddrive.diagnosis.likelihood.cross_validation import (
 )
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
 from feeddrive.diagnosis.likelihood.folds import block_numbers
-from feeddrive.diagnosis.recordings.change_candidates import Movable, Offer, levels, movables, offers
-from feeddrive.diagnosis.recordings.change_values import material_difference
+from feeddrive.diagnosis.recordings.change_candidates import (
+    Movable,
+    Offer,
+    levels,
+    material_difference,
+    movables,
+    offers,
+)
+from feeddrive.diagnosis.recordings.change_result import CommonTrial
 from feeddrive.diagnosis.recordings.recordings import RecordingShift, Target, is_shift
 from feeddrive.effects.base import Effect
 from feeddrive.effects.friction.friction_deviation import FrictionDeviation
@@ -39,17 +46,6 @@ MOST_CHANGES = 6
 
 
 @dataclass(frozen=True)
-class ChangeTrial:
-    """One parameter set free by recording: what it brings on blocks left out, and whether it was taken."""
-
-    target: Target
-    parameter: str
-    comparison: Comparison
-    taken: bool
-    reason: str
-
-
-@dataclass(frozen=True)
 class Changes:
     """The fit with what differs by recording.
 
@@ -57,13 +53,13 @@ class Changes:
         problem: of the fit; a declared value that differs is stated by an effect and no more fitted beside it.
         fit: effects of the machine, then the shifts of what differs.
         targets: what differs, in the order found.
-        trials: all that was tried.
+        trials: all that was tried, the most promising first.
     """
 
     problem: Problem
     fit: Fit
     targets: tuple[Target, ...]
-    trials: tuple[ChangeTrial, ...]
+    trials: tuple[CommonTrial, ...]
 
 
 def find_changes(problem: Problem, effects: Sequence[Effect], recordings: Sequence[int]) -> Changes:
@@ -155,13 +151,14 @@ def _worst(
     return [] if _pays(comparison, tried) else group
 
 
-def _trials(ranked: dict[Target, Offer], kept: Sequence[Target]) -> tuple[ChangeTrial, ...]:
+def _trials(ranked: dict[Target, Offer], kept: Sequence[Target]) -> tuple[CommonTrial, ...]:
     result = []
-    for target, (one, comparison) in ranked.items():
+    for target, (one, comparison) in sorted(ranked.items(), key=lambda item: -item[1][1].gain):
         taken = target in kept
         reason = "it must differ for blocks left out to be met" if taken else _why_common(comparison)
-        result.append(ChangeTrial(target, one.parameter, comparison, taken, reason))
-    return tuple(sorted(result, key=lambda trial: -trial.comparison.gain))
+        gain, error = comparison.gain, comparison.standard_error
+        result.append(CommonTrial(target.name, one.parameter, str(target.port), gain, error, taken, reason))
+    return tuple(result)
 
 
 def _why_common(comparison: Comparison) -> str:

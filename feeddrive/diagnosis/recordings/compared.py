@@ -15,7 +15,6 @@ from feeddrive.diagnosis.judging.result import EffectResult
 from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.diagnosis.recordings.change_report import (
     Question,
-    common_trials,
     neutral_somewhere,
     parameter_changes,
     per_recording,
@@ -56,12 +55,11 @@ def compared_recordings(searched: Searched, judged: Sequence[Judged]) -> Compare
         result = RecordingChanges(
             per_recording=per_recording(found.problem, own, names),
             shared=shared_parameters(found.problem, found.fit.effects, own),
-            trials=common_trials(own, judged=False),
+            trials=own.trials,
         )
     if others is not None:
-        result = replace(
-            result, trials=(*result.trials, *common_trials(others.changes, judged=True)), explains=others.explains
-        )
+        trials = (*result.trials, *(replace(one, judged=True) for one in others.changes.trials))
+        result = replace(result, trials=trials, explains=others.explains)
         stated = (*stated, *others.stated)
     return Compared(replace(result, changes=stated), others, _listed(searched, len(names)))
 
