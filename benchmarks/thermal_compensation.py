@@ -15,15 +15,20 @@ from itertools import product
 
 import numpy as np
 
-from feeddrive.compensation.heat.thermal_deviation import deviating
-from feeddrive.compensation.heat.thermal_error import LeftOver, TableError, left_over, table_error
+from feeddrive.compensation.heat.thermal_error import (
+    LeftOver,
+    TableError,
+    compensation_model,
+    left_over,
+    model_alone,
+    table_error,
+)
 from feeddrive.compensation.heat.thermal_line import LineTable, line_table, straight_line
 from feeddrive.compensation.heat.thermal_observer import thermal_observer
-from feeddrive.compensation.heat.thermal_open_loop import compensation_model, model_alone
 from feeddrive.compensation.heat.thermal_placement import placements
 from feeddrive.compensation.heat.thermal_sensors import Sensor, mountable_places
 from feeddrive.compensation.heat.thermal_trial import TriedMachine, random_duty, tried_machine
-from feeddrive.compensation.heat.thermal_unknowns import Unknowns
+from feeddrive.compensation.heat.thermal_unknowns import Unknowns, deviating
 from feeddrive.files import find_plant
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.thermal.full.full_model import full_model

@@ -15,8 +15,7 @@ import numpy as np
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant, write_text_atomically
-from feeddrive.interface.machine.check import Check
-from feeddrive.interface.machine.life import Life, UsedLife
+from feeddrive.interface.machine.check import Check, Life, UsedLife
 from feeddrive.interface.machine.modes import Modes
 from feeddrive.interface.machine.summary import Stiffness, Summary
 from feeddrive.interface.quantities import Quantity, quantities, si
@@ -43,7 +42,7 @@ if TYPE_CHECKING:
 
     from feeddrive.interface.machine.bode import Bode
     from feeddrive.interface.machine.heat_summary import HeatSummary
-    from feeddrive.interface.machine.lumped import Lumped
+    from feeddrive.interface.machine.modes import Lumped
     from feeddrive.interface.servo import Servo
     from feeddrive.recording.frequency_response import FrequencyResponse
     from feeddrive.recording.recording import Recording
@@ -292,7 +291,7 @@ class Axis:
         >>> fd.load("kimm_testbed").lumped(at="600 mm").text.startswith("#")
         True
         """
-        from feeddrive.interface.machine.lumped import Lumped
+        from feeddrive.interface.machine.modes import Lumped
 
         further = ("the [thermal] sections; temperatures are predicted with the file of the parts",)
         place = None if at is None else si(at, "m", "at")

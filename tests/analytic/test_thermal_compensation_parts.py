@@ -8,14 +8,13 @@ import numpy as np
 import pytest
 
 from feeddrive.compensation.heat.thermal_augmented import Augmented, Row, Transition
-from feeddrive.compensation.heat.thermal_deviation import deviating
 from feeddrive.compensation.heat.thermal_error import table_error
 from feeddrive.compensation.heat.thermal_line import Convention, LineTable, line_table, straight_line
 from feeddrive.compensation.heat.thermal_observer import ThermalObserver, advance, thermal_observer
 from feeddrive.compensation.heat.thermal_placement import expected_deviation, placements
 from feeddrive.compensation.heat.thermal_sensors import Sensor, lagged, mountable_places
 from feeddrive.compensation.heat.thermal_trial import random_duty
-from feeddrive.compensation.heat.thermal_unknowns import Unknowns, stationary_step
+from feeddrive.compensation.heat.thermal_unknowns import Unknowns, deviating, stationary_step
 from feeddrive.errors import InputError
 from feeddrive.thermal.full.full_model import full_model
 from feeddrive.thermal.rig import Body

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from feeddrive.compensation.heat.thermal_deviation import deviating
 from feeddrive.compensation.heat.thermal_error import table_error
 from feeddrive.compensation.heat.thermal_sensors import Sensor, mountable_places, simulated_readings
+from feeddrive.compensation.heat.thermal_unknowns import deviating
 from feeddrive.thermal.machine_heat import Heat
 from feeddrive.thermal.reduced.parametric_model import HeatModel
 from feeddrive.thermal.rig import refuse_unless
