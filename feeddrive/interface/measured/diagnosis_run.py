@@ -10,6 +10,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from feeddrive.bench_page.page import bench_of_diagnosis
 from feeddrive.compensation.actions import actions
 from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.ledger.continued import Earlier, changed_since, earlier_run
@@ -22,7 +23,6 @@ from feeddrive.effects.tabulated import Tabulated
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant, shipped_plants
 from feeddrive.interface.axis import load
-from feeddrive.interface.benching import bench_of_diagnosis
 from feeddrive.interface.measured.diagnosed import Diagnosed
 from feeddrive.output_folder import finish_interrupted, output_folder, refuse_unusable, take_away
 from feeddrive.recording import Recording, read_recording
