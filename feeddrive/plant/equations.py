@@ -46,7 +46,7 @@ from feeddrive.effects.base import BristleEffect, Motion, Port
 from feeddrive.plant.chain.linear_chain import Chain, Spring, Values
 from feeddrive.plant.friction_law import friction_force, friction_level, resisting_force
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.symbols import Symbols, chain_symbols, parameter_names, parameter_symbols, parameter_values
+from feeddrive.plant.structure import Symbols, chain_symbols, parameter_names, parameter_symbols, parameter_values
 from feeddrive.plant.transmission_law import nut_force, travel_deviation
 from feeddrive.typing import Expression
 

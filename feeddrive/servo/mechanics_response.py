@@ -25,8 +25,8 @@ from feeddrive.effects.chain.payload import Payload
 from feeddrive.errors import InputError
 from feeddrive.plant.analysis.linear import INPUTS, MOVING, OUTPUTS, state_space
 from feeddrive.plant.analysis.rest import freed, held
-from feeddrive.plant.file.entries import nearest
 from feeddrive.plant.plant import Plant
+from feeddrive.schema.toml_text import nearest
 from feeddrive.servo.margins import frequency_response
 from feeddrive.servo.resonances import Resonance, resonances
 from feeddrive.typing import ComplexArray, FloatArray

@@ -20,7 +20,7 @@ from feeddrive.plant.chain.chain import Rigid, ThreeInertias
 from feeddrive.plant.file.lumped_text import plant_text_with_effects
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.symbols import chain_symbols, parameter_symbols, parameter_values
+from feeddrive.plant.structure import chain_symbols, parameter_symbols, parameter_values
 from feeddrive.plant.transmission_law import spring_law
 from feeddrive.simulate.driven import motor_motion, simulate_driven
 from tests.analytic.test_energy import free_run

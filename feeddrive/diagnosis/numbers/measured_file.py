@@ -26,9 +26,10 @@ from typing import Any
 
 from feeddrive.diagnosis.numbers.measurable import FREE, HELD, MEASURABLE, Measurable, Setting
 from feeddrive.errors import InputError
-from feeddrive.plant.file.entries import Table, read_toml, whole_file
 from feeddrive.plant.plant import Plant
 from feeddrive.schema.measured import MEASURED
+from feeddrive.schema.table import Table, whole_file
+from feeddrive.schema.toml_text import read_toml
 from feeddrive.units.quantity import format_quantity, parse
 
 FORMAT = "feeddrive-measured/1"

@@ -56,18 +56,17 @@ from feeddrive.effects.base import ChainEffect, Effect
 from feeddrive.effects.transmission.preload_loss import PreloadLoss
 from feeddrive.effects.transmission.stiffness_vs_position import StiffnessVsPosition
 from feeddrive.errors import InputError
-from feeddrive.plant.analysis.modes import braked_modes, free_modes
+from feeddrive.plant.analysis.modes import braked_modes, free_modes, inertia_at_motor
 from feeddrive.plant.analysis.steady import steady_motions
 from feeddrive.plant.analysis.stiffness_budget import nut_stiffness, static_stiffness, stiffness_budget
 from feeddrive.plant.chain.chain import ThreeInertias
 from feeddrive.plant.chain.drive_values import without_brake
-from feeddrive.plant.chain.moving_inertia import inertia_at_motor
 from feeddrive.plant.chain.resolution import resolved_modes
-from feeddrive.plant.file.entries import parse_toml
 from feeddrive.plant.file.lumped_text import lumped_text
 from feeddrive.plant.file.plant_file import plant_from_entries
 from feeddrive.plant.passive_friction import top_speed
 from feeddrive.plant.plant import Plant
+from feeddrive.schema.toml_text import parse_toml
 from feeddrive.typing import FloatArray
 from feeddrive.units.quantity import format_quantity
 

@@ -25,8 +25,7 @@ from feeddrive.plant.equations import (
 )
 from feeddrive.plant.motor_torque import acting_torque
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.structure import per_structure
-from feeddrive.plant.symbols import Symbols
+from feeddrive.plant.structure import Symbols, per_structure
 from feeddrive.typing import Expression
 
 INPUTS = ("motor_torque", "cutting_force")

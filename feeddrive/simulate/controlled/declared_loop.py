@@ -40,9 +40,9 @@ from scipy.interpolate import CubicSpline
 from scipy.signal import savgol_filter
 
 from feeddrive.errors import InputError
-from feeddrive.plant.file.entries import Origins, Table
 from feeddrive.plant.plant import DeclaredCascade, Plant, PositionVelocityController
 from feeddrive.recording import Recording
+from feeddrive.schema.table import Origins, Table
 from feeddrive.servo.cascade import Feedback
 from feeddrive.servo.cascade_function import cascade_controller
 from feeddrive.servo.sampled_plant import SampledController
