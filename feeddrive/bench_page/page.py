@@ -22,8 +22,8 @@ from feeddrive.metrology.circular import GLITCH_SPAN
 from feeddrive.metrology.response import SETTLED_BY
 from feeddrive.plant.analysis.modes import inertia_at_motor
 from feeddrive.plant.analysis.steady import MOVING
-from feeddrive.plant.equations import parameter_names, parameter_values
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.structure import parameter_names, parameter_values
 from feeddrive.servo.cascade import Cascade
 from feeddrive.servo.filters import Filter, notch
 from feeddrive.servo.loop_response import refuse_unstable_case

@@ -17,7 +17,8 @@ import numpy as np
 from feeddrive import __version__
 from feeddrive.export.notes import included, left_out
 from feeddrive.export.point import Point, refuse_outside
-from feeddrive.plant.analysis.linear import INPUTS, OUTPUTS, ode_parameters, state_names, steady_motion, timed_ode
+from feeddrive.plant.analysis.ode import INPUTS, OUTPUTS, ode_parameters, state_names, timed_ode
+from feeddrive.plant.analysis.steady import steady_motion
 from feeddrive.plant.plant import Plant
 from feeddrive.symbolic_turn import SYMBOLS
 from feeddrive.typing import FloatArray

@@ -479,7 +479,7 @@ def heat_velocity(axis: Axis, at: str) -> float:
         InputError: a point that cannot be read, or that says where the table is to a machine without one.
     """
     from feeddrive.export.point import Point, export_point, written_point
-    from feeddrive.plant.analysis.linear import MOVING
+    from feeddrive.plant.analysis.steady import MOVING
 
     point = export_point(axis.plant, at, "at") if axis.has_motion else Point(0.0, written_point(at, "at").get("v"))
     return MOVING if point.velocity is None else point.velocity

@@ -30,7 +30,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feeddrive.errors import InputError
-from feeddrive.plant.analysis.linear import MOVING, OUTPUTS
+from feeddrive.plant.analysis.ode import OUTPUTS
+from feeddrive.plant.analysis.steady import MOVING
 from feeddrive.recording.recording import Recording
 from feeddrive.servo.cascade_function import velocity_loop_of
 from feeddrive.servo.linear_loop import closed_loop

@@ -23,7 +23,8 @@ import numpy as np
 
 from feeddrive.effects.base import TimingEffect
 from feeddrive.errors import InputError
-from feeddrive.plant.analysis.linear import MOVING, linear_matrices
+from feeddrive.plant.analysis.linear import linear_matrices
+from feeddrive.plant.analysis.steady import MOVING
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade
 from feeddrive.thermal.reduced.stepping import exact_propagator

@@ -18,20 +18,15 @@ from scipy.interpolate import make_interp_spline
 
 from feeddrive.engine.engine import Feed, Machine, machine_of, rested, run_machine
 from feeddrive.engine.program import Program, StepReport, joined
+from feeddrive.engine.step.linear_part import Layout
 from feeddrive.engine.step.step import driven_step
-from feeddrive.engine.step.step_constants import Layout
 from feeddrive.parts.life.consumed_life import ConsumedLife, consumed_life, rigid_nut_forces
 from feeddrive.plant.analysis.rated_life import preload_of
 from feeddrive.plant.chain.chain import symbolic
-from feeddrive.plant.equations import (
-    chain_symbols,
-    effect_forces,
-    parameter_symbols,
-    parameter_values,
-    travel_deviation,
-)
+from feeddrive.plant.equations import effect_forces
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.structure import per_structure
+from feeddrive.plant.structure import chain_symbols, parameter_symbols, parameter_values, per_structure
+from feeddrive.plant.transmission_law import travel_deviation
 from feeddrive.typing import FloatArray
 
 TOLERANCE = 1e-10

@@ -15,7 +15,8 @@ from feeddrive.effects.transmission.preload_loss import PreloadLoss
 from feeddrive.effects.transmission.stiffness_vs_position import LEAST_FACTOR, StiffnessVsPosition
 from feeddrive.errors import InputError
 from feeddrive.files import plants_folder
-from feeddrive.plant.analysis.linear import linear_matrices, steady_motion
+from feeddrive.plant.analysis.linear import linear_matrices
+from feeddrive.plant.analysis.steady import steady_motion
 from feeddrive.plant.chain.chain import Rigid, ThreeInertias
 from feeddrive.plant.file.lumped_text import plant_text_with_effects
 from feeddrive.plant.file.plant_file import read_plant

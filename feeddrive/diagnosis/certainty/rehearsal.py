@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from feeddrive.diagnosis.likelihood.evidence import SHORTEST, AxisEvidence, prepare
-from feeddrive.engine.step.step_constants import SimulationError
+from feeddrive.engine.step.linear_part import SimulationError
 from feeddrive.errors import InputError
 from feeddrive.files import shipped_scenarios
 from feeddrive.plant.analysis.modes import inertia_at_motor

@@ -30,7 +30,7 @@ from feeddrive.effects.base import Effect
 from feeddrive.effects.chain.structural_mode import StructuralMode
 from feeddrive.effects.timing.drive_delay import DriveDelay
 from feeddrive.errors import InputError, ValidityWarning
-from feeddrive.plant.analysis.linear import INPUTS, OUTPUTS
+from feeddrive.plant.analysis.ode import INPUTS, OUTPUTS
 from feeddrive.plant.analysis.stiffness_budget import stiffness_budget
 from feeddrive.plant.chain.resolution import resolved
 from feeddrive.plant.file.plant_file import plant_from_entries

@@ -18,7 +18,7 @@ from feeddrive.interface.servo import Servo, cascade_for
 from feeddrive.interface.shown import Listing, Shown, finite, write_figures, write_json
 from feeddrive.metrology.response import Response as Measured
 from feeddrive.metrology.response import recorded_response
-from feeddrive.plant.analysis.linear import INPUTS, OUTPUTS
+from feeddrive.plant.analysis.ode import INPUTS, OUTPUTS
 from feeddrive.plant.chain.resolution import resolved, resolved_modes
 from feeddrive.plant.plant import Plant
 from feeddrive.recording.frequency_response import FrequencyResponse

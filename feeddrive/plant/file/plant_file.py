@@ -68,7 +68,7 @@ from pathlib import Path
 from typing import Any
 
 from feeddrive.errors import InputError, ValidityWarning
-from feeddrive.plant.chain.chain import CHAINS, Chain, ChainValue, DistributedScrew, Rigid, ThreeInertias
+from feeddrive.plant.chain.chain import CHAINS, Chain, DistributedScrew, Rigid, ThreeInertias
 from feeddrive.plant.composition import refuse_what_cannot_compose
 from feeddrive.plant.file.chain_sections import read_chain
 from feeddrive.plant.file.drive_sections import PART_VALUES, describes_parts
@@ -76,7 +76,6 @@ from feeddrive.plant.file.effect_sections import read_effects
 from feeddrive.plant.file.equipment import read_controller, read_sensors
 from feeddrive.plant.file.guide_section import WEIGHT_KEYS, derived_effects
 from feeddrive.plant.file.heat_section import read_coupling, read_heat
-from feeddrive.plant.file.lumped_text import plant_text_with_effects
 from feeddrive.plant.file.plant_schema import NAMED_PARTS, plant_table
 from feeddrive.plant.file.ratings import RATINGS, declares_heat_alone, read_data, read_stroke
 from feeddrive.plant.motor_torque import TorqueGain
@@ -85,14 +84,6 @@ from feeddrive.plant.plant import Plant
 from feeddrive.schema.table import Table
 from feeddrive.schema.toml_text import read_toml
 from feeddrive.units.quantity import format_quantity
-
-__all__ = [
-    "FORMAT",
-    "plant_from_entries",
-    "plant_text_with_effects",
-    "read_plant",
-    "section_key",
-]
 
 FORMAT = "feeddrive-plant/1"
 _TOP_OF_HEAT_ALONE = ("format", "name", "source", "description", "ball_screw", "effect", "sensor", "thermal")
@@ -183,11 +174,6 @@ def plant_from_entries(entries: Mapping[str, Any], path: Path) -> Plant:
         _refuse_stroke_off_screw(plant, where)
         _warn_of_unusual(chain, where)
     return plant
-
-
-def section_key(value: ChainValue) -> str:
-    """Key of a chain value inside its section: `motor_inertia` is `inertia` in [motor]."""
-    return value.section_key
 
 
 def _refuse_unknown_keys(top: Table) -> None:

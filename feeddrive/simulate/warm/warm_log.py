@@ -26,8 +26,8 @@ from scipy.interpolate import RegularGridInterpolator
 from scipy.ndimage import uniform_filter1d
 
 from feeddrive.errors import InputError
-from feeddrive.plant.equations import parameter_values
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.structure import parameter_values
 from feeddrive.plant.warmed import followed
 from feeddrive.recording import Recording
 from feeddrive.simulate.uniform_motion import UniformMotion, uniform_motion
