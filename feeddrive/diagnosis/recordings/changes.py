@@ -31,7 +31,7 @@ from feeddrive.diagnosis.recordings.change_candidates import (
     offers,
 )
 from feeddrive.diagnosis.recordings.change_result import CommonTrial
-from feeddrive.diagnosis.recordings.recordings import RecordingShift, Target, is_shift
+from feeddrive.diagnosis.recordings.recordings import RecordingShift, Target, is_shift, without_shifts
 from feeddrive.effects.base import Effect
 from feeddrive.effects.friction.friction_deviation import FrictionDeviation
 
@@ -81,7 +81,9 @@ def find_changes(problem: Problem, effects: Sequence[Effect], recordings: Sequen
     while kept:
         worst = _worst(wide, current, kept, recordings, len(ranked))
         if not worst:
-            return Changes(wide, machine_first(wide, current), tuple(kept), _trials(ranked, kept))
+            shifts = [effect for effect in current.effects if is_shift(effect)]
+            ordered = fit(wide, [*without_shifts(current.effects), *shifts], iterations=REFERENCE_STEPS)
+            return Changes(wide, ordered, tuple(kept), _trials(ranked, kept))
         kept = [target for target in kept if target not in worst]
         wide, current = in_common(problem, common, current, worst, recordings)
     return Changes(problem, common, (), _trials(ranked, ()))
@@ -154,22 +156,16 @@ def _worst(
 def _trials(ranked: dict[Target, Offer], kept: Sequence[Target]) -> tuple[CommonTrial, ...]:
     result = []
     for target, (one, comparison) in sorted(ranked.items(), key=lambda item: -item[1][1].gain):
-        taken = target in kept
-        reason = "it must differ for blocks left out to be met" if taken else _why_common(comparison)
-        gain, error = comparison.gain, comparison.standard_error
+        taken, gain, error = target in kept, comparison.gain, comparison.standard_error
+        reason = (
+            f"a value of its own lowers the squared error by {gain:.2%} ({error:.2%} scatter), or others say it better"
+        )
+        if taken:
+            reason = "it must differ for blocks left out to be met"
+        elif gain <= 0:
+            reason = "a value of its own in every recording does not lower the error on blocks left out"
         result.append(CommonTrial(target.name, one.parameter, str(target.port), gain, error, taken, reason))
     return tuple(result)
-
-
-def _why_common(comparison: Comparison) -> str:
-    if comparison.gain <= 0:
-        return "a value of its own in every recording does not lower the error on blocks left out"
-    scatter = f"{comparison.standard_error:.2%} scatter"
-    return f"a value of its own lowers the squared error by {comparison.gain:.2%} ({scatter}), or others say it better"
-
-
-REFERENCE_STEPS, JOINT_STEPS = 8, 10
-"""Steps of the fit with everything in common, and of the fit with what differs."""
 
 
 def belongs(effect: Effect, targets: Sequence[Target], recordings: Sequence[int]) -> bool:
@@ -201,13 +197,6 @@ def set_free(
     return problem, wider, compared_fits(problem, shared, wider)
 
 
-def machine_first(problem: Problem, fitted: Fit) -> Fit:
-    """A copy of a fit with the shifts at the end."""
-    machine = [effect for effect in fitted.effects if not is_shift(effect)]
-    shifts = [effect for effect in fitted.effects if is_shift(effect)]
-    return fit(problem, [*machine, *shifts], iterations=REFERENCE_STEPS)
-
-
 def in_common(
     problem: Problem, common: Fit, current: Fit, targets: Sequence[Target], recordings: Sequence[int]
 ) -> tuple[Problem, Fit]:
@@ -222,7 +211,7 @@ def in_common(
     """
     kept = [effect for effect in current.effects if not belongs(effect, targets, recordings)]
     moved = [effect.target for effect in kept if isinstance(effect, RecordingShift)]
-    before = [one for one in common.effects if not is_shift(one)]
+    before = without_shifts(common.effects)
     places = {(one.name, one.port, one.place) for one in before} | {(t.name, t.port, t.place) for t in moved}
     kept = [effect for effect in kept if is_shift(effect) or (effect.name, effect.port, effect.place) in places]
     problem, _ = said_by_effects(problem, kept)
