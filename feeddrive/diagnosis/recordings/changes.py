@@ -35,6 +35,9 @@ from feeddrive.diagnosis.recordings.recordings import RecordingShift, Target, is
 from feeddrive.effects.base import Effect
 from feeddrive.effects.friction.friction_deviation import FrictionDeviation
 
+REFERENCE_STEPS, JOINT_STEPS = 8, 10
+"""Steps of the fit with everything in common, and of the fit with what differs."""
+
 FALSE_ALARMS = 0.05
 """Chance of one false change in a whole diagnosis, shared out among all parameters that are tried."""
 
