@@ -6,8 +6,7 @@ import numpy as np
 
 from feeddrive.diagnosis.finding.scene import Scene
 from feeddrive.diagnosis.friction_at_port import declared_viscous
-from feeddrive.diagnosis.starts.periodogram import strongest_orders
-from feeddrive.diagnosis.starts.residual_force import residual_force
+from feeddrive.diagnosis.starts.residual_readings import residual_force, strongest_orders
 from feeddrive.diagnosis.starts.starts import explains, highest_order, sine
 from feeddrive.effects.base import Effect
 from feeddrive.effects.friction.viscous_warmup import ViscousWarmup

@@ -8,9 +8,13 @@ import numpy as np
 
 from feeddrive.diagnosis.finding.scene import Scene
 from feeddrive.diagnosis.friction_at_port import declared_level, declared_viscous
-from feeddrive.diagnosis.starts.periodogram import sine_at, strongest_orders
-from feeddrive.diagnosis.starts.position_curve import bump_of, friction_over_position
-from feeddrive.diagnosis.starts.residual_force import residual_forces
+from feeddrive.diagnosis.starts.residual_readings import (
+    bump_of,
+    friction_over_position,
+    residual_forces,
+    sine_at,
+    strongest_orders,
+)
 from feeddrive.effects.base import Effect, Port
 from feeddrive.effects.friction.friction_deviation import FrictionDeviation
 from feeddrive.effects.friction.friction_vs_position import FrictionVsPosition
