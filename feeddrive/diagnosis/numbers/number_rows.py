@@ -15,7 +15,6 @@ s_j by itself, weighs as λ of them.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -116,24 +115,16 @@ class NumberResult:
         """Whether the plant after gives it within the number's tolerance, which is two of its standard deviations."""
         return abs(self.after - self.number.value) <= 2 * self.number.deviation
 
+    def record(self) -> dict[str, Any]:
+        """Its keys in `diagnosis.json`."""
+        one = self.number
+        return {
+            "name": one.name, "unit": one.kind.unit, "value": one.value, "tolerance": 2 * one.deviation,
+            "before": self.before, "after": self.after, "met": self.met,
+        }  # fmt: skip
+
 
 def number_results(rows: MeasuredRows, before: Plant, after: Plant) -> tuple[NumberResult, ...]:
     """Every number with what the two plants give for it."""
     pairs = zip(rows.numbers, rows.given(before), rows.given(after), strict=True)
     return tuple(NumberResult(number, float(was), float(now)) for number, was, now in pairs)
-
-
-def numbers_beside(results: Sequence[NumberResult]) -> list[Mapping[str, Any]]:
-    """The list `measured` of `diagnosis.json`."""
-    return [
-        {
-            "name": one.number.name,
-            "unit": one.number.kind.unit,
-            "value": one.number.value,
-            "tolerance": 2 * one.number.deviation,
-            "before": one.before,
-            "after": one.after,
-            "met": one.met,
-        }
-        for one in results
-    ]

@@ -25,7 +25,7 @@ from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.recordings.recordings import is_shift
 from feeddrive.diagnosis.simulated.loop_evidence import LoopEvidence, loop_evidence
 from feeddrive.diagnosis.simulated.loop_fit import LoopProblem, coordinate_count, fit_loop, foretold, loop_problem
-from feeddrive.diagnosis.simulated.simulation import LoopErrors, before_and_after, loop_errors, machine_in
+from feeddrive.diagnosis.simulated.simulation import LoopErrors, errors_after, loop_errors
 from feeddrive.diagnosis.simulated.simulation_result import RefinedValue, SimulatedChannel, SimulationResult
 from feeddrive.effects.base import Effect, Kind
 from feeddrive.errors import InputError
@@ -40,6 +40,9 @@ PREDICTION_MARGIN = 0.02
 
 DELAYED = "a delay moves the instants at which the torque switches, and has no derivative"
 CHAOTIC = "the simulated loop does not follow a small change of it in proportion: free play, or a jump"
+
+KEPT = "The values were refined in closed-loop simulation, which does better with them on data not fitted."
+NOT_KEPT = "Values refined in closed-loop simulation were not kept: {reason}. The values are those of the attribution."
 
 Outcome = tuple[list[Judged], tuple[str, ...]]
 """Judged recordings, and what was re-homed."""
@@ -76,7 +79,7 @@ class Refinement:
         simulation = self.simulation
         if simulation is None or all(new is old for new, old in zip(judged, self.outcome[0], strict=True)):
             return simulation
-        after = _errors(self.found, self.loops, judged)
+        after = errors_after(self.found.problem, judged, self.loops)
         if not _finite(after):
             return simulation
         channels = tuple(replace(channel, after=after[channel.name]) for channel in simulation.channels)
@@ -96,7 +99,7 @@ def refined(found: Search, outcome: Outcome, judge: Judge) -> Refinement:
         loops = tuple(loop_evidence(plant, j.evidence) for j in judged)
     except InputError as refusal:
         return Refinement(found, outcome, notes=(f"no closed-loop simulation: {refusal.what} ({refusal.mend})",))
-    before, attributed = before_and_after(found.problem, judged, loops)
+    before, attributed = loop_errors(loops, [j.before for j in judged]), errors_after(found.problem, judged, loops)
     if not before or not _finite(before, attributed):
         return Refinement(found, outcome, notes=("no closed-loop simulation: the loop cannot be followed",))
     plain = Refinement(found, outcome, _result(before, attributed, None, False), loops=loops)
@@ -114,20 +117,15 @@ def refined(found: Search, outcome: Outcome, judge: Judge) -> Refinement:
         return plain.saying("Refinement in simulation left every value where it was.", kept_back)
     other = replace(found, fit=fit(found.problem, effects, iterations=0))
     judged_other = judge(other)
-    after = _errors(other, loops, judged_other[0])
+    after = errors_after(other.problem, judged_other[0], loops)
     reason = why_not_kept(found, attributed, after, judged, judged_other[0])
     result = replace(
         _result(before, attributed, after, not reason),
-        statement=_statement(reason),
+        statement=KEPT if not reason else NOT_KEPT.format(reason=reason),
         refined=_values(found.fit.effects, effects),
         not_refined=kept_back,
     )
     return replace(plain, simulation=result) if reason else Refinement(other, judged_other, result, loops=loops)
-
-
-def _errors(found: Search, loops: Sequence[LoopEvidence], judged: Sequence[Judged]) -> LoopErrors:
-    """Simulation errors of the plants after, on the samples of the loops."""
-    return loop_errors(loops, [machine_in(found.problem, j.after, j.evidence) for j in judged])
 
 
 def _problem(found: Search) -> LoopProblem:
@@ -165,12 +163,6 @@ def why_not_kept(
         if would.after.rms > (1 + PREDICTION_MARGIN) * was.after.rms:
             return f"the predicted {was.name} would be worse by {would.after.rms / was.after.rms - 1:.1%}"
     return ""
-
-
-def _statement(reason: str) -> str:
-    if not reason:
-        return "The values were refined in closed-loop simulation, which does better with them on data not fitted."
-    return f"Values refined in closed-loop simulation were not kept: {reason}. The values are those of the attribution."
 
 
 def _kept_back(problem: LoopProblem) -> dict[str, str]:

@@ -11,7 +11,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from feeddrive.diagnosis.judging.judge import Judged
-from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.diagnosis.recordings.recordings import RecordingPredictor
 from feeddrive.diagnosis.simulated.loop_evidence import LoopEvidence
@@ -45,19 +44,12 @@ def loop_errors(loops: Sequence[LoopEvidence], plants: Sequence[Plant]) -> LoopE
     return {name: _error(np.concatenate(missed[name]), np.concatenate(shown[name])) for name in missed}
 
 
-def before_and_after(
-    problem: Problem, judged: Sequence[Judged], loops: Sequence[LoopEvidence]
-) -> tuple[LoopErrors, LoopErrors]:
-    """Errors of the declared plant and of the plant with the effects found, on the samples of the loops."""
-    before = loop_errors(loops, [j.before for j in judged])
-    return before, loop_errors(loops, [machine_in(problem, j.after, j.evidence) for j in judged])
-
-
-def machine_in(problem: Problem, plant: Plant, evidence: Evidence) -> Plant:
-    """The plant as it is in one recording, where recordings differ."""
-    predictor = problem.predictor
-    machine: Plant = predictor.machine(plant, evidence) if isinstance(predictor, RecordingPredictor) else plant
-    return machine
+def errors_after(problem: Problem, judged: Sequence[Judged], loops: Sequence[LoopEvidence]) -> LoopErrors:
+    """Errors of the plants after, each as it is in its recording, on the samples of the loops."""
+    plants, predictor = [j.after for j in judged], problem.predictor
+    if isinstance(predictor, RecordingPredictor):
+        plants = [predictor.machine(j.after, j.evidence) for j in judged]
+    return loop_errors(loops, plants)
 
 
 def _scale(loop: LoopEvidence, name: str) -> FloatArray:
