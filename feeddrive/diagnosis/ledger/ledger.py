@@ -2,8 +2,8 @@
 
 ledger.json
 { "format": "feeddrive-ledger/1", "runs": [ { "run": 1, "continues": null, "plant": {...}, "fit": [...],
-  "validate": [...], "split": 0.75, "channels": [...], "tried": [...], "effects": [...], "refused": [...],
-  "values": [...], "covariance": {...}, "changes": [...], "since": [...] } ] }
+  "validate": [...], "split": 0.75, "measured": null, "channels": [...], "tried": [...], "effects": [...],
+  "refused": [...], "values": [...], "covariance": {...}, "changes": [...], "since": [...] } ] }
 """
 
 from __future__ import annotations
@@ -58,6 +58,7 @@ class RunFiles:
     validate: tuple[FileUse, ...]
     split: float
     continues: int | None = None
+    measured: FileUse | None = None
 
 
 def checksum(path: Path) -> str:
@@ -131,6 +132,7 @@ def _run(
         "fit": [_file(one) for one in files.fit],
         "validate": [_file(one) for one in files.validate],
         "split": files.split,
+        "measured": None if files.measured is None else _file(files.measured),
         **{key: record[key] for key in COPIED},
         "tried": [_plain(vars(one)) for one in result.kept.tried],
         "values": [_effect(effect) for effect in effects],
@@ -175,6 +177,7 @@ class Earlier:
         split: share that was fitted where there were none.
         effects: found, with their values.
         reported: effects as they were reported, name to parameters.
+        measured: file of the numbers that were measured beside the recordings; None where there was none.
     """
 
     runs: list[dict[str, Any]]
@@ -184,6 +187,7 @@ class Earlier:
     split: float
     effects: tuple[Effect, ...]
     reported: tuple[dict[str, Any], ...]
+    measured: FileUse | None = None
 
 
 def earlier_run(folder: Path) -> Earlier:
@@ -201,12 +205,14 @@ def earlier_run(folder: Path) -> Earlier:
         _unchanged(FileUse(plant, last["plant"]["sha256"]))
         fit, validate = (tuple(_use(one) for one in last[key]) for key in ("fit", "validate"))
         effects = tuple(_effect_of(one) for one in last["values"])
-        result = Earlier(runs, plant, fit, validate, float(last["split"]), effects, tuple(last["effects"]))
+        numbers = last.get("measured")  # a ledger of an earlier version has no such entry
+        measured = None if numbers is None else _use(numbers)
+        result = Earlier(runs, plant, fit, validate, float(last["split"]), effects, tuple(last["effects"]), measured)
     except (KeyError, TypeError, AttributeError, OverflowError, ValueError) as error:
         if isinstance(error, InputError) and error.where != "":
             raise
         raise InputError(f"run {len(runs)} lacks entries", str(folder / NAME), "diagnose anew") from None
-    for one in (*result.fit, *result.validate):
+    for one in (*result.fit, *result.validate, *([measured] if measured is not None else [])):
         _unchanged(one)
     return result
 

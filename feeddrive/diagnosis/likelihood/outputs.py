@@ -18,7 +18,7 @@ from feeddrive.diagnosis.plant_text import with_calibrated_values
 from feeddrive.diagnosis.suspicion.quality import is_recorders, quality_record
 from feeddrive.effects.base import Effect
 from feeddrive.files import write_text_atomically
-from feeddrive.plant.file.effect_text import plant_text_with_effects
+from feeddrive.plant.file.lumped_text import plant_text_with_effects
 
 FORMAT = "feeddrive-diagnosis/1"
 
@@ -75,6 +75,7 @@ def diagnosis_record(diagnosis: Diagnosis) -> dict[str, Any]:
             for one in diagnosis.alike
         ],
         "rehomed": list(diagnosis.rehomed),
+        "recorded_stroke": None if diagnosis.recorded_stroke is None else list(diagnosis.recorded_stroke),
         "next_experiment": [
             {
                 "question": list(one.question),

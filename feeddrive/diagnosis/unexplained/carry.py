@@ -23,11 +23,7 @@ from feeddrive.diagnosis.unexplained.terms import Form
 from feeddrive.diagnosis.unexplained.unexplained_result import Carried, Table, no_gain
 from feeddrive.diagnosis.unexplained.view import views_of
 from feeddrive.effects.base import Effect, Port
-from feeddrive.effects.friction.tabulated_friction import TabulatedFriction
-from feeddrive.effects.source.tabulated_force import TabulatedForce
-from feeddrive.effects.source.tabulated_torque import TabulatedTorque
-from feeddrive.effects.tabulated import Tabulated
-from feeddrive.effects.travel.tabulated_travel import TabulatedTravel
+from feeddrive.effects.tabulated import Tabulated, TabulatedForce, TabulatedFriction, TabulatedTorque, TabulatedTravel
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray
@@ -139,7 +135,7 @@ def _made(
     scale = radius if to_travel else 1 / radius if to_angle and table.breakpoint_unit != "rad" else 1.0
     at, period = scale * at, scale * period
     place = f"periodic_{word}" if period else word
-    given = {kind.breakpoint_keys[place]: tuple(at.tolist()), key or kind.value_keys[0]: tuple(values.tolist())}
+    given = {word: tuple(at.tolist()), key or kind.value_keys[0]: tuple(values.tolist())}
     return kind.of(port, place, **given, **({"period": period} if period else {}))
 
 
