@@ -134,10 +134,9 @@ def _run(
         "split": files.split,
         "measured": None if files.measured is None else _file(files.measured),
         **{key: record[key] for key in COPIED},
-        "tried": [_plain(vars(one)) for one in result.kept.tried],
+        "tried": [_plain(one) for one in result.kept.tried],
         "values": [_effect(effect) for effect in effects],
-        "covariance": {"values": list(result.kept.covariance.names),
-                       "matrix": [list(row) for row in result.kept.covariance.matrix]},
+        "covariance": result.kept.covariance,
         "since": list(result.kept.since),
         "written": sorted([NAME, *written]),
     }  # fmt: skip

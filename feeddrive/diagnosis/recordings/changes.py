@@ -88,7 +88,7 @@ def find_changes(problem: Problem, effects: Sequence[Effect], recordings: Sequen
             ordered = fit(wide, [*without_shifts(current.effects), *shifts], iterations=REFERENCE_STEPS)
             return Changes(wide, ordered, tuple(kept), _trials(ranked, kept))
         kept = [target for target in kept if target not in worst]
-        wide, current = in_common(problem, common, current, worst, recordings)
+        wide, current = _in_common(problem, common, current, worst, recordings)
     return Changes(problem, common, (), _trials(ranked, ()))
 
 
@@ -111,7 +111,7 @@ def _forward(
         likely = [one for one, c in offered if c.gain > c.least]
         for one in likely[:OFFERS]:
             group = [other for other in free if other is one or _partners(one.target, other.target)]
-            own, wider, comparison = set_free(problem, current, effects[one.effect], group, recordings)
+            own, wider, comparison = _set_free(problem, current, effects[one.effect], group, recordings)
             ranked[one.target] = one, comparison
             if _pays(comparison, len(free) + len(taken)) and _material(own, wider, one.target, recordings):
                 taken += [other.target for other in group]
@@ -150,8 +150,8 @@ def _worst(
     compared = []
     for group in groups:
         # what is left out keeps its level in common, so that only the difference is judged
-        removed = [effect for effect in shifted.effects if not belongs(effect, group, recordings)]
-        compared.append((compared_fits(problem, fit(problem, removed, iterations=JOINT_STEPS), shifted), group))
+        removed = [effect for effect in shifted.effects if not _belongs(effect, group, recordings)]
+        compared.append((_compared_fits(problem, fit(problem, removed, iterations=JOINT_STEPS), shifted), group))
     comparison, group = min(compared, key=lambda pair: pair[0].gain)
     return [] if _pays(comparison, tried) else group
 
@@ -171,25 +171,18 @@ def _trials(ranked: dict[Target, Offer], kept: Sequence[Target]) -> tuple[Common
     return tuple(result)
 
 
-def belongs(effect: Effect, targets: Sequence[Target], recordings: Sequence[int]) -> bool:
+def _belongs(effect: Effect, targets: Sequence[Target], recordings: Sequence[int]) -> bool:
     """Whether this is the shift of one of the targets in one of the recordings."""
     return isinstance(effect, RecordingShift) and effect.target in targets and effect.recording in recordings
 
 
-def set_free(
+def _set_free(
     problem: Problem, current: Fit, effect: Effect, group: Sequence[Movable], recordings: Sequence[int]
 ) -> tuple[Problem, Fit, Comparison]:
     """The fit with parameters of one effect free by recording, beside the one that has them in common.
 
-    Args:
-        problem: of the fit that there is.
-        current: that fit.
-        effect: one of its effects, or a level at which nothing is other than declared.
-        group: parameters of the effect.
-        recordings: numbers of those that may differ.
-
-    Returns:
-        The problem in which no declared value is fitted that the effect stands for, the fit, and what it brings.
+    `group` are parameters of the effect, or of a level at which nothing is other than declared. Gives the problem in
+    which no declared value is fitted that the effect stands for, the fit, and what it brings.
     """
     shared = current
     if effect not in current.effects:
@@ -197,22 +190,17 @@ def set_free(
         shared = fit(problem, effects, iterations=JOINT_STEPS)
     shifts = [shift for one in group for shift in one.shifts(recordings)]
     wider = fit(problem, [*shared.effects, *shifts], iterations=JOINT_STEPS)
-    return problem, wider, compared_fits(problem, shared, wider)
+    return problem, wider, _compared_fits(problem, shared, wider)
 
 
-def in_common(
+def _in_common(
     problem: Problem, common: Fit, current: Fit, targets: Sequence[Target], recordings: Sequence[int]
 ) -> tuple[Problem, Fit]:
     """The fit with some parameters in common again; a level that was not there before goes with its shifts.
 
-    Args:
-        problem: in which no level was free.
-        common: the fit of it.
-        current: the fit with what differs.
-        targets: what is to be in common again.
-        recordings: numbers of those that may differ.
+    `problem` is that in which no level was free, `common` its fit, `current` the fit with what differs.
     """
-    kept = [effect for effect in current.effects if not belongs(effect, targets, recordings)]
+    kept = [effect for effect in current.effects if not _belongs(effect, targets, recordings)]
     moved = [effect.target for effect in kept if isinstance(effect, RecordingShift)]
     before = without_shifts(common.effects)
     places = {(one.name, one.port, one.place) for one in before} | {(t.name, t.port, t.place) for t in moved}
@@ -221,7 +209,7 @@ def in_common(
     return problem, fit(problem, kept, iterations=JOINT_STEPS)
 
 
-def compared_fits(problem: Problem, without: Fit, having: Fit) -> Comparison:
+def _compared_fits(problem: Problem, without: Fit, having: Fit) -> Comparison:
     """What one fit brings over another on blocks left out."""
     blocks = block_numbers(problem)
     before = left_out_residual(problem, without, blocks)

@@ -116,12 +116,6 @@ class ResponseProblem(DeclaredPlant):
             found.append(StructuralMode.of(mass=mass, frequency=start * math.exp(_bounded(place, 5.0)), damping=ratio))
         return tuple(found)
 
-    def plant_at(self, coordinates: FloatArray, lines: Lines) -> Plant:
-        """The plant at coordinates, (k,)."""
-        count = len(self.values)
-        plant = self.plant_with(np.clip(coordinates[:count], -5.0, 5.0))
-        return plant.with_effects(*self.effects(coordinates[count:], lines))
-
     def predicted(self, coordinates: FloatArray, lines: Lines) -> ComplexArray:
         """Response at the measured frequencies, (n,) SI; each is computed once."""
         key = coordinates.tobytes() + repr(lines).encode()
@@ -134,7 +128,9 @@ class ResponseProblem(DeclaredPlant):
     def _computed(self, coordinates: FloatArray, lines: Lines) -> ComplexArray:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", ValidityWarning)  # values that no part has are tried on the way
-            plant = self.plant_at(coordinates, lines)
+            count = len(self.values)
+            plant = self.plant_with(np.clip(coordinates[:count], -5.0, 5.0))
+            plant = plant.with_effects(*self.effects(coordinates[count:], lines))
             frequency = self.response.frequency
             fine = resolved(self.case.on(plant), float(frequency[-1]), [self.case.position])
             if self.cascade is not None:
