@@ -16,8 +16,7 @@ from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.preparation import prepared
 from feeddrive.diagnosis.simulated.loop_evidence import loop_evidence
 from feeddrive.diagnosis.simulated.loop_fit import LoopProblem, alike, foretold, loop_problem
-from feeddrive.diagnosis.simulated.refinement import DELAYED, Outcome, Refinement, refined, why_not_kept
-from feeddrive.diagnosis.simulated.simulation import errors_after
+from feeddrive.diagnosis.simulated.refinement import DELAYED, Outcome, Refinement, errors_after, refined, why_not_kept
 from feeddrive.diagnosis.simulated.simulation_result import ErrorFigure
 from feeddrive.effects.base import Effect
 from feeddrive.effects.chain.payload import Payload

@@ -21,16 +21,21 @@ from feeddrive.diagnosis.certainty.uncertainty import certainty
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging.judge import Judged, channel_results
 from feeddrive.diagnosis.likelihood.coordinates import write_coordinates
-from feeddrive.diagnosis.likelihood.fit import fit
-from feeddrive.diagnosis.recordings.recordings import is_shift
+from feeddrive.diagnosis.likelihood.fit import Problem, fit
+from feeddrive.diagnosis.recordings.recordings import RecordingPredictor, is_shift
 from feeddrive.diagnosis.simulated.loop_evidence import LoopEvidence, loop_evidence
 from feeddrive.diagnosis.simulated.loop_fit import LoopProblem, coordinate_count, fit_loop, foretold, loop_problem
-from feeddrive.diagnosis.simulated.simulation import LoopErrors, errors_after, loop_errors
-from feeddrive.diagnosis.simulated.simulation_result import RefinedValue, SimulatedChannel, SimulationResult
+from feeddrive.diagnosis.simulated.simulation_result import (
+    ErrorFigure,
+    RefinedValue,
+    SimulatedChannel,
+    SimulationResult,
+)
 from feeddrive.effects.base import Effect, Kind
 from feeddrive.errors import InputError
+from feeddrive.plant.plant import Plant
 from feeddrive.recording.channels import channel_unit
-from feeddrive.typing import BoolArray
+from feeddrive.typing import BoolArray, FloatArray
 
 CHANNEL_MARGIN = 0.01
 """Share by which the rms of one simulated channel may rise where the others gain."""
@@ -201,3 +206,51 @@ def _result(before: LoopErrors, attributed: LoopErrors, after: LoopErrors | None
 
 def _finite(*errors: LoopErrors) -> bool:
     return all(np.isfinite(error.rms) for each in errors for error in each.values())
+
+
+LoopErrors = dict[str, ErrorFigure]
+"""Channel to its simulation error, all judged recordings together."""
+
+
+def loop_errors(loops: Sequence[LoopEvidence], plants: Sequence[Plant]) -> LoopErrors:
+    """Channel to its simulation error over the judged samples.
+
+    Args:
+        loops: judged recordings.
+        plants: one for each of them.
+
+    Returns:
+        Empty where nothing is left to judge; not a number where a plant could not be followed.
+    """
+    missed: dict[str, list[FloatArray]] = {}
+    shown: dict[str, list[FloatArray]] = {}
+    for loop, plant in zip(loops, plants, strict=True):
+        rows = loop.judged_rows
+        if not rows.any():
+            continue
+        for name, error in loop.missed(loop.simulated(plant), rows).items():
+            missed.setdefault(name, []).append(error)
+            shown.setdefault(name, []).append(_scale(loop, name)[rows])
+    return {name: _error(np.concatenate(missed[name]), np.concatenate(shown[name])) for name in missed}
+
+
+def errors_after(problem: Problem, judged: Sequence[Judged], loops: Sequence[LoopEvidence]) -> LoopErrors:
+    """Errors of the plants after, each as it is in its recording, on the samples of the loops."""
+    plants, predictor = [j.after for j in judged], problem.predictor
+    if isinstance(predictor, RecordingPredictor):
+        plants = [predictor.machine(j.after, j.evidence) for j in judged]
+    return loop_errors(loops, plants)
+
+
+def _scale(loop: LoopEvidence, name: str) -> FloatArray:
+    series = loop.recording[name]
+    if name != "table_position":
+        return series
+    behind = series - loop.recording["setpoint"]
+    following: FloatArray = behind - behind.mean()
+    return following
+
+
+def _error(error: FloatArray, scale: FloatArray) -> ErrorFigure:
+    rms = float(np.sqrt(np.mean(error**2)))
+    return ErrorFigure(rms, rms / float(np.sqrt(np.mean(scale**2))))
