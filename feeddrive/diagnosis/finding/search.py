@@ -17,7 +17,7 @@ from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.finding.round import Round, one_round
 from feeddrive.diagnosis.finding.scene import scene_of
 from feeddrive.diagnosis.finding.sets import Neighbour, neighbours
-from feeddrive.diagnosis.heat.heat_materiality import is_another
+from feeddrive.diagnosis.heat.heat_candidates import is_another
 from feeddrive.diagnosis.judging.result import Trial
 from feeddrive.diagnosis.likelihood.coordinates import write_coordinates
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit

@@ -13,8 +13,17 @@ from pathlib import Path
 from feeddrive.bench_page.page import bench_of_diagnosis
 from feeddrive.compensation.actions import actions
 from feeddrive.diagnosis.diagnose import diagnose
-from feeddrive.diagnosis.ledger.continued import Earlier, changed_since, earlier_run
-from feeddrive.diagnosis.ledger.ledger import FileUse, RunFiles, checksum, runs_of, write_ledger, written_earlier
+from feeddrive.diagnosis.ledger.ledger import (
+    Earlier,
+    FileUse,
+    RunFiles,
+    changed_since,
+    checksum,
+    earlier_run,
+    runs_of,
+    write_ledger,
+    written_earlier,
+)
 from feeddrive.diagnosis.likelihood.outputs import write_outputs
 from feeddrive.diagnosis.numbers.measured_file import read_measured_numbers
 from feeddrive.diagnosis.preparation import informative
