@@ -9,7 +9,7 @@ from pathlib import Path
 import typer
 from rich.console import Console
 
-from feeddrive.cli.output import escaped, table, tell_written, warnings_as_lines
+from feeddrive.cli.output import escaped, print_written, table, warnings_as_lines
 from feeddrive.errors import InputError, printable
 from feeddrive.files import write_bytes_atomically
 from feeddrive.interface.compensating import Compensation, compensate
@@ -74,7 +74,7 @@ def run(request: Request, as_json: bool, out: Path | None) -> None:
     console.print(table(listing.title, listing.headings, listing.rows))
     for line in done.left:
         console.print(f"left: {printable(line)}")
-    tell_written(out, False)
+    print_written(out, False)
     typer.echo(f"its sheet: {printable(str(out.resolve()))}.txt")
 
 

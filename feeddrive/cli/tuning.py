@@ -8,7 +8,7 @@ from typing import Any
 
 from rich.table import Table
 
-from feeddrive.cli.output import deliver, table, tell_written, warnings_as_lines, working
+from feeddrive.cli.output import deliver, print_written, table, warnings_as_lines, working
 from feeddrive.files import find_plant
 from feeddrive.interface.axis import load
 from feeddrive.interface.retuning import Retuned
@@ -60,7 +60,7 @@ def run(wanted: Wanted, as_json: bool, out: Path | None) -> None:
             save_tuned(servo, typed, retuned, folder)
     shown = [] if as_json else [*_recommended(servo), *_compared(retuned), *_typed(typed)]
     deliver(tuned_record(servo, typed, retuned), shown, as_json, None)
-    tell_written(out, as_json)
+    print_written(out, as_json)
 
 
 def _listed(text: str) -> list[str] | None:

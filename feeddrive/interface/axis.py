@@ -254,7 +254,7 @@ class Axis:
 
         Args:
             at: table position for stiffness and modes; the middle of the stroke if left out.
-            recording: of which the life that it takes is told, see `used_life`; none if left out.
+            recording: whose share of the life is added, see `used_life`; none if left out.
 
         Raises:
             InputError: a position off the screw, a recording without motor angle, or of a machine of heat alone.

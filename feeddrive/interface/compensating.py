@@ -189,8 +189,8 @@ def compensate(
         if form == HEAT:
             return Compensation(recorded_heat_table(found, wishes.reference), axis)
         radius = None if travel is None else travel / (2 * math.pi)
-        told = recorded_deviations(found, radius, travel)
-        return Compensation(compensate_recording(found.name, told, wishes, travel or math.inf), axis)
+        measured = recorded_deviations(found, radius, travel)
+        return Compensation(compensate_recording(found.name, measured, wishes, travel or math.inf), axis)
     if form == HEAT:
         if not found.has_heat:
             raise InputError("declares no heat", where or found.name, "declare [thermal], or give a warm recording")

@@ -153,10 +153,10 @@ def explain(
     entries = with_named_parts(axis.entries, str(axis.path))
     if axis.values or axis.added:
         raise InputError("the axis was changed after it was loaded", axis.name, "save it, and load the file")
-    tell = progress or (lambda _: None)
+    report = progress or (lambda _: None)
     if not isinstance(measured, FrequencyResponse) and Path(measured).suffix.lower() == ".toml":
         numbers = read_measured_numbers(Path(measured), axis.plant)
-        return Explained(axis, diagnose_numbers(entries, axis.path, axis.plant, numbers, tell))
+        return Explained(axis, diagnose_numbers(entries, axis.path, axis.plant, numbers, report))
     response = measured if isinstance(measured, FrequencyResponse) else read_response_file(Path(measured))
     if response is None:
         what = "is neither measured numbers nor a frequency response"
@@ -164,5 +164,5 @@ def explain(
     point = export_point(axis.plant, at, "at")
     case = Case(point.position, point.linearised_at)
     cascade = None if controller is None else cascade_for(axis.plant, controller)
-    found = diagnose_response(entries, axis.path, axis.plant, response, case, tell, cascade)
+    found = diagnose_response(entries, axis.path, axis.plant, response, case, report, cascade)
     return Explained(axis, found)

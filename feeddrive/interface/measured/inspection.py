@@ -236,7 +236,7 @@ def inspect(
 
     Args:
         path: trace of a drive, control or logger, recording, or frequency response.
-        map: mapping file, in place of what names tell.
+        map: mapping file, in place of the names.
         axis: of a file that holds several, such as "X1".
         lead: makes angles of motor encoders in mm.
         channels: channel to the signal that it is, and its unit, {"motor_torque": "NAME [N m]"}.
@@ -244,7 +244,7 @@ def inspect(
         part: stretch between gaps, 1 for the first; the longest if left out.
         sample_time: distance of samples where the file has no time.
         columns: names of columns without any.
-        decimal: "." or "," of a CSV file, where it cannot be told.
+        decimal: "." or "," of a CSV file, where the file leaves it open.
 
     Raises:
         InputError: a file or a wish that cannot be used.

@@ -138,11 +138,11 @@ def iso230(
     Args:
         measured: a table of readings, or a recording with `table_position`; for a circle of two axes two recordings.
         plant: an axis; says what of E, M and B it explains, and knows the lead where a recording has no set-point.
-        part: 2 positioning, 3 drift of an axis that warms itself, 4 circle; told by what is measured if left out.
+        part: 2 positioning, 3 drift of an axis that warms itself, 4 circle; identified from the columns if left out.
         radius: nominal, of a circle.
         stop: when the axis stops, of a test of drift.
         map: mapping file of a recording in a foreign format.
-        decimal: "." or ",", where it cannot be told.
+        decimal: "." or ",", where the file leaves it open.
 
     Raises:
         InputError: what is given makes no such test; one line with the remedy.

@@ -155,9 +155,9 @@ def watch(
         plant: the axis as declared.
         out: folder of the results and the checkpoint; beside `folder`, with "_watch" behind its name, if left out.
         map: mapping file for recordings in a foreign format.
-        decimal: "." or ",", where files do not tell.
+        decimal: "." or ",", where files leave it open.
         stamp: pattern of `strptime` that a part of each name meets, such as "%Y%m%d_%H%M".
-        every: distance of the recordings, "1 day", where nothing tells their dates; they stand in the order of names.
+        every: distance of the recordings in the order of names, "1 day", where neither name nor content holds a date.
         first: date of the first one, then.
         absolute: channels whose zero is kept from recording to recording, such as "table_position": an offset of the
             table against the motor that moves is growth then. A plant's `[[sensor]]` may say `absolute = true` instead.
@@ -168,7 +168,7 @@ def watch(
     Raises:
         InputError: no folder, no recording that can be used, or an option that is none.
     """
-    tell = progress or (lambda _: None)
+    report = progress or (lambda _: None)
     place = Path(folder)
     if plant.values or plant.added:
         raise InputError("the axis was changed after it was loaded", plant.name, "save it, and load the file")
@@ -184,14 +184,14 @@ def watch(
         _absolute(absolute, plant),
         dict(limits or {}),
     )
-    trend, kept = follow(plant.plant, plant.text, plant.entries, place, target, options, tell)
+    trend, kept = follow(plant.plant, plant.text, plant.entries, place, target, options, report)
     unknown = set(options.limits or {}) - {one.name for one in trend.quantities if one.watched}
     if unknown:
         held = ", ".join(one.name for one in trend.quantities if one.watched)
         raise InputError(f'no quantity "{sorted(unknown)[0]}" is watched', "limits", f"it has {held}")
     if not search:
         return Watched(plant, trend, target)
-    found, kept = searched_events(plant.plant, trend, kept, place, target, options, tell)
+    found, kept = searched_events(plant.plant, trend, kept, place, target, options, report)
     save_checkpoint(target, kept)
     return Watched(plant, trend, target, found)
 
