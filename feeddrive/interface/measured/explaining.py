@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,7 +21,7 @@ from feeddrive.files import write_bytes_atomically, write_text_atomically
 from feeddrive.interface.axis import Axis, axis_of_text
 from feeddrive.interface.measured.reading import read_response_file
 from feeddrive.interface.servo import Servo, cascade_for
-from feeddrive.interface.shown import Listing, Shown
+from feeddrive.interface.shown import Listing, Shown, write_json
 from feeddrive.plant.file.named_parts import with_named_parts
 from feeddrive.recording.frequency_response import FrequencyResponse
 from feeddrive.report.words.explained_words import numbers_verdict, response_verdict, value_text
@@ -85,8 +84,7 @@ class Explained(Shown):
         write_text_atomically(place / "plant_after.toml", self._text_after())
         write_bytes_atomically(place / f"{picture.stem}.png", picture.png)
         write_text_atomically(place / "report.html", page)
-        record = json.dumps(self.record(), indent=1, ensure_ascii=False, allow_nan=False)
-        write_text_atomically(place / "diagnosis.json", record + "\n")
+        write_json(self.record(), place / "diagnosis.json", indent=1)
         return place
 
     def _text_after(self) -> str:
