@@ -9,9 +9,9 @@ import numpy as np
 from feeddrive import __version__
 from feeddrive.diagnosis.judging.result import ChannelSeries, Diagnosis, FileStamp, JudgedRecording, Trial
 from feeddrive.diagnosis.suspicion.quality import quality_lines
-from feeddrive.report.pages.markup import Cell, bullets, catalogue_name, paragraph, section, table, text
+from feeddrive.report.pages.markup import Cell, bullets, catalogue_name, effect_name, paragraph, section, table, text
 from feeddrive.report.words.people import fixed, share_text, significant, with_unit
-from feeddrive.report.words.words import effect_words, plain
+from feeddrive.report.words.words import plain
 from feeddrive.typing import BoolArray
 
 _MOST_TRIALS = 8
@@ -47,9 +47,7 @@ def tried_section(diagnosis: Diagnosis, pictures: str) -> str:
 
 def _refused(diagnosis: Diagnosis) -> str:
     """Refused candidates with their reasons."""
-    rows: list[list[str | Cell]] = [
-        [Cell(f"{text(effect_words(one.name))}<br>{catalogue_name(one.name)}"), one.reason] for one in diagnosis.refused
-    ]
+    rows: list[list[str | Cell]] = [[effect_name(one.name), one.reason] for one in diagnosis.refused]
     return table(["Effect", "Why not"], rows) if rows else ""
 
 
@@ -57,7 +55,7 @@ def _trials(trials: tuple[Trial, ...]) -> str:
     """Gains of the best candidates of each round."""
     if not trials:
         return ""
-    heads = ["#Round", "Candidate", "#gain", "#standard error", ""]
+    heads = ["#Round", "Candidate", "#gain", "#standard error", "result"]
     rows = [
         [str(one.round), Cell(catalogue_name(one.name)), _percent(one.gain),
          _percent(one.standard_error), "taken" if one.taken else ""]
@@ -99,6 +97,8 @@ def used_sentence(diagnosis: Diagnosis) -> str:
             shares[channel.name] = float(np.mean(np.concatenate(usable)))
     if not shares:
         return ""
+    if not any(share < 1.0 for share in shares.values()):
+        return "Every sample of the judged recordings is used."
     listed = ", ".join(f"{share_text(1.0 - share)} of {plain(name)}" for name, share in shares.items())
     return f"Not used of the judged recordings: {listed} (the cut ends, flawed rows, and what cannot be predicted)."
 

@@ -136,4 +136,4 @@ def _steps(result: ResponseResult) -> str:
         [step.name, f"{step.gain:+.1f}", "taken" if step.taken else ""]
         for step in sorted(result.steps, key=lambda one: -one.gain)[:_STEPS]
     ]
-    return table(["candidate", "#log evidence", ""], rows) if rows else ""
+    return table(["candidate", "#log evidence", "result"], rows) if rows else ""

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from feeddrive.report.figures.drawing import RenderedFigure
+from feeddrive.report.words.words import effect_words
 
 _KEPT = "\n\N{NO-BREAK SPACE}"
 
@@ -23,6 +24,13 @@ def text(words: str) -> str:
     """Words as HTML; control characters, which no page may hold, become spaces."""
     clean = "".join(letter if letter.isprintable() or letter in _KEPT else " " for letter in words)
     return html.escape(clean.encode("utf-8", "replace").decode("utf-8"), quote=True)
+
+
+def effect_name(name: str, bold: bool = False) -> Cell:
+    """What an effect is called, and below it its name in files where that is another."""
+    words = text(effect_words(name))
+    below = f"<br>{catalogue_name(name)}" if effect_words(name) != name else ""
+    return Cell(f"{f'<b>{words}</b>' if bold else words}{below}")
 
 
 def catalogue_name(name: str) -> str:

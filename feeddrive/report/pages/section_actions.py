@@ -63,5 +63,5 @@ def _predicted(found: Actions) -> str:
         f"Simulated from {ends[0]:.4g} mm to {ends[1]:.4g} mm with the position loop closed at the motor, in slow "
         "motion; one approach per direction, so that nothing scatters. Repair renews preload; compensation is a table."
     )
-    rest = [line.replace(" um", " \N{MICRO SIGN}m") for line in left(found.predicted)]
+    rest = [line.replace(" um", " \N{MICRO SIGN}m").replace("^2", "²") for line in left(found.predicted)]
     return table(heads, rows) + bullets(rest) + paragraph(note, "note")

@@ -76,7 +76,7 @@ def _explained(diagnosis: Diagnosis) -> str:
 
 def _tried(trials: tuple[CommonTrial, ...]) -> str:
     """Which parameters were asked for a value of their own, the best first."""
-    heads = ["Asked for a value of its own", "in", "#gain", "#standard error", ""]
+    heads = ["Asked for a value of its own", "in", "#gain", "#standard error", "result"]
     rows = [
         [
             f"{effect_words(one.effect)} ({one.port}): {plain(one.parameter)}",

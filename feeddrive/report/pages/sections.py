@@ -9,7 +9,7 @@ from feeddrive.diagnosis.judging.result import ChannelResult, Diagnosis, EffectR
 from feeddrive.diagnosis.numbers.number_rows import NumberResult
 from feeddrive.report.pages.markup import (
     Cell,
-    catalogue_name,
+    effect_name,
     paragraph,
     section,
     table,
@@ -20,6 +20,7 @@ from feeddrive.report.parameters import parameter_text
 from feeddrive.report.records import used_sentence
 from feeddrive.report.words.people import (
     DASH,
+    SPACE,
     Scale,
     band_text,
     scale_for_error,
@@ -45,7 +46,7 @@ def error_section(diagnosis: Diagnosis) -> str:
     """Error before and after for each channel."""
     if not diagnosis.channels:
         return ""
-    heads = ["Channel", "Band", ""]
+    heads = ["Channel", "Band", "Prediction"]
     heads += [f"#{one}" for one in ("rms", "largest", "relative", "sensor noise", "rms / noise")]
     rows = [row for channel in diagnosis.channels for row in _error_rows(channel, diagnosis.nothing_missing)]
     note = (
@@ -59,15 +60,15 @@ def error_section(diagnosis: Diagnosis) -> str:
 def _error_rows(channel: ChannelResult, nothing_missing: bool) -> list[list[str | Cell]]:
     """One row before and one after, only one where both are the same plant."""
     scale = scale_for_error(channel.unit)
-    band = band_text(channel.band_hz)
+    band = band_text(channel.band_hz).replace(" ", SPACE)
     name = Cell(f"<b>{text(plain(channel.name))}</b>")
     if nothing_missing:
         return [[name, band, "declared plant", *_errors(channel, channel.before, scale)]]
     gain = channel.before.rms / channel.after.rms if channel.after.rms > 0.0 else math.nan
-    better = f"rms {significant(gain, 2)} times smaller" if gain >= 1.05 else ""
+    better = f", rms {significant(gain, 2)} times smaller" if gain >= 1.05 else ""
     return [
         [name, band, "before", *_errors(channel, channel.before, scale)],
-        [better, "", "after", *_errors(channel, channel.after, scale)],
+        [name, band, f"after{better}", *_errors(channel, channel.after, scale)],
     ]
 
 
@@ -105,7 +106,7 @@ def _effect_rows(effect: EffectResult, channels: list[str]) -> list[list[str | C
     texts = [parameter_text(key, parameter) for key, parameter in effect.parameters.items()]
     cells: list[list[str | Cell]] = [[one.name, one.value, one.interval or DASH] for one in texts]
     cells = cells or [[DASH, "", ""]]
-    name = Cell(f"<b>{text(effect_words(effect.name))}</b><br>{catalogue_name(effect.name)}")
+    name = effect_name(effect.name, bold=True)
     ordered = sorted(effect.explains, key=lambda one: channels.index(one) if one in channels else len(channels))
     shares = [f"{text(plain(one))} {text(times_text(error_without(effect.explains[one])))}" for one in ordered]
     first = [name, *cells[0], Cell("<br>".join(shares) or DASH), "yes" if effect.carries else "no"]
