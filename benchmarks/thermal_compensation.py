@@ -3,7 +3,7 @@
 The machine is the full model on another mesh than the compensation's, with films and heats off by 10 %, all four signs,
 on three duties of 6 h with rests. Sensors: noise 0.03 K, lag 60 s. The compensation starts from the declared values.
 
-    OPENBLAS_NUM_THREADS=1 python benchmarks/thermal_compensation.py
+    OPENBLAS_NUM_THREADS=1 python -m benchmarks.thermal_compensation
 """
 
 from __future__ import annotations
@@ -33,11 +33,11 @@ from feeddrive.files import find_plant
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.thermal.full.full_model import full_model
 from feeddrive.thermal.full.grid import Cells
-from feeddrive.thermal.full.moving_family import moving_family
 from feeddrive.thermal.reduced.parametric_model import HeatModel
 from feeddrive.thermal.reduced.stepping import Stepper
 from feeddrive.thermal.run.warm_up import declared_rows
 from feeddrive.typing import FloatArray
+from tests.heat_oracle.moving_family import moving_family
 
 PLANT = read_plant(find_plant("thermal_bench")).heat
 OTHER_MESH = full_model(PLANT.rig, Cells(330, 5, 36, 7))

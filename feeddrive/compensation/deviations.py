@@ -39,8 +39,8 @@ import numpy as np
 from feeddrive.compensation.lost_motion import declared_play
 from feeddrive.compensation.table import PER_INTERVAL, Deviations, straight_pieces
 from feeddrive.effects.base import TravelEffect, number
+from feeddrive.effects.tabulated import TabulatedTravel
 from feeddrive.effects.travel.lead_error_periodic import LeadErrorPeriodic
-from feeddrive.effects.travel.tabulated_travel import TabulatedTravel
 from feeddrive.effects.travel.thermal_growth import ThermalGrowth
 from feeddrive.errors import InputError
 from feeddrive.plant.equations import parameter_symbols, parameter_values

@@ -28,8 +28,8 @@ from feeddrive.plant.analysis.summary import summarise
 from feeddrive.plant.chain.moving_inertia import inertia_at_motor
 from feeddrive.plant.derived_effects import GRAVITY
 from feeddrive.plant.file.declared_check import check_declared
-from feeddrive.plant.file.effect_text import plant_text_with_effects
 from feeddrive.plant.file.entries import parse_toml
+from feeddrive.plant.file.lumped_text import plant_text_with_effects
 from feeddrive.plant.file.plant_file import plant_from_entries
 from feeddrive.plant.file.plant_schema import plant_table
 from feeddrive.plant.plant import Plant
@@ -294,7 +294,7 @@ class Axis:
         from feeddrive.interface.machine.modes import Lumped
 
         further = ("the [thermal] sections; temperatures are predicted with the file of the parts",)
-        place = self.plant.middle if at is None else si(at, "m", "at")
+        place = None if at is None else si(at, "m", "at")
         return Lumped(self.name, lump(self.plant, place, further if self.has_heat else ()))
 
     def modes(self, at: Quantities = None) -> Modes:
@@ -358,7 +358,7 @@ class Axis:
         """
         from feeddrive.diagnosis.likelihood.band import comparison_band
         from feeddrive.interface.measured.reading import as_recording
-        from feeddrive.simulate.used_life import used_life
+        from feeddrive.simulate.driven import used_life
 
         rec = as_recording(recording, "recording")
         if "motor_angle" not in rec:

@@ -20,8 +20,7 @@ from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import KV_UNIT, Cascade, Feedback
 from feeddrive.servo.loop_response import loops_of
 from feeddrive.servo.margins import Margins
-from feeddrive.servo.response_family import open_family
-from feeddrive.servo.response_json import margins_content
+from feeddrive.servo.response_family import margins_content, open_family
 from feeddrive.simulate.controlled.controller_file import read_controller
 from feeddrive.tuning.bare_drive import bare_drive
 from feeddrive.tuning.demand import Demand, operating_points

@@ -19,7 +19,7 @@ import numpy as np
 import scipy.sparse as sparse
 
 from feeddrive.errors import InputError
-from feeddrive.thermal.laws.expansion import FIXED_FREE, Supports, expansion
+from feeddrive.thermal.laws.expansion import growths
 from feeddrive.thermal.machine_heat import Heat
 from feeddrive.thermal.reduced.parametric_model import HeatModel, Path
 from feeddrive.thermal.reduced.reduction import Sizes, reduce_model
@@ -48,13 +48,12 @@ class TableError:
         return np.asarray(states @ self.rows.T)
 
 
-def table_error(heat: Heat, model: HeatModel, supports: Supports = FIXED_FREE, count: int = POSITIONS) -> TableError:
+def table_error(heat: Heat, model: HeatModel, count: int = POSITIONS) -> TableError:
     """The error along the plant's travel.
 
     Args:
         heat: the machine.
         model: its full or a reduced model.
-        supports: how the screw is held along its axis.
         count: of places, evenly from end to end of the travel.
 
     Raises:
@@ -63,9 +62,7 @@ def table_error(heat: Heat, model: HeatModel, supports: Supports = FIXED_FREE, c
     refuse_unless(count >= 2, f"{count} places make no line", "count", "write at least 2")
     positions = np.linspace(heat.rig.travel.low, heat.rig.travel.high, count)
     profile = model.profile.toarray() if sparse.issparse(model.profile) else model.profile
-    # The cold stretch does not enter the error, and a unit of a state is no temperature that it could be checked with.
-    grown = expansion(heat.rig, profile.T, model.edges, Supports(supports.front, supports.rear))
-    return TableError(positions, np.array([grown.growth(float(x)) for x in positions]))
+    return TableError(positions, growths(heat.rig, profile.T, model.edges, positions).T)
 
 
 @dataclass(frozen=True)

@@ -34,10 +34,11 @@ from feeddrive.servo.response_family import (
     Family,
     closed_family,
     controlled_family,
+    family_content,
+    measured_content,
     mechanics_family,
     open_family,
 )
-from feeddrive.servo.response_json import family_content, measured_content
 from feeddrive.tuning.demand import cases_of
 from feeddrive.units.quantity import format_quantity, unit_conversion
 

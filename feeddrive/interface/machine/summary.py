@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from feeddrive.interface.machine.check import RATED, Life, UsedLife
 from feeddrive.interface.machine.heat_summary import HeatSummary
 from feeddrive.interface.shown import Listing, Shown, finite, write_figures, write_json
-from feeddrive.parts.guide.carriages import Carriages
+from feeddrive.parts.guide.guide_rating import Carriages
 from feeddrive.plant.analysis.modes import Modes
 from feeddrive.plant.analysis.rated_life import LifeRow
 from feeddrive.plant.analysis.stiffness_budget import StiffnessBudget

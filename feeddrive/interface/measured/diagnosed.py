@@ -19,7 +19,7 @@ from feeddrive.errors import InputError
 from feeddrive.interface.axis import Axis, axis_of_text
 from feeddrive.interface.measured.reading import as_recording
 from feeddrive.interface.shown import Listing, Shown
-from feeddrive.plant.file.effect_text import plant_text_with_effects
+from feeddrive.plant.file.lumped_text import plant_text_with_effects
 from feeddrive.recording.recording import Recording
 from feeddrive.report.certainty import experiment_sentences, simulation_lines
 from feeddrive.report.pages.sections import calibrated_lines, measured_lines

@@ -57,7 +57,7 @@ class WarmUp(Shown):
         if name == "time":
             return self.study.duty.times
         if name not in self.study.series:
-            raise InputError(f'no channel "{name}"', self.study.plant.name, f"it has {', '.join(self.study.series)}")
+            raise InputError(f'no channel "{name}"', self.study.heat.name, f"it has {', '.join(self.study.series)}")
         return self.study.series[name]
 
     @property
@@ -82,14 +82,14 @@ class WarmUp(Shown):
             for name, one in self.study.warm_up.items()
         ]
         headings = ("growth", "settles at", f"within {format_quantity(self.study.within, 'm')} after", "63 % after")
-        return Listing(f"{self.study.plant.name}: warm-up", headings, rows, records)
+        return Listing(f"{self.study.heat.name}: warm-up", headings, rows, records)
 
     @cached_property
     def network(self) -> Network:
         """Lumped network at the mean conductances of the run, for reading; its errors are some per cent."""
         found = self.study
-        bodies = (*found.plant.bodies, *found.plant.attached)
-        return network(found.plant.rig, found.conductances, self.segments, bodies)
+        bodies = (*found.heat.bodies, *found.heat.attached)
+        return network(found.heat.rig, found.conductances, self.segments, bodies)
 
     def tables(self) -> tuple[Listing, ...]:
         """Temperatures, error at the table, warm-up, time constants, energy, models, network."""
@@ -98,11 +98,11 @@ class WarmUp(Shown):
     def record(self) -> dict[str, Any]:
         """Everything that was found, plain values, SI."""
         found, lumps = self.study, self.network
-        duty, energy, travel = found.duty, found.energy, found.plant.rig.travel
+        duty, energy, travel = found.duty, found.energy, found.heat.rig.travel
         return {
             "format": "feeddrive-thermal/1",
             "version": __version__,
-            "plant": found.plant.name,
+            "plant": found.heat.name,
             "duty": {
                 "source": duty.source,
                 "duration": duty.duration,
@@ -145,7 +145,7 @@ class WarmUp(Shown):
         found, duty = self.study, self.study.duty
         series = {re.sub(r"[^a-z0-9_]+", "_", name.lower()): values for name, values in found.series.items()}
         channels = {SPEED: duty.speeds, AMBIENT_CHANNEL: duty.ambient, **series}
-        return Recording(found.plant.name, duty.times, channels, duty.step)
+        return Recording(found.heat.name, duty.times, channels, duty.step)
 
     def save(self, folder: str | Path) -> Path:
         """Write `thermal.json`, `recording.csv` and the figures.
@@ -235,10 +235,10 @@ def warm_up_tables(found: ThermalStudy, lumps: Network) -> tuple[Listing, ...]:
 
 def _over_time(found: ThermalStudy) -> list[Listing]:
     """Temperatures, and the error at the table, at some times."""
-    duty, travel = found.duty, found.plant.rig.travel
+    duty, travel = found.duty, found.heat.rig.travel
     speed = format_quantity(float(np.mean(np.abs(duty.speeds))), "rad/s")
     what = f"{speed} constant" if duty.is_constant else f"{speed} on average ({duty.source})"
-    title = f"{found.plant.name}: {what}, nut from {travel.low * 1e3:.4g} to {travel.high * 1e3:.4g} mm"
+    title = f"{found.heat.name}: {what}, nut from {travel.low * 1e3:.4g} to {travel.high * 1e3:.4g} mm"
     grown = [name for name in found.series if name.startswith("table_growth")]
     others = [name for name in found.series if name not in grown]
     return [_series(title, others, found), _series("Error at the table, growth of the screw", grown, found)]

@@ -84,7 +84,7 @@ def _temperatures(axes: Axes, found: ThermalStudy, time: FloatArray) -> None:
 
 
 def _drawn(found: ThermalStudy) -> Sequence[str]:
-    bodies = [body.name for body in found.plant.bodies]
+    bodies = [body.name for body in found.heat.bodies]
     return [NUT, SHAFT, FRONT, REAR, *bodies]
 
 
@@ -118,22 +118,22 @@ def _caption(found: ThermalStudy) -> str:
 
 def field_figure(found: ThermalStudy) -> ReportFigure:
     """Temperature over length and radius of shaft and nut at the end of the run, the nut in mid-travel."""
-    parts = discretise(found.plant.rig, found.plant.cells)
+    parts = discretise(found.heat.rig, found.heat.cells)
     start, state = float(found.duty.ambient[0]), found.states[-1]
     shaft = start + state[: parts.shaft.nodes].reshape(-1, parts.shaft.axial)
     nut = start + state[parts.shaft.nodes : parts.nodes].reshape(-1, parts.nut.axial)
     span = float(min(shaft.min(), nut.min())), float(max(shaft.max(), nut.max()))
     figure = new_figure(3.8)
     axes = figure.subplots()
-    travel = found.plant.rig.travel
-    at = (travel.low + travel.high - found.plant.rig.nut.length) / 2
+    travel = found.heat.rig.travel
+    at = (travel.low + travel.high - found.heat.rig.nut.length) / 2
     mesh = _cylinder(axes, parts.shaft, shaft, 0.0, span)
     _cylinder(axes, parts.nut, nut, at, span)
     bar = figure.colorbar(mesh, ax=axes, pad=0.02)
     bar.set_label("temperature [°C]", fontsize=9)
     bar.ax.tick_params(labelsize=8.5)
     _travel(axes, found)
-    axes.set_ylim(0, 1.18e3 * found.plant.rig.nut.outer_radius)
+    axes.set_ylim(0, 1.18e3 * found.heat.rig.nut.outer_radius)
     factor, label = time_axis(found.duty.duration)
     when = f"{factor * found.duty.duration:.4g} {label[6:-1]}"
     dress(
@@ -165,7 +165,7 @@ def _cylinder(axes: Axes, body: Cylinder, values: FloatArray, at: float, span: t
 
 def _travel(axes: Axes, found: ThermalStudy) -> None:
     """The stretch that the nut sweeps, as an arrow above it."""
-    rig = found.plant.rig
+    rig = found.heat.rig
     half, height = rig.nut.length / 2, 1.08e3 * rig.nut.outer_radius
     ends = 1e3 * (rig.travel.low - half), 1e3 * (rig.travel.high + half)
     axes.annotate("", (ends[0], height), (ends[1], height), arrowprops={"arrowstyle": "<->", "color": "#555555"})

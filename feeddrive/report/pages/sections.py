@@ -159,7 +159,8 @@ def _text(value: float, unit: str) -> str:
 
 _MEASURED_NOTE = (
     "These numbers were fitted together with the recordings, each by its own tolerance; a plant that meets them lies "
-    "within. What is not met after the diagnosis contradicts the recordings, or what the plant can be."
+    "within. What is not met after the diagnosis contradicts the recordings, or what the plant can be. A number that "
+    "is likelier to be wrong than whatever would explain it is not fitted."
 )
 
 
@@ -167,7 +168,7 @@ def measured_section(diagnosis: Diagnosis) -> str:
     """A table of the measured numbers; nothing where none were given."""
     heads = ["Measured beside the recordings", "#measured", "#tolerance", "#declared plant",
              "#with what was found", "met"]  # fmt: skip
-    rows = [[one.number.name.replace("_", " "), *_texts(one), "yes" if one.met else "no"] for one in diagnosis.measured]
+    rows = [[one.number.name.replace("_", " "), *_texts(one), _met(one, "yes", "no")] for one in diagnosis.measured]
     return section("Measured numbers", table(heads, rows), paragraph(_MEASURED_NOTE, "note")) if rows else ""
 
 
@@ -176,10 +177,14 @@ def measured_lines(diagnosis: Diagnosis) -> list[str]:
     lines = []
     for one in diagnosis.measured:
         measured, tolerance, before, after = _texts(one)
-        met = "met" if one.met else "not met"
+        met = _met(one, "met", "not met")
         name = one.number.name.replace("_", " ")
         lines.append(f"measured: {name} {measured} ± {tolerance}, declared {before}, now {after}: {met}")
     return lines
+
+
+def _met(one: NumberResult, yes: str, no: str) -> str:
+    return (yes if one.met else no) if one.fitted else f"{no}, not fitted as it contradicts all else"
 
 
 def _texts(one: NumberResult) -> list[str]:

@@ -1,16 +1,105 @@
-"""The terms that a residual is taken apart into: which curves, products, steps and sines are tried."""
+"""Functions of measured variables that what is left of a recording may follow, and which of them are tried."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
 
 import numpy as np
 from scipy.optimize import minimize_scalar
 
 from feeddrive.diagnosis.starts.periodogram import strongest_orders
-from feeddrive.diagnosis.unexplained.term import Form, Term
 from feeddrive.diagnosis.unexplained.view import View
 from feeddrive.typing import FloatArray
+
+MOST_COLUMNS = 16
+"""Columns that are filtered at a time, which bounds the memory of long recordings."""
+
+HARMONICS = 3
+"""Sines of a periodic term: the order itself, twice and three times it."""
+
+
+class Form(StrEnum):
+    """What kind of function a term is."""
+
+    CURVE = "curve"
+    SINE = "periodic"
+    STEP = "step"
+    POWERS = "powers"
+    LEVEL = "level"
+
+
+@dataclass(frozen=True)
+class Term:
+    """A function of one variable, times a second one where `times` names it.
+
+    Attributes:
+        form: of the function.
+        variable: whose function it is.
+        times: factor, as "direction" or "table_velocity"; empty for none.
+        nodes: breakpoints of a curve, the place of a step, the angle [rad] of one period of a sine, the largest value
+            of powers; none for a level, which is the variable itself.
+    """
+
+    form: Form
+    variable: str
+    times: str = ""
+    nodes: tuple[float, ...] = ()
+
+    @property
+    def size(self) -> int:
+        """Number of columns."""
+        return {Form.SINE: 2 * HARMONICS, Form.CURVE: len(self.nodes), Form.POWERS: 4}.get(self.form, 1)
+
+    def columns(self, values: Mapping[str, FloatArray]) -> FloatArray:
+        """The functions whose sum the term is, (n, size).
+
+        Args:
+            values: variable to its series, (n,), SI.
+        """
+        at = values[self.variable]
+        if self.form is Form.CURVE:
+            shape = hats(at, self.nodes)
+        elif self.form is Form.STEP:
+            shape = (at >= self.nodes[0]).astype(float)[:, None]
+        elif self.form is Form.SINE:
+            angles = 2 * np.pi * np.outer(at / self.nodes[0], np.arange(1, HARMONICS + 1))
+            shape = np.hstack([np.sin(angles), np.cos(angles)])
+        elif self.form is Form.POWERS:
+            share = at / self.nodes[0]
+            shape = np.column_stack([share, np.abs(share), share * np.abs(share), share**2])
+        else:
+            shape = at[:, None]
+        return shape * values[self.times][:, None] if self.times else shape
+
+
+def columns_in(view: View, terms: Sequence[Term]) -> FloatArray:
+    """Columns of terms as the recording would show them: in the band, at the rows that count, (m, sum of k)."""
+    parts: list[FloatArray] = []
+    waiting: list[FloatArray] = []
+    for term in terms:
+        waiting.append(term.columns(view.values))
+        if sum(part.shape[1] for part in waiting) >= MOST_COLUMNS or term is terms[-1]:
+            parts.append(view.evidence.in_band(np.hstack(waiting))[view.rows])
+            waiting = []
+    return np.hstack(parts)
+
+
+def hats(at: FloatArray, nodes: tuple[float, ...]) -> FloatArray:
+    """Hat functions of a table that is linear between its nodes and constant outside, (n, k)."""
+    result = np.zeros((len(at), len(nodes)))
+    if len(nodes) == 1:
+        return result + 1.0
+    clipped = np.clip(at, nodes[0], nodes[-1])
+    left = np.clip(np.searchsorted(nodes, clipped, side="right") - 1, 0, len(nodes) - 2)
+    points = np.array(nodes)
+    share = (clipped - points[left]) / (points[left + 1] - points[left])
+    rows = np.arange(len(at))
+    result[rows, left] = 1 - share
+    result[rows, left + 1] += share
+    return result
+
 
 NODES = (8, 16, 32, 64)
 """Breakpoints tried over the stroke."""

@@ -19,11 +19,12 @@ import scipy.sparse as sparse
 
 from feeddrive.errors import InputError
 from feeddrive.thermal.full.full_model import Discretisation, model_of
-from feeddrive.thermal.full.marching import March, Progressing, Step, march_of
+from feeddrive.thermal.full.grid import Cells, places_of
 from feeddrive.thermal.reduced.parametric_model import HeatModel, Path
 from feeddrive.thermal.reduced.system import HeatSystem
-from feeddrive.thermal.rig import Travel, refuse_unless, refuse_unless_positive
+from feeddrive.thermal.rig import Rig, Travel, refuse_unless, refuse_unless_positive
 from feeddrive.typing import FloatArray
+from tests.heat_oracle.marching import March, Progressing, Step, march_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,22 +57,12 @@ class ExplicitRun:
         return abs(self.heat_in - self.heat_out - self.heat_stored) / max(abs(self.heat_in), 1e-300)
 
 
-def places_of(travel: Travel, cell: float) -> tuple[FloatArray, FloatArray]:
-    """Places where the nut's centre stands on its way, a cell or less apart, and the share of time at each.
-
-    Args:
-        travel: of the nut's centre.
-        cell: axial cell of the nut [m].
-
-    Returns:
-        Places (k,) [m] and shares (k,); at the two ends it stands half as long as elsewhere.
-    """
-    stretches = math.ceil(travel.stroke / cell - 1e-9)
-    if stretches == 0:
-        return np.array([travel.low]), np.ones(1)
-    shares = np.full(stretches + 1, 1.0 / stretches)
-    shares[[0, -1]] /= 2
-    return np.linspace(travel.low, travel.high, stretches + 1), shares
+def paper_cells(rig: Rig) -> Cells:
+    """Grid of paper 002: cells of 2.5 mm by 0.5 mm."""
+    along, across, wall = 2.5e-3, 0.5e-3, rig.nut.outer_radius - rig.radius
+    return Cells(
+        round(rig.length / along), round(rig.radius / across), round(rig.nut.length / along), round(wall / across)
+    )
 
 
 def stability_limit(system: HeatSystem) -> float:

@@ -46,6 +46,24 @@
     at_speed = "750 rev/min"
 
 A file with `[thermal]` and no `structure` declares heat alone, no chain. Nothing in it is evaluated.
+
+The coupling of heat and drive in a plant file that declares both.
+
+    [thermal.coupling]
+    nut_at_zero = "225 mm"                     # nut's centre from the fixed end, table at 0
+    nut_stiffness = "400 N/µm"                 # axial, whole nut at its preload
+    group_distance = "60 mm"                   # of the two ball groups
+    contact_angle = "45 deg"
+    spacer = "oversize"                        # or "undersize": nuts pushed apart, or pulled together
+    rear_share = 0.5                           # may be left out: of the bearings' friction
+    motor_constant = "1.1 N m/W^0.5"           # may be left out: torque per root of the winding's heat
+    guide_heat_to = "table"                    # may be left out: a [[thermal.body]]; else the bed takes it
+    [thermal.coupling.nut_oil]
+    viscosity_40 = "100 mm^2/s"
+    viscosity_100 = "11 mm^2/s"
+    [thermal.coupling.bearing_oil]             # may be left out: as the nut's
+
+The temperature for which friction and preload are declared is `ambient`, the preload that of the thermal section.
 """
 
 from __future__ import annotations
@@ -53,17 +71,18 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import fields
+from typing import Any
 
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
+from feeddrive.parts.lubricant import Lubricant
 from feeddrive.plant.file.entries import Table, declares_heat_alone
-from feeddrive.plant.file.heat.sensor_sections import read_heat_sensors
-from feeddrive.thermal.laws.declared_friction import bearings_of, nut_of
+from feeddrive.plant.file.equipment import read_heat_sensors
 from feeddrive.thermal.laws.films import Films
-from feeddrive.thermal.laws.friction import Friction
+from feeddrive.thermal.laws.friction import Friction, bearings_of, nut_of
 from feeddrive.thermal.machine_heat import Heat
 from feeddrive.thermal.rig import Body, Nut, Rig, Seat, Steel, Travel, refuse_unless
-from feeddrive.thermal.thermal_coupling import Coupling
+from feeddrive.thermal.thermal_coupling import Coupling, Spacer
 
 SECTION = "thermal"
 _LENGTHS = ("shaft_radius", "shaft_length", "nut_outer_radius", "nut_length")
@@ -201,3 +220,52 @@ def _value(table: Table, key: str, unit: str) -> float:
 
 def _optional(table: Table, key: str, unit: str, default: float) -> float:
     return _value(table, key, unit) if key in table.entries else default
+
+
+_KEYS = (
+    "nut_at_zero", "nut_stiffness", "group_distance", "contact_angle", "spacer", "rear_share", "motor_constant",
+    "guide_heat_to", "nut_oil", "bearing_oil", "source",
+)  # fmt: skip
+_SPACERS = {spacer.name.lower(): spacer for spacer in Spacer}
+
+
+def read_coupling(top: Table) -> Coupling | None:
+    """The coupling that a whole plant file declares; None where it declares none.
+
+    Args:
+        top: the whole file.
+
+    Raises:
+        InputError: unknown key, a value that is missing, without unit or impossible.
+    """
+    thermal = top.table("thermal")
+    if "coupling" not in thermal.entries:
+        return None
+    table = thermal.table("coupling")
+    table.refuse_unknown(_KEYS)
+    oil = _oil(table, "nut_oil")
+    try:
+        return Coupling(
+            nut_oil=oil,
+            bearing_oil=_oil(table, "bearing_oil") if "bearing_oil" in table.entries else oil,
+            spacer=_SPACERS[table.choice("spacer", _SPACERS)],
+            guide_heat_to=table.text("guide_heat_to", ""),
+            **_numbers(table),
+        )
+    except InputError as error:
+        inside = error.where.startswith(top.where)
+        raise error if inside else InputError(error.what, f"{top.where}, {error.where}", error.mend) from None
+
+
+def _numbers(table: Table) -> dict[str, Any]:
+    needed = {"nut_at_zero": "m", "nut_stiffness": "N/m", "group_distance": "m", "contact_angle": "rad"}
+    optional = {"rear_share": "1", "motor_constant": "N m/W^0.5"}
+    kept = needed | {key: unit for key, unit in optional.items() if key in table.entries}
+    return {key: table.quantity(key, unit, f"thermal.coupling.{key}") for key, unit in kept.items()}
+
+
+def _oil(table: Table, key: str) -> Lubricant:
+    inner = table.table(key)
+    inner.refuse_unknown(("viscosity_40", "viscosity_100", "source"))
+    values = [inner.quantity(f"viscosity_{at}", "m^2/s", f"thermal.coupling.{key}.{at}") for at in (40, 100)]
+    return Lubricant(*values)

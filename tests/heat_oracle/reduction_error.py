@@ -1,13 +1,16 @@
-"""What a reduction costs: the largest error of each output after a step of each input, and over frequency."""
+"""What a reduction costs: the largest error of each output after a step of each input, and over frequency.
+
+And the smallest system at one operating point: two-sided balancing, against which the common basis is judged.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.linalg
 
-from feeddrive.thermal.reduced.reduction import Sizes
+from feeddrive.thermal.reduced.reduction import Sizes, balance, compressed
 from feeddrive.thermal.reduced.system import HeatSystem
 from feeddrive.typing import FloatArray
 
@@ -80,3 +83,31 @@ def exact_steps(system: HeatSystem, times: FloatArray) -> FloatArray:
         seen, driven = system.rows @ vectors, np.linalg.solve(vectors, system.gains / system.capacity[:, None])
     grown = -np.expm1(-np.multiply.outer(times, rates)) / rates
     return np.asarray(np.einsum("pn,kn,nm->kpm", seen, grown, driven).real)
+
+
+def reduced_system(system: HeatSystem, order: int, sizes: Sizes | None = None) -> HeatSystem:
+    """A system at one operating point, balanced to `order` states.
+
+    Args:
+        system: full, or dense with every C one.
+        order: number of states.
+        sizes: working sizes.
+
+    Raises:
+        InputError: an order that is not possible.
+    """
+    sizes = sizes or Sizes()
+    small = compressed(system, sizes) if system.is_sparse else system
+    return truncated(small, order, sizes.of_inputs(small.input_names), sizes.of_outputs(small.output_names))
+
+
+def truncated(system: HeatSystem, order: int, input_sizes: FloatArray, output_sizes: FloatArray) -> HeatSystem:
+    """The system on its strongest balanced states; args and errors as `balance`."""
+    found = balance(system, order, input_sizes, output_sizes)
+    return replace(
+        system,
+        capacity=np.ones(order),
+        conductance=found.left.T @ system.conductance @ found.right,
+        gains=found.left.T @ system.gains,
+        rows=system.rows @ found.right,
+    )
