@@ -42,7 +42,7 @@ from feeddrive.report.records import Occasion
 DECIMAL_SIGNS = (None, ".", ",")
 
 SPLIT = 0.75
-"""Share that is fitted where nothing else is said."""
+"""Share that is fitted where nothing else is given."""
 
 
 @dataclass(frozen=True)
@@ -180,7 +180,7 @@ def diagnose_files(job: Job, progress: Callable[[str], None] = lambda _: None) -
 
 
 def _command(job: Job) -> str:
-    """The line that makes a diagnosis again; none for one that takes up an earlier one, whose ledger tells its runs."""
+    """The line that makes a diagnosis again; none for one that takes up an earlier one, whose ledger lists its runs."""
     if job.earlier is not None:
         return ""
     words = ["feeddrive", "diagnose", job.plant.stem if job.plant in shipped_plants() else str(job.plant)]
@@ -202,7 +202,7 @@ def _today() -> str:
 
 
 def _bytes(plant: Path) -> bytes:
-    """The plant file as it is now; what is said and written of it at the end is of these bytes."""
+    """The plant file as it is now; what is reported and written of it at the end is of these bytes."""
     try:
         return plant.read_bytes()
     except OSError as error:
