@@ -8,11 +8,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feeddrive.diagnosis.likelihood.cross_validation import LEAST_GAIN, compare_left_out
+from feeddrive.diagnosis.likelihood.folds import FOLDS
 from feeddrive.diagnosis.likelihood.predictor import CHANCE
-from feeddrive.diagnosis.unexplained.functional_anova import Decomposition, Found, decompose
-from feeddrive.diagnosis.unexplained.terms import Form, Term, finer_steps, sines, terms_of
-from feeddrive.diagnosis.unexplained.unexplained_result import Dependence, Seen, Table
-from feeddrive.diagnosis.unexplained.view import Excess, View, excess, sample_of
+from feeddrive.diagnosis.unexplained.functional_anova import Found, Sample, decompose
+from feeddrive.diagnosis.unexplained.terms import Form, Term, columns_in, finer_steps, sines, terms_of
+from feeddrive.diagnosis.unexplained.unexplained_result import Above, Dependence, Seen, Table
+from feeddrive.diagnosis.unexplained.view import View, above_noise
 from feeddrive.typing import FloatArray, IntegerArray
 from feeddrive.units.quantity import format_quantity
 
@@ -32,7 +33,7 @@ class Analysis:
 
     found: tuple[Found, ...]
     dependences: tuple[Dependence, ...]
-    above: Excess | None
+    above: Above | None
 
 
 def analyse(fitted: Sequence[View], judged: Sequence[View], unit: str, radius: float) -> Analysis:
@@ -46,11 +47,31 @@ def analyse(fitted: Sequence[View], judged: Sequence[View], unit: str, radius: f
     """
     fitted = [view for view in fitted if view.rows.sum() >= FEWEST]
     judged = [view for view in judged if view.rows.any()]
-    above = excess([_centred(v) for v in judged], [v.blocks for v in judged], [v.floor for v in judged])
+    above = above_noise(judged)
     if not fitted:
         return Analysis((), (), above)
-    parts = decompose(sample_of(fitted, _least(fitted)), terms_of(fitted), sines(fitted), finer_steps(fitted))
-    return Analysis(parts.found, tuple(_dependences(parts, judged, unit, radius)), above)
+    found = decompose(_sample_of(fitted, _least(fitted)), terms_of(fitted), sines(fitted), finer_steps(fitted))
+    return Analysis(found, tuple(_dependences(found, judged, unit, radius)), above)
+
+
+def _sample_of(views: Sequence[View], least: float) -> Sample:
+    """All recordings as one sample; each has its own offset, and blocks are counted on."""
+    residual = np.concatenate([view.residual[view.rows] for view in views])
+    counts = [int(view.rows.sum()) for view in views]
+    owner = np.repeat(np.arange(len(views)), counts)
+    blocks, first = [], 0
+    for view in views:
+        blocks.append(first + view.dealt)
+        first += FOLDS * (int(view.dealt.max(initial=0)) // FOLDS + 1)
+    floors = np.array([view.floor.rms**2 for view in views])
+    return Sample(
+        residual,
+        np.concatenate(blocks),
+        (owner[:, None] == np.arange(len(views))).astype(float),
+        lambda terms: np.vstack([columns_in(view, terms) for view in views]),
+        float(np.average(floors, weights=counts)),
+        least,
+    )
 
 
 def _least(views: Sequence[View]) -> float:
@@ -61,21 +82,22 @@ def _least(views: Sequence[View]) -> float:
     return max(LEAST_GAIN, CHANCE / max(2 * views[0].evidence.edge * seconds, 1.0))
 
 
-def _centred(view: View) -> FloatArray:
-    """The residual where it counts, the zero of a scale taken out."""
-    residual = view.residual[view.rows]
-    return residual - residual.mean() if view.channel in view.evidence.floating else residual
+def _dependences(found: Sequence[Found], judged: Sequence[View], unit: str, radius: float) -> list[Dependence]:
+    components = {one.term: [columns_in(view, [one.term]) @ one.values for view in judged] for one in found}
 
+    def left(leaving: Term | None = None) -> FloatArray:
+        """What the terms, but for one, leave of all recordings, each about its mean."""
+        series = []
+        for number, view in enumerate(judged):
+            e = view.left - sum((own[number] for term, own in components.items() if term != leaving), 0.0)
+            series.append(e - e.mean())
+        return np.concatenate(series)
 
-def _dependences(parts: Decomposition, judged: Sequence[View], unit: str, radius: float) -> list[Dependence]:
-    components = {one.term: [view.columns([one.term]) @ one.values for view in judged] for one in parts.found}
-    residual = [_centred(view) for view in judged]
-    left = [_about_mean(e - _sum(components, i)) for i, e in enumerate(residual)]
-    whole = sum(float(np.sum(_about_mean(e) ** 2)) for e in residual)
+    after = left()
+    whole = sum(float(np.sum((view.left - view.left.mean()) ** 2)) for view in judged)
     result = []
-    for one in parts.found:
-        without = [_about_mean(e - _sum(components, i, one.term)) for i, e in enumerate(residual)]
-        before, after = np.concatenate(without), np.concatenate(left)
+    for one in found:
+        before = left(one.term)
         comparison = compare_left_out(before, after, _counted_on(judged), 0.0)
         share = comparison.gain * float(before @ before) / whole
         sure = comparison.gain > LEAST_GAIN and comparison.gain > comparison.standard_error
@@ -90,43 +112,23 @@ def _dependence(
     order = 2 * np.pi / term.nodes[0] if term.form is Form.SINE else 0.0
     variable, seen = term.variable, seen_on(judged, one, left)
     if order and radius and not is_locked(order):
-        variable, table, seen = (
-            "table_position",
-            in_travel(table, radius),
-            replace(seen, centre=_scaled(seen.centre, radius)),
-        )
+        variable, table = "table_position", in_travel(table, radius)
+        seen = replace(seen, centre=tuple(radius * number for number in seen.centre))
     return Dependence(
-        variable,
-        one.share,
-        period_words(order, radius) if order and radius else None,
-        term.times,
-        str(Form.CURVE if term.form is Form.POWERS else term.form),
-        share,
-        confirmed,
-        order,
-        0.5 * float(np.ptp(table.values)) if len(table.values) > 1 else abs(table.values[0]),
-        statement_of(term, table),
-        table,
-        seen,
-        tuple(_name(other) for other in one.alike),
+        variable=variable,
+        share=one.share,
+        period=period_words(order, radius) if order and radius else None,
+        times=term.times,
+        form=str(Form.CURVE if term.form is Form.POWERS else term.form),
+        judged_share=share,
+        confirmed=confirmed,
+        order=order,
+        amplitude=0.5 * float(np.ptp(table.values)) if len(table.values) > 1 else abs(table.values[0]),
+        statement=statement_of(term, table),
+        table=table,
+        seen=seen,
+        alike=tuple(f"{t.variable} x {t.times}" if t.times else t.variable for t in one.alike),
     )
-
-
-def _scaled(numbers: Sequence[float], factor: float) -> tuple[float, ...]:
-    return tuple(factor * number for number in numbers)
-
-
-def _name(term: Term) -> str:
-    return f"{term.variable} x {term.times}" if term.times else term.variable
-
-
-def _about_mean(series: FloatArray) -> FloatArray:
-    centred: FloatArray = series - series.mean()
-    return centred
-
-
-def _sum(components: dict[Term, list[FloatArray]], recording: int, leaving: Term | None = None) -> FloatArray | float:
-    return sum((parts[recording] for term, parts in components.items() if term != leaving), 0.0)
 
 
 def _counted_on(views: Sequence[View]) -> IntegerArray:
@@ -173,17 +175,13 @@ def table_of(found: Found, unit: str) -> Table:
     term = found.term
     over = UNITS.get(term.variable, "1")
     at = _breakpoints(term)
-    shape = _plain(term).columns({term.variable: at})
+    shape = replace(term, times="").columns({term.variable: at})
     values = shape @ found.values
     # errors of hats are those of their values; of sums of columns the root of squares, correlation left out
     errors = np.sqrt((shape**2) @ found.errors**2)
     unit = {"table_velocity": f"{unit} s/m"}.get(term.times, unit)
     period = term.nodes[0] if term.form is Form.SINE else 0.0
     return Table(tuple(at.tolist()), over, tuple(values.tolist()), tuple(errors.tolist()), unit, period)
-
-
-def _plain(term: Term) -> Term:
-    return Term(term.form, term.variable, "", term.nodes)
 
 
 def _breakpoints(term: Term) -> FloatArray:
@@ -273,7 +271,7 @@ def seen_on(views: Sequence[View], found: Found, left: FloatArray) -> Seen:
     factor = np.ones(len(at))
     if term.times:
         factor = np.concatenate([view.values[term.times][view.rows] for view in views])
-    own = np.vstack([view.columns([term]) for view in views]) @ found.values
+    own = np.vstack([columns_in(view, [term]) for view in views]) @ found.values
     low, high = (float(end) for end in np.quantile(at, [0.002, 0.998]))
     edges = np.linspace(low, high, BINS + 1)
     if term.variable == "travel_since_reversal":

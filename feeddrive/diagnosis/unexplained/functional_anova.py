@@ -54,18 +54,10 @@ class Found:
     alike: tuple[Term, ...]
 
 
-@dataclass(frozen=True)
-class Decomposition:
-    """Terms, the strongest first, and coefficients of the offsets, (m,)."""
-
-    found: tuple[Found, ...]
-    offsets: FloatArray
-
-
 def decompose(
     sample: Sample, terms: Sequence[Term], proposed: Callable[[FloatArray], list[Term]],
     refined: Callable[[Term], list[Term]],
-) -> Decomposition:  # fmt: skip
+) -> tuple[Found, ...]:  # fmt: skip
     """Take a residual apart.
 
     Args:
@@ -75,7 +67,7 @@ def decompose(
         refined: a term to finer ones of its form.
 
     Returns:
-        The terms that pay, none where nothing does.
+        The terms that pay, the strongest first; none where nothing does.
     """
     sums = Sums(sample)
     sums.add(terms)
@@ -95,12 +87,12 @@ def decompose(
     shares = {term: sums.compared([c for c in chosen if c != term], chosen).gain for term in chosen}
     scale = {term: sums.left_out([c for c in chosen if c != term]) for term in chosen}
     whole = float(np.sum(sums.left_out([]) ** 2))
-    values, errors, offsets = sums.coefficients(chosen)
+    values, errors = sums.coefficients(chosen)
     found = [
         Found(t, values[t], errors[t], shares[t] * float(np.sum(scale[t] ** 2)) / whole, alike.get(t, ()))
         for t in chosen
     ]
-    return Decomposition(tuple(sorted(found, key=lambda one: -one.share)), offsets)
+    return tuple(sorted(found, key=lambda one: -one.share))
 
 
 def _best(sums: Sums, chosen: list[Term], terms: Sequence[Term]) -> tuple[Term, tuple[Term, ...]] | None:
@@ -276,8 +268,8 @@ class Sums:
         left: FloatArray = self._sample.residual - self._matrix[:, at] @ values
         return left
 
-    def coefficients(self, terms: Sequence[Term]) -> tuple[dict[Term, FloatArray], dict[Term, FloatArray], FloatArray]:
-        """Values and standard errors of each term, and of the offsets, from the fit to all.
+    def coefficients(self, terms: Sequence[Term]) -> tuple[dict[Term, FloatArray], dict[Term, FloatArray]]:
+        """Values and standard errors of each term, from the fit to all.
 
         The middle of the sandwich sums over blocks of time, which counts correlation inside them.
         """
@@ -291,4 +283,4 @@ class Sums:
         values = values / self._scale[at]
         cuts = np.cumsum([len(self._fixed), *(len(self._at[term]) for term in terms)])[:-1]
         parts, spreads = np.split(values, cuts), np.split(errors, cuts)
-        return dict(zip(terms, parts[1:], strict=True)), dict(zip(terms, spreads[1:], strict=True)), parts[0]
+        return dict(zip(terms, parts[1:], strict=True)), dict(zip(terms, spreads[1:], strict=True))

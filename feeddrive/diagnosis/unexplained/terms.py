@@ -13,6 +13,9 @@ from feeddrive.diagnosis.starts.periodogram import strongest_orders
 from feeddrive.diagnosis.unexplained.view import View
 from feeddrive.typing import FloatArray
 
+MOST_COLUMNS = 16
+"""Columns that are filtered at a time, which bounds the memory of long recordings."""
+
 HARMONICS = 3
 """Sines of a periodic term: the order itself, twice and three times it."""
 
@@ -69,6 +72,18 @@ class Term:
         else:
             shape = at[:, None]
         return shape * values[self.times][:, None] if self.times else shape
+
+
+def columns_in(view: View, terms: Sequence[Term]) -> FloatArray:
+    """Columns of terms as the recording would show them: in the band, at the rows that count, (m, sum of k)."""
+    parts: list[FloatArray] = []
+    waiting: list[FloatArray] = []
+    for term in terms:
+        waiting.append(term.columns(view.values))
+        if sum(part.shape[1] for part in waiting) >= MOST_COLUMNS or term is terms[-1]:
+            parts.append(view.evidence.in_band(np.hstack(waiting))[view.rows])
+            waiting = []
+    return np.hstack(parts)
 
 
 def hats(at: FloatArray, nodes: tuple[float, ...]) -> FloatArray:

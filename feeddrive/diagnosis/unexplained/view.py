@@ -15,14 +15,10 @@ import numpy as np
 from feeddrive.diagnosis.likelihood.band import NOISE_BLOCK
 from feeddrive.diagnosis.likelihood.evidence import AxisEvidence, Evidence
 from feeddrive.diagnosis.likelihood.fit import Problem
-from feeddrive.diagnosis.likelihood.folds import FOLDS, block_of_rows, dealt_blocks
-from feeddrive.diagnosis.unexplained.functional_anova import Sample
-from feeddrive.diagnosis.unexplained.terms import Term
+from feeddrive.diagnosis.likelihood.folds import block_of_rows, dealt_blocks
+from feeddrive.diagnosis.unexplained.unexplained_result import Above
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import BoolArray, FloatArray, IntegerArray
-
-MOST_COLUMNS = 16
-"""Columns that are filtered at a time, which bounds the memory of long recordings."""
 
 SLOW = 1e-3
 """Share of the highest speed at which a direction turns, where the plant declares no guide friction that says."""
@@ -48,19 +44,11 @@ class View:
     values: Mapping[str, FloatArray]
     floor: Floor
 
-    def columns(self, terms: Sequence[Term]) -> FloatArray:
-        """Columns of terms as the recording would show them: in the band, at the rows that count, (m, sum of k)."""
-        parts: list[FloatArray] = []
-        waiting: list[FloatArray] = []
-        for term in terms:
-            waiting.append(term.columns(self.values))
-            if sum(part.shape[1] for part in waiting) >= MOST_COLUMNS or term is terms[-1]:
-                parts.append(self._filtered(np.hstack(waiting)))
-                waiting = []
-        return np.hstack(parts)
-
-    def _filtered(self, raw: FloatArray) -> FloatArray:
-        return self.evidence.in_band(raw)[self.rows]
+    @property
+    def left(self) -> FloatArray:
+        """The residual where it counts, the zero of a scale taken out, (m,)."""
+        residual = self.residual[self.rows]
+        return residual - residual.mean() if self.channel in self.evidence.floating else residual
 
     @property
     def blocks(self) -> IntegerArray:
@@ -141,37 +129,11 @@ def travel_since_reversal(position: FloatArray, direction: FloatArray) -> FloatA
     return distance
 
 
-def sample_of(views: Sequence[View], least: float) -> Sample:
-    """All recordings as one sample; each has its own offset, and blocks are counted on."""
-    residual = np.concatenate([view.residual[view.rows] for view in views])
-    counts = [int(view.rows.sum()) for view in views]
-    owner = np.repeat(np.arange(len(views)), counts)
-    blocks, first = [], 0
-    for view in views:
-        blocks.append(first + view.dealt)
-        first += FOLDS * (int(view.dealt.max(initial=0)) // FOLDS + 1)
-    floors = np.array([view.floor.rms**2 for view in views])
-    return Sample(
-        residual,
-        np.concatenate(blocks),
-        (owner[:, None] == np.arange(len(views))).astype(float),
-        lambda terms: np.vstack([view.columns(terms) for view in views]),
-        float(np.average(floors, weights=counts)),
-        least,
-    )
-
-
 SCATTER = 5.25
 """Variance of a block's mean square of fourth differences of white noise, over its square, times the samples."""
 
 QUANTILE, LOWER, DENSITY = 0.1, 1.2816, 0.1755
 """Quantile that is read, its distance from the mean in standard deviations, and the normal density there."""
-
-ABOVE = 3.0
-"""Standard errors by which the rms must stand above the floor for something to be left."""
-
-MATERIAL = 0.03
-"""Share of the squared rms below which what is left is not worth a word: a percent and a half of the rms."""
 
 
 @dataclass(frozen=True)
@@ -180,28 +142,6 @@ class Floor:
 
     rms: float
     standard_error: float
-
-
-@dataclass(frozen=True)
-class Excess:
-    """What is left of a channel beside its noise.
-
-    Attributes:
-        share: of the squared rms above the floor; negative where the rms lies below it.
-        standard_error: of the share.
-        rms: of what is left, unit of the channel.
-        floor: rms of the noise, unit of the channel.
-    """
-
-    share: float
-    standard_error: float
-    rms: float
-    floor: float
-
-    @property
-    def is_left(self) -> bool:
-        """Whether something is left above the noise."""
-        return bool(self.share > max(ABOVE * self.standard_error, MATERIAL))
 
 
 def noise_floor(evidence: Evidence, channel: str, radius: float = 0.0) -> Floor:
@@ -234,7 +174,12 @@ def angle_step(angle: FloatArray) -> float:
     return float(np.min(changes[changes > 0], initial=np.inf)) if np.any(changes > 0) else 0.0
 
 
-def excess(residuals: Sequence[FloatArray], blocks: Sequence[IntegerArray], floors: Sequence[Floor]) -> Excess:
+def above_noise(views: Sequence[View]) -> Above:
+    """What is left of a channel above the noise, its recordings pooled."""
+    return excess([v.left for v in views], [v.blocks for v in views], [v.floor for v in views])
+
+
+def excess(residuals: Sequence[FloatArray], blocks: Sequence[IntegerArray], floors: Sequence[Floor]) -> Above:
     """What is left above the noise, recordings pooled.
 
     Args:
@@ -255,4 +200,4 @@ def excess(residuals: Sequence[FloatArray], blocks: Sequence[IntegerArray], floo
     # rms of this recording; it is counted, so that a single bad block is not taken for a machine
     error = math.hypot(noise / square * math.sqrt(scatter) / total, doubt) / square if square > 0 else 0.0
     share = float(1 - noise / square) if square > 0 else 0.0
-    return Excess(share, error, math.sqrt(square), math.sqrt(noise))
+    return Above(share, error, math.sqrt(square), math.sqrt(noise))
