@@ -194,7 +194,7 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
         recording: with a torque, a current or the table position beside the motor angle.
         plant: whose lead and band apply.
         share: 1 to fit on all of it, 0 to judge on all of it.
-        hold: how long the drive holds a torque [s]; None for a whole row.
+        hold: how long the drive holds a torque [s]; None for a whole row, and for no time where rows are slow.
 
     Raises:
         InputError: too short, or channels that are needed are missing.
@@ -214,10 +214,10 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
     raw = {name: recording[name] for name in measured_names}
     slow = is_slow(recording)
     acting = dict(raw)
-    if "motor_torque" in raw and not slow:
-        acting["motor_torque"] = (
-            held(raw["motor_torque"]) if hold is None else lagging(raw["motor_torque"], hold / 2, recording.sample_time)
-        )
+    if "motor_torque" in raw and hold is not None:
+        acting["motor_torque"] = lagging(raw["motor_torque"], hold / 2, recording.sample_time)
+    elif "motor_torque" in raw and not slow:
+        acting["motor_torque"] = held(raw["motor_torque"])
     counted = (time >= END_CUT) & (time <= time[-1] - END_CUT)
     if slow:
         known = known_motion(recording, plant, band)
