@@ -8,8 +8,8 @@ Mass, damping and stiffness matrix are those of the chain at the point, friction
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-import control
 import numpy as np
 
 from feeddrive.export.equation_quantities import Quantity, inputs, outputs, states
@@ -18,6 +18,9 @@ from feeddrive.export.point import Point, refuse_outside
 from feeddrive.plant.analysis.linear import state_space, steady_motion
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray
+
+if TYPE_CHECKING:
+    import control
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.signal import find_peaks
 
 from feeddrive.typing import FloatArray
 
@@ -49,9 +48,23 @@ def strongest_orders(
     orders = np.arange(len(spectrum)) * BINS_PER_TURN / padded
     allowed = (orders > LEAST_PERIODS / turns) & (orders < min(highest, BINS_PER_TURN / 4))
     spectrum = np.where(allowed, spectrum, 0.0)
-    peaks, _ = find_peaks(spectrum, distance=OVERSAMPLING)
-    best = peaks[np.argsort(spectrum[peaks])[::-1][:count]]
-    return [float(orders[i]) for i in best]
+    return [float(orders[i]) for i in _highest_peaks(spectrum, count)]
+
+
+def _highest_peaks(spectrum: FloatArray, count: int) -> list[int]:
+    """Places of the highest peaks, none within the resolution of a higher one; the highest first."""
+    inner = spectrum[1:-1]
+    peaks = 1 + np.flatnonzero((inner > spectrum[:-2]) & (inner > spectrum[2:]))
+    best: list[int] = []
+    near = np.zeros(len(spectrum), dtype=bool)
+    for place in peaks[np.argsort(spectrum[peaks])[::-1]]:
+        if near[place]:
+            continue
+        best.append(int(place))
+        if len(best) == count:
+            break
+        near[max(place - OVERSAMPLING + 1, 0) : place + OVERSAMPLING] = True
+    return best
 
 
 def sine_at(angle: FloatArray, residual: FloatArray, order: float) -> tuple[float, float]:

@@ -16,7 +16,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.interpolate import CubicSpline
-from scipy.signal import savgol_filter
 
 from feeddrive.errors import InputError
 from feeddrive.plant.file.entries import Origins, Table
@@ -89,6 +88,8 @@ class DeclaredLoop:
         return np.column_stack([columns[name][: len(time)] for name in self.controller.references])
 
     def _slope(self, setpoint: FloatArray, order: int, time: FloatArray) -> FloatArray:
+        from scipy.signal import savgol_filter  # takes a second to import
+
         sample = self.controller.sample_time * self.ticks
         width = max(2 * round(SMOOTHING / sample) + 1, 5)
         if len(setpoint) <= width:
