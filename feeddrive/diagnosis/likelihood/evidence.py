@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Self
 
 import numpy as np
 
 from feeddrive.diagnosis.likelihood.band import END_CUT, Band, comparison_band, held, sensor_noise
-from feeddrive.diagnosis.likelihood.encoder_error import encoder_error
+from feeddrive.diagnosis.likelihood.encoder_error import Weighing, encoder_error
 from feeddrive.diagnosis.likelihood.slow_rows import is_slow, known_motion, refuse_unknown_motion, sentence
 from feeddrive.diagnosis.suspicion.channel_timing import lagging
 from feeddrive.diagnosis.suspicion.flawed_rows import refuse_little_left, sound_rows, without_copied_position
@@ -164,8 +165,12 @@ class AxisEvidence(Evidence):
         known = np.isfinite(series)
         mean = float(np.mean(series[known])) if known.any() else 0.0  # apart, so that gaps do not make steps
         filled = np.where(known, series - mean, 0.0)
-        evened: FloatArray = np.fft.irfft(np.fft.rfft(filled) * self.gains[name], len(series))
-        return np.where(known, evened + self.gains[name][0] * mean, series)
+        weighed = self._weighing[name](filled)
+        return np.where(known, weighed + self.gains[name][0] * mean, series)
+
+    @cached_property
+    def _weighing(self) -> dict[str, Weighing]:
+        return {name: Weighing.of(gains, len(self.counted)) for name, gains in self.gains.items()}
 
     def placed(self, plant: Plant) -> Plant:
         """The plant with its nut where it stood: simulated positions count from the zero of the motor angle."""

@@ -37,7 +37,7 @@ from typing import Any
 
 import numpy as np
 from scipy.optimize import minimize_scalar
-from scipy.stats import chi2
+from scipy.special import chdtri
 
 from feeddrive.diagnosis.likelihood.set_evidence import log_prior_of_size
 from feeddrive.diagnosis.likelihood.tolerances import BEYOND, WIDEST
@@ -205,7 +205,7 @@ def single_causes(problem: NumbersProblem) -> tuple[SingleCause, ...]:
         if misfit < before * (1 - 1e-3):
             at = zero.copy()
             at[place] = float(solved.x)
-            meets = misfit <= float(chi2.ppf(0.95, len(problem.measured)))
+            meets = misfit <= float(chdtri(len(problem.measured), 0.05))
             found.append(SingleCause(value, float(solved.x), problem.predicted(at), misfit, meets))
     return tuple(sorted(found, key=lambda one: one.misfit))
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.special import chdtri
 
 from feeddrive import __version__
 from feeddrive.diagnosis.likelihood.tolerances import ASSERTED
@@ -140,7 +140,7 @@ def diagnose_numbers(
         problem,
         problem.predicted(np.zeros(len(problem.values))),
         best.predicted,
-        left <= float(chi2.ppf(0.95, len(problem.measured))),
+        left <= float(chdtri(len(problem.measured), 0.05)),
         within,
         asserted,
         suspects,

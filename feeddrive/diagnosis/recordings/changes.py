@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from scipy.stats import norm
+from scipy.special import ndtri
 
 from feeddrive.diagnosis.calibration.beyond import said_by_effects
 from feeddrive.diagnosis.likelihood.cross_validation import (
@@ -133,7 +133,7 @@ def _material(problem: Problem, shifted: Fit, target: Target, recordings: Sequen
 
 def _pays(comparison: Comparison, tried: int) -> bool:
     """The rule of the search, its scatter as many times as so many tries ask for."""
-    times = float(norm.ppf(1 - FALSE_ALARMS / max(tried, 1)))
+    times = float(ndtri(1 - FALSE_ALARMS / max(tried, 1)))
     return comparison.pays and comparison.gain > times * comparison.standard_error
 
 

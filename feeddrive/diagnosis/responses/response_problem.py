@@ -20,9 +20,8 @@ import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import control
 import numpy as np
 
 from feeddrive.diagnosis.numbers.declared_values import DeclaredPlant, values_of
@@ -39,6 +38,9 @@ from feeddrive.servo.linear_loop import closed_velocity_loop, open_velocity_loop
 from feeddrive.servo.margins import frequency_response
 from feeddrive.servo.mechanics_response import Case, delay_of, transfer
 from feeddrive.typing import ComplexArray, FloatArray
+
+if TYPE_CHECKING:
+    import control
 
 FEWEST_LINES = 20
 """Lines that a fit of some ten values needs."""
