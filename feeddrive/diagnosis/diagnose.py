@@ -45,8 +45,7 @@ from feeddrive.diagnosis.suspicion.quality import Quality, flawed, read_otherwis
 from feeddrive.diagnosis.suspicion.recording_faults import refuse_faulty
 from feeddrive.diagnosis.suspicion.suspects import Suspect, again, beyond_its_constant, is_better, suspected
 from feeddrive.diagnosis.suspicion.torque_channel import without_torque_sentence
-from feeddrive.diagnosis.unexplained.instead import without_stand_ins
-from feeddrive.diagnosis.unexplained.unexplained import explain_rest
+from feeddrive.diagnosis.unexplained.unexplained import explain_rest, without_stand_ins
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant

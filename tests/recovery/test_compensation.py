@@ -211,6 +211,20 @@ def test_backlash_that_is_not_sure_is_in_no_table(tmp_path: Path, entry: dict[st
         fd.compensate(tmp_path, "linuxcnc", stroke=("0 mm", "400 mm"))
 
 
+def test_stroke_is_that_of_the_diagnosis_where_none_is_declared(tmp_path: Path) -> None:
+    """As the report has it; a stroke that is no range of positions is no stroke."""
+    fd.load("bench_axis").with_effects(fd.effect("backlash", width="7.5 um")).save(tmp_path / "plant_after.toml")
+    for stroke in ([0.05, 0.35], None, [0.3, 0.1], ["0", 0.3], [0.0, float("nan")]):
+        (tmp_path / "diagnosis.json").write_text(json.dumps({"effects": [], "recorded_stroke": stroke}))
+        if stroke == [0.05, 0.35]:
+            made = fd.compensate(tmp_path, "csv").done
+            assert isinstance(made, Compensated)
+            assert (made.table.positions[0], made.table.positions[-1]) == (0.05, 0.35)
+        else:
+            with pytest.raises(fd.InputError, match="no stroke is declared"):
+                fd.compensate(tmp_path, "csv")
+
+
 def test_play_that_weight_holds_closed_is_in_no_table() -> None:
     """A vertical axis hangs on one flank: +-w/2 would put the play in."""
     hung = fd.load("vertical_axis").with_effects(fd.effect("backlash", width="6 um"))
