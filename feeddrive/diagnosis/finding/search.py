@@ -185,8 +185,9 @@ def _fitted(problem: Problem, found: Fit, one: Neighbour, attempts: Sequence[Att
     starts = [[*kept, *(attempt.fit.effects[-1] for attempt in added)], [*one.effects]]
     try:
         if len(added) == 2:
-            starts += [_restarted(problem, kept, *order) for order in (added, added[::-1])]
-        nearest = min((start for start in starts if start), key=lambda start: _error(own, start))
+            anew = (_restarted(problem, kept, *order) for order in (added, added[::-1]))
+            starts += [start for start in anew if start]
+        nearest = min(starts, key=lambda start: _error(own, start))
         result = fit(own, nearest, iterations=JOINT_ITERATIONS)
         before = found if own is problem else fit(own, found.effects, iterations=0)
         odds = log_odds(own, before, result, count)
