@@ -31,7 +31,7 @@ from feeddrive.plant.plant import Plant
 from feeddrive.plant.transmission_law import travel_deviation
 from feeddrive.servo.cascade import Cascade
 from feeddrive.servo.cascade_function import PARAMETERS, cascade_controller
-from feeddrive.servo.sampled import MEASUREMENTS, SampledController
+from feeddrive.servo.sampled_plant import MEASUREMENTS, SampledController
 from feeddrive.simulate.controlled.controlled_machine import TorqueLoop, machine_for, resolutions_of
 from feeddrive.symbolic_turn import SYMBOLS
 

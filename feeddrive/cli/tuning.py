@@ -12,8 +12,7 @@ from feeddrive.cli.output import deliver, table, tell_written, warnings_as_lines
 from feeddrive.files import find_plant
 from feeddrive.interface.axis import load
 from feeddrive.interface.retuning import Retuned
-from feeddrive.interface.servo import Servo, tune
-from feeddrive.interface.tuned_files import drive_words, reached_rows, save_tuned, tuned_record
+from feeddrive.interface.servo import Servo, drive_words, reached_rows, save_tuned, tune, tuned_record
 from feeddrive.output_folder import output_folder, refuse_unusable
 from feeddrive.tuning.drive_forms.drive_file import writer_of
 from feeddrive.tuning.drive_settings import DriveSettings

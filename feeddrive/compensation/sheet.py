@@ -10,11 +10,11 @@ import numpy as np
 
 from feeddrive import __version__
 from feeddrive.compensation.compensate import Compensated
+from feeddrive.compensation.deviations import difference_words
 from feeddrive.compensation.forms.control import checked_axis, plain_line
 from feeddrive.compensation.lost_motion import CURE, NOTICED, flank_words, wind_up_words
 from feeddrive.compensation.points import POINTS_PER_PERIOD
 from feeddrive.compensation.predicted_accuracy import Figures
-from feeddrive.compensation.recorded_deviations import difference_words
 from feeddrive.metrology.circular import Circular
 from feeddrive.units.quantity import format_quantity
 

@@ -27,6 +27,7 @@ from feeddrive.diagnosis.judging.veto import without_denied
 from feeddrive.diagnosis.ledger.entry import kept_of
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.fit import Problem
+from feeddrive.diagnosis.numbers.doubted import sentence, without_wrong
 from feeddrive.diagnosis.numbers.measured_file import MeasuredNumber
 from feeddrive.diagnosis.numbers.number_rows import MeasuredRows, NumberResult, number_results, refuse_ungiven
 from feeddrive.diagnosis.preparation import Shown, informative, prepared, shown
@@ -44,8 +45,7 @@ from feeddrive.diagnosis.suspicion.quality import Quality, flawed, read_otherwis
 from feeddrive.diagnosis.suspicion.recording_faults import refuse_faulty
 from feeddrive.diagnosis.suspicion.suspects import Suspect, again, beyond_its_constant, is_better, suspected
 from feeddrive.diagnosis.suspicion.torque_channel import without_torque_sentence
-from feeddrive.diagnosis.unexplained.instead import without_stand_ins
-from feeddrive.diagnosis.unexplained.unexplained import explain_rest
+from feeddrive.diagnosis.unexplained.unexplained import explain_rest, without_stand_ins
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
@@ -102,6 +102,10 @@ def diagnose(
         progress("the torque is logged more slowly than the drive holds it: again")
         begun = _begun(plant, recordings, validation, split, hold, held_for, measured)
         settled = _settled(begun.problem, begun.judged, in_the_loop, progress, start)
+    begun, settled, doubted = _without_wrong_numbers(
+        begun, settled, lambda one: _settled(one, begun.judged, in_the_loop, progress, start)
+    )
+    measured = [number for number in measured if number not in doubted]
     progress("asking whether it is the recorder")
     begun, settled, (recordings, validation) = _without_fault(
         begun,
@@ -114,11 +118,11 @@ def diagnose(
     )
     logged = () if hold is not None else open_lag(settled.searched.search.fit.effects, every)
     begun = replace(begun, notes=(*begun.notes, *logged))
-    return _reported(plant, begun, settled, (recordings, validation), progress)
+    return _reported(plant, begun, settled, (recordings, validation), doubted, progress)
 
 
 def _reported(
-    plant: Plant, begun: _Begun, settled: _Settled, files: Files, progress: Progress
+    plant: Plant, begun: _Begun, settled: _Settled, files: Files, doubted: Sequence[MeasuredNumber], progress: Progress
 ) -> tuple[Diagnosis, tuple[Effect, ...]]:
     """What was found, as it is reported, and the effects to add to the plant."""
     recordings, validation = files
@@ -155,7 +159,7 @@ def _reported(
             *flawed((*recordings, *validation)),
         ),
         calibrated=calibrated_results(found.problem, found.fit),
-        measured=_numbers_met(found),
+        measured=_numbers_met(found, doubted),
         kept=kept_of(found, known),
         alike=alike,
         next_experiments=next_experiments(found, settled.rivals, spans),
@@ -172,12 +176,13 @@ def _reported(
     return result, (*effects, *rest.effects)
 
 
-def _numbers_met(found: Search) -> tuple[NumberResult, ...]:
+def _numbers_met(found: Search, doubted: Sequence[MeasuredNumber]) -> tuple[NumberResult, ...]:
     """The measured numbers beside what the declared plant gives, and the plant with what was found."""
     problem = found.problem.settled(found.fit.effects)
-    if not len(problem.numbers):
+    if not len(problem.numbers) and not doubted:
         return ()
-    return number_results(problem.numbers, problem.plant, problem.machine(found.fit.effects))
+    rows = MeasuredRows((*problem.numbers.numbers, *doubted))
+    return number_results(rows, problem.plant, problem.machine(found.fit.effects), len(doubted))
 
 
 def _logged_hold(found: Search, recordings: Sequence[Recording]) -> float | None:
@@ -294,6 +299,15 @@ def _without_fault(
         return begun, settled, files
     mended_run = replace(other, quality=(*other.quality, fault.quality(mended[0])))
     return mended_run, again_settled, (mended[0], mended[1])
+
+
+def _without_wrong_numbers(
+    begun: _Begun, settled: _Settled, settle: Callable[[Problem], _Settled]
+) -> tuple[_Begun, _Settled, tuple[MeasuredNumber, ...]]:
+    """What was found without measured numbers that are wrong, and these."""
+    problem, settled, wrong = without_wrong(begun.problem, settled, lambda one: one.searched.search, settle)
+    notes = tuple(sentence(one, settled.searched.search) for one in wrong)
+    return replace(begun, problem=problem, notes=(*begun.notes, *notes)), settled, wrong
 
 
 def _judged(found: Search, evidence: Sequence[Evidence]) -> tuple[list[Judged], tuple[str, ...]]:

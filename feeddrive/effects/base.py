@@ -12,6 +12,8 @@ from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from typing import ClassVar, Self
 
+import casadi as ca
+
 from feeddrive.errors import InputError
 from feeddrive.typing import Expression
 from feeddrive.units.quantity import format_quantity
@@ -379,3 +381,11 @@ class TimingEffect(Effect):
     def delay(self, p: Mapping[str, Expression]) -> Expression:
         """Delay of the acting motor torque [s]."""
         raise NotImplementedError
+
+
+def forward(velocity: Expression) -> Expression:
+    """Share of forward motion, (1 + sign v)/2 with 0 at rest; velocity in m/s.
+
+    It multiplies what vanishes at rest (the shape of the friction law, or the velocity), so the force stays continuous.
+    """
+    return ca.if_else(velocity > 0, 1, 0)

@@ -11,6 +11,7 @@ import re
 from dataclasses import dataclass
 
 import casadi as ca
+import numpy as np
 
 from feeddrive import __version__
 from feeddrive.export.equation_quantities import Quantity, inputs, outputs, parameters, states
@@ -19,6 +20,7 @@ from feeddrive.export.point import Point, refuse_outside
 from feeddrive.plant.analysis.linear import steady_motion, timed_ode
 from feeddrive.plant.plant import Plant
 from feeddrive.symbolic_turn import SYMBOLS
+from feeddrive.typing import FloatArray
 
 _LONGEST = 60
 """Letters of an identifier: C99 tells 63 apart, and file names have ends of their own."""
@@ -36,7 +38,7 @@ class Model:
         name: of the machine.
         subject: what the equations are of.
         notes: what they include, and what they leave out.
-        nominal: typical size of every state of a heat network; empty for a motion (`feeddrive.export.nominals`).
+        nominal: typical size of every state of a heat network; empty for a motion (`feeddrive.export.nonlinear_model`).
         identifier: its name as a C identifier, for files and functions.
         point: where a motion starts; a steady motion, or at rest. Heat starts cold.
         states, inputs: with values at the start.
@@ -101,3 +103,25 @@ def identifier_of(name: str) -> str:
     """The name in small letters of ASCII, digits and single underscores, beginning with a letter; 60 at most."""
     plain = re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_")[:_LONGEST].strip("_")
     return plain if plain[:1].isalpha() and plain not in _TAKEN else f"plant_{plain}".rstrip("_")
+
+
+_TRAVEL, _VELOCITY = 1e-3, 0.1
+"""Nominal travel [m] and velocity [m/s] of the table."""
+
+_STRETCH, _STRETCH_RATE = 1e-6, 1e-3
+"""Nominal stretch and bristle deflection [m], and rate of a stretch [m/s]; those of shafts are in proportion."""
+
+
+def nominals(model: Model) -> FloatArray:
+    """Typical size of every state of a model beside the table, from which a solver takes its absolute tolerance, (nx,).
+
+    Args:
+        model: as `feeddrive.export.fmu.beside_table` makes it.
+    """
+    if model.plant is None:
+        return np.array(model.nominal)
+    motion = np.abs(np.array(model.plant.chain.rigid_motion(model.plant.chain_values()), dtype=float))
+    turning = np.where(motion == 0, 1.0, motion)
+    positions, rates = _STRETCH * turning, _STRETCH_RATE * turning
+    positions[-1], rates[-1] = _TRAVEL, _VELOCITY
+    return np.concatenate([positions, rates, np.full(len(model.states) - 2 * len(motion), _STRETCH)])

@@ -15,8 +15,7 @@ import numpy as np
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant, write_text_atomically
-from feeddrive.interface.machine.check import Check
-from feeddrive.interface.machine.life import Life, UsedLife
+from feeddrive.interface.machine.check import Check, Life, UsedLife
 from feeddrive.interface.machine.modes import Modes
 from feeddrive.interface.machine.summary import Stiffness, Summary
 from feeddrive.interface.quantities import Quantity, quantities, si
@@ -29,8 +28,8 @@ from feeddrive.plant.analysis.summary import summarise
 from feeddrive.plant.chain.moving_inertia import inertia_at_motor
 from feeddrive.plant.derived_effects import GRAVITY
 from feeddrive.plant.file.declared_check import check_declared
-from feeddrive.plant.file.effect_text import plant_text_with_effects
 from feeddrive.plant.file.entries import parse_toml
+from feeddrive.plant.file.lumped_text import plant_text_with_effects
 from feeddrive.plant.file.plant_file import plant_from_entries
 from feeddrive.plant.file.plant_schema import plant_table
 from feeddrive.plant.plant import Plant
@@ -43,7 +42,7 @@ if TYPE_CHECKING:
 
     from feeddrive.interface.machine.bode import Bode
     from feeddrive.interface.machine.heat_summary import HeatSummary
-    from feeddrive.interface.machine.lumped import Lumped
+    from feeddrive.interface.machine.modes import Lumped
     from feeddrive.interface.servo import Servo
     from feeddrive.recording.frequency_response import FrequencyResponse
     from feeddrive.recording.recording import Recording
@@ -292,10 +291,10 @@ class Axis:
         >>> fd.load("kimm_testbed").lumped(at="600 mm").text.startswith("#")
         True
         """
-        from feeddrive.interface.machine.lumped import Lumped
+        from feeddrive.interface.machine.modes import Lumped
 
         further = ("the [thermal] sections; temperatures are predicted with the file of the parts",)
-        place = self.plant.middle if at is None else si(at, "m", "at")
+        place = None if at is None else si(at, "m", "at")
         return Lumped(self.name, lump(self.plant, place, further if self.has_heat else ()))
 
     def modes(self, at: Quantity | Sequence[Quantity] | None = None) -> Modes:
@@ -359,7 +358,7 @@ class Axis:
         """
         from feeddrive.diagnosis.likelihood.band import comparison_band
         from feeddrive.interface.measured.reading import as_recording
-        from feeddrive.simulate.used_life import used_life
+        from feeddrive.simulate.driven import used_life
 
         rec = as_recording(recording, "recording")
         if "motor_angle" not in rec:

@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Any
 from feeddrive.compensation import sheet
 from feeddrive.compensation.actions import unsure_of_play
 from feeddrive.compensation.compensate import Compensated, Wishes, compensate_plant, compensate_recording
+from feeddrive.compensation.deviations import recorded_deviations
 from feeddrive.compensation.forms.all_forms import FORMS, HEAT
 from feeddrive.compensation.forms.control import checked_axis
 from feeddrive.compensation.heat import heat_sheet
-from feeddrive.compensation.recorded_deviations import recorded_deviations
 from feeddrive.compensation.temperature import HeatTable, heat_table, recorded_heat_table
 from feeddrive.errors import InputError
 from feeddrive.files import shipped_plants, write_text_atomically

@@ -93,10 +93,10 @@ class Retuned(Shown):
 
     def _figures(self) -> Sequence[ReportFigure]:
         from feeddrive.report.figures.figure_bode import bode_figure
-        from feeddrive.report.figures.figure_retuned import circle_figure, step_figure
+        from feeddrive.report.figures.figure_scenario import retuned_circle_figure, retuned_step_figure
 
         cases = [one.reached.case for one in self.before]
-        drawn = [step_figure(self.before, self.after), circle_figure(self.before, self.after)]
+        drawn = [retuned_step_figure(self.before, self.after), retuned_circle_figure(self.before, self.after)]
         for loop in loops_of(self.present):
             family = open_family(self.plant, self.present, loop, cases, LOWEST, HIGHEST)
             drawn.append(bode_figure(family))

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from feeddrive.parts.bearings.bearing import SupportBearing
-from feeddrive.parts.bearings.supports import ScrewSupports, Support
+from feeddrive.parts.bearings.supports import ScrewSupports, Support, SupportBearing
 from feeddrive.parts.combined_stiffness import (
     CombinedStiffness,
     Contribution,

@@ -28,8 +28,7 @@ from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade, FeedForward
 from feeddrive.servo.cascade_function import cascade_controller, velocity_loop_of
 from feeddrive.servo.margins import GROWTH
-from feeddrive.servo.sampled import SampledController
-from feeddrive.servo.sampled_plant import Matrices, sampled_plant
+from feeddrive.servo.sampled_plant import Matrices, SampledController, sampled_plant
 from feeddrive.symbolic_turn import SYMBOLS
 from feeddrive.typing import FloatArray
 

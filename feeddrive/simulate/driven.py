@@ -1,4 +1,11 @@
-"""The load side driven by the measured motor motion: what torque and table position the plant expects."""
+"""The load side driven by the measured motor motion: what torque and table position the plant expects.
+
+Life that a motion takes from the nuts of a plant's ball screw: the driven plant gives the force, parts the life.
+
+The force of the nut on the table follows from the motor's motion through the plant's own equations (mass, friction,
+weight); a cutting force is added as the screw holds it, without the dynamics between. The preload is shared rigidly
+(`feeddrive.parts.screw.double_nut`).
+"""
 
 from __future__ import annotations
 
@@ -13,6 +20,8 @@ from feeddrive.engine.engine import Feed, Machine, machine_of, rested, run_machi
 from feeddrive.engine.program import Program, StepReport, joined
 from feeddrive.engine.step.step import driven_step
 from feeddrive.engine.step.step_constants import Layout
+from feeddrive.parts.life.consumed_life import ConsumedLife, consumed_life, rigid_nut_forces
+from feeddrive.plant.analysis.rated_life import preload_of
 from feeddrive.plant.chain.chain import symbolic
 from feeddrive.plant.equations import (
     chain_symbols,
@@ -250,3 +259,29 @@ def _outputs(plant: Plant, layout: Layout) -> ca.Function:
         x = x + travel_deviation(plant, symbols, phi, x, time)
     result = ca.vertcat(phi, ca.mtimes(screw, rate), x, ca.mtimes(table, rate), torque, found.transmitted)
     return ca.Function("outputs", [memory, theta, speed, acceleration, time, symbols.vector], [result])
+
+
+def used_life(
+    plant: Plant, time: FloatArray, motor_angle: FloatArray, cutting_force: FloatArray | None = None
+) -> ConsumedLife | None:
+    """Life used along a motion.
+
+    Args:
+        plant: with its values.
+        time: sample times, evenly spaced [s], shape (n,).
+        motor_angle: [rad], shape (n,); noise of it counts as rolling, so a recorded one is smoothed before.
+        cutting_force: on the table along + motion [N], shape (n,); none if None.
+
+    Returns:
+        What the two nuts have used; None where the file declares no `ball_screw.dynamic_rating`, or nothing is elastic,
+        so that no force of a nut is known.
+
+    Raises:
+        SimulationError: a motion that cannot be followed.
+    """
+    rating = plant.data["ball_screw.dynamic_rating"].value if "ball_screw.dynamic_rating" in plant.data else None
+    if rating is None or not plant.chain.elastic:
+        return None
+    run = simulate_driven(plant, motor_motion(time, motor_angle))
+    force = run.force if cutting_force is None else run.force - cutting_force
+    return consumed_life(run.screw_angle, rigid_nut_forces(force, preload_of(plant)), rating)

@@ -32,12 +32,11 @@ from feeddrive.trend.checkpoint import (
     save_checkpoint,
 )
 from feeddrive.trend.events import Change, Event, Growth, events_of, growth_of
-from feeddrive.trend.folder import UNFINISHED, Source, opened, sources
+from feeddrive.trend.folder import UNFINISHED, Source, opened, sources, stamp_of
 from feeddrive.trend.limits import Limit, limit_of
 from feeddrive.trend.pooling import Pooled, pool
 from feeddrive.trend.regressors import TERMS, grid_for, linear_pass
 from feeddrive.trend.series_evidence import Series, Timeline
-from feeddrive.trend.stamps import stamp_of
 from feeddrive.trend.watched_quantities import Quantity, means_of, prior_widths, quantities_of
 from feeddrive.typing import FloatArray
 

@@ -14,7 +14,7 @@ from feeddrive.effects.friction.guide_friction import GuideFriction
 from feeddrive.effects.timing.drive_delay import DriveDelay
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant
-from feeddrive.metrology.recorded_response import recorded_response
+from feeddrive.metrology.response import recorded_response
 from feeddrive.plant.chain.chain import Rigid, ThreeInertias
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant

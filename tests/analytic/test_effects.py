@@ -246,9 +246,9 @@ def test_kind_is_said(name: str) -> None:
 
 
 def test_one_effect_a_file() -> None:
-    """Only nut and bearing drag share one: the same law on the same shaft."""
+    """Only nut and bearing drag share one, the same law on the same shaft, and the four tables."""
     files = [Path(sys.modules[effect.__module__].__file__ or "").stem for effect in EFFECTS.values()]
-    assert len(set(files)) == len(files) - 1
+    assert len(set(files)) == len(files) - 1 - 3
 
 
 def test_misspelt_effect_names_the_nearest() -> None:

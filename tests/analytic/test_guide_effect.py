@@ -13,8 +13,7 @@ from hypothesis import strategies as st
 from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 
 from feeddrive.effects.base import Motion, Port
-from feeddrive.effects.friction.guide_friction import REST_VELOCITY, GuideFriction, guide_effect
-from feeddrive.effects.smooth_table import smooth_curve
+from feeddrive.effects.friction.guide_friction import REST_VELOCITY, GuideFriction, guide_effect, smooth_curve
 from feeddrive.errors import InputError
 from feeddrive.files import plants_folder
 from feeddrive.parts.guide.guide_carriage import table_friction

@@ -24,7 +24,7 @@ LEAD = EFFECTS["lead_error_cumulative"].of(slope=1e-5)
 def test_what_is_not_declared_is_said() -> None:
     for ask, told in (
         (lambda: HEAT.chain, "heat alone, and this needs a machine with masses"),
-        (lambda: HEAT.lumped(), "heat alone"),
+        (lambda: lump(HEAT), "heat alone"),
         (lambda: HEAT.with_effects(LEAD), "lead_error_cumulative acts on motion"),
         (lambda: MOTION.heat, r"declares no heat; add \[thermal\]"),
         (lambda: MOTION.with_effects(SINK), "heat_sink acts on heat, and none is declared"),
@@ -79,6 +79,6 @@ def test_the_same_questions_are_answered_for_both_parts() -> None:
 def test_lumping_says_that_it_leaves_the_heat_out() -> None:
     kimm = read_plant(find_plant("kimm_testbed"))
     assert not any("heat" in line for line in lump(kimm, kimm.middle).left_out)
-    made = BOTH.lumped()
+    made = lump(BOTH)
     assert any(line.startswith("heat:") for line in made.left_out)
     assert not made.plant.has_heat

@@ -14,10 +14,9 @@ from feeddrive.files import find_scenario_file, shipped_scenarios
 from feeddrive.metrology.circular import Circular
 from feeddrive.metrology.evaluate import as_json, evaluate
 from feeddrive.metrology.following import Following
-from feeddrive.metrology.linear_response import linear_response
 from feeddrive.metrology.loops import ForceLoop
 from feeddrive.metrology.positioning import Positioning
-from feeddrive.metrology.response import Response
+from feeddrive.metrology.response import Response, linear_response
 from feeddrive.recording.files.reading import read_recording
 from feeddrive.recording.files.writing import write_recording
 from feeddrive.servo.cascade_function import cascade_controller

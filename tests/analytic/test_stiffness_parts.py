@@ -8,7 +8,7 @@ from collections.abc import Callable
 import pytest
 
 from feeddrive.errors import InputError, ValidityWarning
-from feeddrive.parts.bearings.bearing import SupportBearing
+from feeddrive.parts.bearings.supports import SupportBearing
 from feeddrive.parts.coupling import Coupling
 from feeddrive.parts.material import STEEL, ShaftMaterial
 from feeddrive.parts.motor import HoldingBrake, Motor

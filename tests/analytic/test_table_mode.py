@@ -16,7 +16,7 @@ from feeddrive.plant.analysis.linear import linear_matrices, state_names, steady
 from feeddrive.plant.analysis.modes import braked_modes, free_modes
 from feeddrive.plant.analysis.summary import summarise
 from feeddrive.plant.chain.chain import Rigid, ThreeInertias
-from feeddrive.plant.file.effect_text import plant_text_with_effects
+from feeddrive.plant.file.lumped_text import plant_text_with_effects
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
 from feeddrive.simulate.driven import motor_motion, simulate_driven

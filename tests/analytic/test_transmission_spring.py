@@ -17,7 +17,7 @@ from feeddrive.errors import InputError
 from feeddrive.files import plants_folder
 from feeddrive.plant.analysis.linear import linear_matrices, steady_motion
 from feeddrive.plant.chain.chain import Rigid, ThreeInertias
-from feeddrive.plant.file.effect_text import plant_text_with_effects
+from feeddrive.plant.file.lumped_text import plant_text_with_effects
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.symbols import chain_symbols, parameter_symbols, parameter_values

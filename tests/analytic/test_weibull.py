@@ -13,6 +13,7 @@ from scipy.stats import weibull_min
 from feeddrive.errors import InputError
 from feeddrive.parts.life.weibull import (
     WeibullLaw,
+    complete_slope_interval,
     life_sample,
     likelihood_fit,
     line_fit,
@@ -20,7 +21,6 @@ from feeddrive.parts.life.weibull import (
     median_ranks,
     rank_fit,
 )
-from feeddrive.parts.life.weibull_interval import complete_slope_interval
 
 LAW = WeibullLaw(560e3, 3.6)
 

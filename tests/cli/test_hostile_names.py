@@ -16,10 +16,9 @@ from feeddrive.cli.main import main
 from feeddrive.compiler import find_compiler
 from feeddrive.export.c_source import header_text, source_text
 from feeddrive.export.fmu_description import description_text
-from feeddrive.export.linear_model import linear_model_of
+from feeddrive.export.linear_model import linear_model_of, python_text
 from feeddrive.export.nonlinear_model import model_of
 from feeddrive.export.point import Point
-from feeddrive.export.python_file import python_text
 from feeddrive.files import plants_folder
 from feeddrive.plant.file.entries import read_toml
 from feeddrive.plant.file.plant_file import read_plant

@@ -36,11 +36,9 @@ from feeddrive.parts.life.stress_cycles import (
     stroke_ratio,
 )
 from feeddrive.parts.life.subsurface_shear import greatest_shear_on_axis, greatest_shear_under_line
-from feeddrive.parts.life.weibull import WeibullLaw, life_sample, line_fit, rank_fit
-from feeddrive.parts.life.weibull_interval import complete_slope_interval
-from feeddrive.parts.screw.double_nut import OPENING
+from feeddrive.parts.life.weibull import WeibullLaw, complete_slope_interval, life_sample, line_fit, rank_fit
+from feeddrive.parts.screw.double_nut import OPENING, stiffness_share
 from feeddrive.parts.screw.load_distribution import Loading, continuum_extremes, load_distribution, nut_body
-from feeddrive.parts.screw.preload_monitoring import stiffness_share
 from feeddrive.parts.screw.screw_contact import BallTrack, nut_contact, screw_contact
 from feeddrive.reproduce.paper_001 import rows
 from feeddrive.reproduce.row import Paper, Status

@@ -15,8 +15,7 @@ from feeddrive.diagnosis.simulated.simulation import loop_errors
 from feeddrive.files import plants_folder
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.recording import Recording
-from feeddrive.simulate.controlled.declared_loop import declared_loop
-from feeddrive.simulate.controlled.replay import replayed_command
+from feeddrive.simulate.controlled.declared_loop import declared_loop, replayed_command
 from feeddrive.simulate.scenario.scenario_file import read_scenario
 from feeddrive.simulate.scenario.scenario_run import run_scenario
 from feeddrive.typing import FloatArray

@@ -38,7 +38,7 @@ from feeddrive.diagnosis.likelihood.coordinates import (
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison, compare_left_out, left_out_residual
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit, linear_step
 from feeddrive.diagnosis.likelihood.folds import block_numbers
-from feeddrive.diagnosis.recordings.judged_changes import judged_changes
+from feeddrive.diagnosis.recordings.compared import judged_changes
 from feeddrive.diagnosis.recordings.recordings import RecordingShift, is_shift, without_shifts
 from feeddrive.effects.base import ChainEffect, Effect
 from feeddrive.typing import FloatArray, IntegerArray

@@ -27,6 +27,7 @@ class Earlier:
         split: share that was fitted where there were none.
         effects: found, with their values.
         reported: effects as they were reported, name to parameters.
+        measured: file of the numbers that were measured beside the recordings; None where there was none.
     """
 
     runs: list[dict[str, Any]]
@@ -36,6 +37,7 @@ class Earlier:
     split: float
     effects: tuple[Effect, ...]
     reported: tuple[dict[str, Any], ...]
+    measured: FileUse | None = None
 
 
 def earlier_run(folder: Path) -> Earlier:
@@ -53,12 +55,14 @@ def earlier_run(folder: Path) -> Earlier:
         _unchanged(FileUse(plant, last["plant"]["sha256"]))
         fit, validate = (tuple(_use(one) for one in last[key]) for key in ("fit", "validate"))
         effects = tuple(_effect(one) for one in last["values"])
-        result = Earlier(runs, plant, fit, validate, float(last["split"]), effects, tuple(last["effects"]))
+        numbers = last.get("measured")  # a ledger of an earlier version has no such entry
+        measured = None if numbers is None else _use(numbers)
+        result = Earlier(runs, plant, fit, validate, float(last["split"]), effects, tuple(last["effects"]), measured)
     except (KeyError, TypeError, AttributeError, OverflowError, ValueError) as error:
         if isinstance(error, InputError) and error.where != "":
             raise
         raise InputError(f"run {len(runs)} lacks entries", str(folder / NAME), "diagnose anew") from None
-    for one in (*result.fit, *result.validate):
+    for one in (*result.fit, *result.validate, *([measured] if measured is not None else [])):
         _unchanged(one)
     return result
 

@@ -2,8 +2,8 @@
 
 ledger.json
 { "format": "feeddrive-ledger/1", "runs": [ { "run": 1, "continues": null, "plant": {...}, "fit": [...],
-  "validate": [...], "split": 0.75, "channels": [...], "tried": [...], "effects": [...], "refused": [...],
-  "values": [...], "covariance": {...}, "changes": [...], "since": [...] } ] }
+  "validate": [...], "split": 0.75, "measured": null, "channels": [...], "tried": [...], "effects": [...],
+  "refused": [...], "values": [...], "covariance": {...}, "changes": [...], "since": [...] } ] }
 """
 
 from __future__ import annotations
@@ -56,6 +56,7 @@ class RunFiles:
     validate: tuple[FileUse, ...]
     split: float
     continues: int | None = None
+    measured: FileUse | None = None
 
 
 def checksum(path: Path) -> str:
@@ -129,6 +130,7 @@ def _run(
         "fit": [_file(one) for one in files.fit],
         "validate": [_file(one) for one in files.validate],
         "split": files.split,
+        "measured": None if files.measured is None else _file(files.measured),
         **{key: record[key] for key in COPIED},
         "tried": [_plain(vars(one)) for one in result.kept.tried],
         "values": [_effect(effect) for effect in effects],

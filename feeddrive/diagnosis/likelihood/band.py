@@ -13,7 +13,7 @@ from scipy import signal
 
 from feeddrive.plant.analysis.modes import screw_frequency
 from feeddrive.plant.plant import Plant
-from feeddrive.recording.checks.findings import quantisation_step
+from feeddrive.recording.checks.flaws import quantisation_step
 from feeddrive.typing import FloatArray
 
 WIDEST_BAND = 150.0

@@ -37,7 +37,7 @@ from feeddrive.diagnosis.likelihood.band import END_CUT, Band
 from feeddrive.engine.step.step_constants import SimulationError
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
-from feeddrive.recording.checks.findings import quantisation_step
+from feeddrive.recording.checks.flaws import quantisation_step
 from feeddrive.simulate.driven import MotorMotion, motor_motion, simulate_driven
 from feeddrive.typing import ComplexArray, FloatArray
 

@@ -16,13 +16,11 @@ from feeddrive.diagnosis.calibration.calibrated_result import calibrated_record
 from feeddrive.diagnosis.judging.result import ChannelResult, Diagnosis, EffectResult, ErrorFigures, ParameterResult
 from feeddrive.diagnosis.numbers.number_rows import numbers_beside
 from feeddrive.diagnosis.plant_text import with_calibrated_values
-from feeddrive.diagnosis.recordings.change_outputs import changes_record
 from feeddrive.diagnosis.simulated.simulation_record import simulation_record
 from feeddrive.diagnosis.suspicion.quality import is_recorders, quality_record
-from feeddrive.diagnosis.unexplained.unexplained_record import carried_remarks, unexplained_record
 from feeddrive.effects.base import Effect
 from feeddrive.files import write_text_atomically
-from feeddrive.plant.file.effect_text import plant_text_with_effects
+from feeddrive.plant.file.lumped_text import plant_text_with_effects
 
 FORMAT = "feeddrive-diagnosis/1"
 
@@ -37,7 +35,7 @@ def write_outputs(diagnosis: Diagnosis, effects: Sequence[Effect], plant_text: s
         folder: made if missing.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    tables = carried_remarks(diagnosis)
+    tables = [one.remark for left in diagnosis.unexplained.values() for one in left.carried]
     # what only changed between recordings comes last, and is no finding of its own
     count = len(effects) - len(diagnosis.effects) - len(tables)
     changed = ["as in the last recording; see changes in diagnosis.json"] * count
@@ -91,8 +89,8 @@ def diagnosis_record(diagnosis: Diagnosis) -> dict[str, Any]:
             }
             for one in diagnosis.next_experiments
         ],
-        **changes_record(diagnosis.changes),
-        "unexplained": unexplained_record(diagnosis),
+        **diagnosis.changes.record(),
+        "unexplained": {name: left.record() for name, left in diagnosis.unexplained.items()},
         "notes": list(diagnosis.notes),
         "plant_after": "plant_after.toml",
     }

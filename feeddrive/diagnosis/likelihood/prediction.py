@@ -159,4 +159,4 @@ def _at_motor_alone(effect: Effect) -> bool:
 
 
 def _values_key(plant: Plant) -> object:
-    return (tuple(plant.chain.values.items()), effects_key(plant.effects))
+    return (plant.chain.key, tuple(plant.chain.values.items()), effects_key(plant.effects))

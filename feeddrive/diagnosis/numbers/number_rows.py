@@ -105,11 +105,13 @@ class NumberResult:
     Attributes:
         number: as measured.
         before, after: of the declared plant, and of the plant with what was found [SI].
+        fitted: whether it was; not where it is likelier to be wrong (`doubted`).
     """
 
     number: MeasuredNumber
     before: float
     after: float
+    fitted: bool = True
 
     @property
     def met(self) -> bool:
@@ -117,10 +119,11 @@ class NumberResult:
         return abs(self.after - self.number.value) <= 2 * self.number.deviation
 
 
-def number_results(rows: MeasuredRows, before: Plant, after: Plant) -> tuple[NumberResult, ...]:
-    """Every number with what the two plants give for it."""
+def number_results(rows: MeasuredRows, before: Plant, after: Plant, wrong: int = 0) -> tuple[NumberResult, ...]:
+    """Every number with what the two plants give for it; so many at the end were wrong and not fitted."""
+    fitted = len(rows) - wrong
     pairs = zip(rows.numbers, rows.given(before), rows.given(after), strict=True)
-    return tuple(NumberResult(number, float(was), float(now)) for number, was, now in pairs)
+    return tuple(NumberResult(one, float(was), float(now), i < fitted) for i, (one, was, now) in enumerate(pairs))
 
 
 def numbers_beside(results: Sequence[NumberResult]) -> list[Mapping[str, Any]]:
@@ -134,6 +137,7 @@ def numbers_beside(results: Sequence[NumberResult]) -> list[Mapping[str, Any]]:
             "before": one.before,
             "after": one.after,
             "met": one.met,
+            "fitted": one.fitted,
         }
         for one in results
     ]

@@ -21,7 +21,6 @@ from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
 from feeddrive.diagnosis.recordings.change_candidates import levels
 from feeddrive.diagnosis.recordings.change_words import FACTORS
 from feeddrive.diagnosis.recordings.changes import Changes, find_changes
-from feeddrive.diagnosis.recordings.drift_table import normalised
 from feeddrive.diagnosis.recordings.recordings import (
     RecordingPredictor,
     RecordingShift,
@@ -29,7 +28,7 @@ from feeddrive.diagnosis.recordings.recordings import (
     is_shift,
     without_shifts,
 )
-from feeddrive.effects.base import Effect
+from feeddrive.effects.base import Effect, listed, number
 
 UNEXPLAINED = 1.3
 """Weighted squared error per sample beyond which much is left; noise alone gives one."""
@@ -186,3 +185,22 @@ def _belongs(effect: Effect, targets: Sequence[Target]) -> bool:
         assert isinstance(effect, RecordingShift)
         return effect.target in targets
     return any(target.meets(effect) for target in targets)
+
+
+def normalised(found: Search) -> Search:
+    """The search with tabulated drifts scaled; the same drift, its fit taken again where it stands."""
+    effects = [_scaled(effect) for effect in found.fit.effects]
+    if tuple(effects) == found.fit.effects:
+        return found
+    return replace(found, fit=fit(found.problem, effects, iterations=0))
+
+
+def _scaled(effect: Effect) -> Effect:
+    if effect.name != "ambient_drift" or not isinstance(effect.values["time"], tuple):
+        return effect
+    shape = listed(effect.values["shape"])
+    largest = max(shape, key=abs)
+    if largest == 0:
+        return effect
+    amplitude = number(effect.values["amplitude"]) * largest
+    return effect.with_values(amplitude=amplitude, shape=tuple(s / largest for s in shape))

@@ -22,8 +22,7 @@ from feeddrive.engine.step.step_constants import SimulationError
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
-from feeddrive.simulate.controlled.declared_loop import DeclaredLoop, declared_loop
-from feeddrive.simulate.controlled.replay import replayed_command
+from feeddrive.simulate.controlled.declared_loop import DeclaredLoop, declared_loop, replayed_command
 from feeddrive.typing import BoolArray, FloatArray
 
 MISSED = 0.25

@@ -14,8 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from feeddrive.effects.base import FrictionEffect, Motion, Parameter, Port, Signature
-from feeddrive.effects.friction.direction import forward
+from feeddrive.effects.base import FrictionEffect, Motion, Parameter, Port, Signature, forward
 from feeddrive.typing import Expression
 
 

@@ -4,7 +4,7 @@
 
 so that M_ref q'' = B u + f_beyond - C q' - K q holds with the propagators of the cell, and the motion does not depend
 on where cells begin. C and K are those of the cell; f has the springs' part
-(see `feeddrive.plant.chain.varying_chain`).
+(see `feeddrive.plant.equations`).
 
 | symbol | meaning |
 |---|---|

@@ -20,9 +20,8 @@ from dataclasses import dataclass
 
 import casadi as ca
 
-from feeddrive.engine.step.algebra import part
 from feeddrive.engine.step.node_forces import Pull, node_forces
-from feeddrive.engine.step.propagators import NODES
+from feeddrive.engine.step.propagators import NODES, part
 from feeddrive.engine.step.step_constants import Layout
 from feeddrive.engine.step.step_nodes import NodeEquations
 from feeddrive.engine.step.step_symbols import StepSymbols, torque_beyond

@@ -16,9 +16,8 @@ from __future__ import annotations
 import casadi as ca
 import numpy as np
 
-from feeddrive.engine.step.linear_part import Linear, linear_part, state_matrices
+from feeddrive.engine.step.linear_part import Layout, Linear, SimulationError, linear_part, state_matrices
 from feeddrive.engine.step.propagators import HERMITE_BASIS, NODE_BASIS, basis_propagators, monomial_propagators
-from feeddrive.engine.step.step_layout import Layout, SimulationError
 from feeddrive.typing import Expression, FloatArray
 
 __all__ = [

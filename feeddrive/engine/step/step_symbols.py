@@ -13,9 +13,8 @@ from __future__ import annotations
 import casadi as ca
 
 from feeddrive.effects.base import DriveEffect
-from feeddrive.engine.step.algebra import cubic, part
 from feeddrive.engine.step.node_forces import Pull, node_forces
-from feeddrive.engine.step.propagators import NODES
+from feeddrive.engine.step.propagators import NODES, cubic, part
 from feeddrive.engine.step.step_constants import Layout, constant_shapes, unflatten
 from feeddrive.plant.equations import Forces, Symbols, chain_symbols
 from feeddrive.plant.motor_torque import acting_torque

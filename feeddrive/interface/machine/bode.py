@@ -16,8 +16,8 @@ from feeddrive.export.point import export_point
 from feeddrive.interface.quantities import Quantity, quantities
 from feeddrive.interface.servo import Servo, cascade_for
 from feeddrive.interface.shown import Listing, Shown, finite, write_figures, write_json
-from feeddrive.metrology.recorded_response import recorded_response
 from feeddrive.metrology.response import Response as Measured
+from feeddrive.metrology.response import recorded_response
 from feeddrive.plant.analysis.linear import INPUTS, OUTPUTS
 from feeddrive.plant.chain.resolution import resolved, resolved_modes
 from feeddrive.plant.file.entries import nearest
@@ -25,7 +25,7 @@ from feeddrive.plant.plant import Plant
 from feeddrive.recording.frequency_response import FrequencyResponse
 from feeddrive.recording.recording import Recording
 from feeddrive.report.figures.figure_bode import magnitude_unit
-from feeddrive.report.words.chain_words import chain_remark
+from feeddrive.report.words.words import chain_remark
 from feeddrive.servo.loop_response import loops_of, refuse_unstable_case
 from feeddrive.servo.mechanics_response import UNITS, Case, refuse_no_range
 from feeddrive.servo.resonances import on_curve
@@ -34,10 +34,11 @@ from feeddrive.servo.response_family import (
     Family,
     closed_family,
     controlled_family,
+    family_content,
+    measured_content,
     mechanics_family,
     open_family,
 )
-from feeddrive.servo.response_json import family_content, measured_content
 from feeddrive.tuning.demand import cases_of
 from feeddrive.units.quantity import format_quantity, unit_conversion
 

@@ -121,7 +121,7 @@ def continued_job(arguments: Sequence[str], folder: Path, options: Options) -> J
         options.simulate,
         tuple(effect for effect in earlier.effects if not isinstance(effect, Tabulated)),
         earlier,
-        options.measured,
+        options.measured or (earlier.measured.path if earlier.measured is not None else None),
     )
 
 
@@ -148,6 +148,7 @@ def diagnose_files(job: Job, progress: Callable[[str], None] = lambda _: None) -
         raise InputError("was changed while it was read", str(job.plant), "diagnose again")
     plant = axis.plant
     numbers = read_measured_numbers(job.measured, plant) if job.measured is not None else ()
+    as_read = checksum(job.measured) if job.measured is not None else ""
     result, effects = diagnose(plant, fitted, judged, job.split, job.simulate, progress, job.start, numbers)
     if job.earlier is not None:
         since = changed_since(job.earlier.reported, result.effects)
@@ -165,7 +166,7 @@ def diagnose_files(job: Job, progress: Callable[[str], None] = lambda _: None) -
         there = runs_of(job.out)
         take_away(folder, written_earlier(there))  # a figure that this run has no reason to draw
         before = there or (job.earlier.runs if job.earlier is not None else [])
-        write_ledger(folder, before, result, effects, _files(job, declared, fitted, judged, before))
+        write_ledger(folder, before, result, effects, _files(job, declared, as_read, fitted, judged, before))
     return Diagnosed(axis, result, tuple(effects))
 
 
@@ -204,12 +205,18 @@ def _read(source: Source) -> Recording:
 
 
 def _files(
-    job: Job, declared: bytes, fitted: Sequence[Recording], judged: Sequence[Recording], before: Sequence[object]
+    job: Job,
+    declared: bytes,
+    numbers: str,
+    fitted: Sequence[Recording],
+    judged: Sequence[Recording],
+    before: Sequence[object],
 ) -> RunFiles:
     continues = len(before) if job.earlier is not None else None
     uses = (_uses(job.recordings, fitted), _uses(job.validation, judged))
     plant = FileUse(job.plant.resolve(), hashlib.sha256(declared).hexdigest())
-    return RunFiles(plant, uses[0], uses[1], job.split, continues)
+    measured = FileUse(job.measured.resolve(), numbers) if job.measured is not None else None
+    return RunFiles(plant, uses[0], uses[1], job.split, continues, measured)
 
 
 def _uses(sources: Sequence[Source], recordings: Sequence[Recording]) -> tuple[FileUse, ...]:

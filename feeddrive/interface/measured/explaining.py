@@ -25,8 +25,7 @@ from feeddrive.interface.servo import Servo, cascade_for
 from feeddrive.interface.shown import Listing, Shown
 from feeddrive.plant.file.named_parts import with_named_parts
 from feeddrive.recording.frequency_response import FrequencyResponse
-from feeddrive.report.words.numbers_words import numbers_verdict, value_text
-from feeddrive.report.words.response_words import response_verdict
+from feeddrive.report.words.explained_words import numbers_verdict, response_verdict, value_text
 from feeddrive.servo.mechanics_response import Case
 from feeddrive.units.quantity import format_quantity
 
@@ -78,8 +77,7 @@ class Explained(Shown):
             InputError: the folder cannot be written.
         """
         from feeddrive.report.figures.drawing import render
-        from feeddrive.report.pages.numbers_page import numbers_page
-        from feeddrive.report.pages.response_page import response_page
+        from feeddrive.report.pages.explained_page import numbers_page, response_page
 
         place, result = Path(folder), self.result
         picture = render(self._figures()[0])
@@ -98,8 +96,7 @@ class Explained(Shown):
         )
 
     def _figures(self) -> tuple[ReportFigure, ...]:
-        from feeddrive.report.figures.figure_numbers import numbers_figure
-        from feeddrive.report.figures.figure_response_fit import response_fit_figure
+        from feeddrive.report.figures.figure_response import numbers_figure, response_fit_figure
 
         result = self.result
         return (numbers_figure(result) if isinstance(result, NumbersResult) else response_fit_figure(result),)

@@ -17,10 +17,9 @@ from feeddrive.interface.quantities import Quantity, si
 from feeddrive.interface.shown import Listing, Shown
 from feeddrive.metrology.circular import Circular, circular
 from feeddrive.metrology.measured.forms import circle_test, drift_test, linear_test, part_of
-from feeddrive.metrology.measured.laser_file import is_laser_file
 from feeddrive.metrology.measured.measurements import CircleTest, DriftTest, LinearTest, refuse_radius
 from feeddrive.metrology.measured.plant_share import PlantShare, plant_share
-from feeddrive.metrology.measured.readings import Readings, read_readings
+from feeddrive.metrology.measured.readings import Readings, is_laser_file, read_readings
 from feeddrive.metrology.measured.standing import (
     believed,
     circle_angle,

@@ -19,8 +19,8 @@ from feeddrive.output_folder import output_folder
 from feeddrive.trend.change_searches import searched_events
 from feeddrive.trend.checkpoint import USED, save_checkpoint
 from feeddrive.trend.events import Event
+from feeddrive.trend.folder import read_moment
 from feeddrive.trend.limits import Limit
-from feeddrive.trend.stamps import read_moment
 from feeddrive.trend.watch import Options, Trend, follow
 
 if TYPE_CHECKING:

@@ -21,8 +21,7 @@ from feeddrive.servo.cascade_function import cascade_controller, velocity_loop_o
 from feeddrive.servo.linear_loop import open_position_loop, open_velocity_loop
 from feeddrive.servo.margins import Margins, margins
 from feeddrive.servo.mechanics_response import Case
-from feeddrive.servo.sampled import SampledController
-from feeddrive.servo.sampled_plant import Matrices, sampled_plant
+from feeddrive.servo.sampled_plant import Matrices, SampledController, sampled_plant
 from feeddrive.servo.scheduled import scheduled
 from feeddrive.simulate.controlled.controlled_machine import TorqueLoop
 from feeddrive.tuning.bare_drive import bare_drive

@@ -86,7 +86,7 @@ class Repeated(Shown):
         }
 
     def _figures(self) -> Sequence[ReportFigure]:
-        from feeddrive.report.figures.figure_warm_axis import warm_axis_figure
+        from feeddrive.report.figures.figure_thermal import warm_axis_figure
 
         return (warm_axis_figure(self.run),)
 

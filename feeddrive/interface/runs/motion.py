@@ -12,8 +12,7 @@ from feeddrive.errors import InputError
 from feeddrive.interface.quantities import Quantity, si
 from feeddrive.interface.runs.controllers import Controller
 from feeddrive.interface.shown import Listing, Shown, needed_pandas
-from feeddrive.metrology.recorded_response import recorded_response
-from feeddrive.metrology.response import Response, StepResponse, step_response
+from feeddrive.metrology.response import Response, StepResponse, recorded_response, step_response
 from feeddrive.plant.analysis.steady import steady_motion
 from feeddrive.recording.recording import Recording
 from feeddrive.simulate.controlled.controlled import resting_state, simulate_controlled
@@ -117,7 +116,7 @@ class Motion(Shown):
         return pandas.DataFrame(dict(self.series), index=pandas.Index(self.time, name="time [s]"))
 
     def _figures(self) -> list[ReportFigure]:
-        from feeddrive.report.figures.figure_run import run_figure
+        from feeddrive.report.figures.figure_scenario import run_figure
 
         return [run_figure(self.axis_name, self.time, self.series)]
 

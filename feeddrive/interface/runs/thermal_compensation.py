@@ -14,10 +14,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from feeddrive.compensation.heat.thermal_error import TableError, table_error
+from feeddrive.compensation.heat.thermal_error import TableError, compensation_model, table_error
 from feeddrive.compensation.heat.thermal_line import LineTable, line_table
 from feeddrive.compensation.heat.thermal_observer import thermal_observer
-from feeddrive.compensation.heat.thermal_open_loop import compensation_model
 from feeddrive.compensation.heat.thermal_placement import Placement, placements
 from feeddrive.compensation.heat.thermal_sensors import Sensor, mountable_places
 from feeddrive.compensation.heat.thermal_trial import TriedMachine, tried_machine

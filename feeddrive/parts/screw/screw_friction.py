@@ -20,9 +20,8 @@ import math
 from dataclasses import asdict, dataclass
 
 from feeddrive.errors import InputError
-from feeddrive.parts.friction_estimate import friction_from_torque, relative_torque
 from feeddrive.parts.screw.double_nut import friction_torque_backward, friction_torque_forward, rigid_sharing
-from feeddrive.parts.screw.preload_torque import ideal_torque, preload_torque
+from feeddrive.parts.screw.preload_torque import friction_from_torque, ideal_torque, preload_torque, relative_torque
 from feeddrive.parts.screw.screw_efficiency import (
     back_driving_efficiency,
     back_driving_loss,

@@ -65,6 +65,7 @@ from feeddrive.plant.chain.moving_inertia import inertia_at_motor
 from feeddrive.plant.chain.resolution import resolved_modes
 from feeddrive.plant.file.entries import parse_toml
 from feeddrive.plant.file.lumped_text import lumped_text
+from feeddrive.plant.file.plant_file import plant_from_entries
 from feeddrive.plant.passive_friction import top_speed
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray
@@ -123,12 +124,12 @@ class Lumped:
     text: str
 
 
-def lump(plant: Plant, position: float, further: tuple[str, ...] = ()) -> Lumped:
+def lump(plant: Plant, position: float | None = None, further: tuple[str, ...] = ()) -> Lumped:
     """The three-inertia machine nearest to `plant` with its table at `position` [m].
 
     Args:
         plant: an elastic machine.
-        position: of the table [m].
+        position: of the table [m]; the middle of the stroke if not given.
         further: what the caller knows to be left out besides, in sentences.
 
     Raises:
@@ -136,6 +137,7 @@ def lump(plant: Plant, position: float, further: tuple[str, ...] = ()) -> Lumped
     """
     if not plant.chain.elastic:
         raise InputError("a rigid machine has nothing to lump", plant.name, "name a machine with elastic parts")
+    position = plant.middle if position is None else position
     plant.chain.refuse_off_screw(position, plant.name)
     bare = _bare(plant)
     values = _chain_values(bare, position)
@@ -147,13 +149,8 @@ def lump(plant: Plant, position: float, further: tuple[str, ...] = ()) -> Lumped
     left_out = (*_left_out(plant, missed), *further)
     heading = _heading(plant, position, compared, left_out)
     text = lumped_text(plant, values, effects, remarks, heading, missed)
-    return Lumped(_read(text, plant), position, compared, left_out, text)
-
-
-def _read(text: str, plant: Plant) -> Plant:
-    from feeddrive.plant.file.plant_file import plant_from_entries  # the reader of files imports plants
-
-    return plant_from_entries(parse_toml(text, f"{plant.name}, lumped"), Path(f"{plant.name}, lumped"))
+    where = f"{plant.name}, lumped"
+    return Lumped(plant_from_entries(parse_toml(text, where), Path(where)), position, compared, left_out, text)
 
 
 def _bare(plant: Plant) -> Plant:

@@ -98,8 +98,9 @@ def _modes(plant: Plant, basis: FloatArray, position: float, held: FloatArray | 
     if basis.shape[1] == 0:
         return Modes(np.zeros(0), np.zeros(0), np.zeros((basis.shape[0], 0)), ())
     squared, vectors = eigh(K, M)
-    # What rounding leaves of a free motion: w^2 far below the largest one.
-    squared[np.abs(squared) <= 1e-9 * np.max(np.abs(squared))] = 0.0
+    # What rounding leaves of a free motion: w^2 far below the largest one. Its shape is known without rounding.
+    free = np.abs(squared) <= 1e-9 * np.max(np.abs(squared))
+    squared[free], vectors[:, free] = 0.0, (basis.T @ (rigid != 0))[:, None]
     omega = np.sqrt(squared)
     dissipated = np.einsum("ik,ij,jk->k", vectors, C, vectors)  # eigh scales to a' M a = 1
     damping = np.divide(dissipated, 2 * omega, out=np.zeros_like(omega), where=omega > 0)

@@ -15,7 +15,7 @@ from feeddrive.plant.chain.chain import CHAINS, Chain, ChainValue, DistributedSc
 from feeddrive.plant.chain.drive_values import Computed, distributed_values, lumped_values
 from feeddrive.plant.file.drive_sections import describes_parts, read_drive
 from feeddrive.plant.file.entries import Table
-from feeddrive.plant.file.stroke import first_nut_position, read_stroke
+from feeddrive.plant.file.ratings import first_nut_position, read_stroke
 from feeddrive.plant.plant import Plant
 from feeddrive.units.quantity import format_quantity
 

@@ -19,8 +19,7 @@ from dataclasses import asdict
 from typing import TypeVar
 
 from feeddrive.errors import InputError, ValidityWarning
-from feeddrive.parts.bearings.bearing import SupportBearing
-from feeddrive.parts.bearings.supports import ScrewSupports, Support
+from feeddrive.parts.bearings.supports import ScrewSupports, Support, SupportBearing
 from feeddrive.parts.coupling import Coupling
 from feeddrive.parts.material import STEEL, ShaftMaterial
 from feeddrive.parts.motor import HoldingBrake, Motor

@@ -10,7 +10,7 @@ from feeddrive.effects.base import Effect, Parameter, Port, TransmissionEffect, 
 from feeddrive.effects.catalogue import EFFECTS, THERMAL_EFFECTS
 from feeddrive.errors import InputError
 from feeddrive.plant.file.entries import Table, declares_heat_alone, nearest
-from feeddrive.plant.file.stroke import read_stroke
+from feeddrive.plant.file.ratings import read_stroke
 
 
 def read_effects(top: Table, known: Mapping[str, type[Effect]] | None = None) -> tuple[Effect, ...]:

@@ -32,10 +32,9 @@ from feeddrive.effects.base import Effect
 from feeddrive.effects.friction.guide_friction import GuideFriction, guide_effect
 from feeddrive.errors import InputError
 from feeddrive.parts.catalogue.part_files import CataloguePart, catalogue, nearest_names
-from feeddrive.parts.guide.carriages import Carriages, RatedCarriage, RollingCarriage
 from feeddrive.parts.guide.guide_coefficients import SET_A, SET_B
 from feeddrive.parts.guide.guide_geometry import GUIDE_VALUES, HSR_20R, HSR_30R, BallGuide
-from feeddrive.parts.guide.guide_rating import rated_friction
+from feeddrive.parts.guide.guide_rating import Carriages, RatedCarriage, RollingCarriage, rated_friction
 from feeddrive.plant.file.drive_sections import placed
 from feeddrive.plant.file.entries import Table
 from feeddrive.units.quantity import format_quantity, parse

@@ -56,7 +56,7 @@ computed, and a value of the chain that is written takes the place of the comput
     seal_drag = "8 N"                # of one
 
 and ratings for plausibility rules (`feeddrive.plant.file.ratings`). Heat is declared in `[thermal]`
-(`feeddrive.plant.file.heat.heat_section`), beside the motion or, in a file without `structure`, alone. Nothing in the
+(`feeddrive.plant.file.heat_section`), beside the motion or, in a file without `structure`, alone. Nothing in the
 file is evaluated.
 """
 
@@ -74,14 +74,12 @@ from feeddrive.plant.derived_effects import WEIGHT_KEYS, derived_effects
 from feeddrive.plant.file.chain_sections import positive, read_chain
 from feeddrive.plant.file.drive_sections import PART_VALUES, describes_parts
 from feeddrive.plant.file.effect_sections import read_effects
-from feeddrive.plant.file.effect_text import plant_text_with_effects
 from feeddrive.plant.file.entries import Table, declares_heat_alone, read_toml
 from feeddrive.plant.file.equipment import read_controller, read_sensors
-from feeddrive.plant.file.heat.coupling_section import read_coupling
-from feeddrive.plant.file.heat.heat_section import read_heat
+from feeddrive.plant.file.heat_section import read_coupling, read_heat
+from feeddrive.plant.file.lumped_text import plant_text_with_effects
 from feeddrive.plant.file.plant_schema import NAMED_PARTS, plant_table
-from feeddrive.plant.file.ratings import RATINGS, read_data
-from feeddrive.plant.file.stroke import read_stroke
+from feeddrive.plant.file.ratings import RATINGS, read_data, read_stroke
 from feeddrive.plant.motor_torque import TorqueGain
 from feeddrive.plant.passive_friction import refuse_active_friction
 from feeddrive.plant.plant import Plant

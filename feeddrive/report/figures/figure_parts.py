@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from feeddrive.errors import ValidityWarning
-from feeddrive.parts.guide.carriages import Carriages, RollingCarriage
-from feeddrive.parts.guide.guide_rating import rated_friction
+from feeddrive.parts.guide.guide_rating import Carriages, RollingCarriage, rated_friction
 from feeddrive.parts.life.consumed_life import ConsumedLife
 from feeddrive.parts.screw.double_nut import OPENING, rigid_sharing
 from feeddrive.plant.analysis.nut_losses import NutLosses, nut_losses

@@ -67,7 +67,7 @@ def _text(one: PerRecording, value: Measure) -> tuple[str, str]:
 
 
 def _explained(diagnosis: Diagnosis) -> str:
-    shares = diagnosis.changes.explains or {}
+    shares = diagnosis.changes.explains
     if not shares:
         return ""
     listed = joined([f"{share_text(share)} of {plain(name)}" for name, share in shares.items()])

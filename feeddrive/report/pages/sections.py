@@ -1,10 +1,12 @@
-"""The findings of the report as HTML: verdict, errors, effects."""
+"""The findings of the report as HTML: verdict, errors, effects, calibrated values, numbers measured beside."""
 
 from __future__ import annotations
 
 import math
 
+from feeddrive.diagnosis.calibration.calibrated_result import CalibratedResult
 from feeddrive.diagnosis.judging.result import ChannelResult, Diagnosis, EffectResult, ErrorFigures, error_without
+from feeddrive.diagnosis.numbers.number_rows import NumberResult
 from feeddrive.report.pages.markup import (
     Cell,
     catalogue_name,
@@ -29,6 +31,7 @@ from feeddrive.report.words.people import (
 )
 from feeddrive.report.words.verdict import is_noise, verdict_sentences
 from feeddrive.report.words.words import effect_words, plain
+from feeddrive.units.quantity import format_quantity
 
 
 def verdict_section(diagnosis: Diagnosis) -> str:
@@ -124,3 +127,83 @@ def _story(effect: EffectResult) -> str:
         return ""
     reading = f" <i>{text(effect.reading)}</i>" if effect.reading else ""
     return f"<dt>{text(effect_words(effect.name))}</dt><dd>{text(effect.evidence)}{reading}</dd>\n"
+
+
+_NOTE = (
+    "Nobody knows these values exactly. They were fitted within their tolerances before anything was named; each is "
+    "what the recordings say of it alone, so that intervals of values that the recordings see only together are wide. "
+    "They stand in plant_after.toml, and are no finding."
+)
+
+
+def calibrated_section(diagnosis: Diagnosis) -> str:
+    """A table of the calibrated values; nothing where all were taken as exact."""
+    heads = [
+        words("Declared value"),
+        number("declared"),
+        number("tolerance"),
+        number("calibrated"),
+        number("95 % interval"),
+    ]
+    rows = [[words(shown[0]), *map(number, shown[1:])] for shown in map(_shown, diagnosis.calibrated)]
+    return section("Declared values, calibrated", table(heads, rows), paragraph(_NOTE, "note")) if rows else ""
+
+
+def calibrated_lines(diagnosis: Diagnosis) -> list[str]:
+    """A line for every calibrated value."""
+    lines = []
+    for one in diagnosis.calibrated:
+        name, declared, tolerance, value, interval = _shown(one)
+        was = "declared" if one.unit == "1" else f"declared {declared}"
+        lines.append(f"calibrated: {name} {value} [{interval}] ({was} ± {tolerance})")
+    return lines
+
+
+def _shown(one: CalibratedResult) -> list[str]:
+    """Name, declared value, tolerance, value and interval; those of a factor as shares of what is declared."""
+    scale, unit = (100.0 / one.declared, "%") if one.unit == "1" else (1.0, one.unit)
+    low, high = (_text(scale * end, unit) for end in one.ci95)
+    declared, value = (_text(scale * size, unit) for size in (one.declared, one.value))
+    return [one.words, declared, f"{one.tolerance:.0%}".replace("%", " %"), value, f"{low} {DASH} {high}"]
+
+
+def _text(value: float, unit: str) -> str:
+    return f"{value:.4g} %" if unit == "%" else format_quantity(value, unit)
+
+
+_MEASURED_NOTE = (
+    "These numbers were fitted together with the recordings, each by its own tolerance; a plant that meets them lies "
+    "within. What is not met after the diagnosis contradicts the recordings, or what the plant can be. A number that "
+    "is likelier to be wrong than whatever would explain it is not fitted."
+)
+
+
+def measured_section(diagnosis: Diagnosis) -> str:
+    """A table of the measured numbers; nothing where none were given."""
+    heads = [words("Measured beside the recordings"), number("measured"), number("tolerance"), number("declared plant"),
+             number("with what was found"), words("met")]  # fmt: skip
+    rows = [
+        [words(one.number.name.replace("_", " ")), *map(number, _texts(one)), words(_met(one, "yes", "no"))]
+        for one in diagnosis.measured
+    ]
+    return section("Measured numbers", table(heads, rows), paragraph(_MEASURED_NOTE, "note")) if rows else ""
+
+
+def measured_lines(diagnosis: Diagnosis) -> list[str]:
+    """A line for every measured number."""
+    lines = []
+    for one in diagnosis.measured:
+        measured, tolerance, before, after = _texts(one)
+        met = _met(one, "met", "not met")
+        name = one.number.name.replace("_", " ")
+        lines.append(f"measured: {name} {measured} ± {tolerance}, declared {before}, now {after}: {met}")
+    return lines
+
+
+def _met(one: NumberResult, yes: str, no: str) -> str:
+    return (yes if one.met else no) if one.fitted else f"{no}, not fitted as it contradicts all else"
+
+
+def _texts(one: NumberResult) -> list[str]:
+    unit = one.number.kind.unit
+    return [format_quantity(v, unit) for v in (one.number.value, 2 * one.number.deviation, one.before, one.after)]

@@ -7,10 +7,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from feeddrive.trend.atoms import JUMP, ODD, SETTLING, SLOPE
 from feeddrive.trend.change_points import Found
 from feeddrive.trend.events import Change, Event, Settles
 from feeddrive.trend.limits import Limit
+from feeddrive.trend.series_evidence import JUMP, ODD, SETTLING, SLOPE
 from feeddrive.trend.watch import Trend
 from feeddrive.trend.watched_quantities import Quantity
 from feeddrive.units.quantity import format_quantity

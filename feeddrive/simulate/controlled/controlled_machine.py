@@ -17,7 +17,7 @@ from feeddrive.plant.equations import parameter_symbols
 from feeddrive.plant.motor_torque import acting_torque
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.structure import per_structure
-from feeddrive.servo.sampled import MEASUREMENTS, SampledController
+from feeddrive.servo.sampled_plant import MEASUREMENTS, SampledController
 from feeddrive.simulate.held_torque import readings_of
 from feeddrive.symbolic_turn import SYMBOLS
 from feeddrive.typing import Expression

@@ -23,7 +23,7 @@ from feeddrive.engine.step.step_constants import flattened, propagator_blocks, s
 from feeddrive.errors import InputError
 from feeddrive.plant.equations import parameter_names
 from feeddrive.plant.plant import Plant
-from feeddrive.servo.sampled import SampledController
+from feeddrive.servo.sampled_plant import SampledController
 from feeddrive.simulate.controlled.controlled import (
     ControlledRun,
     ControlledState,
