@@ -31,6 +31,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
 from scipy.ndimage import uniform_filter
+from scipy.signal import welch
 
 from feeddrive.diagnosis.likelihood.band import END_CUT, Band
 from feeddrive.engine.step.step_constants import SimulationError
@@ -139,23 +140,13 @@ def encoder_error(plant: Plant, recording: Recording, band: Band, noise: dict[st
         error = series[1] - series[0]
         added[name] = float(np.std(band.filter(error)[inner]))
         length = 2 * round(WINDOW / sample_time)
-        density = _density(error[inner], sample_time, length)
+        frequency, density = welch(error[inner], 1 / sample_time, nperseg=length)
         white = 2 * sample_time * (noise[name] / band.noise_gain) ** 2
         all_frequencies = np.fft.rfftfreq(len(angle), sample_time)
-        gains[name] = 1 / np.sqrt(1 + np.interp(all_frequencies, np.fft.rfftfreq(length, sample_time), density) / white)
+        gains[name] = 1 / np.sqrt(1 + np.interp(all_frequencies, frequency, density) / white)
     if all(added[name] ** 2 < MATERIAL * noise[name] ** 2 for name in noise):
         return None
     return EncoderError(motion, gains, added)
-
-
-def _density(series: FloatArray, sample_time: float, length: int) -> FloatArray:
-    """Spectral density (Welch) from windows of so many samples, an even number, that overlap by half; one-sided."""
-    frames = np.lib.stride_tricks.sliding_window_view(series, length)[:: length // 2]
-    window = np.hanning(length + 1)[:-1]
-    spectra = np.fft.rfft((frames - frames.mean(axis=1, keepdims=True)) * window, axis=1)
-    density: FloatArray = np.mean(np.abs(spectra) ** 2, axis=0) * sample_time / float(window @ window)
-    density[1:-1] *= 2
-    return density
 
 
 def drawn_error(expected: FloatArray, step: float, sample_time: float) -> FloatArray:
