@@ -12,7 +12,7 @@ from feeddrive.errors import InputError
 from feeddrive.files import DIAGNOSED, write_text_atomically
 from feeddrive.interface.axis import Axis, load
 from feeddrive.interface.measured.diagnosed import Diagnosed
-from feeddrive.interface.quantities import Quantity, si
+from feeddrive.interface.quantities import Quantity, positive
 from feeddrive.interface.servo import Servo, cascade_for, tune
 from feeddrive.servo.loop_response import refuse_unstable_case
 from feeddrive.servo.mechanics_response import Case
@@ -71,9 +71,7 @@ def bench(
     """
     axis, found = _diagnosed(axis, diagnosis)
     plant = axis.plant
-    heaviest = si(payload, "kg", "payload")
-    if not heaviest > 0:
-        raise InputError(f"{payload} is not above zero", "payload", "write a positive mass")
+    heaviest = positive(payload, "kg", "payload", "100 kg")
     cascade = cascade_for(plant, controller) if controller is not None else tune(axis).cascade
     refuse_unstable_case(plant, cascade, Case(plant.middle), "controller")
     return Bench(BenchPage(plant, cascade, heaviest, found))

@@ -264,8 +264,8 @@ def diagnose(
     if not fitted:
         raise InputError("no recording is given", "recording", "give fd.read(...), or the path of a file")
     numbers = read_measured_numbers(Path(measured), axis.plant) if measured is not None else ()
-    said = progress or (lambda _: None)
-    result, effects = find_what_lacks(axis.plant, fitted, judged, split, simulate, said, (), numbers)
+    report = progress or (lambda _: None)
+    result, effects = find_what_lacks(axis.plant, fitted, judged, split, simulate, report, (), numbers)
     return Diagnosed(axis, result, tuple(effects))
 
 
