@@ -117,13 +117,6 @@ def effect_forces(
     return Forces(total, ca.vertcat(*rates) if rates else ca.SX.zeros(0, 1), transmitted)
 
 
-def transmitted_force(plant: Plant, symbols: Symbols, q: Expression, rate: Expression, time: Expression) -> Expression:
-    """F of the nut on the table [N], travel errors and free play included; for an elastic structure."""
-    p = chain_symbols(plant, symbols)
-    rows = (ca.horzcat(*plant.chain.screw(p)), ca.horzcat(*plant.chain.table(p)))
-    return nut_force(plant, symbols, plant.chain.nut(p), rows, q, rate, time).force
-
-
 def force_beyond_reference(
     chain: Chain, p: Values, q: Expression, rate: Expression, reference: Expression | None
 ) -> Expression:

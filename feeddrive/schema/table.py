@@ -148,8 +148,11 @@ class Table:
         value = self.quantity(key, unit, origin, usual)
         if value <= 0:
             shown = format_quantity(value, self._unit(self._declared(key), key, unit))
-            sign = "negative" if value < 0 else "zero"
-            raise InputError(f"{shown} is {sign}, not above zero", self.place(key), "write a value above zero")
+            raise InputError(
+                f"{shown} is {'negative' if value < 0 else 'not above zero'}",
+                self.place(key),
+                "write a value above zero",
+            )
         return value
 
     def listed(self, key: str, unit: str = "") -> tuple[float, ...]:

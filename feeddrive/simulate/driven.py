@@ -144,19 +144,9 @@ def simulate_driven(plant: Plant, motion: MotorMotion, tolerance: float = TOLERA
         place = outcome.position
         reports.append(outcome.report)
     at = motion.samples
-    phi, screw_speed, x, velocity, torque, force = shown
-    return LoadMotion(
-        motion.time[at],
-        motion.angle[at],
-        motion.speed[at],
-        phi,
-        screw_speed,
-        x,
-        velocity,
-        torque,
-        force,
-        joined(reports),
-    )
+    phi, rate, x, velocity, torque, force = shown
+    kept = motion.time[at], motion.angle[at], motion.speed[at]
+    return LoadMotion(*kept, phi, rate, x, velocity, torque, force, joined(reports))
 
 
 def _fed(motion: MotorMotion, sample: int, count: int) -> FloatArray:
@@ -175,18 +165,8 @@ def unfollowed(motion: MotorMotion) -> LoadMotion:
     at = motion.samples
     nothing = np.full(len(motion.time[at]), np.nan)
     report = StepReport(0, 0, 0, 0, 0, np.inf, 0, np.inf, np.inf)
-    return LoadMotion(
-        motion.time[at],
-        motion.angle[at],
-        motion.speed[at],
-        nothing,
-        nothing,
-        nothing,
-        nothing,
-        nothing,
-        nothing,
-        report,
-    )
+    kept = motion.time[at], motion.angle[at], motion.speed[at]
+    return LoadMotion(*kept, nothing, nothing, nothing, nothing, nothing, nothing, report)
 
 
 @per_structure
