@@ -52,6 +52,15 @@ STILL = 300.0
 """Seconds in which a machine warms along a straight line: its time constants are longer than half an hour."""
 
 
+IN_UNIFORM_MOTION = (
+    "friction_deviation", "constant_force", "position_spring", "coulomb_asymmetry", "viscous_asymmetry",
+    "stribeck", "friction_vs_position", "lead_error_cumulative", "stiffness_deviation", "backlash",
+)  # fmt: skip
+"""Effects on motion that show at rows of uniform motion. Masses and delays show while accelerating, ripples need a row
+many times a turn, and a warming that knows no temperature (`thermal_growth`, `viscous_warmup`) stands in for the heat
+that is declared here."""
+
+
 @dataclass(frozen=True, eq=False)
 class WarmEvidence(HeatEvidence):
     """A log of motion and temperatures.
@@ -171,15 +180,6 @@ def _repeated(series: FloatArray, log: WarmLog) -> float:
     if not found:
         raise InputError("too few strokes alike to tell the noise of a channel", "the log", "log some minutes of them")
     return float(np.sqrt(np.median(found)))
-
-
-IN_UNIFORM_MOTION = (
-    "friction_deviation", "constant_force", "position_spring", "coulomb_asymmetry", "viscous_asymmetry",
-    "stribeck", "friction_vs_position", "lead_error_cumulative", "stiffness_deviation", "backlash",
-)  # fmt: skip
-"""Effects on motion that show at rows of uniform motion. Masses and delays show while accelerating, ripples need a row
-many times a turn, and a warming that knows no temperature (`thermal_growth`, `viscous_warmup`) stands in for the heat
-that is declared here."""
 
 
 @dataclass
