@@ -97,7 +97,14 @@ def diagnose(
         raise InputError("measured numbers beside recordings of heat", plant.name, mend)
 
     def begin(files: Files, hold: float | None, numbers: Sequence[MeasuredNumber]) -> _Begun:
-        return _begun(plant, files, split, hold, held_for if declared is None else declared_sentence, numbers)
+        problem, judged, notes = prepared(plant, *files, split, hold)
+        problem = replace(problem, numbers=MeasuredRows(tuple(numbers)))
+        refuse_ungiven(problem.numbers, plant)
+        refuse_faulty(problem, (*problem.evidence, *judged))
+        held = held_for if declared is None else declared_sentence
+        also = () if hold is None else (held(hold, files[0][0].sample_time),)
+        problem, judged, quality = with_recorder_that_holds(problem, judged)
+        return _Begun(files, problem, judged, (*notes, *also), quality)
 
     def settle(begun: _Begun) -> _Settled:
         return _settled(begun, in_the_loop, progress, start)
@@ -198,19 +205,6 @@ class _Begun:
     judged: list[Evidence]
     notes: tuple[str, ...]
     quality: tuple[Quality, ...]
-
-
-def _begun(
-    plant: Plant, files: Files, split: float, hold: float | None, sentence: Callable[[float, float], str],
-    measured: Sequence[MeasuredNumber],
-) -> _Begun:  # fmt: skip
-    problem, judged, notes = prepared(plant, *files, split, hold)
-    problem = replace(problem, numbers=MeasuredRows(tuple(measured)))
-    refuse_ungiven(problem.numbers, plant)
-    refuse_faulty(problem, (*problem.evidence, *judged))
-    also = () if hold is None else (sentence(hold, files[0][0].sample_time),)
-    problem, judged, quality = with_recorder_that_holds(problem, judged)
-    return _Begun(files, problem, judged, (*notes, *also), quality)
 
 
 @dataclass(frozen=True)

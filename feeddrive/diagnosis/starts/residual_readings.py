@@ -11,6 +11,18 @@ from feeddrive.diagnosis.finding.scene import Scene
 from feeddrive.plant.analysis.stiffness_budget import static_stiffness
 from feeddrive.typing import FloatArray
 
+BINS = 60
+"""Bins along the stroke."""
+
+BINS_PER_TURN = 256
+"""Angle bins per revolution; the highest order is a quarter of it."""
+
+LEAST_PERIODS = 5
+"""Periods in the travel below which a sine is a trend over the stroke."""
+
+OVERSAMPLING = 8
+"""Zero padding, so that a peak is met to an eighth of the resolution."""
+
 
 def residual_force(scene: Scene, at: int) -> FloatArray:
     """Force that resists + motion beyond what is predicted [N], shape (n,), of the recording number `at`.
@@ -31,10 +43,6 @@ def residual_forces(scene: Scene, at: int) -> list[FloatArray]:
     if "table_position" in residual and scene.plant.chain.elastic:
         forces.append(-static_stiffness(scene.plant, scene.plant.middle) * residual["table_position"])
     return forces
-
-
-BINS = 60
-"""Bins along the stroke."""
 
 
 @dataclass(frozen=True)
@@ -95,16 +103,6 @@ def bump_of(curve: PositionCurve, count: int = 3) -> list[tuple[float, float, fl
         if len(chosen) == count:
             break
     return chosen
-
-
-BINS_PER_TURN = 256
-"""Angle bins per revolution; the highest order is a quarter of it."""
-
-LEAST_PERIODS = 5
-"""Periods in the travel below which a sine is a trend over the stroke."""
-
-OVERSAMPLING = 8
-"""Zero padding, so that a peak is met to an eighth of the resolution."""
 
 
 def strongest_orders(

@@ -41,6 +41,10 @@ LEAST_CURVE = 0.01
 """Share of the residual force's square that must follow the position before a table is tried."""
 
 
+SHARES_OF_DURATION = (0.15, 0.6)
+"""Time constants that are tried first, over the duration; a longer one looks like a straight line."""
+
+
 def plain(effect: Effect) -> Callable[[Scene], list[list[Effect]]]:
     """One start, whatever the residual."""
     return lambda scene: [[effect]]
@@ -141,10 +145,6 @@ def over_position(scene: Scene) -> list[list[Effect]]:
             levels = tuple([0.0] * TABLE_NODES)
             tables.append(FrictionVsPosition.of(position=tuple(nodes.tolist()), delta_force=levels))
     return [form for form in (bumps, tables) if form]
-
-
-SHARES_OF_DURATION = (0.15, 0.6)
-"""Time constants that are tried first, over the duration; a longer one looks like a straight line."""
 
 
 def position_spring(scene: Scene) -> list[list[Effect]]:
