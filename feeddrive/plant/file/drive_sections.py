@@ -84,7 +84,7 @@ def read_drive(top: Table) -> BallScrewDrive:
     transmission = _part(top, wheels[0], Transmission, Transmission.values) if wheels else None
     coupling = _part(top, "coupling", Coupling, Coupling.values) if "coupling" in top.entries else None
     support, mass = top.table("support"), top.table("table").quantity("mass", "kg", "table_mass")
-    housing = _given(support, "support", PART_VALUES["support"])
+    housing = given_values(support, "support", PART_VALUES["support"])
     screw, nut, supports, motor = _screw(top), _nut(top), _supports(top), _motor(top)
     return placed(
         f"{top.where}, table",
@@ -126,46 +126,36 @@ def placed(where: str, make: Callable[[], Made]) -> Made:
     return made
 
 
-def _given(table: Table, section: str, known: Iterable[PartValue]) -> dict[str, float]:
-    """Those of the known values that stand in the table, SI; values that must stand there are asked for by the part."""
+def given_values(
+    table: Table, section: str, known: Iterable[PartValue], needed: Iterable[str] = ()
+) -> dict[str, float]:
+    """Those of the known values that stand in the table, SI, and those that must: where they are missing, an error."""
     return {
         value.key: table.quantity(value.key, value.unit, f"{section}.{value.key}", value.usual)
         for value in known
-        if value.key in table.entries
+        if value.key in table.entries or value.key in needed
     }
 
 
 def _part(top: Table, section: str, make: Callable[..., Made], known: tuple[PartValue, ...], name: str = "") -> Made:
     """A part from all of its values; those with a default may be left out."""
-    table = top.table(section)
-    values = {
-        value.key: table.quantity(value.key, value.unit, f"{name or section}.{value.key}", value.usual)
-        for value in known
-        if value.key in table.entries or value.default is None
-    }
+    table, needed = top.table(section), [value.key for value in known if value.default is None]
+    values = given_values(table, name or section, known, needed)
     return placed(table.where, lambda: make(**values))
 
 
 def _motor(top: Table) -> Motor:
     brake = _part(top, "brake", HoldingBrake, HoldingBrake.values) if "brake" in top.entries else None
     table = top.table("motor")
-    values = {
-        value.key: table.quantity(value.key, value.unit, f"motor.{value.key}", value.usual)
-        for value in Motor.values
-        if value.key in table.entries or value.key != "shaft_stiffness"
-    }
+    values = given_values(table, "motor", Motor.values, ("rotor_inertia", "torque_limit"))
     return placed(table.where, lambda: Motor(**values, brake=brake))
 
 
 def _screw(top: Table) -> ScrewShaft:
     table = top.table("ball_screw")
-    material = {**asdict(STEEL), **_given(table, "ball_screw", ShaftMaterial.values)}
+    material = {**asdict(STEEL), **given_values(table, "ball_screw", ShaftMaterial.values)}
     steel = placed(table.where, lambda: ShaftMaterial(**material))
-    values = {
-        value.key: table.quantity(value.key, value.unit, f"ball_screw.{value.key}", value.usual)
-        for value in ScrewShaft.values
-        if value.key in table.entries or value.key not in ("stub", "root_diameter")
-    }
+    values = given_values(table, "ball_screw", ScrewShaft.values, ("lead", "diameter", "length"))
     return placed(table.where, lambda: ScrewShaft(**values, material=steel))
 
 

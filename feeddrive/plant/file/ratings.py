@@ -7,7 +7,7 @@ from typing import Any
 
 from feeddrive.errors import InputError
 from feeddrive.parts.values import PartValue, check_values, part_values
-from feeddrive.plant.file.drive_sections import BEARING_RATING, BEARING_VALUES, PART_VALUES
+from feeddrive.plant.file.drive_sections import BEARING_RATING, BEARING_VALUES, PART_VALUES, given_values
 from feeddrive.plant.plant import Datum
 from feeddrive.schema.table import Table
 
@@ -61,13 +61,9 @@ def _checked(
 
 
 def _given(table: Table, section: str, known: tuple[PartValue, ...]) -> dict[str, Datum]:
-    return {
-        f"{section}.{value.key}": Datum(
-            table.quantity(value.key, value.unit, f"{section}.{value.key}", value.usual), value.unit
-        )
-        for value in known
-        if value.key in table.entries
-    }
+    units = {value.key: value.unit for value in known}
+    values = given_values(table, section, known)
+    return {f"{section}.{key}": Datum(value, units[key]) for key, value in values.items()}
 
 
 def read_stroke(top: Table) -> tuple[float, float] | None:
