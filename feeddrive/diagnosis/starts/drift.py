@@ -6,9 +6,9 @@ import numpy as np
 
 from feeddrive.diagnosis.finding.scene import Scene
 from feeddrive.diagnosis.friction_at_port import declared_viscous
-from feeddrive.diagnosis.starts.periodogram import strongest_orders
+from feeddrive.diagnosis.starts.periodogram import strongest_sines
 from feeddrive.diagnosis.starts.residual_force import residual_force
-from feeddrive.diagnosis.starts.starts import explains, highest_order, sine
+from feeddrive.diagnosis.starts.starts import LEAST_SINE, sine
 from feeddrive.effects.base import Effect
 from feeddrive.effects.friction.viscous_warmup import ViscousWarmup
 from feeddrive.effects.source.ball_pass_ripple import BallPassRipple
@@ -54,9 +54,9 @@ def ball_pass_ripple(scene: Scene) -> list[list[Effect]]:
     angle = run.screw_angle[rows][moving]
     torque = scene.plant.chain.radius * residual_force(scene, at)[rows]
     resisting = (torque * np.sign(speed))[moving]
-    orders = strongest_orders(angle, resisting, highest_order(scene, at), count=1)
-    starts = (sine(BallPassRipple, angle, resisting, order) for order in orders)
-    return [[start] for start in starts if explains(start, resisting)]
+    edge = scene.problem.evidence[at].edge
+    sines = strongest_sines(angle, resisting - resisting.mean(), speed[moving], edge, count=1)
+    return [[sine(BallPassRipple, one)] for one in sines if one.share >= LEAST_SINE]
 
 
 def _time_constants(scene: Scene) -> list[float]:
