@@ -82,7 +82,7 @@ def test_torque_of_slow_rows_is_that_of_half_a_cycle_later() -> None:
 
 def test_declared_cycle_is_taken_however_far_rows_are_apart() -> None:
     gains = {"position_gain": "10 1/s", "velocity_gain": "1 N m s/rad", "reset_time": "20 ms", "torque_limit": "30 N m"}
-    loop = {"kind": "cascade", "velocity_rate": "500 Hz", "position_rate": "500 Hz", **gains}
+    loop = {"velocity_rate": "500 Hz", "position_rate": "500 Hz", **gains}
     plant = replace(PLANT, controller=DeclaredCascade(loop, "plant.toml"))
     slow = recording(np.zeros(1000), np.zeros(1000))
     assert declared_hold(plant, [slow]) == pytest.approx(2e-3)
