@@ -114,7 +114,7 @@ def _is_no_recording(path: Path) -> bool:
     try:
         return read_response_file(path) is not None
     except InputError:
-        return False  # told where it is read as a recording
+        return False  # reported where it is read as a recording
 
 
 def _explain(plant: str, measured: str, at: str, controller: str | None, out: Path | None, as_json: bool) -> None:

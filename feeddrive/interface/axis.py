@@ -18,7 +18,7 @@ from feeddrive.files import find_plant, write_text_atomically
 from feeddrive.interface.machine.check import Check, Life, UsedLife
 from feeddrive.interface.machine.modes import Modes
 from feeddrive.interface.machine.summary import Stiffness, Summary
-from feeddrive.interface.quantities import Quantity, quantities, si
+from feeddrive.interface.quantities import Quantities, Quantity, quantities, si
 from feeddrive.plant.analysis.lumping import lump
 from feeddrive.plant.analysis.mode_map import mode_map
 from feeddrive.plant.analysis.plausibility import check_plant
@@ -254,7 +254,7 @@ class Axis:
 
         Args:
             at: table position for stiffness and modes; the middle of the stroke if left out.
-            recording: of which the life that it takes is told, see `used_life`; none if left out.
+            recording: whose share of the life is added, see `used_life`; none if left out.
 
         Raises:
             InputError: a position off the screw, a recording without motor angle, or of a machine of heat alone.
@@ -297,7 +297,7 @@ class Axis:
         place = None if at is None else si(at, "m", "at")
         return Lumped(self.name, lump(self.plant, place, further if self.has_heat else ()))
 
-    def modes(self, at: Quantity | Sequence[Quantity] | None = None) -> Modes:
+    def modes(self, at: Quantities = None) -> Modes:
         """Natural frequencies, motor held and free.
 
         Args:
@@ -400,8 +400,8 @@ class Axis:
         output: str = "",
         *,
         at: str = "",
-        positions: Quantity | Sequence[Quantity] | None = None,
-        payload: Quantity | Sequence[Quantity] | None = None,
+        positions: Quantities = None,
+        payload: Quantities = None,
         controller: Servo | str | Path | None = None,
         loop: str = "",
         frequencies: Sequence[Quantity] = ("1 Hz", "2 kHz"),
@@ -429,20 +429,14 @@ class Axis:
         >>> len(bode.curves)
         2
         """
-        from feeddrive.interface.machine.bode import bode
+        from feeddrive.interface.machine.bode import frequency_range, loops_bode, mechanics_bode, operating_cases
 
-        return bode(
-            self.plant,
-            given,
-            output,
-            at=at,
-            positions=positions,
-            payload=payload,
-            controller=controller,
-            loop=loop,
-            frequencies=frequencies,
-            measured=measured,
-        )
+        cases, ends = operating_cases(self.plant, at, positions, payload), frequency_range(frequencies)
+        if not loop and controller is None:
+            return mechanics_bode(self.plant, given, output, cases, ends, measured)
+        if measured is not None:
+            raise InputError("a recording is laid over the mechanics, not loops", "recording", "leave out the loop")
+        return loops_bode(self.plant, given, output, cases, ends, controller, loop)
 
     def export(self, form: str, folder: str | Path, at: str = "", heat: bool = False) -> tuple[Path, ...]:
         """Write the axis in the form of another tool.

@@ -166,7 +166,7 @@ def draft(
     structure: str = "distributed_screw",
     name: str = "my axis",
 ) -> Draft:
-    """A plant file of parts of the catalogue, with a guess wherever nothing is said.
+    """A plant file of parts of the catalogue, with a guess wherever nothing is given.
 
     Args:
         screw: name of a screw, or its size, "32 x 10 mm".

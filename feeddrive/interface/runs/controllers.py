@@ -149,7 +149,7 @@ def schedule(axis: Axis, servo: Servo, positions: Sequence[Quantity]) -> tuple[C
     The velocity loop is that of the servo at all positions; feed-forward is left out.
 
     Args:
-        axis: the machine, with a scale, which tells where the table is.
+        axis: the machine, with a scale, which measures where the table is.
         servo: of `tune`; gives the velocity loop and the margins asked for.
         positions: of the table, ascending, two or more.
 

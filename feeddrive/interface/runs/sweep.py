@@ -134,7 +134,7 @@ def sweep(
         workers: processes of this computer, all processors for None; a script that asks for more than one needs
             `if __name__ == "__main__":`.
         scheduler: address of a Dask scheduler, "tcp://host:8786", in place of workers.
-        metrics: shown in the table and the figure, up to four; those that tell most if left out.
+        metrics: shown in the table and the figure, up to four; those that vary most if left out.
         folder: where finished runs are kept, so that a stopped sweep goes on.
         progress: called with the number of runs that are done, and of all.
 

@@ -130,7 +130,7 @@ def opened(path: Path, kind_of_file: str = "recording") -> Iterator[BinaryIO]:
 
 
 def first_bytes(path: Path) -> bytes:
-    """Return the first bytes of a file after decompression, as many as tell its format.
+    """Return the first bytes of a file after decompression, as many as identify its format.
 
     Raises:
         InputError: as `opened`, or a damaged .gz.

@@ -39,7 +39,7 @@ def read_recording(path: Path, mapping: Path | None = None, *, decimal: str | No
         path: .csv or .csv.gz with headings `name [unit]`, a trace file of a drive or control, or with a mapping a .mat
             or foreign text file.
         mapping: mapping file; None for files with canonical headings.
-        decimal: "." or ","; None to let the file tell.
+        decimal: "." or ","; None to find it in the file.
 
     Raises:
         InputError: the file cannot be used; one line with file, row, column, reason and mend.

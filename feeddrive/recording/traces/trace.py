@@ -25,7 +25,7 @@ class Signal:
         axis: machine axis that it belongs to, as the file names it; empty if the file names none.
         about: description in the file; empty if there is none.
         kind: class of the unit where the file gives no more than that (`position`, `velocity`, `current`, ...).
-        timed: whether the file tells its times; if not, `time` counts samples, or sample times once one is given.
+        timed: whether the file holds its times; if not, `time` counts samples, or sample times once one is given.
     """
 
     name: str

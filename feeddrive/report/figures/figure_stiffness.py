@@ -159,7 +159,7 @@ def stiffness_position_figure(drives: Mapping[str, BallScrewDrive], positions: F
     frequency.set_ylim(bottom=0.0)
     if len(drives) > 1:
         legend_above(stiffness, columns=2)
-    else:  # with several, the line's style tells the drive, and the caption the rest
+    else:  # with several, the line's style marks the drive, and the caption the rest
         legend_above(frequency, columns=2)
     return ReportFigure(
         "stiffness_position", "Stiffness along the stroke", _position_caption(drives, positions), figure

@@ -100,9 +100,9 @@ def _with_bench(report: str, bench: str) -> str:
 
 
 def _under_title(diagnosis: Diagnosis) -> str:
-    """Which files were fitted and judged."""
-    fitted = ", ".join(stamp.file for stamp in diagnosis.fit) or "no file"
-    judged = ", ".join(stamp.file for stamp in diagnosis.validate) or "the last part of each"
+    """Which files were fitted and judged; their folders stand with their checksums at the end."""
+    fitted = ", ".join(Path(stamp.file).name for stamp in diagnosis.fit) or "no file"
+    judged = ", ".join(Path(stamp.file).name for stamp in diagnosis.validate) or "the last part of each"
     return f"Fitted: {fitted}. Judged on: {judged}."
 
 
@@ -152,6 +152,7 @@ td { border-bottom: 1px solid #e6e6e6; padding: 5px 10px 5px 0; vertical-align: 
 td:not(.number) { min-width: 9ch; }
 th.number, td.number { text-align: right; padding-left: 8px; }
 td.number { white-space: nowrap; }
+th.number + th:not(.number), td.number + td:not(.number) { padding-left: 14px; }
 .pairs tbody tr:nth-child(odd) td { border-bottom-color: #f3f3f3; }
 .effects td:nth-child(2), .effects td:nth-child(5) { white-space: nowrap; }
 .dense { font-size: 13px; } .dense td { padding-top: 2px; padding-bottom: 2px; }
@@ -178,7 +179,8 @@ figcaption { margin-top: 6px; }
 @media (max-width: 600px) {
   thead { display: none; }
   tr { display: block; border-bottom: 1px solid #c8c8c8; padding: 4px 0; }
-  td, td.number { display: flex; gap: 1em; border: 0; padding: 2px 0; text-align: left; white-space: normal; }
+  td, td.number, td.number + td:not(.number) { display: flex; gap: 1em; border: 0; padding: 2px 0; text-align: left;
+    white-space: normal; }
   td::before { content: attr(data-label); flex: 0 0 38%; color: #6b6b6b; }
   td:not([data-label])::before, td:empty { display: none; }
   body { padding: 16px 12px 40px; } h1 { font-size: 21px; } .main { font-size: 16px; }
