@@ -23,7 +23,7 @@ from feeddrive.diagnosis.judging.result import (
     Diagnosis,
     FileStamp,
 )
-from feeddrive.diagnosis.judging.veto import without_denied
+from feeddrive.diagnosis.judging.veto import not_worse_than_declared, without_denied
 from feeddrive.diagnosis.ledger.entry import kept_of
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.fit import Problem
@@ -249,6 +249,7 @@ def _settled(begun: _Begun, simulate: bool, progress: Progress, start: Sequence[
         kept, judged = without_denied(preferred, judge(preferred), judge)
         rivals = rivals if kept is preferred else rivals_of(kept, judged)
         found = kept
+    found, judged = not_worse_than_declared(found, judged, judge)
     judged, rehomed = _judged(found, evidence)
     refinement = Refinement(found, (judged, rehomed))
     if simulate:
