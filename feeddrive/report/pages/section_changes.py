@@ -5,8 +5,8 @@ from __future__ import annotations
 from feeddrive.diagnosis.judging.result import Diagnosis, ParameterResult
 from feeddrive.diagnosis.recordings.change_result import CommonTrial, Measure, ParameterChange, PerRecording
 from feeddrive.report.pages.markup import bullets, paragraph, section, table
-from feeddrive.report.parameters import parameter_text
-from feeddrive.report.words.people import fixed, share_text, with_unit
+from feeddrive.report.words.number_text import fixed, share_text, with_unit
+from feeddrive.report.words.parameters import parameter_text
 from feeddrive.report.words.words import effect_words, joined, plain
 
 _MOST_TRIALS = 8

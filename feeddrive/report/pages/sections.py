@@ -16,9 +16,8 @@ from feeddrive.report.pages.markup import (
     text,
     verdict,
 )
-from feeddrive.report.parameters import parameter_text
-from feeddrive.report.records import used_sentence
-from feeddrive.report.words.people import (
+from feeddrive.report.pages.section_records import used_sentence
+from feeddrive.report.words.number_text import (
     DASH,
     SPACE,
     Scale,
@@ -29,6 +28,7 @@ from feeddrive.report.words.people import (
     times_text,
     with_unit,
 )
+from feeddrive.report.words.parameters import parameter_text
 from feeddrive.report.words.verdict import is_noise, verdict_sentences
 from feeddrive.report.words.words import effect_words, plain
 from feeddrive.units.quantity import format_quantity

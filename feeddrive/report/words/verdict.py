@@ -6,9 +6,9 @@ import math
 
 from feeddrive.diagnosis.judging.result import ChannelResult, Diagnosis
 from feeddrive.report.pages.section_changes import change_sentences
-from feeddrive.report.parameters import effect_sentence
 from feeddrive.report.words.explained_words import odds_text
-from feeddrive.report.words.people import error_text, share_text, significant
+from feeddrive.report.words.number_text import error_text, share_text, significant
+from feeddrive.report.words.parameters import effect_sentence
 from feeddrive.report.words.words import effect_words, joined, plain, variable_words
 
 _NOISE_REACHED = 1.5

@@ -6,7 +6,15 @@ import math
 from dataclasses import dataclass
 
 from feeddrive.diagnosis.judging.result import EffectResult, ParameterResult
-from feeddrive.report.words.people import Scale, decimals_for, fixed, scale_for_value, significant, unit_name, with_unit
+from feeddrive.report.words.number_text import (
+    Scale,
+    decimals_for,
+    fixed,
+    scale_for_value,
+    significant,
+    unit_name,
+    with_unit,
+)
 from feeddrive.report.words.words import effect_words, headline_parameters, plain
 
 _LONGEST_LIST = 9
