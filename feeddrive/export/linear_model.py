@@ -27,9 +27,8 @@ from __future__ import annotations
 import io
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import control
 import numpy as np
 from scipy.io import savemat
 
@@ -42,6 +41,9 @@ from feeddrive.export.point import Point, refuse_outside
 from feeddrive.plant.analysis.linear import state_space, steady_motion
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray
+
+if TYPE_CHECKING:
+    import control
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from feeddrive.bench_page.page import BenchPage, bench_page
-from feeddrive.compensation.compensate import cascade_of
-from feeddrive.diagnosis.judging.result import Diagnosis
 from feeddrive.errors import InputError
 from feeddrive.files import DIAGNOSED, write_text_atomically
 from feeddrive.interface.axis import Axis, load
@@ -15,7 +13,6 @@ from feeddrive.interface.measured.diagnosed import Diagnosed
 from feeddrive.interface.measured.reading import diagnosis_content
 from feeddrive.interface.quantities import Quantity, positive
 from feeddrive.interface.servo import Servo, cascade_for, tune
-from feeddrive.plant.plant import Plant
 from feeddrive.servo.loop_response import refuse_unstable_case
 from feeddrive.servo.mechanics_response import Case
 
@@ -75,28 +72,6 @@ def bench(
     cascade = cascade_for(plant, controller) if controller is not None else tune(axis).cascade
     refuse_unstable_case(plant, cascade, Case(plant.middle), "controller")
     return Bench(BenchPage(plant, cascade, heaviest, found))
-
-
-def bench_of_diagnosis(after: Plant, diagnosis: Diagnosis) -> str:
-    """The page for the tab of a report: the machine as diagnosed, at its declared or a recommended cascade.
-
-    Args:
-        after: the machine with what was found.
-        diagnosis: what was found.
-
-    Returns:
-        The page; empty where there is nothing to play on: no effect was found, a machine without elastic chain or that
-        declares heat alone, or one whose loop cannot be made or shown.
-    """
-    if not after.has_motion or not after.chain.elastic or not diagnosis.effects:
-        return ""
-    try:
-        cascade = cascade_of(after, None)
-        refuse_unstable_case(after, cascade, Case(after.middle), "controller")
-        names = tuple(one.name for one in diagnosis.effects)
-        return bench_page(BenchPage(after, cascade, max(100.0, after.chain_values()["table_mass"]), names))
-    except InputError:
-        return ""
 
 
 def _diagnosed(axis: Axis, diagnosis: Diagnosed | str | Path | None) -> tuple[Axis, tuple[str, ...]]:

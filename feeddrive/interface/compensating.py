@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from feeddrive.compensation import sheet
 from feeddrive.compensation.actions import unsure_of_play
@@ -19,7 +19,6 @@ from feeddrive.compensation.temperature import HeatTable, heat_table, recorded_h
 from feeddrive.errors import InputError
 from feeddrive.files import shipped_plants, write_text_atomically
 from feeddrive.interface.axis import Axis, load
-from feeddrive.interface.measured.diagnosed import Diagnosed
 from feeddrive.interface.measured.reading import as_recording, diagnosis_content
 from feeddrive.interface.quantities import Quantity, positive, quantities, si
 from feeddrive.interface.servo import Servo, cascade_for
@@ -30,9 +29,10 @@ from feeddrive.servo.cascade import Cascade
 from feeddrive.units.quantity import format_quantity
 
 if TYPE_CHECKING:
+    from feeddrive.interface.measured.diagnosed import Diagnosed
     from feeddrive.report.figures.drawing import ReportFigure
 
-Source = Axis | Diagnosed | Recording | str | Path
+Source: TypeAlias = "Axis | Diagnosed | Recording | str | Path"
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -213,7 +213,7 @@ def _ends(stroke: Sequence[Quantity] | None) -> tuple[float, float] | None:
 
 def _opened(source: Source) -> tuple[Axis | Recording, str, str, tuple[float, float] | None]:
     """The axis or recording of a source, why its backlash is not sure, its name for messages, the recorded stroke."""
-    if isinstance(source, Diagnosed):
+    if not isinstance(source, Axis | Recording | str | Path) and hasattr(source, "diagnosis"):
         return source.plant, _unsure(source.record()), source.axis.name, source.diagnosis.recorded_stroke
     if isinstance(source, Axis | Recording):
         return source, "", "", None

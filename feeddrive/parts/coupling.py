@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from feeddrive.parts.values import PartValue, check_values
+from feeddrive.parts.values import PartValue, check_values, part_values
 
 
 @dataclass(frozen=True)
@@ -32,35 +32,11 @@ class Coupling:
     inertia: float = 0.0
     screw_side_share: float = 0.5
 
-    values: ClassVar[tuple[PartValue, ...]] = (
-        PartValue(
-            "torsional_stiffness",
-            "N m/rad",
-            0.1,
-            1e9,
-            usual=(10.0, 5e6),
-            meaning="torsional stiffness between the hubs",
-        ),
-        PartValue(
-            "inertia",
-            "kg m^2",
-            0.0,
-            100.0,
-            usual=(0.0, 0.2),
-            default=0.0,
-            open_ends=False,
-            meaning="inertia of both hubs",
-        ),
-        PartValue(
-            "screw_side_share",
-            "1",
-            0.0,
-            1.0,
-            default=0.5,
-            open_ends=False,
-            meaning="share of the inertia in the hub on the screw",
-        ),
-    )
+    values: ClassVar[tuple[PartValue, ...]] = part_values("""
+torsional_stiffness | N m/rad | (0.1, 1e9) usual 10 to 5e6 | | torsional stiffness between the hubs
+inertia | kg m^2 | [0, 100] usual 0 to 0.2 | = 0 | inertia of both hubs
+screw_side_share | 1 | [0, 1] | = 0.5 | share of the inertia in the hub on the screw
+""")
 
     def __post_init__(self) -> None:
         check_values("coupling", self.values, vars(self))

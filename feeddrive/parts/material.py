@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from feeddrive.errors import ValidityWarning
-from feeddrive.parts.values import PartValue, check_values
+from feeddrive.parts.values import PartValue, check_values, part_values
 
 
 @dataclass(frozen=True)
@@ -36,12 +36,12 @@ class ShaftMaterial:
     density: float
     expansion: float
 
-    values: ClassVar[tuple[PartValue, ...]] = (
-        PartValue("young", "Pa", 1e8, 2e12, usual=(5e10, 4.5e11), meaning="Young's modulus of the screw"),
-        PartValue("shear", "Pa", 1e7, 1e12, usual=(2e10, 2e11), meaning="shear modulus of the screw"),
-        PartValue("density", "kg/m^3", 500.0, 25_000.0, usual=(2_000.0, 16_000.0), meaning="density of the screw"),
-        PartValue("expansion", "1/K", -1e-5, 2e-4, usual=(0.0, 3e-5), meaning="thermal expansion of the screw"),
-    )
+    values: ClassVar[tuple[PartValue, ...]] = part_values("""
+young | Pa | (1e8, 2e12) usual 5e10 to 4.5e11 | | Young's modulus of the screw
+shear | Pa | (1e7, 1e12) usual 2e10 to 2e11 | | shear modulus of the screw
+density | kg/m^3 | (500, 25000) usual 2000 to 16000 | | density of the screw
+expansion | 1/K | (-1e-5, 0.0002) usual 0 to 3e-5 | | thermal expansion of the screw
+""")
 
     def __post_init__(self) -> None:
         check_values("material", self.values, vars(self))

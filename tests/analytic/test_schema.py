@@ -15,8 +15,7 @@ from typing import Any
 import pytest
 
 import feeddrive as fd
-from feeddrive.diagnosis.numbers.measurable import MEASURABLE
-from feeddrive.diagnosis.numbers.measured_file import read_measured_numbers
+from feeddrive.diagnosis.numbers.measured_file import MEASURABLE, read_measured_numbers
 from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.files import find_scenario_file, plants_folder
 from feeddrive.interface.keys import ROOTS, every_section

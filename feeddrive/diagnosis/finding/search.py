@@ -17,7 +17,7 @@ from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.finding.round import Round, one_round
 from feeddrive.diagnosis.finding.scene import scene_of
 from feeddrive.diagnosis.finding.sets import Neighbour, neighbours
-from feeddrive.diagnosis.heat.heat_materiality import is_another
+from feeddrive.diagnosis.heat.heat_candidates import is_another
 from feeddrive.diagnosis.judging.result import Trial
 from feeddrive.diagnosis.likelihood.coordinates import write_coordinates
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
@@ -186,7 +186,7 @@ def _fitted(problem: Problem, found: Fit, one: Neighbour, attempts: Sequence[Att
     try:
         if len(added) == 2:
             starts += [_restarted(problem, kept, *order) for order in (added, added[::-1])]
-        nearest = min((start for start in starts if start), key=lambda start: _error(own, start))
+        nearest = min((start for start in starts if start), key=lambda start: _error(own, start), default=[])
         result = fit(own, nearest, iterations=JOINT_ITERATIONS)
         before = found if own is problem else fit(own, found.effects, iterations=0)
         odds = log_odds(own, before, result, count)

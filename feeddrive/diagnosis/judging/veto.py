@@ -22,7 +22,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.special import chdtri
 
 from feeddrive.diagnosis.calibration.beyond import SURE
 from feeddrive.diagnosis.certainty.uncertainty import certainty
@@ -240,7 +240,7 @@ def _is_not_none(covariance: FloatArray, beyond: FloatArray, half: FloatArray, g
     part = covariance[np.ix_(group, group)]
     # half widths are 1.96 standard deviations
     square = float(beyond[group] @ np.linalg.pinv(part, hermitian=True) @ beyond[group]) * 1.96**2
-    return square > float(chi2.ppf(0.95, len(group)))
+    return square > float(chdtri(len(group), 0.05))
 
 
 def _worst_channel(problem: Problem, judged: Sequence[Judged]) -> str:

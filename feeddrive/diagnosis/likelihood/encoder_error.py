@@ -29,9 +29,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.fft import irfft, next_fast_len, rfft
 from scipy.ndimage import uniform_filter
 from scipy.signal import welch
-from scipy.signal.windows import hann
 
 from feeddrive.diagnosis.likelihood.band import END_CUT, Band
 from feeddrive.engine.step.step_constants import SimulationError
@@ -77,6 +77,41 @@ class EncoderError:
     added: dict[str, float]
 
 
+@dataclass(frozen=True)
+class Weighing:
+    """Gains on the frequencies of a series, for many series of one length.
+
+    A length with large prime factors takes several times longer to transform. The gains are a circular convolution
+    then, and are done as one of twice the length or more, folded back.
+
+    Attributes:
+        spectrum: gains at the frequencies of `size` samples.
+        count: samples of a series.
+        size: samples that are transformed.
+    """
+
+    spectrum: ComplexArray | FloatArray
+    count: int
+    size: int
+
+    @classmethod
+    def of(cls, gains: FloatArray, count: int) -> Weighing:
+        """Ready a gain at each frequency of a series of so many samples, (count // 2 + 1,)."""
+        if next_fast_len(count, real=True) == count:
+            return cls(gains, count, count)
+        size = next_fast_len(2 * count, real=True)
+        return cls(rfft(irfft(gains, count), size), count, size)
+
+    def __call__(self, series: FloatArray) -> FloatArray:
+        """The series, (count,), with its frequencies weighed."""
+        found: FloatArray = irfft(rfft(series, self.size) * self.spectrum, self.size)
+        if self.size == self.count:
+            return found
+        folded = found[: self.count]
+        folded[:-1] += found[self.count : 2 * self.count - 1]
+        return folded
+
+
 def encoder_error(plant: Plant, recording: Recording, band: Band, noise: dict[str, float]) -> EncoderError | None:
     """The encoder's error in a recording; None where it does not matter beside the sensors' noise.
 
@@ -104,7 +139,8 @@ def encoder_error(plant: Plant, recording: Recording, band: Band, noise: dict[st
         series = [run.torque if name == "motor_torque" else run.table_position for run in runs]
         error = series[1] - series[0]
         added[name] = float(np.std(band.filter(error)[inner]))
-        frequency, density = welch(error[inner], 1 / sample_time, nperseg=2 * round(WINDOW / sample_time))
+        length = 2 * round(WINDOW / sample_time)
+        frequency, density = welch(error[inner], 1 / sample_time, nperseg=length)
         white = 2 * sample_time * (noise[name] / band.noise_gain) ** 2
         all_frequencies = np.fft.rfftfreq(len(angle), sample_time)
         gains[name] = 1 / np.sqrt(1 + np.interp(all_frequencies, frequency, density) / white)
@@ -136,7 +172,7 @@ def expected_motion(angle: FloatArray, step: float, sample_time: float) -> Float
         Angle [rad], shape (n,).
     """
     length = 2 * round(0.5 * WINDOW / sample_time)
-    window = np.sqrt(hann(length, sym=False))
+    window = np.sqrt(np.hanning(length + 1)[:-1])
     spectra = np.fft.rfft(_frames(np.concatenate([[0.0], np.diff(angle, 2), [0.0]]), length) * window, axis=1)
     omega = 2 * np.pi * np.arange(spectra.shape[1]) / length
     difference = (2 * np.sin(0.5 * omega)) ** 2

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Self
 
 import numpy as np
 
 from feeddrive.diagnosis.likelihood.band import END_CUT, Band, comparison_band, held, sensor_noise
-from feeddrive.diagnosis.likelihood.encoder_error import encoder_error
+from feeddrive.diagnosis.likelihood.encoder_error import Weighing, encoder_error
 from feeddrive.diagnosis.likelihood.slow_rows import is_slow, known_motion, refuse_unknown_motion, sentence
 from feeddrive.diagnosis.suspicion.channel_timing import lagging
 from feeddrive.diagnosis.suspicion.flawed_rows import refuse_little_left, sound_rows, without_copied_position
@@ -164,8 +165,12 @@ class AxisEvidence(Evidence):
         known = np.isfinite(series)
         mean = float(np.mean(series[known])) if known.any() else 0.0  # apart, so that gaps do not make steps
         filled = np.where(known, series - mean, 0.0)
-        evened: FloatArray = np.fft.irfft(np.fft.rfft(filled) * self.gains[name], len(series))
-        return np.where(known, evened + self.gains[name][0] * mean, series)
+        weighed = self._weighing[name](filled)
+        return np.where(known, weighed + self.gains[name][0] * mean, series)
+
+    @cached_property
+    def _weighing(self) -> dict[str, Weighing]:
+        return {name: Weighing.of(gains, len(self.counted)) for name, gains in self.gains.items()}
 
     def placed(self, plant: Plant) -> Plant:
         """The plant with its nut where it stood: simulated positions count from the zero of the motor angle."""
@@ -194,7 +199,7 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
         recording: with a torque, a current or the table position beside the motor angle.
         plant: whose lead and band apply.
         share: 1 to fit on all of it, 0 to judge on all of it.
-        hold: how long the drive holds a torque [s]; None for a whole row.
+        hold: how long the drive holds a torque [s]; None for a whole row, and for no time where rows are slow.
 
     Raises:
         InputError: too short, or channels that are needed are missing.
@@ -214,10 +219,10 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
     raw = {name: recording[name] for name in measured_names}
     slow = is_slow(recording)
     acting = dict(raw)
-    if "motor_torque" in raw and not slow:
-        acting["motor_torque"] = (
-            held(raw["motor_torque"]) if hold is None else lagging(raw["motor_torque"], hold / 2, recording.sample_time)
-        )
+    if "motor_torque" in raw and hold is not None:
+        acting["motor_torque"] = lagging(raw["motor_torque"], hold / 2, recording.sample_time)
+    elif "motor_torque" in raw and not slow:
+        acting["motor_torque"] = held(raw["motor_torque"])
     counted = (time >= END_CUT) & (time <= time[-1] - END_CUT)
     if slow:
         known = known_motion(recording, plant, band)

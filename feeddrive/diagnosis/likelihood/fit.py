@@ -188,6 +188,7 @@ class Problem:
         plant = self.machine(effects)
         return not self.predictor.of_motion or is_passive(plant)
 
+    @cached_property
     def measured(self) -> FloatArray:
         """Weighted measurement at the fitted samples of all recordings, whitened."""
         rows = np.concatenate(
@@ -198,7 +199,7 @@ class Problem:
 
     def residual(self, effects: Sequence[Effect]) -> FloatArray:
         """Weighted residual at the fitted samples of all recordings, whitened."""
-        return self.measured() - self.predicted(effects)
+        return self.measured - self.predicted(effects)
 
     def settled(self, effects: Sequence[Effect]) -> Problem:
         """The problem with its declared values as they are most likely with these effects."""
@@ -279,7 +280,7 @@ def fit(
         The fit, its Jacobian taken at the end.
     """
     chosen = [True] * len(effects) if free is None else list(free)
-    measured, predicted = problem.measured(), problem.predicted(effects)
+    measured, predicted = problem.measured, problem.predicted(effects)
     at = _State(list(effects), predicted, measured - predicted)
     if error_only:
         return Fit(tuple(effects), at.residual, np.zeros((len(predicted), 0)), np.zeros(0), len(effects))

@@ -1,8 +1,8 @@
 """Recordings with fewer rows than the drive has cycles: what their torque is, and where the motion is known.
 
 A drive holds its torque for one cycle, so that a recording with one row a cycle tells all of it. Where rows are further
-apart, a row is the torque of that instant, and between two rows the motor may have done anything. Where it was smooth,
-the fourth difference of its angle is small:
+apart, a row is the torque of that instant, held for the cycle that begins there (`suspicion.logged.declared_hold`), and
+between two rows the motor may have done anything. Where it was smooth, the fourth difference of its angle is small:
 
     delta a = |D4 theta| / (12 h^2),    delta T = J delta a,    delta x = s delta a
 

@@ -127,10 +127,6 @@ def _why_not(result: EffectResult, compared: Compared) -> str:
     return ""
 
 
-FITTED = "the fitted recordings"
-"""What judged recordings are compared with where there are several."""
-
-
 @dataclass(frozen=True)
 class JudgedChanges:
     """Differences of the judged recordings.
@@ -162,7 +158,9 @@ def judged_changes(found: Search, judged: Sequence[Judged]) -> JudgedChanges | N
     apart = [one for one in judged if not one.evidence.fitted.any()]
     if not apart:
         return None
-    problem = _together(found.problem, found.fit.effects, apart)
+    # fitted and judged recordings in one problem, all of them fitted
+    more = [replace(one.evidence, fitted=np.ones(len(one.evidence.fitted), dtype=bool)) for one in apart]
+    problem = with_recordings(numbered(found.problem, more), found.fit.effects, more)
     first = len(found.problem.evidence)
     changes = find_changes(problem, found.fit.effects, range(first, first + len(apart)))
     if not changes.targets:
@@ -183,12 +181,6 @@ def judged_changes(found: Search, judged: Sequence[Judged]) -> JudgedChanges | N
     numbers = [question.here for question in questions]
     carries = tuple(_carries(carrying, judged, changes.fit.effects, i, numbers) for i in range(count))
     return JudgedChanges(changes, stated, carries, _explained(carrying, judged, allowed), carrying, tuple(allowed))
-
-
-def _together(problem: Problem, effects: Sequence[Effect], apart: Sequence[Judged]) -> Problem:
-    """Fitted and judged recordings in one problem, all of them fitted."""
-    more = [replace(j.evidence, fitted=np.ones(len(j.evidence.fitted), dtype=bool)) for j in apart]
-    return with_recordings(numbered(problem, more), effects, more)
 
 
 def _carries(

@@ -151,7 +151,7 @@ def joint_step(
     """
     free = [*[False] * len(before), *[True] * len(tables)]
     residual = problem.residual((*before, *tables))
-    base = problem.measured() - residual
+    base = problem.measured - residual
     jacobian = problem.jacobian((*before, *tables), free, base)
     here = float(residual @ residual)
     if not (np.isfinite(here) and np.all(np.isfinite(jacobian))):

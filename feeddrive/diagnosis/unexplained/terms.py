@@ -9,7 +9,7 @@ from enum import StrEnum
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from feeddrive.diagnosis.starts.periodogram import strongest_orders
+from feeddrive.diagnosis.starts.residual_readings import strongest_orders
 from feeddrive.diagnosis.unexplained.view import View
 from feeddrive.typing import FloatArray
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
+from feeddrive.bench_page.page import bench_of_diagnosis
 from feeddrive.compensation.actions import Actions, actions
 from feeddrive.diagnosis.diagnose import diagnose as find_what_lacks
 from feeddrive.diagnosis.judging.result import Diagnosis
@@ -223,8 +224,6 @@ class Diagnosed(Shown):
 
     def _bench(self) -> str:
         """The page for the tab of the report."""
-        from feeddrive.interface.benching import bench_of_diagnosis  # which takes a diagnosis
-
         return bench_of_diagnosis(self.plant.plant, self.diagnosis)
 
     def listing(self) -> Listing:

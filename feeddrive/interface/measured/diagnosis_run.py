@@ -10,10 +10,20 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from feeddrive.bench_page.page import bench_of_diagnosis
 from feeddrive.compensation.actions import actions
 from feeddrive.diagnosis.diagnose import diagnose
-from feeddrive.diagnosis.ledger.continued import Earlier, changed_since, earlier_run
-from feeddrive.diagnosis.ledger.ledger import FileUse, RunFiles, checksum, runs_of, write_ledger, written_earlier
+from feeddrive.diagnosis.ledger.ledger import (
+    Earlier,
+    FileUse,
+    RunFiles,
+    changed_since,
+    checksum,
+    earlier_run,
+    runs_of,
+    write_ledger,
+    written_earlier,
+)
 from feeddrive.diagnosis.likelihood.outputs import write_outputs
 from feeddrive.diagnosis.numbers.measured_file import read_measured_numbers
 from feeddrive.diagnosis.preparation import informative
@@ -22,7 +32,6 @@ from feeddrive.effects.tabulated import Tabulated
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant, shipped_plants
 from feeddrive.interface.axis import load
-from feeddrive.interface.benching import bench_of_diagnosis
 from feeddrive.interface.measured.diagnosed import Diagnosed
 from feeddrive.output_folder import finish_interrupted, output_folder, refuse_unusable, take_away
 from feeddrive.recording import Recording, read_recording

@@ -20,7 +20,7 @@ from typing import ClassVar
 
 from feeddrive.errors import InputError
 from feeddrive.parts.material import STEEL, ShaftMaterial
-from feeddrive.parts.values import PartValue, check_values
+from feeddrive.parts.values import PartValue, check_values, part_values
 
 
 @dataclass(frozen=True)
@@ -50,31 +50,13 @@ class ScrewShaft:
     root_diameter: float | None = None
     material: ShaftMaterial = STEEL
 
-    values: ClassVar[tuple[PartValue, ...]] = (
-        PartValue("lead", "m", 1e-4, 0.5, usual=(1e-3, 0.08), meaning="table travel per turn of the screw"),
-        PartValue(
-            "diameter", "m", 1e-3, 0.5, usual=(4e-3, 0.2), meaning="nominal diameter, counted for mass and inertia"
-        ),
-        PartValue("length", "m", 0.005, 30.0, usual=(0.05, 12.0), meaning="from the near bearing to the far end"),
-        PartValue(
-            "stub",
-            "m",
-            0.0,
-            5.0,
-            usual=(0.0, 0.5),
-            default=0.0,
-            open_ends=False,
-            meaning="from the near bearing back to the coupling, under torque alone",
-        ),
-        PartValue(
-            "root_diameter",
-            "m",
-            1e-3,
-            0.5,
-            usual=(3e-3, 0.2),
-            meaning="diameter counted for stiffness; the nominal one if left out",
-        ),
-    )
+    values: ClassVar[tuple[PartValue, ...]] = part_values("""
+lead | m | (0.0001, 0.5) usual 0.001 to 0.08 | | table travel per turn of the screw
+diameter | m | (0.001, 0.5) usual 0.004 to 0.2 | | nominal diameter, counted for mass and inertia
+length | m | (0.005, 30) usual 0.05 to 12 | | from the near bearing to the far end
+stub | m | [0, 5] usual 0 to 0.5 | = 0 | from the near bearing back to the coupling, under torque alone
+root_diameter | m | (0.001, 0.5) usual 0.003 to 0.2 | | diameter counted for stiffness; the nominal one if left out
+""")
 
     def __post_init__(self) -> None:
         root = self.diameter if self.root_diameter is None else self.root_diameter

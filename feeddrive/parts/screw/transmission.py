@@ -17,7 +17,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from feeddrive.parts.values import PartValue, check_values
+from feeddrive.parts.values import PartValue, check_values, part_values
 
 
 @dataclass(frozen=True)
@@ -42,37 +42,13 @@ class Transmission:
     motor_wheel_inertia: float = 0.0
     screw_wheel_inertia: float = 0.0
 
-    values: ClassVar[tuple[PartValue, ...]] = (
-        PartValue("ratio", "1", 1e-3, 1e3, usual=(0.25, 20.0), meaning="turns of the motor per turn of the screw"),
-        PartValue(
-            "torsional_stiffness",
-            "N m/rad",
-            0.1,
-            1e10,
-            usual=(10.0, 1e7),
-            meaning="torsional stiffness of belt or teeth with the motor's wheel held, at the screw's wheel",
-        ),
-        PartValue(
-            "motor_wheel_inertia",
-            "kg m^2",
-            0.0,
-            100.0,
-            usual=(0.0, 1.0),
-            default=0.0,
-            open_ends=False,
-            meaning="inertia of the wheel on the motor",
-        ),
-        PartValue(
-            "screw_wheel_inertia",
-            "kg m^2",
-            0.0,
-            100.0,
-            usual=(0.0, 1.0),
-            default=0.0,
-            open_ends=False,
-            meaning="inertia of the wheel on the screw",
-        ),
-    )
+    values: ClassVar[tuple[PartValue, ...]] = part_values("""
+ratio | 1 | (0.001, 1000) usual 0.25 to 20 | | turns of the motor per turn of the screw
+torsional_stiffness | N m/rad | (0.1, 1e10) usual 10 to 1e7 | | torsional stiffness of belt or teeth with the \
+motor's wheel held, at the screw's wheel
+motor_wheel_inertia | kg m^2 | [0, 100] usual 0 to 1 | = 0 | inertia of the wheel on the motor
+screw_wheel_inertia | kg m^2 | [0, 100] usual 0 to 1 | = 0 | inertia of the wheel on the screw
+""")
 
     def __post_init__(self) -> None:
         check_values("transmission", self.values, vars(self))

@@ -3,28 +3,26 @@
 from __future__ import annotations
 
 from feeddrive.errors import InputError
-from feeddrive.parts.values import PartValue, check_values
+from feeddrive.parts.values import PartValue, check_values, part_values
 from feeddrive.plant.file.drive_sections import BEARING_RATING, BEARING_VALUES, PART_VALUES
 from feeddrive.plant.file.entries import Table
 from feeddrive.plant.plant import Datum
 
 RATINGS: dict[str, tuple[PartValue, ...]] = {
-    "motor": (PartValue("max_speed", "rad/s", 0.0, 1e5, usual=(10.0, 3000.0), meaning="greatest speed of the motor"),),
-    "ball_screw": (
-        PartValue("static_rating", "N", 0.0, 1e8, usual=(500.0, 5e6), meaning="static load rating C0"),
-        PartValue("dynamic_rating", "N", 0.0, 1e8, usual=(200.0, 2e6), meaning="dynamic load rating C of one nut"),
-        PartValue("ball_circle", "m", 1e-3, 0.5, usual=(4e-3, 0.2), meaning="diameter of the circle of ball centres"),
-        PartValue(
-            "dn_limit", "m rad/s", 0.0, 1e3, usual=(1.0, 40.0), meaning="greatest product of ball circle and speed"
-        ),
-    ),
-    "table": (
-        PartValue("max_velocity", "m/s", 0.0, 50.0, usual=(0.01, 4.0), meaning="greatest velocity of the table"),
-        PartValue(
-            "max_acceleration", "m/s^2", 0.0, 1e4, usual=(0.1, 100.0), meaning="greatest acceleration of the table"
-        ),
-        PartValue("axial_load", "N", 0.0, 1e7, usual=(1.0, 1e6), meaning="process force along the axis"),
-    ),
+    "motor": part_values("""
+max_speed | rad/s | (0, 100000) usual 10 to 3000 | | greatest speed of the motor
+"""),
+    "ball_screw": part_values("""
+static_rating | N | (0, 1e8) usual 500 to 5e6 | | static load rating C0
+dynamic_rating | N | (0, 1e8) usual 200 to 2e6 | | dynamic load rating C of one nut
+ball_circle | m | (0.001, 0.5) usual 0.004 to 0.2 | | diameter of the circle of ball centres
+dn_limit | m rad/s | (0, 1000) usual 1 to 40 | | greatest product of ball circle and speed
+"""),
+    "table": part_values("""
+max_velocity | m/s | (0, 50) usual 0.01 to 4 | | greatest velocity of the table
+max_acceleration | m/s^2 | (0, 10000) usual 0.1 to 100 | | greatest acceleration of the table
+axial_load | N | (0, 1e7) usual 1 to 1e6 | | process force along the axis
+"""),
 }
 """Limits and ratings by section: greatest speeds and acceleration, C0 and C of the ball screw, process force."""
 

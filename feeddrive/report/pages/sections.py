@@ -65,7 +65,7 @@ def _error_rows(channel: ChannelResult, nothing_missing: bool) -> list[list[str 
     if nothing_missing:
         return [[name, band, "declared plant", *_errors(channel, channel.before, scale)]]
     gain = channel.before.rms / channel.after.rms if channel.after.rms > 0.0 else math.nan
-    better = f", rms {significant(gain, 2)} times smaller" if gain >= 1.05 else ""
+    better = f", {significant(gain, 2)} times smaller" if gain >= 1.05 else ""
     return [
         [name, band, "before", *_errors(channel, channel.before, scale)],
         [name, band, f"after{better}", *_errors(channel, channel.after, scale)],

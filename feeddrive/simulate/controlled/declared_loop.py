@@ -37,7 +37,6 @@ from functools import lru_cache
 import casadi as ca
 import numpy as np
 from scipy.interpolate import CubicSpline
-from scipy.signal import savgol_filter
 
 from feeddrive.errors import InputError
 from feeddrive.plant.file.entries import Origins, Table
@@ -159,6 +158,8 @@ class DeclaredLoop:
         return np.column_stack([columns[name][: len(time)] for name in self.controller.references])
 
     def _slope(self, setpoint: FloatArray, order: int, time: FloatArray) -> FloatArray:
+        from scipy.signal import savgol_filter  # takes a second to import
+
         sample = self.controller.sample_time * self.ticks
         width = max(2 * round(SMOOTHING / sample) + 1, 5)
         if len(setpoint) <= width:

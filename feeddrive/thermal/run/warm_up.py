@@ -16,7 +16,6 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
-from scipy.signal import lfilter
 
 from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.thermal.bound_function import BoundFunction
@@ -245,6 +244,8 @@ def lagging(values: FloatArray, first: float, time_constant: float, step: float)
     """First-order lag of a signal that is straight between the rows, (k,); exact for it."""
     if time_constant <= 1e-6 * step:
         return values
+    from scipy.signal import lfilter  # takes a second to import
+
     a = np.exp(-step / time_constant)
     gain = (1 - a) * time_constant / step
     # dy/dt = (u - y)/τ with u from u₀ to u₁: y₁ = a y₀ + (1 - gain) u₁ + (gain - a) u₀
