@@ -38,12 +38,6 @@ def since_section(diagnosis: Diagnosis) -> str:
     return section("Since the earlier diagnosis", bullets(diagnosis.kept.since), paragraph(note, "note"))
 
 
-def change_sentences(diagnosis: Diagnosis) -> list[str]:
-    """The changes as the verdict says them."""
-    stated = [one.statement for one in diagnosis.changes.changes]
-    return [f"Between the recordings changed: {'; '.join(stated)}."] if stated else []
-
-
 def _where(one: ParameterChange) -> str:
     return "" if one.fitted else " This recording was not fitted; its errors are taken without this change."
 
