@@ -10,7 +10,7 @@ import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Protocol
 
 import typer
 from rich.console import Console, RenderableType
@@ -28,6 +28,7 @@ from rich.table import Table
 from feeddrive.errors import ValidityWarning, printable, quoted
 from feeddrive.files import write_text_atomically
 from feeddrive.interface.shown import Listing
+from feeddrive.output_folder import output_folder
 from feeddrive.units.quantity import parse
 
 JsonOption = Annotated[bool, typer.Option("--json", help="JSON in place of tables; SI units.")]
@@ -108,6 +109,27 @@ def deliver(content: Mapping[str, Any], tables: Sequence[RenderableType], as_jso
     else:
         width = None if sys.stdout.isatty() or os.environ.get("COLUMNS", "").isdigit() else _WIDTH
         _print(Console(markup=False, highlight=False, emoji=False, width=width), tables)
+
+
+class _Saved(Protocol):
+    """A result that has tables, a record and files."""
+
+    def tables(self) -> Sequence[Listing]: ...
+    def record(self) -> Mapping[str, Any]: ...
+    def save(self, path: str | Path, /) -> Path: ...
+
+
+def deliver_saved(found: _Saved, as_json: bool, out: Path | None) -> None:
+    """Write the files of a result into a folder where one is named, and print its tables or its JSON.
+
+    Raises:
+        InputError: the folder cannot be written.
+    """
+    if out is not None:
+        with output_folder(out) as folder:
+            found.save(folder)
+    deliver(found.record(), [] if as_json else tables_of(found.tables()), as_json, None)
+    print_written(out, as_json)
 
 
 @contextmanager

@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from feeddrive.bench_page.page import BenchPage, bench_page
 from feeddrive.errors import InputError
 from feeddrive.files import DIAGNOSED, write_text_atomically
 from feeddrive.interface.axis import Axis, load
 from feeddrive.interface.measured.diagnosed import Diagnosed
+from feeddrive.interface.measured.reading import diagnosis_content
 from feeddrive.interface.quantities import Quantity, positive
 from feeddrive.interface.servo import Servo, cascade_for, tune
 from feeddrive.servo.loop_response import refuse_unstable_case
 from feeddrive.servo.mechanics_response import Case
-
-_MOST_BYTES = 200_000_000
 
 
 @dataclass(frozen=True)
@@ -84,20 +81,8 @@ def _diagnosed(axis: Axis, diagnosis: Diagnosed | str | Path | None) -> tuple[Ax
     if isinstance(diagnosis, Diagnosed):
         return diagnosis.plant, tuple(one.name for one in diagnosis.diagnosis.effects)
     folder = Path(diagnosis)
-    content = _content(folder / "diagnosis.json")
+    content = diagnosis_content(folder)
+    if not str(content.get("format", "")).startswith("feeddrive-diagnosis/"):
+        raise InputError("is no diagnosis of recordings", str(folder), "name a folder that holds one")
     named = [one.get("name") for one in content.get("effects", []) if isinstance(one, dict)]
     return load(folder / DIAGNOSED), tuple(str(name) for name in named if name)
-
-
-def _content(path: Path) -> dict[str, Any]:
-    try:
-        if path.stat().st_size > _MOST_BYTES:
-            raise InputError(
-                "is too large for a diagnosis", str(path), "give the folder that `feeddrive diagnose` wrote"
-            )
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError, RecursionError):
-        content = None
-    if not isinstance(content, dict) or not str(content.get("format", "")).startswith("feeddrive-diagnosis/"):
-        raise InputError("is no diagnosis", str(path), "give the folder that `feeddrive diagnose` wrote")
-    return content

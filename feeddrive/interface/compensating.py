@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -20,7 +19,7 @@ from feeddrive.compensation.temperature import HeatTable, heat_table, recorded_h
 from feeddrive.errors import InputError
 from feeddrive.files import shipped_plants, write_text_atomically
 from feeddrive.interface.axis import Axis, load
-from feeddrive.interface.measured.reading import as_recording
+from feeddrive.interface.measured.reading import as_recording, diagnosis_content
 from feeddrive.interface.quantities import Quantity, positive, quantities, si
 from feeddrive.interface.servo import Servo, cascade_for
 from feeddrive.interface.shown import Listing, Shown
@@ -222,7 +221,7 @@ def _opened(source: Source) -> tuple[Axis | Recording, str, str, tuple[float, fl
         raise InputError(f"{type(source).__name__} is no source", "compensate", "give a diagnosis, an axis or a file")
     path = Path(source)
     if path.is_dir():
-        content = _diagnosis(path)
+        content = diagnosis_content(path)
         return load(path / "plant_after.toml"), _unsure(content), str(path), _recorded(content)
     if path.suffix.lower() == ".toml" or (not path.is_file() and _is_shipped(str(source))):
         return load(source), "", str(path), None
@@ -239,18 +238,6 @@ def _recorded(content: dict[str, Any]) -> tuple[float, float] | None:
 
 def _is_shipped(name: str) -> bool:
     return name in {path.stem for path in shipped_plants()}
-
-
-def _diagnosis(folder: Path) -> dict[str, Any]:
-    where = folder / "diagnosis.json"
-    mend = "name the folder that `feeddrive diagnose --out` has written"
-    try:
-        content = json.loads(where.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        raise InputError("holds no diagnosis", str(folder), mend) from None
-    if not isinstance(content, dict) or not isinstance(content.get("effects", []), list):
-        raise InputError("is no diagnosis", str(where), mend)
-    return content
 
 
 def _unsure(content: dict[str, Any]) -> str:

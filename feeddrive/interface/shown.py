@@ -68,6 +68,10 @@ class Shown:
         """The table."""
         raise NotImplementedError
 
+    def tables(self) -> tuple[Listing, ...]:
+        """Every table; the one alone where there are no others."""
+        return (self.listing(),)
+
     def _figures(self) -> Sequence[ReportFigure]:
         """The figures, the telling one first; none where there is nothing to draw."""
         return ()

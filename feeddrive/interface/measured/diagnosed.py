@@ -22,11 +22,11 @@ from feeddrive.interface.measured.reading import as_recording
 from feeddrive.interface.shown import Listing, Shown
 from feeddrive.plant.file.lumped_text import plant_text_with_effects
 from feeddrive.recording.recording import Recording
-from feeddrive.report.certainty import experiment_sentences, simulation_lines
+from feeddrive.report.pages.section_certainty import experiment_sentences, simulation_lines
+from feeddrive.report.pages.section_records import used_sentence
 from feeddrive.report.pages.sections import calibrated_lines, measured_lines
-from feeddrive.report.parameters import parameter_text
-from feeddrive.report.records import used_sentence
-from feeddrive.report.words.people import error_text, share_text
+from feeddrive.report.words.number_text import error_text, share_text
+from feeddrive.report.words.parameters import parameter_text
 from feeddrive.report.words.verdict import verdict_sentences
 
 if TYPE_CHECKING:

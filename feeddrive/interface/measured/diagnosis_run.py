@@ -37,7 +37,7 @@ from feeddrive.output_folder import finish_interrupted, output_folder, refuse_un
 from feeddrive.recording import Recording, read_recording
 from feeddrive.report.figures.figures import render_figures, save_figures
 from feeddrive.report.pages.html import write_report
-from feeddrive.report.records import Occasion
+from feeddrive.report.pages.section_records import Occasion
 
 DECIMAL_SIGNS = (None, ".", ",")
 

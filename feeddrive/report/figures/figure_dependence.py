@@ -9,9 +9,9 @@ import numpy as np
 
 from feeddrive.diagnosis.judging.result import ChannelResult, ChannelSeries, Diagnosis, JudgedRecording
 from feeddrive.report.figures.drawing import NOISE, ReportFigure, dress, legend_above, new_figure
-from feeddrive.report.selection import residuals, stem_of, with_variable
-from feeddrive.report.thinning import Bins, balanced, binned, thin
-from feeddrive.report.words.people import Scale, axis_label, fixed, scale_for_error, scale_for_signal
+from feeddrive.report.figures.selection import residuals, stem_of, with_variable
+from feeddrive.report.figures.thinning import Bins, balanced, binned, thin
+from feeddrive.report.words.number_text import Scale, axis_label, fixed, scale_for_error, scale_for_signal
 from feeddrive.report.words.words import joined, plain, variable_words
 from feeddrive.typing import BoolArray, FloatArray
 

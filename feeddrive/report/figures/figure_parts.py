@@ -25,7 +25,7 @@ from feeddrive.report.figures.drawing import (
     legend_above,
     new_figure,
 )
-from feeddrive.report.words.people import scale_for_share_of_life, significant
+from feeddrive.report.words.number_text import scale_for_share_of_life, significant
 from feeddrive.typing import FloatArray
 from feeddrive.units.quantity import format_quantity
 

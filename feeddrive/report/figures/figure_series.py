@@ -16,9 +16,9 @@ from feeddrive.report.figures.drawing import (
     legend_above,
     new_figure,
 )
-from feeddrive.report.selection import residuals, stem_of
-from feeddrive.report.thinning import envelope, left_out_stretches
-from feeddrive.report.words.people import Scale, axis_label, scale_for_error, scale_for_signal, scale_for_time
+from feeddrive.report.figures.selection import residuals, stem_of
+from feeddrive.report.figures.thinning import envelope, left_out_stretches
+from feeddrive.report.words.number_text import Scale, axis_label, scale_for_error, scale_for_signal, scale_for_time
 from feeddrive.report.words.words import plain
 from feeddrive.typing import FloatArray
 

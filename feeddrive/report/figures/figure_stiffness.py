@@ -14,7 +14,7 @@ from feeddrive.plant.analysis.mode_map import ModeMap, mode_map
 from feeddrive.plant.analysis.modes import held_frequency
 from feeddrive.plant.plant import Plant
 from feeddrive.report.figures.drawing import AFTER, BEFORE, ReportFigure, dress, legend_above, new_figure
-from feeddrive.report.words.people import fixed, significant, with_unit
+from feeddrive.report.words.number_text import fixed, significant, with_unit
 from feeddrive.typing import FloatArray
 
 if TYPE_CHECKING:

@@ -8,12 +8,26 @@ from pathlib import Path
 from feeddrive.compensation.actions import Actions
 from feeddrive.diagnosis.judging.result import Diagnosis
 from feeddrive.files import write_text_atomically
-from feeddrive.report.certainty import ambiguous_section, correlation_section, experiments_section, simulation_section
 from feeddrive.report.figures.drawing import RenderedFigure
 from feeddrive.report.figures.figures import STEM, render_figures
+from feeddrive.report.figures.selection import MOST_CHANNELS_IN_DETAIL, drawn_series
 from feeddrive.report.pages.markup import figure, paragraph, section, text
 from feeddrive.report.pages.section_actions import actions_section
+from feeddrive.report.pages.section_certainty import (
+    ambiguous_section,
+    correlation_section,
+    experiments_section,
+    simulation_section,
+)
 from feeddrive.report.pages.section_changes import changes_section, since_section
+from feeddrive.report.pages.section_records import (
+    UNKNOWN,
+    Occasion,
+    form_section,
+    recordings_section,
+    stamp_section,
+    tried_section,
+)
 from feeddrive.report.pages.section_unexplained import unexplained_section
 from feeddrive.report.pages.sections import (
     calibrated_section,
@@ -22,9 +36,7 @@ from feeddrive.report.pages.sections import (
     measured_section,
     verdict_section,
 )
-from feeddrive.report.records import UNKNOWN, Occasion, form_section, recordings_section, stamp_section, tried_section
-from feeddrive.report.selection import MOST_CHANNELS_IN_DETAIL, drawn_series
-from feeddrive.report.words.people import share_text
+from feeddrive.report.words.number_text import share_text
 
 
 def write_report(

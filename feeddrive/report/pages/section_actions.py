@@ -6,10 +6,10 @@ from feeddrive.compensation.actions import Actions
 from feeddrive.compensation.cures import COMPENSATE, REPAIR, SET, cure
 from feeddrive.compensation.sheet import left, predicted_rows
 from feeddrive.diagnosis.judging.result import Diagnosis, EffectResult
-from feeddrive.report.certainty import experiment_sentences
 from feeddrive.report.pages.markup import bullets, paragraph, section, table
-from feeddrive.report.parameters import effect_sentence
-from feeddrive.report.words.people import DASH, error_text
+from feeddrive.report.pages.section_certainty import experiment_sentences
+from feeddrive.report.words.number_text import DASH, error_text
+from feeddrive.report.words.parameters import effect_sentence
 
 _KINDS = {REPAIR: "Look at", SET: "Set", COMPENSATE: "Compensate", "watch": "Watch"}
 _FILES = {

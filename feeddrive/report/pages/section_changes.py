@@ -5,8 +5,8 @@ from __future__ import annotations
 from feeddrive.diagnosis.judging.result import Diagnosis, ParameterResult
 from feeddrive.diagnosis.recordings.change_result import CommonTrial, Measure, ParameterChange, PerRecording
 from feeddrive.report.pages.markup import bullets, paragraph, section, table
-from feeddrive.report.parameters import parameter_text
-from feeddrive.report.words.people import fixed, share_text, with_unit
+from feeddrive.report.words.number_text import fixed, share_text, with_unit
+from feeddrive.report.words.parameters import parameter_text
 from feeddrive.report.words.words import effect_words, joined, plain
 
 _MOST_TRIALS = 8
@@ -36,12 +36,6 @@ def since_section(diagnosis: Diagnosis) -> str:
         return ""
     note = "All runs, with every effect tried and why it was kept or refused, are in ledger.json."
     return section("Since the earlier diagnosis", bullets(diagnosis.kept.since), paragraph(note, "note"))
-
-
-def change_sentences(diagnosis: Diagnosis) -> list[str]:
-    """The changes as the verdict says them."""
-    stated = [one.statement for one in diagnosis.changes.changes]
-    return [f"Between the recordings changed: {'; '.join(stated)}."] if stated else []
 
 
 def _where(one: ParameterChange) -> str:

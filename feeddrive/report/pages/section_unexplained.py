@@ -5,7 +5,7 @@ from __future__ import annotations
 from feeddrive.diagnosis.judging.result import ChannelResult, Diagnosis
 from feeddrive.diagnosis.unexplained.unexplained_result import Carried, Dependence, Unexplained
 from feeddrive.report.pages.markup import Cell, bullets, catalogue_name, paragraph, section, table
-from feeddrive.report.words.people import DASH, error_text, fixed, share_text
+from feeddrive.report.words.number_text import DASH, error_text, fixed, share_text
 from feeddrive.report.words.words import joined, plain, variable_words
 
 

@@ -16,9 +16,8 @@ from feeddrive.report.pages.markup import (
     text,
     verdict,
 )
-from feeddrive.report.parameters import parameter_text
-from feeddrive.report.records import used_sentence
-from feeddrive.report.words.people import (
+from feeddrive.report.pages.section_records import used_sentence
+from feeddrive.report.words.number_text import (
     DASH,
     SPACE,
     Scale,
@@ -29,6 +28,7 @@ from feeddrive.report.words.people import (
     times_text,
     with_unit,
 )
+from feeddrive.report.words.parameters import parameter_text
 from feeddrive.report.words.verdict import is_noise, verdict_sentences
 from feeddrive.report.words.words import effect_words, plain
 from feeddrive.units.quantity import format_quantity
@@ -65,7 +65,7 @@ def _error_rows(channel: ChannelResult, nothing_missing: bool) -> list[list[str 
     if nothing_missing:
         return [[name, band, "declared plant", *_errors(channel, channel.before, scale)]]
     gain = channel.before.rms / channel.after.rms if channel.after.rms > 0.0 else math.nan
-    better = f", rms {significant(gain, 2)} times smaller" if gain >= 1.05 else ""
+    better = f", {significant(gain, 2)} times smaller" if gain >= 1.05 else ""
     return [
         [name, band, "before", *_errors(channel, channel.before, scale)],
         [name, band, f"after{better}", *_errors(channel, channel.after, scale)],

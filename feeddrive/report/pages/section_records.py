@@ -10,7 +10,7 @@ from feeddrive import __version__
 from feeddrive.diagnosis.judging.result import ChannelSeries, Diagnosis, FileStamp, JudgedRecording, Trial
 from feeddrive.diagnosis.suspicion.quality import quality_lines
 from feeddrive.report.pages.markup import Cell, bullets, catalogue_name, effect_name, paragraph, section, table, text
-from feeddrive.report.words.people import fixed, share_text, significant, with_unit
+from feeddrive.report.words.number_text import fixed, share_text, significant, with_unit
 from feeddrive.report.words.words import plain
 from feeddrive.typing import BoolArray
 

@@ -7,8 +7,8 @@ from feeddrive.diagnosis.judging.result import Diagnosis, ParameterResult
 from feeddrive.diagnosis.simulated.simulation_result import ErrorFigure, RefinedValue, SimulationResult
 from feeddrive.effects.base import Value
 from feeddrive.report.pages.markup import Cell, bullets, paragraph, section, table
-from feeddrive.report.parameters import parameter_text
-from feeddrive.report.words.people import DASH, error_text, fixed, significant, with_unit
+from feeddrive.report.words.number_text import DASH, error_text, fixed, significant, with_unit
+from feeddrive.report.words.parameters import parameter_text
 from feeddrive.report.words.words import effect_words, joined, plain
 
 _LARGEST_MATRIX = 10

@@ -6,28 +6,20 @@ import math
 from dataclasses import dataclass
 
 from feeddrive.diagnosis.judging.result import EffectResult, ParameterResult
-from feeddrive.report.words.people import Scale, decimals_for, fixed, scale_for_value, significant, unit_name, with_unit
+from feeddrive.report.words.number_text import (
+    Scale,
+    decimals_for,
+    fixed,
+    scale_for_value,
+    significant,
+    unit_name,
+    with_unit,
+)
 from feeddrive.report.words.words import effect_words, headline_parameters, plain
 
 _LONGEST_LIST = 9
-_SPEAKING = frozenset(
-    {
-        "width",
-        "amplitude",
-        "mass",
-        "force",
-        "delay",
-        "delta_force",
-        "delta_viscous",
-        "slope",
-        "strain",
-        "stiffness",
-        "inertia",
-        "power",
-        "conductance",
-        "growth",
-    }
-)
+_SIZES = {"width", "amplitude", "mass", "delay", "slope", "strain", "stiffness", "inertia", "power", "growth"}
+_SPEAKING = _SIZES | {"force", "delta_force", "delta_viscous", "conductance"}
 """Keys that go without saying beside the effect's name."""
 
 
