@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import io
 import json
+import math
 import re
 from pathlib import Path
 from typing import Any
@@ -13,7 +14,7 @@ import pytest
 
 from feeddrive.cli.main import main
 from feeddrive.recording import write_recording
-from tests.recovery.rigid_runs import PLANT, Truth, rigid_run
+from tests.recovery.rigid_runs import LEAD, MASS, PLANT, Truth, rigid_run
 
 
 def typed(*words: str) -> tuple[int, str, str]:
@@ -34,12 +35,16 @@ def ledger(folder: Path) -> list[dict[str, Any]]:
 
 @pytest.fixture(scope="module")
 def files(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with a plant, two recordings, and a first diagnosis of one of them."""
+    """A folder with a plant, two recordings, a measured number, and a first diagnosis of one recording with it."""
     folder = tmp_path_factory.mktemp("machine")
     (folder / "rigid.toml").write_text(PLANT, encoding="utf-8")
     write_recording(rigid_run("a", Truth(ripple=0.01), 8.0), folder / "a.csv")
     write_recording(rigid_run("b", Truth(ripple=0.01, coulomb=1.15, seed=2), 8.0, 1.3), folder / "b.csv")
-    status, _, err = typed(str(folder / "rigid.toml"), str(folder / "a.csv"), "--out", str(folder / "report"))
+    inertia = MASS * (LEAD / (2 * math.pi)) ** 2
+    number = f'[[measured]]\nquantity = "inertia_at_motor"\nvalue = "{inertia!r} kg m^2"\n'
+    (folder / "numbers.toml").write_text(number, encoding="utf-8")
+    words = (str(folder / "rigid.toml"), str(folder / "a.csv"), "--measured", str(folder / "numbers.toml"))
+    status, _, err = typed(*words, "--out", str(folder / "report"))
     assert (status, err) == (0, "")
     return folder
 
@@ -66,6 +71,9 @@ def test_a_recording_is_added(files: Path, tmp_path: Path) -> None:
     first, second = ledger(tmp_path)
     assert first == ledger(files / "report")[0]
     assert second["continues"] == 1
+    assert second["measured"] == first["measured"] and Path(first["measured"]["path"]).name == "numbers.toml"
+    (number,) = json.loads((tmp_path / "diagnosis.json").read_text(encoding="utf-8"))["measured"]
+    assert number["met"] and number["fitted"]
     assert [Path(one["path"]).name for one in second["fit"]] == ["a.csv", "b.csv"]
     assert [one["name"] for one in second["effects"]] == ["torque_ripple"]
     (change,) = second["changes"]
@@ -109,6 +117,10 @@ def test_files_that_are_not_what_they_were(tmp_path: Path, files: Path) -> None:
     refused(words, "is missing")
     moved.write_text("time [s],motor_torque [N m]\n0,0\n", encoding="utf-8")
     refused(words, "not what it was")
+    record["runs"][-1]["fit"][0]["path"] = str(files / "a.csv")
+    record["runs"][-1]["measured"]["path"] = str(tmp_path / "numbers.toml")
+    (tmp_path / "ledger.json").write_text(json.dumps(record), encoding="utf-8")
+    refused(words, "is missing")
 
 
 def test_what_is_missing_on_the_command_line(files: Path) -> None:
