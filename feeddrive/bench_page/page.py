@@ -20,10 +20,10 @@ from feeddrive.effects.chain.payload import Payload
 from feeddrive.errors import InputError, printable
 from feeddrive.metrology.circular import GLITCH_SPAN
 from feeddrive.metrology.response import SETTLED_BY
+from feeddrive.plant.analysis.modes import inertia_at_motor
 from feeddrive.plant.analysis.steady import MOVING
-from feeddrive.plant.chain.moving_inertia import inertia_at_motor
-from feeddrive.plant.equations import parameter_names, parameter_values
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.structure import parameter_names, parameter_values
 from feeddrive.servo.cascade import Cascade
 from feeddrive.servo.filters import Filter, notch
 from feeddrive.servo.loop_response import refuse_unstable_case

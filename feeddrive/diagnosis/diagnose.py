@@ -23,7 +23,7 @@ from feeddrive.diagnosis.judging.result import (
     Diagnosis,
     FileStamp,
 )
-from feeddrive.diagnosis.judging.veto import without_denied
+from feeddrive.diagnosis.judging.veto import not_worse_than_declared, without_denied
 from feeddrive.diagnosis.ledger.entry import kept_of
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.fit import Problem
@@ -97,7 +97,14 @@ def diagnose(
         raise InputError("measured numbers beside recordings of heat", plant.name, mend)
 
     def begin(files: Files, hold: float | None, numbers: Sequence[MeasuredNumber]) -> _Begun:
-        return _begun(plant, files, split, hold, held_for if declared is None else declared_sentence, numbers)
+        problem, judged, notes = prepared(plant, *files, split, hold)
+        problem = replace(problem, numbers=MeasuredRows(tuple(numbers)))
+        refuse_ungiven(problem.numbers, plant)
+        refuse_faulty(problem, (*problem.evidence, *judged))
+        held = held_for if declared is None else declared_sentence
+        also = () if hold is None else (held(hold, files[0][0].sample_time),)
+        problem, judged, quality = with_recorder_that_holds(problem, judged)
+        return _Begun(files, problem, judged, (*notes, *also), quality)
 
     def settle(begun: _Begun) -> _Settled:
         return _settled(begun, in_the_loop, progress, start)
@@ -200,19 +207,6 @@ class _Begun:
     quality: tuple[Quality, ...]
 
 
-def _begun(
-    plant: Plant, files: Files, split: float, hold: float | None, sentence: Callable[[float, float], str],
-    measured: Sequence[MeasuredNumber],
-) -> _Begun:  # fmt: skip
-    problem, judged, notes = prepared(plant, *files, split, hold)
-    problem = replace(problem, numbers=MeasuredRows(tuple(measured)))
-    refuse_ungiven(problem.numbers, plant)
-    refuse_faulty(problem, (*problem.evidence, *judged))
-    also = () if hold is None else (sentence(hold, files[0][0].sample_time),)
-    problem, judged, quality = with_recorder_that_holds(problem, judged)
-    return _Begun(files, problem, judged, (*notes, *also), quality)
-
-
 @dataclass(frozen=True)
 class _Settled:
     """What was found, once data not fitted have had their say.
@@ -255,6 +249,7 @@ def _settled(begun: _Begun, simulate: bool, progress: Progress, start: Sequence[
         kept, judged = without_denied(preferred, judge(preferred), judge)
         rivals = rivals if kept is preferred else rivals_of(kept, judged)
         found = kept
+    found, judged = not_worse_than_declared(found, judged, judge)
     judged, rehomed = _judged(found, evidence)
     refinement = Refinement(found, (judged, rehomed))
     if simulate:

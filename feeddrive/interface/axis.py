@@ -21,18 +21,18 @@ from feeddrive.interface.machine.summary import Stiffness, Summary
 from feeddrive.interface.quantities import Quantities, Quantity, quantities, si
 from feeddrive.plant.analysis.lumping import lump
 from feeddrive.plant.analysis.mode_map import mode_map
+from feeddrive.plant.analysis.modes import inertia_at_motor
 from feeddrive.plant.analysis.plausibility import check_plant
 from feeddrive.plant.analysis.rated_life import rated_life
 from feeddrive.plant.analysis.stiffness_budget import stiffness_budget
 from feeddrive.plant.analysis.summary import summarise
-from feeddrive.plant.chain.moving_inertia import inertia_at_motor
-from feeddrive.plant.derived_effects import GRAVITY
 from feeddrive.plant.file.declared_check import check_declared
-from feeddrive.plant.file.entries import parse_toml
+from feeddrive.plant.file.guide_section import GRAVITY
 from feeddrive.plant.file.lumped_text import plant_text_with_effects
 from feeddrive.plant.file.plant_file import plant_from_entries
 from feeddrive.plant.file.plant_schema import plant_table
 from feeddrive.plant.plant import Plant
+from feeddrive.schema.toml_text import parse_toml
 from feeddrive.simulate.scenario.scenario_overrides import with_overrides
 from feeddrive.thermal.machine_heat import Heat
 
@@ -456,7 +456,7 @@ class Axis:
         """
         from feeddrive.export.exported_plant import Form, write_export, write_heat_export
         from feeddrive.export.point import export_point
-        from feeddrive.plant.file.entries import nearest
+        from feeddrive.schema.toml_text import nearest
 
         forms = {str(one): one for one in Form}
         if form not in forms:
@@ -473,7 +473,7 @@ def heat_velocity(axis: Axis, at: str) -> float:
         InputError: a point that cannot be read, or that says where the table is to a machine without one.
     """
     from feeddrive.export.point import Point, export_point, written_point
-    from feeddrive.plant.analysis.linear import MOVING
+    from feeddrive.plant.analysis.steady import MOVING
 
     point = export_point(axis.plant, at, "at") if axis.has_motion else Point(0.0, written_point(at, "at").get("v"))
     return MOVING if point.velocity is None else point.velocity

@@ -24,8 +24,8 @@ from feeddrive.interface.measured.reading import as_recording
 from feeddrive.interface.quantities import Quantity, positive, quantities, si
 from feeddrive.interface.servo import Servo, cascade_for
 from feeddrive.interface.shown import Listing, Shown
-from feeddrive.plant.file.entries import nearest
 from feeddrive.recording.recording import Recording
+from feeddrive.schema.toml_text import nearest
 from feeddrive.servo.cascade import Cascade
 from feeddrive.units.quantity import format_quantity
 

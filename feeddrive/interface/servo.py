@@ -15,13 +15,13 @@ from feeddrive.files import find_scenario_or_controller, write_text_atomically
 from feeddrive.interface.quantities import Quantities, Quantity, positive, quantities, si
 from feeddrive.interface.retuning import Retuned, compare, read_present
 from feeddrive.interface.shown import Listing, Shown, finite, write_figures, write_json
-from feeddrive.plant.file.entries import nearest
 from feeddrive.plant.plant import Plant
+from feeddrive.schema.toml_text import nearest
 from feeddrive.servo.cascade import KV_UNIT, Cascade, Feedback
 from feeddrive.servo.loop_response import loops_of
 from feeddrive.servo.margins import Margins
 from feeddrive.servo.response_family import margins_content, open_family
-from feeddrive.simulate.controlled.controller_file import read_controller
+from feeddrive.simulate.scenario.scenario_controller import read_controller
 from feeddrive.tuning.bare_drive import bare_drive
 from feeddrive.tuning.demand import Demand, operating_points
 from feeddrive.tuning.drive_settings import DriveSettings, drive_settings

@@ -1,6 +1,6 @@
 """A section of a file: its keys, the sections inside it, and those that a kind chooses.
 
-A reader gets its table together with the section that declares it (`feeddrive.plant.file.entries.Table`): a key that no
+A reader gets its table together with the section that declares it (`feeddrive.schema.table.Table`): a key that no
 section declares cannot be read, and the reference is written from the same objects.
 
 Sections are declared in a text, each a heading with the table of its keys (`feeddrive.schema.key`) below:

@@ -21,7 +21,7 @@ from feeddrive.compensation.predicted_accuracy import Applied, circle_figures, c
 from feeddrive.compensation.sheet import left, predicted_rows, sections, sheet_text, text
 from feeddrive.compensation.temperature import HeatTable
 from feeddrive.servo.cascade import Feedback
-from feeddrive.simulate.controlled.controller_file import read_controller
+from feeddrive.simulate.scenario.scenario_controller import read_controller
 from tests.analytic import compensation_readers as read
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -38,6 +38,33 @@ SINK_TIMES = (500.0, 2e3, 8e3, 3e4)
 GROWTH = "table_growth"
 
 
+LEAST_HEAT_SHARE = 2e-4
+"""A heat over that of the nut at the highest declared speed: a sensor on a flange shows milliwatts, and what shows is
+named, lest another name be given to it."""
+
+LEAST_FACTOR, LEAST_CONTACT_FACTOR = 0.01, 0.03
+"""Deviation of a film coefficient and of the contact conductance from 1; a film of 1 % is a few hundredths of a kelvin,
+what thermometers just show."""
+
+LEAST_DRIFT = 0.03
+"""Least drift of the surroundings [K]."""
+
+LEAST_COEFFICIENT = 3e-4
+"""Least slope of load or viscous torque [1/K]; over ten kelvin 0.3 % of the heat, which thermometers just show."""
+
+LEAST_CAPACITY_SHARE, LEAST_FILM_SHARE = 1e-2, 1e-3
+"""A mass over the nut's capacity, a conductance over the film's of the nut."""
+
+LEAST_GROWTH = 0.1e-6
+"""Least growth of the frame [m]."""
+
+LONGEST_SINK = 3e5
+"""Capacity over conductance [s]: a mass that stays cold for days is a coolant."""
+
+LEAST_LAG = 3.0
+"""Least lag of a sensor [s]."""
+
+
 def _channels(scene: Scene) -> tuple[str, ...]:
     return tuple(dict.fromkeys(name for evidence in scene.problem.evidence for name in evidence.channels))
 
@@ -148,33 +175,6 @@ HEAT_CANDIDATES: tuple[Candidate, ...] = (
     Candidate("sensor_lag", sensor_lag, several_channels),
 )
 """Thermal effects that `diagnose` tries, and how."""
-
-
-LEAST_HEAT_SHARE = 2e-4
-"""A heat over that of the nut at the highest declared speed: a sensor on a flange shows milliwatts, and what shows is
-named, lest another name be given to it."""
-
-LEAST_FACTOR, LEAST_CONTACT_FACTOR = 0.01, 0.03
-"""Deviation of a film coefficient and of the contact conductance from 1; a film of 1 % is a few hundredths of a kelvin,
-what thermometers just show."""
-
-LEAST_DRIFT = 0.03
-"""Least drift of the surroundings [K]."""
-
-LEAST_COEFFICIENT = 3e-4
-"""Least slope of load or viscous torque [1/K]; over ten kelvin 0.3 % of the heat, which thermometers just show."""
-
-LEAST_CAPACITY_SHARE, LEAST_FILM_SHARE = 1e-2, 1e-3
-"""A mass over the nut's capacity, a conductance over the film's of the nut."""
-
-LEAST_GROWTH = 0.1e-6
-"""Least growth of the frame [m]."""
-
-LONGEST_SINK = 3e5
-"""Capacity over conductance [s]: a mass that stays cold for days is a coolant."""
-
-LEAST_LAG = 3.0
-"""Least lag of a sensor [s]."""
 
 
 def is_material_heat(effect: Effect, heat: Heat) -> bool:

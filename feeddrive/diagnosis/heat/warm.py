@@ -16,7 +16,14 @@ from feeddrive.diagnosis.finding.candidates import CANDIDATES
 from feeddrive.diagnosis.finding.remembered import Remembered, effects_key
 from feeddrive.diagnosis.finding.scene import Candidate
 from feeddrive.diagnosis.heat.heat_candidates import HEAT_CANDIDATES
-from feeddrive.diagnosis.heat.heat_evidence import HEAT_BLOCK, MODEL_ERROR, HeatEvidence, model_error_of, smooth_noise
+from feeddrive.diagnosis.heat.heat_evidence import (
+    HEAT_BLOCK,
+    MODEL_ERROR,
+    HeatEvidence,
+    fitted_rows,
+    model_error_of,
+    smooth_noise,
+)
 from feeddrive.diagnosis.heat.heat_prediction import wide_model, with_bodies_of
 from feeddrive.diagnosis.likelihood.predictor import Predictor
 from feeddrive.engine.program import StepReport
@@ -50,6 +57,15 @@ MOST_ROWS = 1200
 
 STILL = 300.0
 """Seconds in which a machine warms along a straight line: its time constants are longer than half an hour."""
+
+
+IN_UNIFORM_MOTION = (
+    "friction_deviation", "constant_force", "position_spring", "coulomb_asymmetry", "viscous_asymmetry",
+    "stribeck", "friction_vs_position", "lead_error_cumulative", "stiffness_deviation", "backlash",
+)  # fmt: skip
+"""Effects on motion that show at rows of uniform motion. Masses and delays show while accelerating, ripples need a row
+many times a turn, and a warming that knows no temperature (`thermal_growth`, `viscous_warmup`) stands in for the heat
+that is declared here."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,7 +119,9 @@ def prepare_warm(recording: Recording, plant: Plant, share: float) -> WarmEviden
         raise InputError("no log of motion and temperatures", recording.name, mend)
     log = warm_log(recording, plant.heat.ambient)
     kept = replace(log, uniform=_some(log.uniform))
-    with_air = recording if "ambient_temperature" in recording else _with_air(recording, log)
+    with_air = recording
+    if "ambient_temperature" not in recording:
+        with_air = replace(recording, channels={**recording.channels, "ambient_temperature": log.ambient})
     noise, missed = {}, {}
     for name in names:
         series = np.asarray(recording[name])
@@ -126,7 +144,7 @@ def prepare_warm(recording: Recording, plant: Plant, share: float) -> WarmEviden
         },
         noise={name: float(np.hypot(noise[name], missed[name])) for name in names},
         counted=kept.uniform,
-        fitted=time < share * time[-1] if share < 1 else np.ones(len(time), dtype=bool),
+        fitted=fitted_rows(time, share),
         edge=0.5 / log.step,
         block=HEAT_BLOCK,
         thinning=1,
@@ -145,10 +163,6 @@ def _some(rows: BoolArray) -> BoolArray:
     places = np.flatnonzero(rows)
     chosen[places[:: len(places) // MOST_ROWS + 1]] = True
     return chosen
-
-
-def _with_air(recording: Recording, log: WarmLog) -> Recording:
-    return replace(recording, channels={**recording.channels, "ambient_temperature": log.ambient})
 
 
 def _repeated(series: FloatArray, log: WarmLog) -> float:
@@ -171,15 +185,6 @@ def _repeated(series: FloatArray, log: WarmLog) -> float:
     if not found:
         raise InputError("too few strokes alike to tell the noise of a channel", "the log", "log some minutes of them")
     return float(np.sqrt(np.median(found)))
-
-
-IN_UNIFORM_MOTION = (
-    "friction_deviation", "constant_force", "position_spring", "coulomb_asymmetry", "viscous_asymmetry",
-    "stribeck", "friction_vs_position", "lead_error_cumulative", "stiffness_deviation", "backlash",
-)  # fmt: skip
-"""Effects on motion that show at rows of uniform motion. Masses and delays show while accelerating, ripples need a row
-many times a turn, and a warming that knows no temperature (`thermal_growth`, `viscous_warmup`) stands in for the heat
-that is declared here."""
 
 
 @dataclass

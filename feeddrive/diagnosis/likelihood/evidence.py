@@ -138,6 +138,7 @@ class AxisEvidence(Evidence):
         zero: table position where the motor angle is zero [m], for a chain that depends on it; 0 where it is not known.
         gains: channel to the gain of each frequency of its whole series, where the encoder's error shows in it.
         added: channel to the rms in the band that the encoder's error adds to its noise; as `gains`.
+        drawn: motions with the encoder's error once more; as `gains`.
         torque_rows: rows that the recorder writes a torque for, and the first row of one (`suspicion.logged_rows`);
             None where the torque is what the drive holds.
     """
@@ -148,6 +149,7 @@ class AxisEvidence(Evidence):
     zero: float = 0.0
     gains: dict[str, FloatArray] = field(default_factory=dict)
     added: dict[str, float] = field(default_factory=dict)
+    drawn: tuple[MotorMotion, ...] = ()
     torque_rows: tuple[int, int] | None = None
 
     def in_band(self, series: FloatArray) -> FloatArray:
@@ -257,6 +259,7 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
         zero,
         encoder.gains if encoder is not None else {},
         encoder.added if encoder is not None else {},
+        encoder.drawn if encoder is not None else (),
     )
 
 

@@ -3,7 +3,7 @@
 format = "feeddrive-measured/1"       # may be left out
 
 [[measured]]
-quantity = "axial_stiffness"          # see `measurable`
+quantity = "axial_stiffness"          # see below
 value = "191 N/µm"
 at = "464 mm"                         # table position; the middle of the stroke if left out
 tolerance = "3 %"                     # or in the unit of the value; two standard deviations; usual one if left out
@@ -15,6 +15,17 @@ value = "185 Hz"
 at = "464 mm"
 motor = "held"                        # or "free"
 mode = 1                              # may be left out
+
+| quantity | meaning | unit |
+|---|---|---|
+| axial_stiffness | force on the table over its displacement, motor held | N/m |
+| natural_frequency | of the `mode`-th mode, motor `held` or `free` | Hz |
+| drag_torque | half the difference of the motor torque between + and - at constant `velocity` | N m |
+| lost_motion | travel by which the table stays behind the motor's encoder after a reversal at `velocity` | m |
+| inertia_at_motor | everything that moves, seen at the motor | kg m^2 |
+
+The natural frequency counts a declared brake as what holds the motor. Lost motion is backlash and the wind-up by all
+declared friction together; the table stands still when it is read on both sides, as ISO 230-2 reads it.
 """
 
 from __future__ import annotations
@@ -31,12 +42,18 @@ from feeddrive.plant.analysis.steady import steady_motions
 from feeddrive.plant.analysis.stiffness_budget import stiffness_budget
 from feeddrive.plant.analysis.summary import summarise
 from feeddrive.plant.chain.resolution import FIRST, resolved_modes
-from feeddrive.plant.file.entries import Table, read_toml, whole_file
 from feeddrive.plant.plant import Plant
 from feeddrive.schema.measured import MEASURED
+from feeddrive.schema.table import Table, whole_file
+from feeddrive.schema.toml_text import read_toml
 from feeddrive.units.quantity import format_quantity, parse
 
 HELD, FREE = "held", "free"
+
+
+FORMAT = "feeddrive-measured/1"
+
+_KEYS = ("quantity", "value", "at", "tolerance", "source")
 
 
 @dataclass(frozen=True)
@@ -117,10 +134,6 @@ MEASURABLE: Mapping[str, Measurable] = {
 }
 """Quantity to what it is. The usual uncertainties: a straight line through force and displacement of a gauge of 1 µm, a
 hammer's spectrum of 1 Hz at 100 Hz, a drive's torque display, a dial gauge, a torque over an acceleration."""
-
-
-FORMAT = "feeddrive-measured/1"
-_KEYS = ("quantity", "value", "at", "tolerance", "source")
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,10 @@
-"""All that a diagnosis says about differences between its recordings, fitted and judged."""
+"""All that a diagnosis says about differences between its recordings, fitted and judged.
+
+What is other in a recording that was not fitted is stated beside the errors, which it never lowers. The fitted
+recordings are taken together with the judged ones, which may differ in one parameter after the other. What is found
+says why an error stays, and whether the effects carry once the levels of that recording are allowed for: an effect
+does not fail because the lubricant was warmer. The errors themselves are those of the plant as it was fitted.
+"""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ from feeddrive.effects.base import Effect
 from feeddrive.effects.chain.structural_mode import StructuralMode
 from feeddrive.effects.timing.drive_delay import DriveDelay
 from feeddrive.errors import InputError, ValidityWarning
-from feeddrive.plant.analysis.linear import INPUTS, OUTPUTS
+from feeddrive.plant.analysis.ode import INPUTS, OUTPUTS
 from feeddrive.plant.chain.resolution import resolved
 from feeddrive.plant.plant import Plant
 from feeddrive.recording.frequency_response import FrequencyResponse

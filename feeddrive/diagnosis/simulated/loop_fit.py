@@ -25,7 +25,7 @@ import numpy as np
 from feeddrive.diagnosis.likelihood.coordinates import read_coordinates, write_coordinates
 from feeddrive.diagnosis.simulated.loop_evidence import LoopEvidence
 from feeddrive.effects.base import Effect, Kind
-from feeddrive.engine.step.step_constants import SimulationError
+from feeddrive.engine.step.linear_part import SimulationError
 from feeddrive.plant.plant import Plant
 from feeddrive.simulate.controlled.sensitivity import simulate_sensitivity
 from feeddrive.typing import BoolArray, FloatArray

@@ -8,6 +8,10 @@ are fitted as before. Refined values are kept only where, on data not fitted,
 - no predicted channel's rms rises by more than two percent.
 
 Otherwise the values of the attribution stay, and the result says so.
+
+The error of a loop is that of what the plant does on its own, set-point given. Torque in shares of its rms; the table
+position in shares of the rms of the following error (recorded position less set-point, about its mean). Unfiltered,
+over the judged samples that the declared controller commanded.
 """
 
 from __future__ import annotations
@@ -53,6 +57,10 @@ Outcome = tuple[list[Judged], tuple[str, ...]]
 """Judged recordings, and what was re-homed."""
 
 Judge = Callable[[Search], Outcome]
+
+
+LoopErrors = dict[str, ErrorFigure]
+"""Channel to its simulation error, all judged recordings together."""
 
 
 @dataclass(frozen=True)
@@ -206,10 +214,6 @@ def _result(before: LoopErrors, attributed: LoopErrors, after: LoopErrors | None
 
 def _finite(*errors: LoopErrors) -> bool:
     return all(np.isfinite(error.rms) for each in errors for error in each.values())
-
-
-LoopErrors = dict[str, ErrorFigure]
-"""Channel to its simulation error, all judged recordings together."""
 
 
 def loop_errors(loops: Sequence[LoopEvidence], plants: Sequence[Plant]) -> LoopErrors:

@@ -11,6 +11,18 @@ from feeddrive.diagnosis.finding.scene import Scene
 from feeddrive.plant.analysis.stiffness_budget import static_stiffness
 from feeddrive.typing import FloatArray
 
+BINS = 60
+"""Bins along the stroke."""
+
+BINS_PER_TURN = 256
+"""Angle bins per revolution; the highest order is a quarter of it."""
+
+LEAST_PERIODS = 5
+"""Periods in the travel below which a sine is a trend over the stroke."""
+
+OVERSAMPLING = 8
+"""Zero padding, so that a peak is met to an eighth of the resolution."""
+
 
 def residual_force(scene: Scene, at: int) -> FloatArray:
     """Force that resists + motion beyond what is predicted [N], shape (n,), of the recording number `at`.
@@ -31,10 +43,6 @@ def residual_forces(scene: Scene, at: int) -> list[FloatArray]:
     if "table_position" in residual and scene.plant.chain.elastic:
         forces.append(-static_stiffness(scene.plant, scene.plant.middle) * residual["table_position"])
     return forces
-
-
-BINS = 60
-"""Bins along the stroke."""
 
 
 @dataclass(frozen=True)
@@ -97,18 +105,8 @@ def bump_of(curve: PositionCurve, count: int = 3) -> list[tuple[float, float, fl
     return chosen
 
 
-BINS_PER_TURN = 256
-"""Angle bins per revolution; the highest order is a quarter of it."""
-
-LEAST_PERIODS = 5
-"""Periods in the travel below which a sine is a trend over the stroke."""
-
-OVERSAMPLING = 8
-"""Zero padding, so that a peak is met to an eighth of the resolution."""
-
-
 def strongest_orders(
-    angle: FloatArray, residual: FloatArray, highest: float = BINS_PER_TURN / 4, count: int = 3
+    angle: FloatArray, residual: FloatArray, highest: float = BINS_PER_TURN / 4, count: int = 3, lowest: float = 0.0
 ) -> list[float]:
     """Orders per revolution of the largest peaks.
 
@@ -119,6 +117,7 @@ def strongest_orders(
         residual: shape (n,).
         highest: order up to which peaks count.
         count: how many.
+        lowest: order from which peaks count.
 
     Returns:
         Orders, the strongest first; empty if the angle covers less than two revolutions.
@@ -137,7 +136,7 @@ def strongest_orders(
     padded = OVERSAMPLING * size
     spectrum = np.abs(np.fft.rfft(even * np.hanning(size), padded))
     orders = np.arange(len(spectrum)) * BINS_PER_TURN / padded
-    allowed = (orders > LEAST_PERIODS / turns) & (orders < min(highest, BINS_PER_TURN / 4))
+    allowed = (orders > max(lowest, LEAST_PERIODS / turns)) & (orders < min(highest, BINS_PER_TURN / 4))
     spectrum = np.where(allowed, spectrum, 0.0)
     peaks, _ = find_peaks(spectrum, distance=OVERSAMPLING)
     best = peaks[np.argsort(spectrum[peaks])[::-1][:count]]
@@ -149,3 +148,49 @@ def sine_at(angle: FloatArray, residual: FloatArray, order: float) -> tuple[floa
     columns = np.column_stack([np.sin(order * angle), np.cos(order * angle), np.ones(len(angle))])
     a, b, _ = np.linalg.lstsq(columns, residual, rcond=None)[0]
     return float(np.hypot(a, b)), float(np.arctan2(b, a))
+
+
+@dataclass(frozen=True)
+class Sine:
+    """A sine over an angle: residual = amplitude sin(order angle + phase), and the share of the square it takes."""
+
+    order: float
+    amplitude: float
+    phase: float
+    share: float
+
+
+def strongest_sines(
+    angle: FloatArray, residual: FloatArray, speed: FloatArray, edge: float, count: int = 3
+) -> list[Sine]:
+    """Sines that take most of a residual, each looked for at the samples at which it is in the band.
+
+    An order n shows where n |speed| is below the edge: a high one at low speed alone, where the fast strokes, in which
+    it is filtered off, or sampled as another one, are noise. So octaves of orders are looked for, each where the speed
+    is so low that the whole octave is in the band; what each takes of the square is compared (of noise the best takes
+    as much of few samples as of many).
+
+    Args:
+        angle: shape (n,) [rad].
+        residual: shape (n,).
+        speed: rate of the angle, (n,) [rad/s].
+        edge: of the band [Hz].
+        count: how many.
+
+    Returns:
+        Sines, the one that takes most first.
+    """
+    fastest, square = float(np.max(np.abs(speed), initial=0.0)), float(residual @ residual)
+    if fastest == 0.0 or square == 0.0:
+        return []
+    found, lowest, highest = [], 0.0, 2 * np.pi * edge / fastest
+    while lowest < BINS_PER_TURN / 4:
+        slow = np.abs(speed) * highest <= 2 * np.pi * edge * (1 + 1e-9)
+        if not slow.any():
+            break
+        there, left = angle[slow], residual[slow]
+        for order in strongest_orders(there, left, highest, count, lowest):
+            amplitude, phase = sine_at(there, left, order)
+            found.append(Sine(order, amplitude, phase, 0.5 * amplitude**2 * len(left) / square))
+        lowest, highest = highest, 2 * highest
+    return sorted(found, key=lambda one: -one.share)[:count]

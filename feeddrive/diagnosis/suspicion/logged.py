@@ -18,9 +18,9 @@ from feeddrive.diagnosis.certainty.uncertainty import Interval
 from feeddrive.diagnosis.likelihood.slow_rows import is_slow
 from feeddrive.effects.base import Effect
 from feeddrive.effects.timing.channel_delay import ChannelDelay
-from feeddrive.plant.file.entries import Origins, Table
 from feeddrive.plant.plant import DeclaredCascade, Plant
 from feeddrive.recording import Recording
+from feeddrive.schema.table import Origins, Table
 from feeddrive.simulate.scenario.scenario_controller import read_cascade
 
 FASTEST_LOG = 0.9e-3

@@ -21,6 +21,32 @@ FEWEST = 60
 """Samples below which a residual is not taken apart."""
 
 
+UNITS = {
+    "time": "s",
+    "table_position": "m",
+    "table_velocity": "m/s",
+    "table_acceleration": "m/s^2",
+    "predicted_torque": "N m",
+    "motor_angle": "rad",
+    "travel_since_reversal": "m",
+    "screw_speed": "rad/s",
+    "nut_rise": "K",
+}
+"""SI unit of a variable."""
+
+PERIOD_NODES = 24
+"""Breakpoints of one period; a sine between them is off by 0.9 % of its amplitude."""
+
+POWER_NODES = (0.05, 0.2, 0.4, 0.6, 0.8, 1.0)
+"""Breakpoints of a law of powers, as shares of the largest value."""
+
+WHOLE = 0.01
+"""Distance from a whole number of periods a revolution within which a term is locked to the shaft."""
+
+BINS = 40
+"""Bins of the figure."""
+
+
 @dataclass(frozen=True)
 class Analysis:
     """What one channel's residual follows.
@@ -141,32 +167,6 @@ def _counted_on(views: Sequence[View]) -> IntegerArray:
         blocks.append(first + view.blocks)
         first += int(view.blocks.max(initial=0)) + 1
     return np.concatenate(blocks)
-
-
-UNITS = {
-    "time": "s",
-    "table_position": "m",
-    "table_velocity": "m/s",
-    "table_acceleration": "m/s^2",
-    "predicted_torque": "N m",
-    "motor_angle": "rad",
-    "travel_since_reversal": "m",
-    "screw_speed": "rad/s",
-    "nut_rise": "K",
-}
-"""SI unit of a variable."""
-
-PERIOD_NODES = 24
-"""Breakpoints of one period; a sine between them is off by 0.9 % of its amplitude."""
-
-POWER_NODES = (0.05, 0.2, 0.4, 0.6, 0.8, 1.0)
-"""Breakpoints of a law of powers, as shares of the largest value."""
-
-WHOLE = 0.01
-"""Distance from a whole number of periods a revolution within which a term is locked to the shaft."""
-
-BINS = 40
-"""Bins of the figure."""
 
 
 def table_of(found: Found, unit: str) -> Table:

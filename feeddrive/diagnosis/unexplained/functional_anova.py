@@ -7,6 +7,10 @@ at a time while they lower the error on blocks of time that were not fitted (fol
 that cannot be distinguished the simplest is taken, a function of one variable before a product.
 Sources: Hoeffding, Ann. Math. Stat. 19 (1948) 293; Hooker, J. Comput. Graph. Stat. 16 (2007) 709 (dependent variables);
 Roberts et al., Ecography 40 (2017) 913 (blocks).
+
+What a fold's own blocks alone tell of a term is drawn to the prior as in `cross_validation`: the term is
+absent, give or take its size. For linear columns both are one: with y = r + J c the fit without the fold is
+(H - H_k + P)^-1 (J'y - J_k'y_k).
 """
 
 from __future__ import annotations
@@ -33,6 +37,10 @@ TIE = 0.05
 
 COUNT = 2.0
 """Factor in columns by which a term is simpler."""
+
+
+RIDGE = 1e-8
+"""Ridge for columns of length one: settles tables whose hats add up to another column, and moves no value."""
 
 
 @dataclass(frozen=True)
@@ -138,10 +146,6 @@ def _needed(sums: Sums, chosen: list[Term], new: Term) -> list[Term]:
         if not _pays(sums, sums.compared([*rest, new], [*kept, new]), [*rest, new]):
             kept = rest
     return kept
-
-
-RIDGE = 1e-8
-"""Ridge for columns of length one: settles tables whose hats add up to another column, and moves no value."""
 
 
 @dataclass(frozen=True)

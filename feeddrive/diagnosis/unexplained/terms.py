@@ -20,6 +20,30 @@ HARMONICS = 3
 """Sines of a periodic term: the order itself, twice and three times it."""
 
 
+NODES = (8, 16, 32, 64)
+"""Breakpoints tried over the stroke."""
+
+SPEEDS = ((0.05, 0.2, 0.5, 1.0), (0.01, 0.03, 0.1, 0.2, 0.35, 0.5, 0.75, 1.0))
+"""Breakpoints over the velocity, either side of rest, as shares of the highest."""
+
+SECONDS_A_NODE = 2.0
+"""Time between breakpoints of a trend [s], four blocks, so that a block left out is spanned by its neighbours."""
+
+STEPS = 32
+"""Moments at which a step is tried."""
+
+LEAST_TURNS = 2.0
+"""Revolutions below which position and angle are one."""
+
+SINES = 3
+"""Peaks of the periodogram that are tried."""
+
+FEW = 20
+"""Samples that a breakpoint must see."""
+
+Values = dict[str, FloatArray]
+
+
 class Form(StrEnum):
     """What kind of function a term is."""
 
@@ -99,30 +123,6 @@ def hats(at: FloatArray, nodes: tuple[float, ...]) -> FloatArray:
     result[rows, left] = 1 - share
     result[rows, left + 1] += share
     return result
-
-
-NODES = (8, 16, 32, 64)
-"""Breakpoints tried over the stroke."""
-
-SPEEDS = ((0.05, 0.2, 0.5, 1.0), (0.01, 0.03, 0.1, 0.2, 0.35, 0.5, 0.75, 1.0))
-"""Breakpoints over the velocity, either side of rest, as shares of the highest."""
-
-SECONDS_A_NODE = 2.0
-"""Time between breakpoints of a trend [s], four blocks, so that a block left out is spanned by its neighbours."""
-
-STEPS = 32
-"""Moments at which a step is tried."""
-
-LEAST_TURNS = 2.0
-"""Revolutions below which position and angle are one."""
-
-SINES = 3
-"""Peaks of the periodogram that are tried."""
-
-FEW = 20
-"""Samples that a breakpoint must see."""
-
-Values = dict[str, FloatArray]
 
 
 def terms_of(views: Sequence[View]) -> list[Term]:

@@ -2,6 +2,18 @@
 
 No variable holds what is being explained: motion and load are those of the plant driven by the measured motor, not the
 recorded torque nor the recorded table position.
+
+Whether anything is left above the noise, and how sure that is, says `excess`:
+
+    excess = (rms^2 - floor^2) / rms^2
+
+The floor is the sensor noise in the band as `band.white_noise` reads it: the tenth part of the quietest blocks. That
+quantile lies below the mean by z_0.1 times the scatter of a block's level, which for fourth differences of white noise
+is 5.25 / m of the square (m samples a block, 5.25 = 2 sum R_k^2 / R_0^2); here it is put right, and its own scatter is
+counted. A quantised motor angle moves the predicted table by up to r q / sqrt(12), more or less of which is in the band
+with the speed: half of its square is taken for noise, and half for doubt. Where the steps matter (`encoder_error`) what
+they add is drawn, and counted as noise and as doubt. The rms scatters with the blocks of time,
+which counts correlation inside them.
 """
 
 from __future__ import annotations
@@ -22,6 +34,13 @@ from feeddrive.typing import BoolArray, FloatArray, IntegerArray
 
 SLOW = 1e-3
 """Share of the highest speed at which a direction turns, where the plant declares no guide friction that says."""
+
+
+SCATTER = 5.25
+"""Variance of a block's mean square of fourth differences of white noise, over its square, times the samples."""
+
+QUANTILE, LOWER, DENSITY = 0.1, 1.2816, 0.1755
+"""Quantile that is read, its distance from the mean in standard deviations, and the normal density there."""
 
 
 @dataclass(frozen=True)
@@ -127,13 +146,6 @@ def travel_since_reversal(position: FloatArray, direction: FloatArray) -> FloatA
     origin = np.maximum.accumulate(np.where(turned, np.arange(len(way)), 0))
     distance: FloatArray = np.abs(position - position[origin])
     return distance
-
-
-SCATTER = 5.25
-"""Variance of a block's mean square of fourth differences of white noise, over its square, times the samples."""
-
-QUANTILE, LOWER, DENSITY = 0.1, 1.2816, 0.1755
-"""Quantile that is read, its distance from the mean in standard deviations, and the normal density there."""
 
 
 @dataclass(frozen=True)

@@ -18,14 +18,14 @@ from feeddrive.interface.servo import Servo, cascade_for
 from feeddrive.interface.shown import Listing, Shown, finite, write_figures, write_json
 from feeddrive.metrology.response import Response as Measured
 from feeddrive.metrology.response import recorded_response
-from feeddrive.plant.analysis.linear import INPUTS, OUTPUTS
+from feeddrive.plant.analysis.ode import INPUTS, OUTPUTS
 from feeddrive.plant.chain.resolution import resolved, resolved_modes
-from feeddrive.plant.file.entries import nearest
 from feeddrive.plant.plant import Plant
 from feeddrive.recording.frequency_response import FrequencyResponse
 from feeddrive.recording.recording import Recording
 from feeddrive.report.figures.figure_bode import magnitude_unit
 from feeddrive.report.words.words import chain_remark
+from feeddrive.schema.toml_text import nearest
 from feeddrive.servo.loop_response import loops_of, refuse_unstable_case
 from feeddrive.servo.mechanics_response import UNITS, Case, refuse_no_range
 from feeddrive.servo.resonances import on_curve

@@ -16,7 +16,7 @@ from feeddrive.interface.shown import Listing, Shown
 from feeddrive.parts.catalogue.part_files import KINDS, CataloguePart, catalogue
 from feeddrive.plant.file.draft_text import draft_text
 from feeddrive.plant.file.drafting import Wishes, drafted
-from feeddrive.plant.file.entries import nearest_choice
+from feeddrive.schema.toml_text import nearest_choice
 from feeddrive.units.quantity import parse
 
 _WANTED: dict[str, dict[str, tuple[str, str]]] = {

@@ -13,7 +13,7 @@ from feeddrive.errors import InputError
 from feeddrive.export.point import export_point
 from feeddrive.interface.quantities import Quantity, quantities, si
 from feeddrive.interface.servo import Servo, cascade_for
-from feeddrive.plant.analysis.linear import INPUTS, OUTPUTS
+from feeddrive.plant.analysis.ode import INPUTS, OUTPUTS
 from feeddrive.plant.plant import Plant
 from feeddrive.servo import state_feedback as observed
 from feeddrive.servo.cascade import Cascade, Feedback, FeedForward

@@ -14,7 +14,7 @@ from feeddrive.interface.axis import Axis
 from feeddrive.interface.shown import Listing, Shown, write_figures
 from feeddrive.metrology.run_metrics import run_metrics
 from feeddrive.output_folder import output_folder
-from feeddrive.plant.file.entries import nearest
+from feeddrive.schema.toml_text import nearest
 from feeddrive.simulate.sweep.sweep import Sweep as FinishedSweep
 from feeddrive.simulate.sweep.sweep import run_sweep
 from feeddrive.simulate.sweep.sweep_dask import on_cluster

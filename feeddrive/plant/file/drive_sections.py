@@ -20,15 +20,13 @@ from typing import TypeVar
 
 from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.parts.bearings.supports import ScrewSupports, Support, SupportBearing
-from feeddrive.parts.coupling import Coupling
-from feeddrive.parts.material import STEEL, ShaftMaterial
+from feeddrive.parts.coupling import Coupling, Transmission
 from feeddrive.parts.motor import HoldingBrake, Motor
-from feeddrive.parts.screw.ball_screw import ScrewShaft
+from feeddrive.parts.screw.ball_screw import STEEL, ScrewShaft, ShaftMaterial
 from feeddrive.parts.screw.nut import CATALOGUE_VALUES, Nut, stiffness_at_preload
 from feeddrive.parts.screw.screw_drive import BallScrewDrive
-from feeddrive.parts.screw.transmission import Transmission
 from feeddrive.parts.values import PartValue, part_values
-from feeddrive.plant.file.entries import Table
+from feeddrive.schema.table import Table
 
 Made = TypeVar("Made")
 

@@ -15,11 +15,10 @@ from typing import Any
 from feeddrive.effects.base import Effect, Parameter
 from feeddrive.effects.catalogue import EFFECTS, THERMAL_EFFECTS
 from feeddrive.parts.guide.guide_geometry import GUIDE_VALUES
-from feeddrive.parts.material import STEEL
+from feeddrive.parts.screw.ball_screw import STEEL
 from feeddrive.parts.values import PartValue
 from feeddrive.plant.chain.chain import CHAINS
 from feeddrive.plant.file.drive_sections import BEARING_VALUES, PART_VALUES
-from feeddrive.plant.file.entries import Table, whole_file
 from feeddrive.plant.file.named_parts import with_named_parts
 from feeddrive.plant.file.ratings import RATINGS
 from feeddrive.schema.controller import DECLARED_CONTROLLER
@@ -27,6 +26,7 @@ from feeddrive.schema.heat import THERMAL
 from feeddrive.schema.key import SOURCE, Key, Kind
 from feeddrive.schema.key import keys as keys_of
 from feeddrive.schema.section import Section, keyed, sections
+from feeddrive.schema.table import Table, whole_file
 from feeddrive.units.quantity import format_quantity
 
 OF_PARTS = "in a machine described by its parts, with [support], [bearing.near] and [nut]"

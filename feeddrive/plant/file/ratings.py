@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 from feeddrive.errors import InputError
 from feeddrive.parts.values import PartValue, check_values, part_values
 from feeddrive.plant.file.drive_sections import BEARING_RATING, BEARING_VALUES, PART_VALUES
-from feeddrive.plant.file.entries import Table
 from feeddrive.plant.plant import Datum
+from feeddrive.schema.table import Table
 
 RATINGS: dict[str, tuple[PartValue, ...]] = {
     "motor": part_values("""
@@ -89,3 +92,8 @@ def first_nut_position(top: Table) -> float:
     if "first_nut_position" not in table.entries:
         return 0.0
     return table.quantity("first_nut_position", "m", "first_nut_position")
+
+
+def declares_heat_alone(entries: Mapping[str, Any]) -> bool:
+    """Whether a plant file has a thermal section and no structure: no chain can be made of it."""
+    return "thermal" in entries and "structure" not in entries

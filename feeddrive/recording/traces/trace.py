@@ -141,7 +141,7 @@ def whole_rows(lines: Sequence[str], separator: str | None, width: int) -> Float
     if not lines or not lines[0].strip():  # numpy warns where there is nothing but blank lines
         return None
     if separator is not None and lines[0].rstrip().endswith(separator):
-        rows = (line.rstrip().removesuffix(separator) for line in lines)
+        rows: Iterator[str] = (line.rstrip().removesuffix(separator) for line in lines)
     else:
         rows = iter(lines)
     try:

@@ -26,7 +26,7 @@ from feeddrive.report.figures.drawing import (
 )
 from feeddrive.report.thinning import envelope
 from feeddrive.report.words.people import significant, with_unit
-from feeddrive.simulate.scenario.scenario_result import SERIES, ScenarioResult
+from feeddrive.simulate.scenario.scenario import SERIES, ScenarioResult
 from feeddrive.typing import ComplexArray, FloatArray
 
 if TYPE_CHECKING:

@@ -206,7 +206,7 @@ def _lost(carriages: Carriages) -> float:
     """Vertical load of one carriage at which its preload is lost [N]; 0 without preload."""
     one = carriages.one
     if isinstance(one, RollingCarriage):
-        from feeddrive.parts.guide.guide_stiffness import unloading_force
+        from feeddrive.parts.guide.guide_equilibrium import unloading_force
 
         return unloading_force(one.guide)
     return OPENING * one.preload

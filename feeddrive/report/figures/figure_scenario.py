@@ -23,7 +23,7 @@ from feeddrive.report.figures.figure_metrology import (
 )
 from feeddrive.report.thinning import envelope
 from feeddrive.report.words.people import scale_for_signal
-from feeddrive.simulate.scenario.scenario_result import ScenarioResult
+from feeddrive.simulate.scenario.scenario import ScenarioResult
 from feeddrive.typing import FloatArray
 
 if TYPE_CHECKING:

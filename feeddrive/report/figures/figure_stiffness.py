@@ -10,8 +10,8 @@ import numpy as np
 from feeddrive.errors import InputError
 from feeddrive.parts.combined_stiffness import CombinedStiffness, Deformation, combined_stiffness, stiffness_along
 from feeddrive.parts.screw.screw_drive import BallScrewDrive
-from feeddrive.plant.analysis.held_frequency import held_frequency
 from feeddrive.plant.analysis.mode_map import ModeMap, mode_map
+from feeddrive.plant.analysis.modes import held_frequency
 from feeddrive.plant.plant import Plant
 from feeddrive.report.figures.drawing import AFTER, BEFORE, ReportFigure, dress, legend_above, new_figure
 from feeddrive.report.words.people import fixed, significant, with_unit

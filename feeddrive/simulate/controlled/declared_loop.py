@@ -39,9 +39,9 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from feeddrive.errors import InputError
-from feeddrive.plant.file.entries import Origins, Table
 from feeddrive.plant.plant import DeclaredCascade, Plant, PositionVelocityController
 from feeddrive.recording import Recording
+from feeddrive.schema.table import Origins, Table
 from feeddrive.servo.cascade import Feedback
 from feeddrive.servo.cascade_function import cascade_controller
 from feeddrive.servo.sampled_plant import SampledController
