@@ -30,6 +30,7 @@ from feeddrive.metrology.positioning import EDITION
 from feeddrive.recording import Recording
 from feeddrive.recording.channels import CHANNEL_UNITS
 from feeddrive.recording.files.opening import first_bytes, head_of
+from feeddrive.recording.traces.opened import could_be_trace
 from feeddrive.units.quantity import format_quantity
 
 if TYPE_CHECKING:
@@ -173,10 +174,11 @@ class _Wishes:
 
 def _table(path: Path, decimal: str | None) -> Readings | None:
     """The table of a file; None where it holds channels over time, or is no table of numbers at all."""
-    if path.is_file() and is_laser_file(head_of(first_bytes(path))):
+    start = first_bytes(path) if path.is_file() else b""
+    if is_laser_file(head_of(start)):
         return read_readings(path, decimal)
-    if path.suffix.lower() not in (".csv", ".gz", ".txt", ""):
-        return None
+    if could_be_trace(start) or path.suffix.lower() not in (".csv", ".gz", ".txt", ""):
+        return None  # its own reader knows it
     try:
         readings = read_readings(path, decimal)
     except InputError:
