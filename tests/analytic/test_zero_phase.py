@@ -1,4 +1,4 @@
-"""The filter of the band, the lag of a channel and the gains of frequencies beside what scipy and numpy make of them."""
+"""The filter of the band, the lag of a channel and the gains of frequencies beside those of scipy and numpy."""
 
 from __future__ import annotations
 

@@ -77,7 +77,7 @@ def _centred(view: View) -> FloatArray:
 
 
 def _dependences(parts: Decomposition, judged: Sequence[View], unit: str, radius: float) -> list[Dependence]:
-    components = {one.term: [view.columns([one.term]) @ one.values for view in judged] for one in parts.found}
+    components = {one.term: [view.columns(one.term) @ one.values for view in judged] for one in parts.found}
     residual = [_centred(view) for view in judged]
     left = [_about_mean(e - _sum(components, i)) for i, e in enumerate(residual)]
     whole = sum(float(np.sum(_about_mean(e) ** 2)) for e in residual)

@@ -24,7 +24,7 @@ from feeddrive.diagnosis.likelihood.fit import Problem, fit
 from feeddrive.diagnosis.likelihood.folds import block_numbers
 from feeddrive.diagnosis.unexplained.carry import Judgement, carried_result, with_carried
 from feeddrive.diagnosis.unexplained.floor import excess
-from feeddrive.diagnosis.unexplained.trial import analysis_of, finer_forms, tried
+from feeddrive.diagnosis.unexplained.trial import analyses_of, finer_forms, tried
 from feeddrive.diagnosis.unexplained.unexplained_result import Instead
 from feeddrive.diagnosis.unexplained.view import views_of
 from feeddrive.effects.base import Effect
@@ -111,7 +111,7 @@ def table_against(
     if not problem.predictor.of_motion or any(effect.name not in EFFECTS for effect in effects):
         return None
     bare = [replace(j, after=j.before) for j in judged]
-    analyses = {channel.name: analysis_of(problem, (), bare, channel) for channel in channels}
+    analyses = analyses_of(problem, (), bare, channels)
     for channel in sorted(channels, key=lambda one: one.name != "motor_torque"):
         for found in analyses[channel.name].found[:1]:
             forms = [found, *finer_forms(found, analyses)]
@@ -136,8 +136,8 @@ def _rival(
 def _is_left(problem: Problem, judged: Sequence[Judged]) -> bool:
     """Whether any channel stands above the noise with what was found."""
     plants = [(j.after, j.evidence) for j in judged]
-    for name in dict.fromkeys(name for j in judged for name in j.evidence.channels):
-        views = views_of(problem, plants, name, True)
+    names = list(dict.fromkeys(name for j in judged for name in j.evidence.channels))
+    for name, views in views_of(problem, plants, names, True).items():
         residuals = [view.residual[view.rows] for view in views]
         about = [r - r.mean() if name in v.evidence.floating else r for r, v in zip(residuals, views, strict=True)]
         if excess(about, [view.blocks for view in views], [view.floor for view in views]).is_left:

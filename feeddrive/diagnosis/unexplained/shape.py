@@ -150,7 +150,7 @@ def seen_on(views: Sequence[View], found: Found, left: FloatArray) -> Seen:
     factor = np.ones(len(at))
     if term.times:
         factor = np.concatenate([view.values[term.times][view.rows] for view in views])
-    own = np.vstack([view.columns([term]) for view in views]) @ found.values
+    own = np.vstack([view.columns(term) for view in views]) @ found.values
     low, high = (float(end) for end in np.quantile(at, [0.002, 0.998]))
     edges = np.linspace(low, high, BINS + 1)
     if term.variable == "travel_since_reversal":

@@ -11,7 +11,7 @@ from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.diagnosis.unexplained.analysis import Analysis
 from feeddrive.diagnosis.unexplained.carry import Judgement, carried_result, joint_step, judged_with, with_carried
 from feeddrive.diagnosis.unexplained.instead import instead_of
-from feeddrive.diagnosis.unexplained.trial import analysis_of, finer_forms, tried
+from feeddrive.diagnosis.unexplained.trial import analyses_of, finer_forms, tried
 from feeddrive.diagnosis.unexplained.unexplained_result import Above, Dependence, Instead, Unexplained
 from feeddrive.diagnosis.unexplained.unexplained_words import rest_in_words, term_in_words
 from feeddrive.effects.base import Effect
@@ -47,13 +47,14 @@ def explain_rest(
         judged: recordings that were not fitted.
         channels: errors with the named effects.
     """
-    first = {channel.name: analysis_of(problem, effects, judged, channel) for channel in channels}
+    first = analyses_of(problem, effects, judged, channels)
     carried: list[tuple[str, Judgement]] = []
     reasons: dict[str, list[str]] = {channel.name: [] for channel in channels}
     for channel in sorted(channels, key=lambda one: one.name != "motor_torque"):
         own = [judgement.effect for _, judgement in carried]
         now = with_carried(judged, *own)
-        analysis = analysis_of(problem, (*effects, *own), now, channel) if own else first[channel.name]
+        analyses = analyses_of(problem, (*effects, *own), now, [channel]) if own else first
+        analysis = analyses[channel.name]
         for found, seen in zip(analysis.found, analysis.dependences, strict=True):
             forms = [found, *finer_forms(found, first)]
             judgement = tried(problem, effects, judged, carried, forms, channel)

@@ -20,9 +20,6 @@ from feeddrive.diagnosis.unexplained.term import Term
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import BoolArray, FloatArray, IntegerArray
 
-MOST_COLUMNS = 16
-"""Columns that are filtered at a time, which bounds the memory of long recordings."""
-
 SLOW = 1e-3
 """Share of the highest speed at which a direction turns, where the plant declares no guide friction that says."""
 
@@ -38,6 +35,7 @@ class View:
         rows: samples that count, thinned to those that carry what is in the band, (n,).
         values: variable to its series, (n,), SI.
         floor: of the noise.
+        shown: terms to their columns in the band, thinned; the channels of a recording share them.
     """
 
     evidence: Evidence
@@ -46,20 +44,14 @@ class View:
     rows: BoolArray
     values: Mapping[str, FloatArray]
     floor: Floor
+    shown: dict[Term, FloatArray]
 
-    def columns(self, terms: Sequence[Term]) -> FloatArray:
-        """Columns of terms as the recording would show them: in the band, at the rows that count, (m, sum of k)."""
-        parts: list[FloatArray] = []
-        waiting: list[FloatArray] = []
-        for term in terms:
-            waiting.append(term.columns(self.values))
-            if sum(part.shape[1] for part in waiting) >= MOST_COLUMNS or term is terms[-1]:
-                parts.append(self._filtered(np.hstack(waiting)))
-                waiting = []
-        return np.hstack(parts)
-
-    def _filtered(self, raw: FloatArray) -> FloatArray:
-        return self.evidence.in_band(raw)[self.rows]
+    def columns(self, term: Term) -> FloatArray:
+        """Columns of a term as the recording would show them: in the band, at the rows that count, (m, k)."""
+        if term not in self.shown:
+            band, comb = self.evidence.in_band, slice(None, None, self.evidence.thinning)
+            self.shown[term] = np.column_stack([band(column)[comb] for column in term.columns(self.values).T])
+        return self.shown[term][self.rows[:: self.evidence.thinning]]
 
     @property
     def blocks(self) -> IntegerArray:
@@ -73,27 +65,32 @@ class View:
 
 
 def views_of(
-    problem: Problem, plants: Sequence[tuple[Plant, Evidence]], channel: str, judged: bool
-) -> tuple[View, ...]:
-    """Views of one channel of those recordings that have it, at the fitted or at the judged samples.
+    problem: Problem, plants: Sequence[tuple[Plant, Evidence]], channels: Sequence[str], judged: bool
+) -> dict[str, tuple[View, ...]]:
+    """Views of channels, of those recordings that have them, at the fitted or at the judged samples.
 
     Args:
         problem: whose predictor is used.
         plants: for each recording the plant that predicts it, and the recording.
-        channel: name.
+        channels: names.
         judged: whether the judged samples count, or else the fitted ones.
     """
-    views = []
+    views: dict[str, list[View]] = {channel: [] for channel in channels}
     for plant, evidence in plants:
-        if channel not in evidence.channels:
-            continue
         predicted = problem.predictor.predict(plant, evidence)
-        residual = evidence.measured[channel] - predicted[channel]
-        rows = evidence.thinned(evidence.judged_rows if judged else evidence.fit_rows) & np.isfinite(residual)
-        radius = plant.chain.motor_radius if channel == "table_position" else 0.0
         values = variables_of(problem, plant, evidence, predicted)
-        views.append(View(evidence, channel, residual, rows, values, noise_floor(evidence, channel, radius)))
-    return tuple(views)
+        thinned = evidence.thinned(evidence.judged_rows if judged else evidence.fit_rows)
+        shown: dict[Term, FloatArray] = {}
+        for channel in channels:
+            if channel not in evidence.channels:
+                continue
+            residual = evidence.measured[channel] - predicted[channel]
+            radius = plant.chain.motor_radius if channel == "table_position" else 0.0
+            floor = noise_floor(evidence, channel, radius)
+            views[channel].append(
+                View(evidence, channel, residual, thinned & np.isfinite(residual), values, floor, shown)
+            )
+    return {channel: tuple(own) for channel, own in views.items()}
 
 
 def variables_of(
@@ -154,7 +151,7 @@ def sample_of(views: Sequence[View], least: float) -> Sample:
         residual,
         np.concatenate(blocks),
         (owner[:, None] == np.arange(len(views))).astype(float),
-        lambda terms: np.vstack([view.columns(terms) for view in views]),
+        lambda term: np.vstack([view.columns(term) for view in views]),
         float(np.average(floors, weights=counts)),
         least,
     )
