@@ -58,3 +58,13 @@ def test_highest_peaks_are_those_of_scipy() -> None:
         spectrum = np.abs(np.convolve(DRAW.standard_normal(2000), np.ones(5)))
         peaks, _ = signal.find_peaks(spectrum, distance=OVERSAMPLING)
         assert _highest_peaks(spectrum, 3) == list(peaks[np.argsort(spectrum[peaks])[::-1][:3]])
+
+
+@pytest.mark.parametrize("every", [2, 3, 4, 40])
+@pytest.mark.parametrize("count", [PADDING + 1, 1000, 20011])
+def test_filter_gives_some_samples_alone(every: int, count: int) -> None:
+    series = np.cumsum(DRAW.standard_normal(count))
+    whole = zero_phase(series, 103.0, 2000.0)
+    # both passes are sums of some hundred products
+    allowed = 1000 * EPS * float(np.abs(series).max())
+    assert np.abs(zero_phase(series, 103.0, 2000.0, every) - whole[::every]).max() < allowed

@@ -12,6 +12,7 @@ import numpy as np
 from feeddrive.diagnosis.likelihood.band import END_CUT, Band, comparison_band, held, sensor_noise
 from feeddrive.diagnosis.likelihood.encoder_error import Weighing, encoder_error
 from feeddrive.diagnosis.likelihood.slow_rows import is_slow, known_motion, refuse_unknown_motion, sentence
+from feeddrive.diagnosis.likelihood.zero_phase import zero_phase
 from feeddrive.diagnosis.suspicion.channel_timing import lagging
 from feeddrive.diagnosis.suspicion.flawed_rows import refuse_little_left, sound_rows, without_copied_position
 from feeddrive.diagnosis.suspicion.torque_channel import with_torque
@@ -105,6 +106,10 @@ class Evidence:
         """A series, (n,), as it shows in the comparison."""
         return series
 
+    def thinned_band(self, series: FloatArray) -> FloatArray:
+        """Every `thinning`-th sample of a series, (n,), as it shows in the comparison."""
+        return series[:: self.thinning]
+
     def known_to(self, name: str) -> float:
         """Rms of what the sensors add to a channel in the band."""
         return self.noise[name]
@@ -153,6 +158,10 @@ class AxisEvidence(Evidence):
     def in_band(self, series: FloatArray) -> FloatArray:
         """A series or columns, (n,), in the band of the comparison."""
         return self.band.filter(series)
+
+    def thinned_band(self, series: FloatArray) -> FloatArray:
+        """Every `thinning`-th sample of a series, (n,), in the band of the comparison."""
+        return zero_phase(series, self.band.edge, self.band.sample_rate, self.thinning)
 
     def known_to(self, name: str) -> float:
         """Rms of what sensor and encoder add to a channel in the band."""

@@ -34,7 +34,7 @@ PADDING = 3 * (ORDER + 1)
 """Samples by which the ends are continued, as `scipy.signal.sosfiltfilt` takes them."""
 
 LENGTH = 32
-"""Samples of a block: the matrix stays in the processor's cache, and blocks are few."""
+"""Least samples of a block: the matrix stays in the processor's cache, and blocks are few."""
 
 FORGOTTEN = 1e-18
 """Share of a pole's number below which it adds nothing any more."""
@@ -42,12 +42,12 @@ FORGOTTEN = 1e-18
 
 @dataclass(frozen=True)
 class _Blocks:
-    """Matrices of a filter for blocks of `LENGTH` samples.
+    """Matrices of a filter for blocks of L samples of which it gives some, l.
 
     Attributes:
         poles: of the upper half plane, (ORDER / 2,).
-        within: input of a block to its output, then to real and imaginary part of what each pole adds, (L, L + ORDER).
-        after: real and imaginary part of the poles' numbers to the output of a block, (ORDER, L).
+        within: input of a block to its output, then to real and imaginary part of what each pole adds, (L, l + ORDER).
+        after: real and imaginary part of the poles' numbers to the output of a block, (ORDER, l).
     """
 
     poles: ComplexArray
@@ -55,60 +55,66 @@ class _Blocks:
     after: FloatArray
 
 
-def zero_phase(series: FloatArray, edge: float, sample_rate: float) -> FloatArray:
+def zero_phase(series: FloatArray, edge: float, sample_rate: float, every: int = 1) -> FloatArray:
     """The series below an edge, zero phase.
 
     Args:
-        series: shape (n,) or (k, n), along its last axis; longer than `PADDING` samples.
+        series: shape (n,); longer than `PADDING` samples.
         edge: where one pass has half the power [Hz], below half the sample rate.
         sample_rate: [Hz].
+        every: which samples are asked for, from the first on; the others are not computed.
+
+    Returns:
+        The samples asked for, shape (ceil(n / every),).
     """
-    blocks = _blocks(edge / sample_rate)
-    first, last = series[..., :1], series[..., -1:]
-    head = 2 * first - series[..., PADDING:0:-1]
-    tail = 2 * last - series[..., -2 : -PADDING - 2 : -1]
-    forward = _passed(np.concatenate([head, series, tail], axis=-1), blocks)
-    backward = _passed(forward[..., ::-1], blocks)
-    found: FloatArray = backward[..., ::-1][..., PADDING:-PADDING]
+    head = 2 * series[0] - series[PADDING:0:-1]
+    tail = 2 * series[-1] - series[-2 : -PADDING - 2 : -1]
+    forward = _passed(np.concatenate([head, series, tail]), _blocks(edge / sample_rate, 1, 0))
+    # counted from the end, the first sample is the last one but the padding
+    last = PADDING + len(series) - 1
+    blocks = _blocks(edge / sample_rate, every, last % every)
+    count = -(-len(series) // every)
+    found: FloatArray = _passed(forward[::-1], blocks)[last // every - count + 1 : last // every + 1][::-1]
     return found
 
 
 def _passed(series: FloatArray, blocks: _Blocks) -> FloatArray:
-    """One pass along the last axis, begun as if the first value had been there for ever."""
-    count = series.shape[-1]
-    whole = -(-count // LENGTH)
-    padded = np.zeros((*series.shape[:-1], whole * LENGTH))
-    padded[..., :count] = series
-    framed = padded.reshape(*series.shape[:-1], whole, LENGTH)
-    both = framed @ blocks.within
+    """One pass, begun as if the first value had been there for ever, at the samples that the blocks give."""
+    length, read = len(blocks.within), blocks.after.shape[1]
+    count = len(series)
+    whole = -(-count // length)
+    padded = np.zeros(whole * length)
+    padded[:count] = series
+    both = padded.reshape(whole, length) @ blocks.within
     half = ORDER // 2
-    added = both[..., LENGTH : LENGTH + half] + 1j * both[..., LENGTH + half :]
+    added = both[:, read : read + half] + 1j * both[:, read + half :]
     state = np.empty_like(added)
-    state[..., 0, :] = series[..., :1] / (1 - blocks.poles)
-    state[..., 1:, :] = added[..., :-1, :]
-    kept, reach = blocks.poles**LENGTH, 1
+    state[0] = series[0] / (1 - blocks.poles)
+    state[1:] = added[:-1]
+    kept, reach = blocks.poles**length, 1
     while reach < whole and float(np.abs(kept).max()) > FORGOTTEN:
-        state[..., reach:, :] += kept * state[..., :-reach, :]
+        state[reach:] += kept * state[:-reach]
         kept, reach = kept**2, 2 * reach
-    passed = both[..., :LENGTH] + np.concatenate([state.real, state.imag], axis=-1) @ blocks.after
-    found: FloatArray = passed.reshape(*series.shape[:-1], whole * LENGTH)[..., :count]
-    return found
+    passed: FloatArray = both[:, :read] + np.hstack([state.real, state.imag]) @ blocks.after
+    return passed.ravel()
 
 
-@lru_cache(maxsize=16)
-def _blocks(edge: float) -> _Blocks:
-    """Matrices for an edge as a share of the sample rate."""
+@lru_cache(maxsize=32)
+def _blocks(edge: float, every: int, first: int) -> _Blocks:
+    """Matrices for an edge as a share of the sample rate, that give every so many samples from a first one on."""
+    length = every * -(-LENGTH // every)
     angles = math.pi * (2 * np.arange(ORDER) + ORDER + 1) / (2 * ORDER)
     analogue = math.tan(math.pi * edge) * np.exp(1j * angles)
     poles = (1 + analogue) / (1 - analogue)
     direct = float(np.prod(1 - poles).real) / 2**ORDER
     upper = poles[poles.imag > 0]
     residues = np.array([direct * (1 + p) ** ORDER / np.prod([p - q for q in poles if q != p]) for p in upper])
-    powers = upper[:, None] ** np.arange(LENGTH)
+    powers = upper[:, None] ** np.arange(length)
     shown = 2 * residues[:, None] * powers
     response = np.concatenate([[direct], shown.real.sum(axis=0)[:-1]])
-    place = np.arange(LENGTH)
+    place = np.arange(length)
     lag = place[None, :] - place[:, None]
     toeplitz = np.where(lag >= 0, response[np.maximum(lag, 0)], 0.0)
     carried = powers[:, ::-1].T
-    return _Blocks(upper, np.hstack([toeplitz, carried.real, carried.imag]), np.vstack([shown.real, -shown.imag]))
+    within = np.hstack([toeplitz[:, first::every], carried.real, carried.imag])
+    return _Blocks(upper, within, np.vstack([shown.real, -shown.imag])[:, first::every])

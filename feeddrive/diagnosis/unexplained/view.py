@@ -49,8 +49,8 @@ class View:
     def columns(self, term: Term) -> FloatArray:
         """Columns of a term as the recording would show them: in the band, at the rows that count, (m, k)."""
         if term not in self.shown:
-            band, comb = self.evidence.in_band, slice(None, None, self.evidence.thinning)
-            self.shown[term] = np.column_stack([band(column)[comb] for column in term.columns(self.values).T])
+            columns = [self.evidence.thinned_band(column) for column in term.columns(self.values).T]
+            self.shown[term] = np.column_stack(columns)
         return self.shown[term][self.rows[:: self.evidence.thinning]]
 
     @property
