@@ -69,7 +69,8 @@ def zero_phase(series: FloatArray, edge: float, sample_rate: float, every: int =
     """
     head = 2 * series[0] - series[PADDING:0:-1]
     tail = 2 * series[-1] - series[-2 : -PADDING - 2 : -1]
-    forward = _passed(np.concatenate([head, series, tail]), _blocks(edge / sample_rate, 1, 0))
+    whole = np.concatenate([head, series, tail])
+    forward = _passed(whole, _blocks(edge / sample_rate, 1, 0))[: len(whole)]
     # counted from the end, the first sample is the last one but the padding
     last = PADDING + len(series) - 1
     blocks = _blocks(edge / sample_rate, every, last % every)
@@ -79,7 +80,10 @@ def zero_phase(series: FloatArray, edge: float, sample_rate: float, every: int =
 
 
 def _passed(series: FloatArray, blocks: _Blocks) -> FloatArray:
-    """One pass, begun as if the first value had been there for ever, at the samples that the blocks give."""
+    """One pass, begun as if the first value had been there for ever, at the samples that the blocks give.
+
+    Whole blocks: what stands behind the end of the series is no result.
+    """
     length, read = len(blocks.within), blocks.after.shape[1]
     count = len(series)
     whole = -(-count // length)
