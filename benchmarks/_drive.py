@@ -19,7 +19,7 @@ from feeddrive.effects.friction.presliding import Presliding
 from feeddrive.effects.friction.stribeck import Stribeck
 from feeddrive.plant.chain.linear_chain import Chain, ChainValue, Matrix, Row, Spring, Values
 from feeddrive.plant.plant import Plant
-from feeddrive.servo.sampled import SampledController
+from feeddrive.servo.sampled_plant import SampledController
 from feeddrive.typing import Expression, FloatArray
 
 SAMPLE = 1 / 8000

@@ -26,14 +26,15 @@ from feeddrive.recording import read_recording  # noqa: E402
 from feeddrive.report.figures.figures import render_figures  # noqa: E402
 from feeddrive.report.pages.html import write_report  # noqa: E402
 from feeddrive.reproduce.paper_002 import rows  # noqa: E402
-from feeddrive.thermal.full.explicit import run_explicitly  # noqa: E402
 from feeddrive.thermal.full.full_model import discretise, full_model, model_of  # noqa: E402
 from feeddrive.thermal.full.grid import Cells  # noqa: E402
 from feeddrive.thermal.full.moving import moving_system  # noqa: E402
-from feeddrive.thermal.reduced.reduction import compressed_basis, reduce_model, reduced_system  # noqa: E402
+from feeddrive.thermal.reduced.reduction import compressed_basis, reduce_model  # noqa: E402
 from feeddrive.thermal.run.warm_up import simulate  # noqa: E402
 from tests.analytic import report_examples  # noqa: E402
 from tests.claims.book import CLAIMS, keep  # noqa: E402
+from tests.heat_oracle.explicit import run_explicitly  # noqa: E402
+from tests.heat_oracle.reduction_error import reduced_system  # noqa: E402
 
 ROUNDS = 3
 RPM = math.pi / 30

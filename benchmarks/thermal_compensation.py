@@ -3,7 +3,7 @@
 The machine is the full model on another mesh than the compensation's, with films and heats off by 10 %, all four signs,
 on three duties of 6 h with rests. Sensors: noise 0.03 K, lag 60 s. The compensation starts from the declared values.
 
-    OPENBLAS_NUM_THREADS=1 python benchmarks/thermal_compensation.py
+    OPENBLAS_NUM_THREADS=1 python -m benchmarks.thermal_compensation
 """
 
 from __future__ import annotations
@@ -15,24 +15,29 @@ from itertools import product
 
 import numpy as np
 
-from feeddrive.compensation.heat.thermal_deviation import deviating
-from feeddrive.compensation.heat.thermal_error import LeftOver, TableError, left_over, table_error
+from feeddrive.compensation.heat.thermal_error import (
+    LeftOver,
+    TableError,
+    compensation_model,
+    left_over,
+    model_alone,
+    table_error,
+)
 from feeddrive.compensation.heat.thermal_line import LineTable, line_table, straight_line
 from feeddrive.compensation.heat.thermal_observer import thermal_observer
-from feeddrive.compensation.heat.thermal_open_loop import compensation_model, model_alone
 from feeddrive.compensation.heat.thermal_placement import placements
 from feeddrive.compensation.heat.thermal_sensors import Sensor, mountable_places
 from feeddrive.compensation.heat.thermal_trial import TriedMachine, random_duty, tried_machine
-from feeddrive.compensation.heat.thermal_unknowns import Unknowns
+from feeddrive.compensation.heat.thermal_unknowns import Unknowns, deviating
 from feeddrive.files import find_plant
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.thermal.full.full_model import full_model
 from feeddrive.thermal.full.grid import Cells
-from feeddrive.thermal.full.moving_family import moving_family
 from feeddrive.thermal.reduced.parametric_model import HeatModel
 from feeddrive.thermal.reduced.stepping import Stepper
 from feeddrive.thermal.run.warm_up import declared_rows
 from feeddrive.typing import FloatArray
+from tests.heat_oracle.moving_family import moving_family
 
 PLANT = read_plant(find_plant("thermal_bench")).heat
 OTHER_MESH = full_model(PLANT.rig, Cells(330, 5, 36, 7))

@@ -1,6 +1,8 @@
 """The thermal model's reductions beside the full model and the explicit moving nut: errors, times, ratios.
 
-Run with OPENBLAS_NUM_THREADS=1; about four minutes on one core.
+    OPENBLAS_NUM_THREADS=1 python -m benchmarks.thermal_reduction
+
+About four minutes on one core.
 """
 
 from __future__ import annotations
@@ -15,17 +17,17 @@ from pathlib import Path
 import numpy as np
 
 from feeddrive.plant.file.plant_file import read_plant
-from feeddrive.thermal.full.explicit import ExplicitRun, run_explicitly
 from feeddrive.thermal.full.full_model import discretise, full_model, model_of
 from feeddrive.thermal.full.grid import Cells
 from feeddrive.thermal.full.moving import moving_system, ripple_number
-from feeddrive.thermal.full.moving_family import moving_family
 from feeddrive.thermal.reduced.network import network
-from feeddrive.thermal.reduced.reduction import Sizes, compressed_basis, reduce_model, reduced_system
-from feeddrive.thermal.reduced.reduction_error import reduction_error
+from feeddrive.thermal.reduced.reduction import Sizes, compressed_basis, reduce_model
 from feeddrive.thermal.reduced.system import HeatSystem
 from feeddrive.thermal.rig import Travel
 from feeddrive.thermal.run.warm_up import simulate
+from tests.heat_oracle.explicit import ExplicitRun, paper_cells, run_explicitly
+from tests.heat_oracle.moving_family import moving_family
+from tests.heat_oracle.reduction_error import reduced_system, reduction_error
 
 ROOT = Path(__file__).resolve().parents[1]
 SHIPPED = ROOT / "plants" / "thermal_bench.toml"
@@ -86,7 +88,7 @@ def _every_speed() -> None:
     """One reduced model for all speeds beside the full one in compiled C, 180 min reported once a minute."""
     full = full_model(BENCH.rig)
     small = reduce_model([full], BENCH.limits())[0]
-    grids = [discretise(BENCH.rig, cells) for cells in (Cells(), Cells.of_paper(BENCH.rig))]
+    grids = [discretise(BENCH.rig, cells) for cells in (Cells(), paper_cells(BENCH.rig))]
     print(f"parametric, order {small.order}; full: {' and '.join(str(parts.nodes) for parts in grids)} nodes (the "
           "default grid and the paper's), processor time")  # fmt: skip
     print("rev/min | mK | nm | full s | reduced ms | times faster")
@@ -145,7 +147,7 @@ def _moving() -> None:
 
 def _paper_grid() -> None:
     """The explicit scheme on the paper's own grid, wall and processor time beside the load of the machine."""
-    parts, speed = discretise(BENCH.rig, Cells.of_paper(BENCH.rig)), 500 * RPM
+    parts, speed = discretise(BENCH.rig, paper_cells(BENCH.rig)), 500 * RPM
     heat = float(BENCH.heats(np.array([speed]))["nut"][0])
     began, used = time.perf_counter(), time.process_time()
     run = run_explicitly(parts, BENCH.at_speed(speed), {"nut": heat}, BENCH.feed(speed), HOURS)

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from feeddrive.cli.output import JsonOption, deliver, parts_of, tables_of, tell_written, warnings_as_lines
+from feeddrive.cli.output import JsonOption, deliver, parts_of, print_written, tables_of, warnings_as_lines
 from feeddrive.errors import InputError
 from feeddrive.interface.axis import load
 from feeddrive.interface.measured.reading import read, read_response_file
@@ -57,4 +57,4 @@ def command(
             with output_folder(out) as folder:
                 found.save(folder)
     deliver(found.record(), [] if as_json else tables_of(found.tables()), as_json, None)
-    tell_written(out, as_json)
+    print_written(out, as_json)

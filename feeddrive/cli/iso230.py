@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from feeddrive.cli.output import JsonOption, deliver, escaped, tables_of, tell_written, warnings_as_lines
+from feeddrive.cli.output import JsonOption, deliver, escaped, print_written, tables_of, warnings_as_lines
 from feeddrive.interface.axis import load
 from feeddrive.interface.measured.iso230 import iso230
 from feeddrive.output_folder import output_folder, refuse_unusable
@@ -20,11 +20,11 @@ def command(
         typer.Argument(help="Table of a laser's or ball-bar's readings, or a recording with a scale; two of a circle."),
     ],
     plant: Annotated[str, typer.Option(help="Machine: what of E, M and B it explains, and by which effect.")] = "",
-    part: Annotated[int, typer.Option(help="2 positioning, 3 drift, 4 circle; told by what is measured else.")] = 0,
+    part: Annotated[int, typer.Option(help="2 positioning, 3 drift, 4 circle; else taken from the columns.")] = 0,
     radius: Annotated[str, typer.Option(help="Nominal radius of a circle, '150 mm'.")] = "",
     stop: Annotated[str, typer.Option(help="When the axis stops in a test of drift, '4 h'.")] = "",
     mapping: Annotated[Path | None, typer.Option("--map", help="Mapping file of a foreign recording.")] = None,
-    decimal: Annotated[str, typer.Option(help="Decimal sign, where it cannot be told.")] = "",
+    decimal: Annotated[str, typer.Option(help="Decimal sign, where the file leaves it open.")] = "",
     as_json: JsonOption = False,
     out: Annotated[Path | None, typer.Option("--out", help="Folder for report.html, iso230.json, figures.")] = None,
 ) -> None:
@@ -52,4 +52,4 @@ def command(
         print(escaped(json.dumps(found.record(), indent=2, ensure_ascii=False)))
         return
     deliver({}, tables_of(found.tables()), False, None)
-    tell_written(out, as_json)
+    print_written(out, as_json)

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from feeddrive.cli.output import JsonOption, deliver, tables_of, tell_written, warnings_as_lines
+from feeddrive.cli.output import JsonOption, deliver, print_written, tables_of, warnings_as_lines
 from feeddrive.interface.axis import load
 from feeddrive.output_folder import output_folder, refuse_unusable
 
@@ -28,4 +28,4 @@ def command(
             with output_folder(out) as folder:
                 found.save(folder)
     deliver(found.record(), tables_of([found.listing()]), as_json, None)
-    tell_written(out, as_json)
+    print_written(out, as_json)

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from feeddrive.cli.output import deliver, progress_bar, tables_of, tell_written, warnings_as_lines
+from feeddrive.cli.output import deliver, print_written, progress_bar, tables_of, warnings_as_lines
 from feeddrive.interface.runs.scenario import run
 from feeddrive.output_folder import output_folder, refuse_unusable
 from feeddrive.simulate.scenario.scenario_overrides import parse_overrides
@@ -39,4 +39,4 @@ def command(
         with output_folder(out) as folder:
             found.save(folder)
     deliver(found.record(), [] if as_json else tables_of(found.tables()), as_json, None)
-    tell_written(out, as_json)
+    print_written(out, as_json)

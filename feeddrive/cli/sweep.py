@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from feeddrive.cli.output import deliver, progress_bar, tables_of, tell_written
+from feeddrive.cli.output import deliver, print_written, progress_bar, tables_of
 from feeddrive.errors import InputError
 from feeddrive.interface.runs.sweep import sweep
 from feeddrive.output_folder import output_folder, refuse_unusable
@@ -61,4 +61,4 @@ def command(
         with output_folder(out) as folder:
             found.save(folder)
     deliver(found.record(), tables_of(found.tables()), as_json, None)
-    tell_written(out, as_json)
+    print_written(out, as_json)

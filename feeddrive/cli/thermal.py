@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from feeddrive.cli.output import JsonOption, deliver, tables_of, tell_written, warnings_as_lines, working
+from feeddrive.cli.output import JsonOption, deliver, print_written, tables_of, warnings_as_lines, working
 from feeddrive.interface.axis import load
 from feeddrive.interface.runs.warm_up import warm_up
 from feeddrive.output_folder import output_folder, refuse_unusable
@@ -53,4 +53,4 @@ def command(
         with output_folder(out) as folder:
             found.save(folder)
     deliver(found.record(), [] if as_json else tables_of(found.tables()), as_json, None)
-    tell_written(out, as_json)
+    print_written(out, as_json)

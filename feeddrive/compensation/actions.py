@@ -7,8 +7,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import cast
 
-import numpy as np
-
 from feeddrive.compensation.compensate import Compensated, Wishes, compensate_plant
 from feeddrive.compensation.cures import cure, in_order
 from feeddrive.diagnosis.judging.result import Diagnosis
@@ -20,9 +18,6 @@ FORM = "csv"
 """In which the figures are predicted: both directions, no rounding that tells; a control's own limits come on top."""
 
 _UNSURE = "backlash is in no table: {reason}. A backlash value against wind-up makes the contour worse"
-
-_ROOM = 0.02
-"""m: a shorter stroke was no stroke but a test about a point."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +50,7 @@ def actions(diagnosis: Diagnosis, after: Plant) -> Actions:
     values = values_to_set(after) if names and after.has_motion else {}
     if not wanted or not after.has_motion:
         return Actions(tuple(names), set_to=values)
-    stroke = after.stroke or recorded_stroke(diagnosis)
+    stroke = after.stroke or diagnosis.recorded_stroke
     if stroke is None:
         return Actions(tuple(names), None, "no stroke is declared, and none was recorded", values)
     try:
@@ -102,15 +97,3 @@ def unsure_of_play(effects: Iterable[tuple[str, bool]], ambiguous: Iterable[Sequ
             others = " or ".join(str(one).replace("_", " ") for one in names if one != "backlash")
             return _UNSURE.format(reason=f"these recordings cannot tell it from {others}")
     return ""
-
-
-def recorded_stroke(diagnosis: Diagnosis) -> tuple[float, float] | None:
-    """The range of the table position in the judged recordings [m]; None where it is too short to be a stroke."""
-    found = [one.variables["table_position"] for one in diagnosis.recordings if "table_position" in one.variables]
-    if not found:
-        return None
-    low, high = (
-        float(of([of(one[np.isfinite(one)], initial=start) for one in found]))
-        for of, start in ((np.min, np.inf), (np.max, -np.inf))
-    )
-    return (low, high) if high - low > _ROOM else None

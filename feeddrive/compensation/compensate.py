@@ -10,18 +10,17 @@ import numpy as np
 from feeddrive.compensation.applied import AxisLimits
 from feeddrive.compensation.cogging import CoggingMap, cogging_map
 from feeddrive.compensation.cures import repaired
+from feeddrive.compensation.deviations import RecordedDeviations, plant_deviations
 from feeddrive.compensation.forms.all_forms import as_held, control
 from feeddrive.compensation.forms.control import Control
 from feeddrive.compensation.friction_values import FrictionValues, friction_values
 from feeddrive.compensation.lost_motion import LostMotion, lost_motion, refuse_wind_up, resting_words, without_play
-from feeddrive.compensation.plant_deviations import plant_deviations
 from feeddrive.compensation.points import table_for
 from feeddrive.compensation.predicted_accuracy import Applied, Figures, best_reversal, figures, motions, sticking
-from feeddrive.compensation.recorded_deviations import RecordedDeviations
 from feeddrive.compensation.table import CompensationTable, Deviations, fitted
 from feeddrive.errors import InputError
-from feeddrive.plant.file.entries import Origins, Table
 from feeddrive.plant.plant import DeclaredCascade, Plant
+from feeddrive.schema.table import Origins, Table
 from feeddrive.servo.cascade import Cascade, Feedback
 from feeddrive.simulate.scenario.scenario_controller import read_cascade
 from feeddrive.simulate.setpoints.trajectories import Circle

@@ -22,9 +22,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feeddrive.compensation.heat.thermal_error import LeftOver, left_over
+from feeddrive.compensation.heat.thermal_error import LeftOver, compensation_model, left_over
 from feeddrive.compensation.heat.thermal_line import LineTable, line_table
-from feeddrive.compensation.heat.thermal_open_loop import compensation_model
 from feeddrive.compensation.heat.thermal_sensors import Sensor, lagged, mountable_places
 from feeddrive.compensation.heat.thermal_trial import TriedMachine, random_duty, tried_machine
 from feeddrive.errors import InputError

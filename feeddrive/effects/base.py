@@ -12,6 +12,8 @@ from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from typing import ClassVar, Self
 
+import casadi as ca
+
 from feeddrive.errors import InputError
 from feeddrive.typing import Expression
 from feeddrive.units.quantity import format_quantity
@@ -129,6 +131,8 @@ class Effect:
         repeatable: whether one search may find it more than once.
         additive: whether a plant may hold more than one at a port, their sum or product having a meaning.
         reads_force: whether it reads `Motion.force`, so that a rigid structure cannot hold it.
+        words: what it is called in a sentence; its name where empty.
+        headline: parameters that a verdict of one line names; the first where empty.
         place: the word under `place_key` that says where it acts, as "nut"; empty where the port says all.
         place_key: key of that word in plant files and reports; empty where there is none.
         places: words that it may be; any word that the machine knows where there are none.
@@ -140,6 +144,8 @@ class Effect:
     ports: ClassVar[tuple[Port, ...]]
     parameters: ClassVar[tuple[Parameter, ...]] = ()
     signature: ClassVar[Signature]
+    words: ClassVar[str] = ""
+    headline: ClassVar[tuple[str, ...]] = ()
     repeatable: ClassVar[bool] = False
     additive: ClassVar[bool] = False
     reads_force: ClassVar[bool] = False
@@ -379,3 +385,11 @@ class TimingEffect(Effect):
     def delay(self, p: Mapping[str, Expression]) -> Expression:
         """Delay of the acting motor torque [s]."""
         raise NotImplementedError
+
+
+def forward(velocity: Expression) -> Expression:
+    """Share of forward motion, (1 + sign v)/2 with 0 at rest; velocity in m/s.
+
+    It multiplies what vanishes at rest (the shape of the friction law, or the velocity), so the force stays continuous.
+    """
+    return ca.if_else(velocity > 0, 1, 0)

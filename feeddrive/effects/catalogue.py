@@ -18,7 +18,6 @@ from feeddrive.effects.friction.nut_friction import NutFriction
 from feeddrive.effects.friction.presliding import Presliding
 from feeddrive.effects.friction.shaft_drag import BearingDrag, NutDrag
 from feeddrive.effects.friction.stribeck import Stribeck
-from feeddrive.effects.friction.tabulated_friction import TabulatedFriction
 from feeddrive.effects.friction.viscous_asymmetry import ViscousAsymmetry
 from feeddrive.effects.friction.viscous_warmup import ViscousWarmup
 from feeddrive.effects.heat.ambient_drift import AmbientDrift
@@ -36,10 +35,9 @@ from feeddrive.effects.heat.viscosity_temperature import ViscosityTemperature
 from feeddrive.effects.source.ball_pass_ripple import BallPassRipple
 from feeddrive.effects.source.constant_force import ConstantForce
 from feeddrive.effects.source.position_spring import PositionSpring
-from feeddrive.effects.source.tabulated_force import TabulatedForce
-from feeddrive.effects.source.tabulated_torque import TabulatedTorque
 from feeddrive.effects.source.torque_constant_droop import TorqueConstantDroop
 from feeddrive.effects.source.torque_ripple import TorqueRipple
+from feeddrive.effects.tabulated import TabulatedForce, TabulatedFriction, TabulatedTorque, TabulatedTravel
 from feeddrive.effects.timing.channel_delay import ChannelDelay
 from feeddrive.effects.timing.drive_delay import DriveDelay
 from feeddrive.effects.transmission.backlash import Backlash
@@ -47,7 +45,6 @@ from feeddrive.effects.transmission.preload_loss import PreloadLoss
 from feeddrive.effects.transmission.stiffness_vs_position import StiffnessVsPosition
 from feeddrive.effects.travel.lead_error_cumulative import LeadErrorCumulative
 from feeddrive.effects.travel.lead_error_periodic import LeadErrorPeriodic
-from feeddrive.effects.travel.tabulated_travel import TabulatedTravel
 from feeddrive.effects.travel.thermal_growth import ThermalGrowth
 from feeddrive.errors import InputError
 

@@ -1,14 +1,26 @@
-"""What the tabulated effects share: a table over one variable, checked, and read off as an expression.
+"""What has no known name, as a table over one variable: a force, a torque, a travel deviation or friction.
 
-A term of no known name is carried in the plant as what it is: numbers over a variable.
+    F = f(s);  T = f(s);  delta = f(s);  level = Fc + f(s);  viscous force = (Fv + d(s)) v
 
-    f(s) = linear between the breakpoints, constant outside;  periodic: s - P floor((s - s_1) / P) in place of s
+    f linear between the breakpoints, constant outside;  periodic: s - P floor((s - s_1) / P) in place of s
 
-| symbol | meaning |
-|---|---|
-| s | variable: position, velocity or time at the port |
-| s_1 | first breakpoint |
-| P | period |
+| symbol | key | meaning | unit |
+|---|---|---|---|
+| s = x | position | breakpoints along the stroke | m |
+| s = v | velocity | breakpoints over the velocity of the table | m/s |
+| s | angle | breakpoints over the angle of the shaft, recorded and unwrapped | rad |
+| s | speed | breakpoints over the speed of the shaft | rad/s |
+| s = t | time | breakpoints from the start of the recording | s |
+| F, f | force | on the table, positive resists + motion; of friction what is added to the declared level | N |
+| T | torque | on the shaft, positive resists + motion | N m |
+| delta | travel | positive moves the nut forward | m |
+| d | viscous | coefficient added to the declared one of the guide | N s/m |
+| P, s_1 | period | of a periodic table; s_1 is its first breakpoint | m, rad |
+
+Force, torque and travel over position or angle are conservative, with the energy of their integral; over speed or time
+sources that may feed power in. Friction is dissipative while level and coefficient stay positive; either of its tables
+may be left out.
+Source: no law, what was left of a recording (`feeddrive.diagnosis.unexplained.unexplained`).
 """
 
 from __future__ import annotations
@@ -21,7 +33,18 @@ from typing import ClassVar, Self
 import casadi as ca
 import numpy as np
 
-from feeddrive.effects.base import Effect, Port, Value, listed
+from feeddrive.effects.base import (
+    Effect,
+    FrictionEffect,
+    Motion,
+    Parameter,
+    Port,
+    Signature,
+    SourceEffect,
+    TravelEffect,
+    Value,
+    listed,
+)
 from feeddrive.effects.friction.friction_vs_position import interpolate
 from feeddrive.errors import InputError
 from feeddrive.typing import Expression
@@ -36,8 +59,6 @@ class Tabulated(Effect):
 
     place_key = "variable"
     additive = True
-    breakpoint_keys: ClassVar[dict[str, str]]
-    """Word of the variable to the key of its breakpoints."""
     value_keys: ClassVar[tuple[str, ...]]
     """Keys that a table of values may stand under; one of them or more."""
 
@@ -81,7 +102,7 @@ class Tabulated(Effect):
     @property
     def breakpoint_key(self) -> str:
         """Key of the breakpoints."""
-        return self.breakpoint_keys[self.place]
+        return self.place.removeprefix(PERIODIC)
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
@@ -121,7 +142,108 @@ class Tabulated(Effect):
             nodes, levels = ca.vertcat(nodes, nodes[0] + p["period"]), ca.vertcat(levels, levels[0])
         return interpolate(at, nodes, levels)
 
+    def at_motion(self, motion: Motion, p: Mapping[str, Expression], key: str) -> Expression:
+        """The values under `key` at a motion of the port."""
+        at = {"velocity": motion.velocity, "speed": motion.velocity, "time": motion.time}
+        return self.read_off(at.get(self.breakpoint_key, motion.position), p, key)
+
 
 def _column(numbers: Expression) -> Expression:
     """A table as CasADi's column; symbols stay as they are."""
     return ca.DM(list(numbers)) if isinstance(numbers, tuple) else numbers
+
+
+_POSITION = Parameter("position", "m", size=0.1, default=0.0, table=True)
+_TIME = Parameter("time", "s", size=1.0, default=0.0, table=True)
+_FORCE = Parameter("force", "N", size=10.0, default=0.0, table=True)
+_PERIOD = Parameter("period", "m", 0.0, 10.0, size=0.01, default=0.0)
+
+
+class TabulatedForce(Tabulated, SourceEffect):
+    """Force at the table over one variable."""
+
+    name = "tabulated_force"
+    words = "a force on the table"
+    ports = (Port.TABLE,)
+    places = ("position", "periodic_position", "velocity", "time")
+    value_keys = ("force",)
+    parameters = (
+        _POSITION, Parameter("velocity", "m/s", size=0.1, default=0.0, table=True), _TIME, _FORCE, _PERIOD,
+    )  # fmt: skip
+    signature = Signature(("motor_torque", "table_position"), "its own variable", ("position_spring", "constant_force"))
+
+    def force(self, motion: Motion, p: Mapping[str, Expression]) -> Expression:
+        """Resisting force [N]."""
+        return self.at_motion(motion, p, "force")
+
+
+class TabulatedTorque(Tabulated, SourceEffect):
+    """Torque at a shaft over one variable."""
+
+    name = "tabulated_torque"
+    words = "a torque on a shaft"
+    ports = (Port.MOTOR, Port.SCREW)
+    places = ("angle", "periodic_angle", "speed", "time")
+    value_keys = ("torque",)
+    parameters = (
+        Parameter("angle", "rad", size=1.0, default=0.0, table=True),
+        Parameter("speed", "rad/s", size=10.0, default=0.0, table=True),
+        _TIME,
+        Parameter("torque", "N m", size=0.05, default=0.0, table=True),
+        Parameter("period", "rad", 0.0, 1e4, size=1.0, default=0.0),
+    )
+    signature = Signature(("motor_torque",), "its own variable", ("torque_ripple",))
+
+    def force(self, motion: Motion, p: Mapping[str, Expression]) -> Expression:
+        """Resisting torque [N m]."""
+        return self.at_motion(motion, p, "torque")
+
+
+class TabulatedTravel(Tabulated, TravelEffect):
+    """Travel deviation over one variable."""
+
+    name = "tabulated_travel"
+    words = "a travel error"
+    ports = (Port.TRANSMISSION,)
+    places = ("position", "periodic_position", "time")
+    value_keys = ("travel",)
+    parameters = (_POSITION, _TIME, Parameter("travel", "m", -0.01, 0.01, 1e-6, default=0.0, table=True), _PERIOD)
+    signature = Signature(("table_position",), "its own variable", ("lead_error_periodic", "lead_error_cumulative"))
+
+    def travel(
+        self, angle: Expression, position: Expression, time: Expression, p: Mapping[str, Expression]
+    ) -> Expression:
+        """Travel deviation [m]."""
+        return self.at_motion(Motion(position, 0.0, time), p, "travel")
+
+
+class TabulatedFriction(Tabulated, FrictionEffect):
+    """Friction at the table over one variable."""
+
+    name = "tabulated_friction"
+    words = "friction of the table"
+    ports = (Port.TABLE,)
+    places = ("position", "periodic_position", "time")
+    value_keys = ("force", "viscous")
+    parameters = (
+        _POSITION, _TIME, _FORCE, Parameter("viscous", "N s/m", size=50.0, default=0.0, table=True), _PERIOD,
+    )  # fmt: skip
+    signature = Signature(("motor_torque", "table_position"), "its own variable", ("friction_vs_position",))
+
+    def turning_points(self) -> dict[str, tuple[float, ...]]:
+        """The points of the table."""
+        return {self.breakpoint_key: self.breakpoints}
+
+    def least_level(self, radius: float) -> float | None:
+        """Least entry of a table that repeats along the way [N]."""
+        if not self.periodic:
+            return None
+        return min(self.table("force")) if "force" in self.tables else 0.0
+
+    def level(self, motion: Motion, p: Mapping[str, Expression]) -> Expression:
+        """Coulomb level that it adds [N]."""
+        return self.at_motion(motion, p, "force")
+
+    def viscous(self, motion: Motion, p: Mapping[str, Expression]) -> Expression:
+        """Speed-dependent force that it adds [N]."""
+        return self.at_motion(motion, p, "viscous") * motion.velocity

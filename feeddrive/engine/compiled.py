@@ -6,16 +6,42 @@ One binary per structure: lengths, values and inputs are arguments.
 from __future__ import annotations
 
 import ctypes
+import re
 from functools import lru_cache
 from pathlib import Path
 
+import casadi as ca
 import numpy as np
 
 from feeddrive.compiler import compiled_library
-from feeddrive.engine.driver_source import source_of
 from feeddrive.engine.program import CELL, Position, Program, Run, Status, Stop, Task
 from feeddrive.symbolic_turn import SYMBOLS
 from feeddrive.typing import FloatArray
+
+BEFORE, BEHIND = ("driver_math.c",), ("driver_step.c", "driver_tangents.c", "driver.c")
+"""Files that stand before and behind what is generated."""
+
+_NULL_CHECK = re.compile(r"arg\[(\d+)\]\? (arg\[\1\]\[\d+\]) : 0")
+_RESULT_CHECK = re.compile(r"if \(res\[\d+\]!=0\) ")
+_FUNCTION = re.compile(r"^casadi_real casadi_", re.MULTILINE)
+
+
+def source_of(program: Program) -> str:
+    """C of a program: its functions, its sizes, the driver."""
+    generator = ca.CodeGenerator("step.c", {"with_header": False, "with_export": True})
+    for function in program.functions:
+        generator.add(function)
+    # the driver passes every argument and result, so that what may be absent need not be asked for
+    functions = _RESULT_CHECK.sub("", _NULL_CHECK.sub(r"\2", generator.dump()))
+    functions = _FUNCTION.sub("static inline casadi_real casadi_", functions)
+    sizes = "".join(f"#define {name} {size}\n" for name, size in program.sizes.items())
+    sizes += f"#define READ {{{', '.join(str(row) for row in (*program.step.read, 0))}}}\n"
+    return "".join([*_texts(BEFORE), functions, sizes, *_texts(BEHIND)])
+
+
+def _texts(names: tuple[str, ...]) -> list[str]:
+    return [(Path(__file__).parent / name).read_text(encoding="utf-8") for name in names]
+
 
 FLAGS = (
     "-O2",

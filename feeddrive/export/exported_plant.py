@@ -14,11 +14,9 @@ from feeddrive.export.casadi_file import casadi_bytes, casadi_notes
 from feeddrive.export.fmu import fmu_bytes
 from feeddrive.export.heat_model import heat_model_of, heat_python_text
 from feeddrive.export.json_file import json_text
-from feeddrive.export.linear_model import linear_model_of
-from feeddrive.export.matlab_model import mat_bytes
+from feeddrive.export.linear_model import linear_model_of, mat_bytes, python_text
 from feeddrive.export.nonlinear_model import Model, identifier_of, model_of
 from feeddrive.export.point import Point
-from feeddrive.export.python_file import python_text
 from feeddrive.files import write_bytes_atomically
 from feeddrive.plant.plant import Plant
 from feeddrive.thermal.machine_heat import Heat

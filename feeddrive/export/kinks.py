@@ -17,8 +17,7 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 
-from feeddrive.export.nominals import nominals
-from feeddrive.export.nonlinear_model import Model
+from feeddrive.export.nonlinear_model import Model, nominals
 from feeddrive.symbolic_turn import SYMBOLS
 from feeddrive.typing import Expression, FloatArray
 

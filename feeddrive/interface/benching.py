@@ -8,15 +8,12 @@ from pathlib import Path
 from typing import Any
 
 from feeddrive.bench_page.page import BenchPage, bench_page
-from feeddrive.compensation.compensate import cascade_of
-from feeddrive.diagnosis.judging.result import Diagnosis
 from feeddrive.errors import InputError
 from feeddrive.files import DIAGNOSED, write_text_atomically
 from feeddrive.interface.axis import Axis, load
 from feeddrive.interface.measured.diagnosed import Diagnosed
-from feeddrive.interface.quantities import Quantity, si
+from feeddrive.interface.quantities import Quantity, positive
 from feeddrive.interface.servo import Servo, cascade_for, tune
-from feeddrive.plant.plant import Plant
 from feeddrive.servo.loop_response import refuse_unstable_case
 from feeddrive.servo.mechanics_response import Case
 
@@ -74,34 +71,10 @@ def bench(
     """
     axis, found = _diagnosed(axis, diagnosis)
     plant = axis.plant
-    heaviest = si(payload, "kg", "payload")
-    if not heaviest > 0:
-        raise InputError(f"{payload} is not above zero", "payload", "write a positive mass")
+    heaviest = positive(payload, "kg", "payload", "100 kg")
     cascade = cascade_for(plant, controller) if controller is not None else tune(axis).cascade
     refuse_unstable_case(plant, cascade, Case(plant.middle), "controller")
     return Bench(BenchPage(plant, cascade, heaviest, found))
-
-
-def bench_of_diagnosis(after: Plant, diagnosis: Diagnosis) -> str:
-    """The page for the tab of a report: the machine as diagnosed, at its declared or a recommended cascade.
-
-    Args:
-        after: the machine with what was found.
-        diagnosis: what was found.
-
-    Returns:
-        The page; empty where there is nothing to play on: no effect was found, a machine without elastic chain or that
-        declares heat alone, or one whose loop cannot be made or shown.
-    """
-    if not after.has_motion or not after.chain.elastic or not diagnosis.effects:
-        return ""
-    try:
-        cascade = cascade_of(after, None)
-        refuse_unstable_case(after, cascade, Case(after.middle), "controller")
-        names = tuple(one.name for one in diagnosis.effects)
-        return bench_page(BenchPage(after, cascade, max(100.0, after.chain_values()["table_mass"]), names))
-    except InputError:
-        return ""
 
 
 def _diagnosed(axis: Axis, diagnosis: Diagnosed | str | Path | None) -> tuple[Axis, tuple[str, ...]]:

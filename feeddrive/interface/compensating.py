@@ -5,35 +5,35 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from feeddrive.compensation import sheet
 from feeddrive.compensation.actions import unsure_of_play
 from feeddrive.compensation.compensate import Compensated, Wishes, compensate_plant, compensate_recording
+from feeddrive.compensation.deviations import recorded_deviations
 from feeddrive.compensation.forms.all_forms import FORMS, HEAT
 from feeddrive.compensation.forms.control import checked_axis
 from feeddrive.compensation.heat import heat_sheet
-from feeddrive.compensation.recorded_deviations import recorded_deviations
 from feeddrive.compensation.temperature import HeatTable, heat_table, recorded_heat_table
 from feeddrive.errors import InputError
 from feeddrive.files import shipped_plants, write_text_atomically
 from feeddrive.interface.axis import Axis, load
-from feeddrive.interface.measured.diagnosed import Diagnosed
 from feeddrive.interface.measured.reading import as_recording
-from feeddrive.interface.quantities import Quantity, quantities, si
+from feeddrive.interface.quantities import Quantity, positive, quantities, si
 from feeddrive.interface.servo import Servo, cascade_for
 from feeddrive.interface.shown import Listing, Shown
-from feeddrive.plant.file.entries import nearest
 from feeddrive.recording.recording import Recording
+from feeddrive.schema.toml_text import nearest
 from feeddrive.servo.cascade import Cascade
 from feeddrive.units.quantity import format_quantity
 
 if TYPE_CHECKING:
+    from feeddrive.interface.measured.diagnosed import Diagnosed
     from feeddrive.report.figures.drawing import ReportFigure
 
-Source = Axis | Diagnosed | Recording | str | Path
+Source: TypeAlias = "Axis | Diagnosed | Recording | str | Path"
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -156,7 +156,7 @@ def compensate(
             "fanuc-parameters" or "csv".
         every: distance of the points; chosen by the shortest period and the control's limits if left out.
         reference: position at which the axis is referenced, where the table is 0; of "sinumerik-temp" P0.
-        stroke: least and greatest position of the table; that of the machine, or of the recording, if left out.
+        stroke: least and greatest position of the table; that of the machine, else of what was recorded, if left out.
         axis: name of the axis in the control.
         controller: with which the prediction runs, closed at the motor; the declared or a recommended one if left out.
         lead: nominal travel per revolution of the motor, for recordings of a motor angle.
@@ -177,20 +177,20 @@ def compensate(
         raise InputError(f'no form "{form}"', "form", nearest(str(form), FORMS))
     wishes = Wishes(
         form,
-        _positive(every, "every"),
+        None if every is None else positive(every, "m", "every", "10 mm"),
         None if reference is None else si(reference, "m", "reference"),
         _ends(stroke),
         checked_axis(axis),
-        _positive(resolution, "resolution"),
+        None if resolution is None else positive(resolution, "m", "resolution", "0.1 um"),
     )
-    travel = _positive(lead, "lead")
-    found, unsure, where = _opened(source)
+    travel = None if lead is None else positive(lead, "m", "lead", "10 mm")
+    found, unsure, where, recorded = _opened(source)
     if isinstance(found, Recording):
         if form == HEAT:
             return Compensation(recorded_heat_table(found, wishes.reference), axis)
         radius = None if travel is None else travel / (2 * math.pi)
-        told = recorded_deviations(found, radius, travel)
-        return Compensation(compensate_recording(found.name, told, wishes, travel or math.inf), axis)
+        measured = recorded_deviations(found, radius, travel)
+        return Compensation(compensate_recording(found.name, measured, wishes, travel or math.inf), axis)
     if form == HEAT:
         if not found.has_heat:
             raise InputError("declares no heat", where or found.name, "declare [thermal], or give a warm recording")
@@ -198,16 +198,9 @@ def compensate(
     if not found.has_motion:
         raise InputError("declares heat alone", where or found.name, "write --form sinumerik-temp")
     loop: Cascade | None = None if controller is None else cascade_for(found.plant, controller)
+    if wishes.stroke is None and found.plant.stroke is None:
+        wishes = replace(wishes, stroke=recorded)
     return Compensation(compensate_plant(found.plant, wishes, loop, unsure, where), axis)
-
-
-def _positive(value: Quantity | None, where: str) -> float | None:
-    if value is None:
-        return None
-    found = si(value, "m", where)
-    if not found > 0:
-        raise InputError(f"{value} is not above zero", where, 'write a length, such as "10 mm"')
-    return found
 
 
 def _ends(stroke: Sequence[Quantity] | None) -> tuple[float, float] | None:
@@ -219,20 +212,29 @@ def _ends(stroke: Sequence[Quantity] | None) -> tuple[float, float] | None:
     return found[0], found[1]
 
 
-def _opened(source: Source) -> tuple[Axis | Recording, str, str]:
-    """The axis or recording of a source, why its backlash is not sure, and its name for messages."""
-    if isinstance(source, Diagnosed):
-        return source.plant, _unsure(source.record()), source.axis.name
+def _opened(source: Source) -> tuple[Axis | Recording, str, str, tuple[float, float] | None]:
+    """The axis or recording of a source, why its backlash is not sure, its name for messages, the recorded stroke."""
+    if not isinstance(source, Axis | Recording | str | Path) and hasattr(source, "diagnosis"):
+        return source.plant, _unsure(source.record()), source.axis.name, source.diagnosis.recorded_stroke
     if isinstance(source, Axis | Recording):
-        return source, "", ""
+        return source, "", "", None
     if not isinstance(source, str | Path):
         raise InputError(f"{type(source).__name__} is no source", "compensate", "give a diagnosis, an axis or a file")
     path = Path(source)
     if path.is_dir():
-        return load(path / "plant_after.toml"), _unsure(_diagnosis(path)), str(path)
+        content = _diagnosis(path)
+        return load(path / "plant_after.toml"), _unsure(content), str(path), _recorded(content)
     if path.suffix.lower() == ".toml" or (not path.is_file() and _is_shipped(str(source))):
-        return load(source), "", str(path)
-    return as_recording(path, "source"), "", str(path)
+        return load(source), "", str(path), None
+    return as_recording(path, "source"), "", str(path), None
+
+
+def _recorded(content: dict[str, Any]) -> tuple[float, float] | None:
+    """The stroke that a diagnosis was made of [m], where its file has one."""
+    ends = content.get("recorded_stroke")
+    if not isinstance(ends, list) or len(ends) != 2 or not all(isinstance(one, int | float) for one in ends):
+        return None
+    return (float(ends[0]), float(ends[1])) if -math.inf < ends[0] < ends[1] < math.inf else None
 
 
 def _is_shipped(name: str) -> bool:

@@ -15,7 +15,7 @@ from feeddrive.servo.cascade import KV_UNIT, Cascade
 from feeddrive.servo.filters import Filter
 from feeddrive.servo.loop_response import loops_of
 from feeddrive.servo.response_family import open_family
-from feeddrive.simulate.controlled.controller_file import read_controller
+from feeddrive.simulate.scenario.scenario_controller import read_controller
 from feeddrive.tuning.drive_forms.drive_file import read_drive_file
 from feeddrive.tuning.drive_settings import facts_of
 from feeddrive.tuning.filter_choice import is_low_pass
@@ -93,10 +93,10 @@ class Retuned(Shown):
 
     def _figures(self) -> Sequence[ReportFigure]:
         from feeddrive.report.figures.figure_bode import bode_figure
-        from feeddrive.report.figures.figure_retuned import circle_figure, step_figure
+        from feeddrive.report.figures.figure_scenario import retuned_circle_figure, retuned_step_figure
 
         cases = [one.reached.case for one in self.before]
-        drawn = [step_figure(self.before, self.after), circle_figure(self.before, self.after)]
+        drawn = [retuned_step_figure(self.before, self.after), retuned_circle_figure(self.before, self.after)]
         for loop in loops_of(self.present):
             family = open_family(self.plant, self.present, loop, cases, LOWEST, HIGHEST)
             drawn.append(bode_figure(family))

@@ -5,30 +5,35 @@ from __future__ import annotations
 import math
 import tomllib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from feeddrive import __version__
 from feeddrive.errors import InputError
 from feeddrive.files import find_scenario_or_controller, write_text_atomically
-from feeddrive.interface.quantities import Quantity, quantities, si
+from feeddrive.interface.quantities import Quantities, Quantity, positive, quantities, si
 from feeddrive.interface.retuning import Retuned, compare, read_present
-from feeddrive.interface.shown import Listing, Shown
-from feeddrive.plant.file.entries import nearest
+from feeddrive.interface.shown import Listing, Shown, finite, write_figures, write_json
 from feeddrive.plant.plant import Plant
+from feeddrive.schema.toml_text import nearest
 from feeddrive.servo.cascade import KV_UNIT, Cascade, Feedback
 from feeddrive.servo.loop_response import loops_of
-from feeddrive.servo.response_family import open_family
-from feeddrive.simulate.controlled.controller_file import read_controller
+from feeddrive.servo.margins import Margins
+from feeddrive.servo.response_family import margins_content, open_family
+from feeddrive.simulate.scenario.scenario_controller import read_controller
 from feeddrive.tuning.bare_drive import bare_drive
 from feeddrive.tuning.demand import Demand, operating_points
 from feeddrive.tuning.drive_settings import DriveSettings, drive_settings
-from feeddrive.tuning.reasons import Setting, controller_text, rules, settings
+from feeddrive.tuning.reasons import Setting, controller_text, describe, rules, settings
+from feeddrive.tuning.reasons import operating_points as operating_points_text
 from feeddrive.tuning.recommendation import Recommendation, recommend
+from feeddrive.units.quantity import format_quantity
 
 if TYPE_CHECKING:
     from feeddrive.interface.axis import Axis
     from feeddrive.report.figures.drawing import ReportFigure
+
 
 LOWEST, HIGHEST = 1.0, 4000.0
 """Frequencies of the figure of the open loops [Hz]."""
@@ -146,8 +151,8 @@ def tune(
     *,
     phase: Quantity = "45 deg",
     gain: Quantity = "8 dB",
-    positions: Quantity | Sequence[Quantity] | None = None,
-    payload: Quantity | Sequence[Quantity] | None = None,
+    positions: Quantities = None,
+    payload: Quantities = None,
     velocity: Quantity = "3 m/min",
     drive: str | Path | None = None,
     velocity_rate: Quantity = "8 kHz",
@@ -182,9 +187,9 @@ def tune(
             raise InputError(f"{dead_time} is negative", "dead_time", "write zero or more")
         bare = bare_drive(
             plant,
-            _positive(velocity_rate, "Hz", "velocity_rate"),
-            _positive(position_rate, "Hz", "position_rate"),
-            _positive(current_bandwidth, "Hz", "current_bandwidth"),
+            positive(velocity_rate, "Hz", "velocity_rate", "8 kHz"),
+            positive(position_rate, "Hz", "position_rate", "2 kHz"),
+            positive(current_bandwidth, "Hz", "current_bandwidth", "1 kHz"),
             late,
             place,
         )
@@ -226,8 +231,98 @@ def _feedback(written: str | None) -> Feedback | None:
     return None if written is None else Feedback(written)
 
 
-def _positive(value: Quantity, unit: str, where: str) -> float:
-    found = si(value, unit, where)
-    if not found > 0:
-        raise InputError(f"{value} is not above zero", where, "write a positive value")
-    return found
+FORMAT = "feeddrive-tune/1"
+
+
+def tuned_record(servo: Servo, typed: DriveSettings | None, retuned: Retuned | None) -> dict[str, Any]:
+    """Settings, margins, parameters of a drive and what they change as plain values, SI."""
+    found, cascade = servo.recommendation, servo.cascade
+    cases = [one.case for one in found.reached]
+    content: dict[str, Any] = {
+        "format": FORMAT,
+        "version": __version__,
+        "name": servo.plant.name,
+        "asked": {"phase_deg": found.demand.phase, "gain_db": found.demand.gain},
+        "operating_points": {
+            "text": operating_points_text(found),
+            "position [m]": sorted({one.position for one in cases}),
+            "velocity [m/s]": sorted({one.velocity for one in cases}),
+            "payload [kg]": sorted({one.payload for one in cases}),
+        },
+        "velocity_gain": {"N m s/rad": cascade.velocity_gain},
+        "reset_time": {"s": cascade.reset_time},
+        "position_gain": {"1/s": cascade.position_gain, "(m/min)/mm": cascade.position_gain / KV_UNIT},
+        "position_feedback": str(cascade.feedback),
+        "filters": [
+            {"kind": one.kind, "frequency": one.frequency, "damping": one.damping,
+             "depth_db": finite(one.depth),
+             "resonance": None if one.resonance is None else list(one.resonance), "brings": one.brings}
+            for one in found.velocity.filters
+        ],
+        "settings": [asdict(one) for one in servo.settings],
+        "rules": list(rules(servo.plant, found)),
+        "reached": [
+            {**asdict(one.case), "velocity_loop": margins_content(one.velocity),
+             "position_loop": margins_content(one.position), "slowest_growth 1/s": one.growth}
+            for one in found.reached
+        ],
+        "controller": servo.text,
+    }  # fmt: skip
+    if typed is not None:
+        content["drive"] = {
+            "form": typed.form,
+            "remarks": list(typed.remarks),
+            "parameters": [
+                {"name": one.parameter.name, "value": one.typed, "unit": one.parameter.unit,
+                 "resolution": one.parameter.resolution, "meaning": one.parameter.meaning,
+                 "source": one.parameter.source}
+                for one in typed.lines
+            ],
+            "file": typed.text,
+        }  # fmt: skip
+    if retuned is not None:
+        changes = [{"setting": name, "present": old, "recommended": new} for name, old, new in retuned.changes]
+        content["present"] = {"changes": changes, "remarks": list(retuned.remarks), "brings": retuned.brings}
+    return content
+
+
+def save_tuned(servo: Servo, typed: DriveSettings | None, retuned: Retuned | None, folder: Path) -> None:
+    """Write controller.toml, tune.json, the open loops, the drive's file, and step and circle of a comparison.
+
+    Raises:
+        InputError: a file cannot be written.
+    """
+    compared = retuned.figures() if retuned is not None else ()
+    write_figures([*servo._figures(), *(one for one in compared if one.stem.startswith("retuned"))], folder)
+    if typed is not None:
+        ending = "hal" if typed.form == "linuxcnc" else "txt"
+        write_text_atomically(folder / f"{typed.form}.{ending}", typed.text)
+    write_json(tuned_record(servo, typed, retuned), folder / "tune.json")
+    servo.save(folder / "controller.toml")
+
+
+def reached_rows(servo: Servo) -> list[list[str]]:
+    """Case, margins of the velocity and of the position loop, peaks of both sensitivities."""
+    return [
+        [describe(one.case), _margins(one.velocity), _margins(one.position),
+         f"{one.velocity.sensitivity:.2f}, {one.position.sensitivity:.2f}"]
+        for one in servo.recommendation.reached
+    ]  # fmt: skip
+
+
+def _margins(found: Margins) -> str:
+    phase, gain = (
+        f"{value:.1f}{unit}" if math.isfinite(value) else "no limit"
+        for value, unit in ((found.phase, "°"), (found.gain, " dB"))
+    )
+    return f"{phase}, {gain}"
+
+
+def drive_words(cascade: Cascade) -> str:
+    """Rates, feedback and delays of a cascade in a sentence."""
+    fast, slow = (1e-3 / (cascade.sample_time * ticks) for ticks in (1, cascade.position_divider))
+    lag = f"{1 / (2 * math.pi * cascade.current_lag):.4g} Hz" if cascade.current_lag else "without lag"
+    return (
+        f"{fast:g} kHz velocity loop, {slow:g} kHz position loop reading the {cascade.feedback}, current loop {lag}, "
+        f"dead time {format_quantity(cascade.dead_time, 's')}"
+    )

@@ -9,7 +9,7 @@ from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from feeddrive.effects.base import ChainEffect, Effect, TravelEffect, Value
 from feeddrive.effects.heat.thermal_effect import ThermalEffect
@@ -20,9 +20,6 @@ from feeddrive.plant.chain.table_mode import with_modes
 from feeddrive.plant.composition import refuse_what_cannot_compose, refuse_what_misses_values
 from feeddrive.thermal.machine_heat import Heat
 from feeddrive.thermal.thermal_coupling import Coupling
-
-if TYPE_CHECKING:
-    from feeddrive.plant.analysis.lumping import Lumped
 
 
 @dataclass(frozen=True)
@@ -226,19 +223,6 @@ class Plant:
             if isinstance(effect, ChainEffect):
                 values = effect.chain(values, effect.values)
         return values
-
-    def lumped(self, at: float | None = None) -> Lumped:
-        """The three-inertia machine that is nearest with the table at a position, and how near it is.
-
-        Args:
-            at: position of the table [m]; the middle of the stroke if not given.
-
-        Raises:
-            InputError: a rigid machine, or the nut would not be on the screw.
-        """
-        from feeddrive.plant.analysis.lumping import lump  # which makes a plant
-
-        return lump(self, self.middle if at is None else at)
 
     @property
     def middle(self) -> float:

@@ -1,11 +1,14 @@
-"""How sure a diagnosis is, as HTML: effects alike, experiments worth running, parameters known only together."""
+"""What the report says of certainty: effects that look alike, what to record next, correlation, the simulated loop."""
 
 from __future__ import annotations
 
 from feeddrive.diagnosis.certainty.certainty_result import Ambiguity, Correlation, NextExperiment
-from feeddrive.diagnosis.judging.result import Diagnosis
-from feeddrive.report.pages.markup import Cell, bullets, number, paragraph, section, table, text, words
-from feeddrive.report.words.people import DASH, significant
+from feeddrive.diagnosis.judging.result import Diagnosis, ParameterResult
+from feeddrive.diagnosis.simulated.simulation_result import ErrorFigure, RefinedValue, SimulationResult
+from feeddrive.effects.base import Value
+from feeddrive.report.pages.markup import Cell, bullets, paragraph, section, table
+from feeddrive.report.parameters import parameter_text
+from feeddrive.report.words.people import DASH, error_text, fixed, significant, with_unit
 from feeddrive.report.words.words import effect_words, joined, plain
 
 _LARGEST_MATRIX = 10
@@ -29,15 +32,15 @@ def experiments_section(diagnosis: Diagnosis) -> str:
     """Scenarios that would settle what is open."""
     if not diagnosis.next_experiments:
         return ""
-    told = bullets([_sentence(one) for one in diagnosis.next_experiments])
+    listed = bullets([_sentence(one) for one in diagnosis.next_experiments])
     rows = [_ranked(one) for one in diagnosis.next_experiments if one.ranking]
-    heads = [words("Question"), words("Scenarios, the best first")]
+    heads = ["Question", "Scenarios, the best first"]
     note = (
         "Every shipped scenario that this axis can run was run by the plant with the effects found. To tell apart: "
         "distance of the two predictions in standard deviations of the sensor noise after the rival is fitted to both "
         "recordings; 3 is a hint, 5 settles it. To know better: width of the interval after it over that before."
     )
-    return section("Which experiment next", told, table(heads, rows) if rows else "", paragraph(note, "note"))
+    return section("Which experiment next", listed, table(heads, rows) if rows else "", paragraph(note, "note"))
 
 
 def correlation_section(diagnosis: Diagnosis) -> str:
@@ -67,21 +70,21 @@ def _names(one: Ambiguity) -> str:
     return joined([effect_words(name) for name in one.names])
 
 
-def _ranked(one: NextExperiment) -> list[Cell]:
+def _ranked(one: NextExperiment) -> list[str | Cell]:
     question = f"{plain(one.question[0])} known better" if len(one.question) == 1 else joined(list(one.question))
     shown = [f"{name} {significant(figure, 2)}" for name, figure in one.ranking[:_SCENARIOS_SHOWN]]
-    return [words(question), words(", ".join(shown))]
+    return [question, ", ".join(shown)]
 
 
 def _matrix(known: Correlation) -> str:
     """The matrix below its diagonal; nothing where it is too large to be read."""
     if len(known.names) > _LARGEST_MATRIX:
         return ""
-    heads = [words(""), *(Cell(text(_short(name)), number=True) for name in known.names[:-1])]
+    heads = ["", *(f"#{_short(name)}" for name in known.names[:-1])]
     rows = [
         [
-            words(_short(name)),
-            *(number(f"{known.matrix[i][j]:+.2f}" if j < i else DASH) for j in range(len(known.names) - 1)),
+            _short(name),
+            *(f"{known.matrix[i][j]:+.2f}" if j < i else DASH for j in range(len(known.names) - 1)),
         ]
         for i, name in enumerate(known.names)
         if i > 0
@@ -92,3 +95,66 @@ def _matrix(known: Correlation) -> str:
 def _short(name: str) -> str:
     effect, _, key = name.rpartition(".")
     return f"{effect_words(effect)}: {plain(key)}"
+
+
+NOTE = (
+    "The closed loop simulated from the set-point alone with the declared controller, over the judged samples in which "
+    "it commanded the torque; unfiltered. Torque in shares of its rms, table position in shares of the following error."
+)
+
+
+def simulation_section(diagnosis: Diagnosis) -> str:
+    """Closed-loop simulation error, where there is one, and the values that the refinement tried."""
+    run = diagnosis.simulation
+    if run is None:
+        return ""
+    if not run.channels:
+        heads = ["Channel", "#before", "#after"]
+        rows = [[plain(run.channel), _percent(run.before), _percent(run.after)]]
+    else:
+        kinds = ("declared", "as attributed", "refined in simulation", "as reported")
+        heads = ["Channel", *(f"#{kind}" for kind in kinds)]
+        figures = [(c.name, c.unit, c.before, c.after_attribution, c.after_refinement, c.after) for c in run.channels]
+        rows = [[plain(name), *(_cell(one, unit) for one in each)] for name, unit, *each in figures]
+    kept_back = [f"{effect_words(name)}: {reason}" for name, reason in run.not_refined.items()]
+    stated = paragraph(run.statement) if run.statement else ""
+    stayed = paragraph("Not refined:") + bullets(kept_back) if kept_back else ""
+    parts = (table(heads, rows), stated, _refined(run), stayed, paragraph(NOTE, "note"))
+    return section("Closed-loop simulation error", *parts)
+
+
+def simulation_lines(run: SimulationResult) -> list[str]:
+    """The closed loop in lines for the terminal."""
+    change = f"{_percent(run.before)} before, {_percent(run.after)} after"
+    lines = [f"closed-loop simulation, {run.channel}, unfiltered: {change}"]
+    if run.after_attribution is not None and run.after_refinement is not None:
+        lines[0] += f" (as attributed {_percent(run.after_attribution)}, refined {_percent(run.after_refinement)})"
+    lines += [f"  {run.statement}"] if run.statement else []
+    lines += [f"  not refined: {name}, {reason}" for name, reason in run.not_refined.items()]
+    return lines
+
+
+def _refined(run: SimulationResult) -> str:
+    """Values before and after the refinement."""
+    if not run.refined:
+        return ""
+    heads = ["Value", "#as attributed", "#refined" if run.kept else "refined, not kept"]
+    return table(heads, [_refined_row(one) for one in run.refined])
+
+
+def _refined_row(one: RefinedValue) -> list[str | Cell]:
+    shown = [parameter_text(one.key, ParameterResult(_plain(v), one.unit)).value for v in (one.before, one.after)]
+    return [f"{effect_words(one.effect)}, {plain(one.key)}", *shown]
+
+
+def _plain(value: Value) -> float | list[float]:
+    return list(value) if isinstance(value, tuple) else value
+
+
+def _cell(figure: ErrorFigure | None, unit: str) -> str:
+    return DASH if figure is None else f"{error_text(figure.rms, unit)}, {_percent(figure.relative)}"
+
+
+def _percent(share: float) -> str:
+    """Two decimals, so that what a refinement gains is seen."""
+    return with_unit(fixed(100 * share, 2), "%")

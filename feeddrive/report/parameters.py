@@ -64,7 +64,7 @@ def parameter_text(key: str, parameter: ParameterResult) -> ParameterText:
 def _number_text(key: str, value: float, unit: str, ci95: object) -> ParameterText:
     """Value with as many digits as the interval supports, three significant ones where there is no interval."""
     ends = ci95 if isinstance(ci95, tuple) and len(ci95) == 2 and all(map(math.isfinite, ci95)) else None
-    # A value of zero has no size of its own; the interval tells the unit.
+    # A value of zero has no size of its own; the interval gives the unit.
     scale = _scale(key, value or max(map(abs, ends or (0.0,))), unit)
     shown = value * scale.factor
     if ends is None:

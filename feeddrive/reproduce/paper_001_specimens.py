@@ -9,8 +9,7 @@ from scipy.special import gamma
 from scipy.stats import beta
 
 from feeddrive.parts.life.life_exponents import BALL_BEARING, BALL_SCREW
-from feeddrive.parts.life.weibull import WeibullLaw, line_fit
-from feeddrive.parts.life.weibull_interval import complete_slope_interval
+from feeddrive.parts.life.weibull import WeibullLaw, complete_slope_interval, line_fit
 from feeddrive.reproduce.row import Paper, Row, claim, not_possible, number
 from feeddrive.reproduce.specimen_001 import (
     FIRST_FAILURE,

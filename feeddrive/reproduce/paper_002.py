@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from feeddrive.reproduce.paper_002_results import result_rows
-from feeddrive.reproduce.paper_002_scheme import scheme_rows
+from feeddrive.reproduce.paper_002_results import result_rows, scheme_rows
 from feeddrive.reproduce.paper_002_tables import missing_rows, table_rows
 from feeddrive.reproduce.row import Row
 

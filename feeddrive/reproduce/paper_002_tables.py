@@ -18,8 +18,7 @@ from feeddrive.reproduce.paper_002_sets import (
     torque,
 )
 from feeddrive.reproduce.row import Paper, Row, claim, not_possible, number
-from feeddrive.thermal.laws.contact_conductance import conductance_at_preload
-from feeddrive.thermal.laws.films import Films, rotating_cylinder_film
+from feeddrive.thermal.laws.films import Films, conductance_at_preload, rotating_cylinder_film
 from feeddrive.thermal.laws.friction import Friction, nut_load_torque
 
 _HEAT = Paper.HEAT

@@ -11,7 +11,7 @@ import numpy as np
 
 from feeddrive.servo.cascade import Cascade, Feedback
 from feeddrive.servo.filters import Filter
-from feeddrive.servo.sampled import SampledController
+from feeddrive.servo.sampled_plant import SampledController
 from feeddrive.symbolic_turn import SYMBOLS
 from feeddrive.typing import Expression, FloatArray
 

@@ -23,13 +23,13 @@ import casadi as ca
 import numpy as np
 
 from feeddrive.errors import InputError
-from feeddrive.plant.analysis.linear import INPUTS, MOVING, OUTPUTS
+from feeddrive.plant.analysis.ode import INPUTS, OUTPUTS
+from feeddrive.plant.analysis.steady import MOVING
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade, FeedForward
 from feeddrive.servo.cascade_function import cascade_controller, velocity_loop_of
 from feeddrive.servo.margins import GROWTH
-from feeddrive.servo.sampled import SampledController
-from feeddrive.servo.sampled_plant import Matrices, sampled_plant
+from feeddrive.servo.sampled_plant import Matrices, SampledController, sampled_plant
 from feeddrive.symbolic_turn import SYMBOLS
 from feeddrive.typing import FloatArray
 

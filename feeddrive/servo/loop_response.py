@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from feeddrive.errors import InputError
-from feeddrive.plant.analysis.linear import INPUTS
+from feeddrive.plant.analysis.ode import INPUTS
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade, FeedForward
 from feeddrive.servo.cascade_function import REFERENCES

@@ -23,10 +23,12 @@ import numpy as np
 from feeddrive.effects.base import TimingEffect
 from feeddrive.effects.chain.payload import Payload
 from feeddrive.errors import InputError
-from feeddrive.plant.analysis.linear import INPUTS, MOVING, OUTPUTS, state_space
+from feeddrive.plant.analysis.linear import state_space
+from feeddrive.plant.analysis.ode import INPUTS, OUTPUTS
 from feeddrive.plant.analysis.rest import freed, held
-from feeddrive.plant.file.entries import nearest
+from feeddrive.plant.analysis.steady import MOVING
 from feeddrive.plant.plant import Plant
+from feeddrive.schema.toml_text import nearest
 from feeddrive.servo.margins import frequency_response
 from feeddrive.servo.resonances import Resonance, resonances
 from feeddrive.typing import ComplexArray, FloatArray

@@ -1,9 +1,14 @@
-"""Families of frequency responses: one curve per position and payload, with what is read off each."""
+"""Families of frequency responses: one curve per position and payload, with what is read off each.
+
+Frequency responses as plain values for JSON: Hz, dB, degrees; what is not finite is None.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from typing import Any
 
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade
@@ -16,8 +21,9 @@ from feeddrive.servo.loop_response import (
     open_response,
 )
 from feeddrive.servo.margins import Margins
-from feeddrive.servo.mechanics_response import Case, Response, mechanics
-from feeddrive.servo.resonances import Extremum, extrema
+from feeddrive.servo.mechanics_response import Case, Response, decibel, degrees, mechanics
+from feeddrive.servo.resonances import Extremum, Resonance, extrema, on_curve
+from feeddrive.typing import ComplexArray, FloatArray
 
 
 @dataclass(frozen=True)
@@ -114,3 +120,61 @@ def _curves(cases: Sequence[Case], responses: Sequence[Response]) -> tuple[Curve
 
 def _words(name: str) -> str:
     return name.replace("_", " ")
+
+
+def family_content(family: Family) -> dict[str, Any]:
+    """A family with all its curves."""
+    response = family.curves[0].response
+    return {
+        "title": family.title,
+        "from": response.given,
+        "to": response.output,
+        "unit": response.unit,
+        "curves": [_curve(curve) for curve in family.curves],
+    }
+
+
+def margins_content(margins: Margins) -> dict[str, Any]:
+    """Margins of a loop; None where one does not exist."""
+    return {
+        "gain_db": finite(margins.gain),
+        "gain_frequency": finite(margins.gain_frequency),
+        "phase_deg": finite(margins.phase),
+        "phase_frequency": finite(margins.phase_frequency),
+        "sensitivity_peak": finite(margins.sensitivity),
+        "stable": margins.stable,
+    }
+
+
+def measured_content(frequency: FloatArray, values: ComplexArray, coherence: FloatArray) -> dict[str, Any]:
+    """A measured response."""
+    return {
+        "frequency": frequency.tolist(),
+        "magnitude_db": decibel(values).tolist(),
+        "phase_deg": degrees(values).tolist(),
+        "coherence": [finite(float(value)) for value in coherence],
+    }
+
+
+def finite(value: float) -> float | None:
+    """A number for JSON; None where it is not finite."""
+    return value if math.isfinite(value) else None
+
+
+def _curve(curve: Curve) -> dict[str, Any]:
+    response = curve.response
+    return {
+        **asdict(curve.case),
+        "frequency": response.frequency.tolist(),
+        "magnitude_db": response.decibel.tolist(),
+        "phase_deg": response.degrees.tolist(),
+        "resonances": [_root(root, curve) for root in response.marks],
+        "extrema": [asdict(one) for one in curve.seen],
+        "margins": margins_content(curve.margins) if curve.margins else None,
+        "closed": {key: finite(value) for key, value in asdict(curve.closed).items()} if curve.closed else None,
+    }
+
+
+def _root(root: Resonance, curve: Curve) -> dict[str, Any]:
+    seen = on_curve(root, curve.seen)
+    return {**asdict(root), "seen_at": seen.frequency if seen else None, "seen_db": seen.decibel if seen else None}

@@ -11,7 +11,7 @@ import casadi as ca
 import numpy as np
 
 from feeddrive.errors import InputError
-from feeddrive.servo.sampled import SampledController
+from feeddrive.servo.sampled_plant import SampledController
 from feeddrive.symbolic_turn import SYMBOLS
 from feeddrive.typing import FloatArray
 

@@ -28,9 +28,8 @@ import casadi as ca
 import numpy as np
 
 from feeddrive.errors import InputError
-from feeddrive.plant.analysis.linear import OUTPUTS
-from feeddrive.servo.sampled import SampledController
-from feeddrive.servo.sampled_plant import Matrices
+from feeddrive.plant.analysis.ode import OUTPUTS
+from feeddrive.servo.sampled_plant import Matrices, SampledController
 from feeddrive.symbolic_turn import SYMBOLS
 from feeddrive.typing import FloatArray
 

@@ -1,4 +1,11 @@
-"""The load side driven by the measured motor motion: what torque and table position the plant expects."""
+"""The load side driven by the measured motor motion: what torque and table position the plant expects.
+
+Life that a motion takes from the nuts of a plant's ball screw: the driven plant gives the force, parts the life.
+
+The force of the nut on the table follows from the motor's motion through the plant's own equations (mass, friction,
+weight); a cutting force is added as the screw holds it, without the dynamics between. The preload is shared rigidly
+(`feeddrive.parts.screw.double_nut`).
+"""
 
 from __future__ import annotations
 
@@ -11,18 +18,15 @@ from scipy.interpolate import make_interp_spline
 
 from feeddrive.engine.engine import Feed, Machine, machine_of, rested, run_machine
 from feeddrive.engine.program import Program, StepReport, joined
+from feeddrive.engine.step.linear_part import Layout
 from feeddrive.engine.step.step import driven_step
-from feeddrive.engine.step.step_constants import Layout
+from feeddrive.parts.life.consumed_life import ConsumedLife, consumed_life, rigid_nut_forces
+from feeddrive.plant.analysis.rated_life import preload_of
 from feeddrive.plant.chain.chain import symbolic
-from feeddrive.plant.equations import (
-    chain_symbols,
-    effect_forces,
-    parameter_symbols,
-    parameter_values,
-    travel_deviation,
-)
+from feeddrive.plant.equations import effect_forces
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.structure import per_structure
+from feeddrive.plant.structure import chain_symbols, parameter_symbols, parameter_values, per_structure
+from feeddrive.plant.transmission_law import travel_deviation
 from feeddrive.typing import FloatArray
 
 TOLERANCE = 1e-10
@@ -140,19 +144,9 @@ def simulate_driven(plant: Plant, motion: MotorMotion, tolerance: float = TOLERA
         place = outcome.position
         reports.append(outcome.report)
     at = motion.samples
-    phi, screw_speed, x, velocity, torque, force = shown
-    return LoadMotion(
-        motion.time[at],
-        motion.angle[at],
-        motion.speed[at],
-        phi,
-        screw_speed,
-        x,
-        velocity,
-        torque,
-        force,
-        joined(reports),
-    )
+    phi, rate, x, velocity, torque, force = shown
+    kept = motion.time[at], motion.angle[at], motion.speed[at]
+    return LoadMotion(*kept, phi, rate, x, velocity, torque, force, joined(reports))
 
 
 def _fed(motion: MotorMotion, sample: int, count: int) -> FloatArray:
@@ -171,18 +165,8 @@ def unfollowed(motion: MotorMotion) -> LoadMotion:
     at = motion.samples
     nothing = np.full(len(motion.time[at]), np.nan)
     report = StepReport(0, 0, 0, 0, 0, np.inf, 0, np.inf, np.inf)
-    return LoadMotion(
-        motion.time[at],
-        motion.angle[at],
-        motion.speed[at],
-        nothing,
-        nothing,
-        nothing,
-        nothing,
-        nothing,
-        nothing,
-        report,
-    )
+    kept = motion.time[at], motion.angle[at], motion.speed[at]
+    return LoadMotion(*kept, nothing, nothing, nothing, nothing, nothing, nothing, report)
 
 
 @per_structure
@@ -250,3 +234,29 @@ def _outputs(plant: Plant, layout: Layout) -> ca.Function:
         x = x + travel_deviation(plant, symbols, phi, x, time)
     result = ca.vertcat(phi, ca.mtimes(screw, rate), x, ca.mtimes(table, rate), torque, found.transmitted)
     return ca.Function("outputs", [memory, theta, speed, acceleration, time, symbols.vector], [result])
+
+
+def used_life(
+    plant: Plant, time: FloatArray, motor_angle: FloatArray, cutting_force: FloatArray | None = None
+) -> ConsumedLife | None:
+    """Life used along a motion.
+
+    Args:
+        plant: with its values.
+        time: sample times, evenly spaced [s], shape (n,).
+        motor_angle: [rad], shape (n,); noise of it counts as rolling, so a recorded one is smoothed before.
+        cutting_force: on the table along + motion [N], shape (n,); none if None.
+
+    Returns:
+        What the two nuts have used; None where the file declares no `ball_screw.dynamic_rating`, or nothing is elastic,
+        so that no force of a nut is known.
+
+    Raises:
+        SimulationError: a motion that cannot be followed.
+    """
+    rating = plant.data["ball_screw.dynamic_rating"].value if "ball_screw.dynamic_rating" in plant.data else None
+    if rating is None or not plant.chain.elastic:
+        return None
+    run = simulate_driven(plant, motor_motion(time, motor_angle))
+    force = run.force if cutting_force is None else run.force - cutting_force
+    return consumed_life(run.screw_angle, rigid_nut_forces(force, preload_of(plant)), rating)

@@ -9,16 +9,50 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from feeddrive.effects.heat.thermal_effect import ThermalEffect
-from feeddrive.thermal.full.full_model import FRONT, NUT, REAR, full_model
+from feeddrive.thermal.full.full_model import FRONT, NUT, REAR, SHAFT, full_model, growth_name
 from feeddrive.thermal.full.grid import Cells
-from feeddrive.thermal.laws.contact_conductance import conductance_at_preload
-from feeddrive.thermal.laws.films import Films
+from feeddrive.thermal.laws.films import Films, conductance_at_preload
 from feeddrive.thermal.laws.friction import LOAD_EXPONENT, Friction
 from feeddrive.thermal.reduced.parametric_model import HeatModel, Path
 from feeddrive.thermal.rig import Body, Rig, Travel, refuse_negative, refuse_unless_positive
-from feeddrive.thermal.sensors import HeatSensor
 from feeddrive.thermal.thermal_coupling import Coupling
 from feeddrive.typing import FloatArray
+
+CHANNELS = {
+    NUT: "nut_temperature",
+    FRONT: "front_bearing_temperature",
+    REAR: "rear_bearing_temperature",
+    SHAFT: "shaft_travel_temperature",
+}
+"""Outputs and their names in recordings where no sensor is declared; "growth_200mm" is "table_growth_200mm"."""
+
+THERMOMETER, SCALE = "thermometer", "scale"
+"""Kinds of sensors."""
+
+PLACES = {"nut": NUT, "front": FRONT, "rear": REAR, "shaft": SHAFT}
+"""Where a thermometer may sit: outer surface of the nut, surfaces of the seats, mean of the shaft over the travel."""
+
+
+@dataclass(frozen=True)
+class HeatSensor:
+    """A sensor for temperature or growth.
+
+    Attributes:
+        channel: in recordings.
+        kind: "thermometer", or "scale" for a growth of the table's position.
+        at: "nut", "front", "rear" or "shaft"; of a growth the position of the nut [m].
+        noise: rms, of the channel's SI unit; 0 where it is to be read off the recording.
+    """
+
+    channel: str
+    kind: str
+    at: str | float
+    noise: float = 0.0
+
+    @property
+    def output(self) -> str:
+        """Output of the thermal model that it reads."""
+        return growth_name(self.at) if isinstance(self.at, float) else PLACES[self.at]
 
 
 @dataclass(frozen=True)

@@ -19,8 +19,7 @@ import numpy as np
 from scipy.optimize import minimize, minimize_scalar
 from scipy.special import logsumexp
 
-from feeddrive.trend.atoms import JUMP, ODD, SETTLING, SLOPE, Atom
-from feeddrive.trend.series_evidence import Series
+from feeddrive.trend.series_evidence import JUMP, ODD, SETTLING, SLOPE, Atom, Series
 from feeddrive.typing import FloatArray
 
 ASSERTED = 100.0

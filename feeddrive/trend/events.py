@@ -16,8 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import logsumexp
 
-from feeddrive.trend.atoms import JUMP, ODD, SETTLING, SLOPE
 from feeddrive.trend.change_points import ASSERTED, Course, Found, most_likely
+from feeddrive.trend.series_evidence import JUMP, ODD, SETTLING, SLOPE
 from feeddrive.trend.watched_quantities import Quantity
 from feeddrive.typing import FloatArray
 

@@ -11,8 +11,8 @@ import numpy as np
 from scipy.special import stdtrit
 
 from feeddrive.errors import InputError
-from feeddrive.trend.atoms import ODD
 from feeddrive.trend.change_points import Course
+from feeddrive.trend.series_evidence import ODD
 from feeddrive.trend.watched_quantities import Quantity
 from feeddrive.typing import FloatArray
 from feeddrive.units.quantity import parse

@@ -32,12 +32,11 @@ from feeddrive.trend.checkpoint import (
     save_checkpoint,
 )
 from feeddrive.trend.events import Change, Event, Growth, events_of, growth_of
-from feeddrive.trend.folder import UNFINISHED, Source, opened, sources
+from feeddrive.trend.folder import UNFINISHED, Source, opened, sources, stamp_of
 from feeddrive.trend.limits import Limit, limit_of
 from feeddrive.trend.pooling import Pooled, pool
 from feeddrive.trend.regressors import TERMS, grid_for, linear_pass
 from feeddrive.trend.series_evidence import Series, Timeline
-from feeddrive.trend.stamps import stamp_of
 from feeddrive.trend.watched_quantities import Quantity, means_of, prior_widths, quantities_of
 from feeddrive.typing import FloatArray
 
@@ -56,8 +55,8 @@ class Options:
 
     Attributes:
         mapping, decimal: as for reading a recording.
-        stamp: pattern of `strptime` in names; empty to let content and name tell.
-        first, every: date of the first recording by name, and the distance of recordings; where nothing else tells.
+        stamp: pattern of `strptime` in names; empty to take it from content and name.
+        first, every: date of the first recording by name, and the distance of recordings; where nothing else does.
         absolute: whether the zero of the table against the motor is kept, so that an offset that moves is growth.
         limits: quantity to what it may move by.
     """

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from feeddrive.errors import InputError
-from feeddrive.plant.chain.moving_inertia import inertia_at_motor
+from feeddrive.plant.analysis.modes import inertia_at_motor
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade, FeedForward
 from feeddrive.servo.linear_loop import open_position_loop, open_velocity_loop, worst_eigenvalue

@@ -14,7 +14,7 @@ from feeddrive.effects.friction.guide_friction import GuideFriction
 from feeddrive.effects.timing.drive_delay import DriveDelay
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant
-from feeddrive.metrology.recorded_response import recorded_response
+from feeddrive.metrology.response import recorded_response
 from feeddrive.plant.chain.chain import Rigid, ThreeInertias
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
@@ -27,8 +27,8 @@ from feeddrive.servo.margins import frequency_response, margins
 from feeddrive.servo.mechanics_response import Case, delay_of, mechanics
 from feeddrive.servo.resonances import Kind, extrema, on_curve
 from feeddrive.servo.response_family import mechanics_family
-from feeddrive.simulate.controlled.controller_file import read_controller
 from feeddrive.simulate.held_torque import simulate_torque
+from feeddrive.simulate.scenario.scenario_controller import read_controller
 from feeddrive.typing import FloatArray
 
 LEAD, VISCOUS = 0.020, 300.0

@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from feeddrive.trend.atoms import JUMP, ODD, SETTLING, SLOPE, Atom
 from feeddrive.trend.change_points import ASSERTED, Course, course_of
-from feeddrive.trend.series_evidence import Series, Timeline, noise_of
+from feeddrive.trend.series_evidence import JUMP, ODD, SETTLING, SLOPE, Atom, Series, Timeline, noise_of
 
 COUNT = 120
 

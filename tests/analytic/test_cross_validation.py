@@ -7,8 +7,8 @@ import pytest
 
 from feeddrive.diagnosis.likelihood.cross_validation import Prior, compare_left_out, left_out
 from feeddrive.diagnosis.likelihood.folds import FOLDS, kinds_of_motion
-from feeddrive.diagnosis.unexplained.functional_sums import Sample, Sums
-from feeddrive.diagnosis.unexplained.term import Form, Term
+from feeddrive.diagnosis.unexplained.functional_anova import Sample, Sums
+from feeddrive.diagnosis.unexplained.terms import Form, Term
 from feeddrive.typing import FloatArray
 
 BLOCKS, ROWS = 36, 50

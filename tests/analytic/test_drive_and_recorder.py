@@ -25,14 +25,15 @@ from feeddrive.engine.lateness import LateChannels, late_mean
 from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.export.notes import included, left_out
 from feeddrive.files import find_scenario_file, plants_folder
-from feeddrive.plant.analysis.linear import linear_matrices, steady_motion
+from feeddrive.plant.analysis.linear import linear_matrices
+from feeddrive.plant.analysis.steady import steady_motion
 from feeddrive.plant.chain.chain import CHAINS
-from feeddrive.plant.file.effect_text import plant_text_with_effects
+from feeddrive.plant.file.lumped_text import plant_text_with_effects
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.motor_torque import acting_torques, asked_torques
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
-from feeddrive.servo.sampled import SampledController
+from feeddrive.servo.sampled_plant import SampledController
 from feeddrive.simulate.controlled.controlled import TorqueLoop, simulate_controlled
 from feeddrive.simulate.controlled.sensitivity import simulate_sensitivity
 from feeddrive.simulate.held_torque import simulate_torque

@@ -21,7 +21,7 @@ from feeddrive.engine.program import Position
 from feeddrive.plant.chain.chain import ThreeInertias
 from feeddrive.plant.equations import bristle_count
 from feeddrive.plant.plant import Plant
-from feeddrive.servo.sampled import SampledController
+from feeddrive.servo.sampled_plant import SampledController
 from feeddrive.simulate.controlled.controlled import ControlledRun, ControlledState, resting_state, simulate_controlled
 from tests.convergence.test_controlled import cascade
 from tests.convergence.test_simulate import BENCH

@@ -14,14 +14,13 @@ import pytest
 
 from feeddrive.compiler import find_compiler
 from feeddrive.effects.catalogue import EFFECTS
-from feeddrive.export.beside_table import beside_table
-from feeddrive.export.fmu import binary_platform, fmu_bytes
-from feeddrive.export.fmu_units import exponents
+from feeddrive.export.fmu import beside_table, binary_platform, fmu_bytes
+from feeddrive.export.fmu_description import exponents
 from feeddrive.export.kinks import kinks_of
-from feeddrive.export.nominals import nominals
-from feeddrive.export.nonlinear_model import model_of
+from feeddrive.export.nonlinear_model import model_of, nominals
 from feeddrive.export.point import Point
-from feeddrive.plant.analysis.linear import ode_parameters, state_names, state_space
+from feeddrive.plant.analysis.linear import state_space
+from feeddrive.plant.analysis.ode import ode_parameters, state_names
 from feeddrive.plant.plant import Plant
 from feeddrive.simulate.held_torque import initial_state, simulate_torque
 from tests.analytic.export_cases import BENCH, PLANTS, TESTBED

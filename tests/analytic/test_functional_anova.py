@@ -7,11 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from feeddrive.diagnosis.unexplained.floor import Floor, excess
-from feeddrive.diagnosis.unexplained.functional_anova import Decomposition, decompose
-from feeddrive.diagnosis.unexplained.functional_sums import Sample
-from feeddrive.diagnosis.unexplained.term import Form, Term, hats
-from feeddrive.diagnosis.unexplained.view import travel_since_reversal
+from feeddrive.diagnosis.unexplained.functional_anova import Found, Sample, decompose
+from feeddrive.diagnosis.unexplained.terms import Form, Term, hats
+from feeddrive.diagnosis.unexplained.view import Floor, excess, travel_since_reversal
 from feeddrive.typing import FloatArray
 
 RATE, SECONDS, BLOCK = 200.0, 24.0, 0.5
@@ -39,7 +37,7 @@ def coloured(generator: np.random.Generator, correlation: float) -> FloatArray:
     return np.asarray(noise, dtype=np.float64)
 
 
-def taken_apart(residual: FloatArray, terms: Sequence[Term] = TERMS) -> Decomposition:
+def taken_apart(residual: FloatArray, terms: Sequence[Term] = TERMS) -> tuple[Found, ...]:
     """The decomposition of a residual."""
     blocks = (TIME / BLOCK).astype(np.int64)
     offsets = np.ones((len(TIME), 1))
@@ -51,12 +49,12 @@ def taken_apart(residual: FloatArray, terms: Sequence[Term] = TERMS) -> Decompos
 @pytest.mark.parametrize("correlation", [0.0, 0.8])
 def test_noise_is_left_alone(seed: int, correlation: float) -> None:
     """White noise, and noise whose correlation reaches over 0.02 s: far under a block, far over a sample."""
-    assert taken_apart(coloured(np.random.default_rng(seed), correlation)).found == ()
+    assert taken_apart(coloured(np.random.default_rng(seed), correlation)) == ()
 
 
 def test_an_additive_function_is_found_with_its_values(generator: np.random.Generator) -> None:
     residual = 40.0 * (POSITION - 0.2) ** 2 / 0.15**2 + coloured(generator, 0.5)
-    (found,) = taken_apart(residual).found
+    (found,) = taken_apart(residual)
     assert (found.term.variable, found.term.times) == ("position", "")
     wanted = 40.0 * (np.array(NODES) - 0.2) ** 2 / 0.15**2
     miss = found.values - wanted
@@ -66,32 +64,32 @@ def test_an_additive_function_is_found_with_its_values(generator: np.random.Gene
 
 def test_a_product_is_not_taken_for_a_function_of_one_variable(generator: np.random.Generator) -> None:
     residual = np.interp(POSITION, NODES, 4 * np.sin(np.arange(9))) * VALUES["direction"] + coloured(generator, 0.5)
-    (found,) = taken_apart(residual).found
+    (found,) = taken_apart(residual)
     assert (found.term.variable, found.term.times) == ("position", "direction")
     assert found.values == pytest.approx(4 * np.sin(np.arange(9)), abs=5 * max(found.errors))
 
 
 def test_a_level_is_preferred_to_a_curve_that_does_as_well(generator: np.random.Generator) -> None:
-    (found,) = taken_apart(3.0 * VALUES["direction"] + coloured(generator, 0.5)).found
+    (found,) = taken_apart(3.0 * VALUES["direction"] + coloured(generator, 0.5))
     assert found.term == Term(Form.LEVEL, "direction")
     assert found.values[0] == pytest.approx(3.0, abs=0.15)  # three standard errors of 4800 values correlated by 0.5
 
 
 def test_a_step_with_the_direction_is_found_at_its_time(generator: np.random.Generator) -> None:
-    (found,) = taken_apart(2.0 * (TIME >= 9.0) * VALUES["direction"] + coloured(generator, 0.5)).found
+    (found,) = taken_apart(2.0 * (TIME >= 9.0) * VALUES["direction"] + coloured(generator, 0.5))
     assert (found.term.form, found.term.times, found.term.nodes) == (Form.STEP, "direction", (9.0,))
 
 
 def test_two_functions_are_told_apart(generator: np.random.Generator) -> None:
     residual = 20 * (POSITION - 0.2) / 0.15 + 1.5 * np.cos(2 * np.pi * TIME / 12.0) + coloured(generator, 0.5)
-    found = taken_apart(residual).found
+    found = taken_apart(residual)
     assert [one.term.variable for one in found] == ["position", "time"]
 
 
 def test_standard_errors_are_those_of_repeated_noise() -> None:
     """The scatter of a node over 30 draws of correlated noise is what one draw says of it, within a third."""
     truth = np.interp(POSITION, NODES, 10 * np.sin(np.arange(9)))
-    draws = [taken_apart(truth + coloured(np.random.default_rng(seed), 0.7), TERMS[:1]).found[0] for seed in range(30)]
+    draws = [taken_apart(truth + coloured(np.random.default_rng(seed), 0.7), TERMS[:1])[0] for seed in range(30)]
     scatter = np.std([draw.values - draw.values.mean() for draw in draws], axis=0, ddof=1)[2:7]
     told = np.mean([draw.errors for draw in draws], axis=0)[2:7]
     # 30 draws know a scatter to 13 %; 48 blocks an error to 10 %, and the offset shares a little of either

@@ -13,7 +13,7 @@ import feeddrive as fd
 from feeddrive.diagnosis.likelihood.evidence import prepare
 from feeddrive.recording.checks.flaws import BAD, JOINED, flaw
 from feeddrive.recording.long import joined
-from feeddrive.recording.long.stretches import informative_windows
+from feeddrive.recording.long.joined import informative_windows
 from feeddrive.trend.pooling import pool
 from feeddrive.trend.regressors import TRAVEL, grid_for, linear_pass
 from feeddrive.trend.watched_quantities import prior_widths

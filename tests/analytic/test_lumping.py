@@ -16,11 +16,10 @@ from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.effects.transmission.stiffness_vs_position import StiffnessVsPosition
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant
-from feeddrive.plant.analysis.lumping import Lumped
-from feeddrive.plant.analysis.modes import braked_modes, free_modes
+from feeddrive.plant.analysis.lumping import Lumped, lump
+from feeddrive.plant.analysis.modes import braked_modes, free_modes, inertia_at_motor
 from feeddrive.plant.analysis.steady import steady_motion
 from feeddrive.plant.chain.chain import ThreeInertias
-from feeddrive.plant.chain.moving_inertia import inertia_at_motor
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
 from feeddrive.units.quantity import format_quantity
@@ -97,8 +96,8 @@ def test_shipped_machines(name: str) -> None:
     assert plant.stroke is not None
     for x in (plant.stroke[0], plant.middle, plant.stroke[1]):
         # One value is free for two frequencies; on these machines both come to 1 %.
-        refuse_unlike(plant.lumped(x), drive_of(find_plant(name)), 0.012)
-        refuse_unlike_along(plant.lumped(x), drive_of(find_plant(name)), plant.stroke)
+        refuse_unlike(lump(plant, x), drive_of(find_plant(name)), 0.012)
+        refuse_unlike_along(lump(plant, x), drive_of(find_plant(name)), plant.stroke)
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -107,16 +106,16 @@ def test_drawn_machines(seed: int, tmp_path: Path) -> None:
     path.write_text(drawn_drive(seed), encoding="utf-8")
     # A table no heavier than the screw is no three inertias any more; what is off is told in the file.
     plant = read_plant(path)
-    refuse_unlike(plant.lumped(), drive_of(path), 0.06)
+    refuse_unlike(lump(plant), drive_of(path), 0.06)
     assert plant.stroke is not None
-    refuse_unlike_along(plant.lumped(), drive_of(path), plant.stroke)
+    refuse_unlike_along(lump(plant), drive_of(path), plant.stroke)
 
 
 @pytest.mark.parametrize("name", SHIPPED)
 def test_what_does_not_bend_moves_alike(name: str) -> None:
     """Torque and stretch at constant speed, inertia at the motor: friction, weight and gear are carried over."""
     plant = read_plant(find_plant(name))
-    lumped = plant.lumped().plant
+    lumped = lump(plant).plant
     assert inertia_at_motor(lumped) == pytest.approx(inertia_at_motor(plant), rel=1e-9)
     assert lumped.chain.motor_radius == pytest.approx(plant.chain.motor_radius, rel=1e-12)
     for velocity in (-0.2, 0.002, 0.1):
@@ -139,10 +138,10 @@ def test_declared_deviations_are_in_the_values() -> None:
         EFFECTS["inertia_deviation"].of(place="motor", inertia=1e-3),
         EFFECTS["stiffness_deviation"].of(factor=0.8),
     )
-    found = changed.lumped(0.464)
+    found = lump(changed, 0.464)
     assert found.plant.chain.values["table_mass"] == 174.0
     assert inertia_at_motor(found.plant) == pytest.approx(inertia_at_motor(plant) + 1e-3 + 40 * plant.chain.radius**2)
-    before = plant.lumped(0.464).plant.chain.values["axial_stiffness"]
+    before = lump(plant, 0.464).plant.chain.values["axial_stiffness"]
     assert found.plant.chain.values["axial_stiffness"] == pytest.approx(0.8 * before, rel=1e-9)
     assert {effect.name for effect in found.plant.effects} == {
         "guide_friction", "nut_drag", "bearing_drag", "stiffness_vs_position",
@@ -154,7 +153,7 @@ def test_laws_of_the_nut_are_converted() -> None:
     """A nut that has lost its preload is as soft at the table in the chain of parts and in three inertias."""
     plant = read_plant(find_plant("kimm_testbed"))
     worn = plant.with_effects(EFFECTS["preload_loss"].of(ratio=0.3, force=200.0))
-    lumped = worn.lumped(0.464).plant
+    lumped = lump(worn, 0.464).plant
     nut = float(plant.chain.nut(plant.chain_values()).stiffness)
     axial = lumped.chain.values["axial_stiffness"]
     ratio = next(e for e in lumped.effects if e.name == "preload_loss").values["ratio"]
@@ -166,9 +165,9 @@ def test_what_changes_along_the_stroke_by_itself_multiplies() -> None:
     """A law of the nut's own spring stays one, converted; beside it the screw's."""
     plant = read_plant(find_plant("kimm_testbed"))
     worn = plant.with_effects(StiffnessVsPosition.of(share_over_stroke=0.4, low=0.0, high=1.0))
-    found = worn.lumped(0.0)
+    found = lump(worn, 0.0)
     screw, nut = (effect for effect in found.plant.effects if isinstance(effect, StiffnessVsPosition))
-    assert screw.values == plant.lumped(0.0).plant.effects_of(StiffnessVsPosition)[0].values
+    assert screw.values == lump(plant, 0.0).plant.effects_of(StiffnessVsPosition)[0].values
     axial = found.plant.chain.values["axial_stiffness"]
     left = 1 - float(nut.values["share_over_stroke"])  # type: ignore[arg-type]
     own = float(plant.chain.nut(plant.chain_values()).stiffness)
@@ -179,7 +178,7 @@ def test_what_changes_along_the_stroke_by_itself_multiplies() -> None:
 def test_what_is_missed_is_the_twist_by_the_drag_of_the_screw(name: str) -> None:
     """r T (1 / k_TS(x) - 1 / k_TS) both ways, T being what the screw's own friction takes and k_TS(x) the elements'."""
     plant, drive = read_plant(find_plant(name)), drive_of(find_plant(name))
-    found = plant.lumped()
+    found = lump(plant)
     assert plant.stroke is not None
     (told,) = (sensor.model_error for sensor in found.plant.sensors if sensor.channel == "table_position")
     assert {s.channel for s in found.plant.sensors if s.model_error} == {"table_position"}
@@ -212,9 +211,9 @@ def test_a_gear_of_three_inertias_is_a_motor_counted_so_often() -> None:
 
 def test_a_rigid_machine_is_refused() -> None:
     with pytest.raises(InputError, match="nothing to lump"):
-        read_plant(find_plant("emps")).lumped()
+        lump(read_plant(find_plant("emps")))
     with pytest.raises(InputError, match="not on the screw"):
-        read_plant(find_plant("kimm_testbed")).lumped(5.0)
+        lump(read_plant(find_plant("kimm_testbed")), 5.0)
 
 
 @pytest.mark.parametrize("name", SHIPPED)

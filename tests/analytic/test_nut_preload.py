@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from feeddrive.errors import InputError
-from feeddrive.thermal.laws.nut_preload import Spacer, preload_change
+from feeddrive.thermal.thermal_coupling import Spacer, preload_change
 
 PRELOAD, STIFFNESS, DISTANCE, PITCH, EXPANSION = 2200.0, 280e6, 0.070, 0.0335, 11.7e-6
 

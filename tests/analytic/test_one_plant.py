@@ -13,8 +13,7 @@ from feeddrive.files import find_plant
 from feeddrive.plant.analysis.lumping import lump
 from feeddrive.plant.analysis.plausibility import check_plant
 from feeddrive.plant.file.plant_file import read_plant
-from feeddrive.plant.structure import structure_key
-from feeddrive.plant.symbols import parameter_names
+from feeddrive.plant.structure import parameter_names, structure_key
 
 MOTION, HEAT, BOTH = (read_plant(find_plant(name)) for name in ("bench_axis", "thermal_bench", "warm_axis"))
 SINK = THERMAL_EFFECTS["heat_sink"].of(conductance=0.5, capacity=900.0)
@@ -24,7 +23,7 @@ LEAD = EFFECTS["lead_error_cumulative"].of(slope=1e-5)
 def test_what_is_not_declared_is_said() -> None:
     for ask, told in (
         (lambda: HEAT.chain, "heat alone, and this needs a machine with masses"),
-        (lambda: HEAT.lumped(), "heat alone"),
+        (lambda: lump(HEAT), "heat alone"),
         (lambda: HEAT.with_effects(LEAD), "lead_error_cumulative acts on motion"),
         (lambda: MOTION.heat, r"declares no heat; add \[thermal\]"),
         (lambda: MOTION.with_effects(SINK), "heat_sink acts on heat, and none is declared"),
@@ -79,6 +78,6 @@ def test_the_same_questions_are_answered_for_both_parts() -> None:
 def test_lumping_says_that_it_leaves_the_heat_out() -> None:
     kimm = read_plant(find_plant("kimm_testbed"))
     assert not any("heat" in line for line in lump(kimm, kimm.middle).left_out)
-    made = BOTH.lumped()
+    made = lump(BOTH)
     assert any(line.startswith("heat:") for line in made.left_out)
     assert not made.plant.has_heat

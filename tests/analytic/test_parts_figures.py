@@ -9,7 +9,7 @@ import pytest
 
 import feeddrive as fd
 from feeddrive.interface.machine.summary import Summary
-from feeddrive.parts.guide.carriages import RatedCarriage, RollingCarriage
+from feeddrive.parts.guide.guide_rating import RatedCarriage, RollingCarriage
 from feeddrive.parts.life.consumed_life import consumed_life
 from feeddrive.plant.analysis.nut_losses import nut_losses
 from feeddrive.plant.analysis.rated_life import life_under, rated_life

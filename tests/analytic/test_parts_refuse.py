@@ -27,8 +27,7 @@ from feeddrive.parts.life.life_exponents import diameter_exponent, load_exponent
 from feeddrive.parts.life.rating import combined_rating, material_constant_of_test, rating
 from feeddrive.parts.life.stress_cycles import effective_screw_groove
 from feeddrive.parts.life.subsurface_shear import axis_stresses, greatest_shear_on_axis
-from feeddrive.parts.life.weibull import WeibullLaw
-from feeddrive.parts.life.weibull_interval import complete_slope_interval
+from feeddrive.parts.life.weibull import WeibullLaw, complete_slope_interval
 from feeddrive.parts.lubricant import Lubricant
 from feeddrive.parts.screw.load_distribution import continuum_extremes, load_distribution, nut_body
 from feeddrive.parts.screw.screw_contact import BallTrack

@@ -15,7 +15,7 @@ import pytest
 from feeddrive.errors import InputError
 from feeddrive.recording import read_recording
 from feeddrive.recording.files.csv_file import Layout, find_table
-from feeddrive.recording.files.text_blocks import TextFile
+from feeddrive.recording.files.opening import TextFile
 
 HEADER = "time [s],motor_torque [N m],motor_angle [rad],table_position [m]\n"
 
@@ -68,7 +68,7 @@ def test_blocks_read_as_the_whole(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     (tmp_path / "a.csv").write_bytes(made.encode("utf-16" if change == "utf16" else "utf-8"))
     whole = read_recording(tmp_path / "a.csv")
     for block in (97, 1000):
-        monkeypatch.setattr("feeddrive.recording.files.text_blocks.BLOCK", block)
+        monkeypatch.setattr("feeddrive.recording.files.opening.BLOCK", block)
         pieces = read_recording(tmp_path / "a.csv")
         assert pieces.notes == whole.notes and pieces.sha256 == whole.sha256
         assert all(np.array_equal(pieces[name], whole[name]) for name in whole.channels)
@@ -84,7 +84,7 @@ def test_a_fault_in_a_later_block_has_its_row(
     lines = table(300).split("\n")
     lines[row - 1] = ",".join([*lines[row - 1].split(",")[:2], cell, lines[row - 1].split(",")[3]])
     (tmp_path / "a.csv").write_text("\n".join(lines))
-    monkeypatch.setattr("feeddrive.recording.files.text_blocks.BLOCK", 500)
+    monkeypatch.setattr("feeddrive.recording.files.opening.BLOCK", 500)
     with pytest.raises(InputError, match=f"row {row}") as caught:
         read_recording(tmp_path / "a.csv")
     assert said in str(caught.value)
@@ -94,7 +94,7 @@ def test_decimal_signs_that_differ_between_blocks(tmp_path: Path, monkeypatch: p
     lines = table(300).replace(",", ";").split("\n")
     lines[200] = lines[200].replace(".", ",")
     (tmp_path / "a.csv").write_text("\n".join(lines))
-    monkeypatch.setattr("feeddrive.recording.files.text_blocks.BLOCK", 500)
+    monkeypatch.setattr("feeddrive.recording.files.opening.BLOCK", 500)
     with pytest.raises(InputError, match=r"row 201.*decimal sign cannot be decided"):
         read_recording(tmp_path / "a.csv")
     with pytest.raises(InputError, match="row 2: a decimal point stands"):

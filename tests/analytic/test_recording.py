@@ -24,7 +24,7 @@ from feeddrive.recording import (
     without_unfollowed_setpoint,
     write_recording,
 )
-from feeddrive.recording.checks.findings import quantisation_step
+from feeddrive.recording.checks.flaws import quantisation_step
 
 LEAD = 0.020
 RADIUS = LEAD / (2 * math.pi)

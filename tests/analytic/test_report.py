@@ -29,10 +29,8 @@ from feeddrive.diagnosis.judging.result import (
 )
 from feeddrive.errors import InputError
 from feeddrive.report.figures.drawing import dress, new_figure
-from feeddrive.report.figures.figure_effects import curve_figures
-from feeddrive.report.figures.figures import render_figures, report_figures, save_figures
-from feeddrive.report.figures.style import STYLE
-from feeddrive.report.pages.html import report_page, write_report
+from feeddrive.report.figures.figures import curve_figures, render_figures, report_figures, save_figures
+from feeddrive.report.pages.html import STYLE, report_page, write_report
 from feeddrive.report.pages.sections import verdict_section
 from feeddrive.report.records import Occasion, used_sentence
 from feeddrive.report.words.people import share_text, times_text

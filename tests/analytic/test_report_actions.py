@@ -8,13 +8,13 @@ from html import unescape
 import numpy as np
 
 import feeddrive as fd
-from feeddrive.compensation.actions import Actions, actions, recorded_stroke, values_to_set
+from feeddrive.bench_page.page import bench_of_diagnosis
+from feeddrive.compensation.actions import Actions, actions, values_to_set
 from feeddrive.compensation.compensate import Prediction, Wishes, plant_table
 from feeddrive.compensation.cures import CURES, ORDER, cure, in_order
 from feeddrive.compensation.predicted_accuracy import Figures
 from feeddrive.diagnosis.judging.result import Diagnosis, EffectResult, ParameterResult
 from feeddrive.effects.catalogue import EFFECTS, THERMAL_EFFECTS
-from feeddrive.interface.benching import bench_of_diagnosis
 from feeddrive.metrology.circular import circular
 from feeddrive.metrology.positioning import positioning
 from feeddrive.report.pages.html import report_page
@@ -120,7 +120,7 @@ def test_a_plant_that_cannot_be_predicted_says_why() -> None:
 
 
 def test_stroke_is_that_of_the_recording_where_none_is_declared() -> None:
-    found = recorded_stroke(_diagnosis())
+    found = _diagnosis().recorded_stroke
     assert found is not None
     position = recording(4000, 1, "a").variables["table_position"]
     assert found == (np.nanmin(position), np.nanmax(position))

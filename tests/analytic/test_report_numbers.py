@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from feeddrive.diagnosis.judging.result import EffectResult, JudgedRecording, ParameterResult
-from feeddrive.report.figures.spectra import density_spectrum, order_spectrum
+from feeddrive.report.figures.figure_spectrum import density_spectrum, order_spectrum
 from feeddrive.report.parameters import effect_sentence, parameter_text
 from feeddrive.report.thinning import balanced, binned, envelope, left_out_stretches
 from feeddrive.report.words.people import fixed, scale_for_error, share_text, significant

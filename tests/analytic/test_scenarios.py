@@ -14,10 +14,9 @@ from feeddrive.files import find_scenario_file, shipped_scenarios
 from feeddrive.metrology.circular import Circular
 from feeddrive.metrology.evaluate import as_json, evaluate
 from feeddrive.metrology.following import Following
-from feeddrive.metrology.linear_response import linear_response
 from feeddrive.metrology.loops import ForceLoop
 from feeddrive.metrology.positioning import Positioning
-from feeddrive.metrology.response import Response
+from feeddrive.metrology.response import Response, linear_response
 from feeddrive.recording.files.reading import read_recording
 from feeddrive.recording.files.writing import write_recording
 from feeddrive.servo.cascade_function import cascade_controller
@@ -26,9 +25,8 @@ from feeddrive.servo.margins import margins
 from feeddrive.servo.vendor_names import ALIASES
 from feeddrive.simulate.controlled.acting_torque import ActingTorque
 from feeddrive.simulate.controlled.controlled import TorqueLoop, resting_state, simulate_controlled
-from feeddrive.simulate.scenario.scenario import Scenario
+from feeddrive.simulate.scenario.scenario import Scenario, ScenarioResult
 from feeddrive.simulate.scenario.scenario_file import read_scenario
-from feeddrive.simulate.scenario.scenario_result import ScenarioResult
 from feeddrive.simulate.scenario.scenario_run import run_scenario
 from tests.claims.book import CLAIMS
 

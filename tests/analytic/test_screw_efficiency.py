@@ -11,7 +11,6 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from feeddrive.errors import InputError, ValidityWarning
-from feeddrive.parts.friction_estimate import friction_from_torque, relative_torque
 from feeddrive.parts.screw.contact_angle_optimum import (
     best_contact_angle,
     best_contact_angle_back,
@@ -20,13 +19,16 @@ from feeddrive.parts.screw.contact_angle_optimum import (
     highest_efficiency,
     largest_lead_angle,
 )
-from feeddrive.parts.screw.preload_torque import preload_torque, relative_preload_torque
 from feeddrive.parts.screw.screw_efficiency import (
     back_driving_efficiency,
     back_driving_loss,
     driving_efficiency,
     driving_loss,
+    friction_from_torque,
     jamming_friction,
+    preload_torque,
+    relative_preload_torque,
+    relative_torque,
     self_locking_friction,
 )
 from feeddrive.parts.screw.screw_friction import ScrewFriction, ScrewGeometry

@@ -26,8 +26,7 @@ from feeddrive.servo.linear_loop import (
     worst_eigenvalue,
 )
 from feeddrive.servo.margins import frequency_response, margins
-from feeddrive.servo.sampled import SampledController
-from feeddrive.servo.sampled_plant import sampled_plant
+from feeddrive.servo.sampled_plant import SampledController, sampled_plant
 from feeddrive.typing import FloatArray
 
 LEAD = 0.020

@@ -7,8 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from feeddrive.errors import InputError, ValidityWarning
-from feeddrive.parts.bearings.bearing import SupportBearing
-from feeddrive.parts.bearings.supports import ScrewSupports, Support
+from feeddrive.parts.bearings.supports import ScrewSupports, Support, SupportBearing
 from feeddrive.parts.screw.ball_screw import ScrewShaft
 from tests.analytic.stiffness_cases import bearings, supports
 

@@ -32,13 +32,12 @@ from feeddrive.servo import cascade_function
 from feeddrive.servo.cascade import Cascade, Feedback
 from feeddrive.servo.cascade_function import cascade_controller
 from feeddrive.servo.linear_loop import open_velocity_loop, refuse_unstable
-from feeddrive.servo.sampled import SampledController
-from feeddrive.servo.sampled_plant import sampled_plant
+from feeddrive.servo.sampled_plant import SampledController, sampled_plant
 from feeddrive.servo.scheduled import scheduled
 from feeddrive.servo.state_feedback import state_feedback
-from feeddrive.simulate.controlled import controlled_machine, position_velocity
+from feeddrive.simulate.controlled import controlled_machine, declared_loop
 from feeddrive.simulate.controlled.controlled import TorqueLoop, simulate_controlled
-from feeddrive.simulate.controlled.position_velocity import position_velocity_controller
+from feeddrive.simulate.controlled.declared_loop import position_velocity_controller
 from feeddrive.simulate.controlled.sensitivity import simulate_sensitivity
 from feeddrive.simulate.driven import motor_motion, simulate_driven
 from feeddrive.simulate.held_torque import simulate_torque
@@ -164,7 +163,7 @@ def test_no_expression_is_made_out_of_turn(
     if way == "interpreted":
         without_compiler()
     forget_machines()
-    for kept in (cascade_function._function, position_velocity._function, controlled_machine._written):
+    for kept in (cascade_function._function, declared_loop._function, controlled_machine._written):
         kept.cache_clear()
     out_of_turn: list[str] = []
     for made, name in ((ca.SX, "sym"), (ca.MX, "sym"), (ca.Function, "__init__"), (ca.Function, "map")):

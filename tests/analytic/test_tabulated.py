@@ -9,14 +9,11 @@ import numpy as np
 import pytest
 
 from feeddrive.effects.base import Motion, Port
-from feeddrive.effects.friction.tabulated_friction import TabulatedFriction
-from feeddrive.effects.source.tabulated_force import TabulatedForce
-from feeddrive.effects.source.tabulated_torque import TabulatedTorque
-from feeddrive.effects.travel.tabulated_travel import TabulatedTravel
+from feeddrive.effects.tabulated import TabulatedForce, TabulatedFriction, TabulatedTorque, TabulatedTravel
 from feeddrive.errors import InputError
 from feeddrive.files import plants_folder
-from feeddrive.plant.analysis.linear import ode, ode_parameters, state_names
-from feeddrive.plant.file.effect_text import plant_text_with_effects
+from feeddrive.plant.analysis.ode import ode, ode_parameters, state_names
+from feeddrive.plant.file.lumped_text import plant_text_with_effects
 from feeddrive.plant.file.plant_file import read_plant
 
 BENCH = read_plant(plants_folder() / "bench_axis.toml")

@@ -7,10 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from feeddrive.compensation.heat.thermal_error import LeftOver, left_over, table_error
+from feeddrive.compensation.heat.thermal_error import LeftOver, compensation_model, left_over, model_alone, table_error
 from feeddrive.compensation.heat.thermal_line import straight_line
 from feeddrive.compensation.heat.thermal_observer import Observation, thermal_observer
-from feeddrive.compensation.heat.thermal_open_loop import compensation_model, model_alone
 from feeddrive.compensation.heat.thermal_sensors import Sensor
 from feeddrive.compensation.heat.thermal_trial import tried_machine
 from feeddrive.compensation.heat.thermal_unknowns import Unknowns

@@ -7,7 +7,7 @@ import pytest
 
 from feeddrive.errors import InputError
 from feeddrive.report.figures.drawing import render
-from feeddrive.report.figures.figure_thermal_compensation import axis_heating_figure, compensation_figure, stroke_figure
+from feeddrive.report.figures.figure_compensation import axis_heating_figure, compensation_figure, stroke_figure
 
 TIMES = 60.0 * np.arange(1, 121)
 POSITIONS = np.linspace(0.2, 0.3, 5)

@@ -19,8 +19,7 @@ from feeddrive.plant.warmed import warmed
 from feeddrive.servo.cascade_function import cascade_controller
 from feeddrive.simulate.controlled.controlled import ControlledRun, TorqueLoop, resting_state, simulate_controlled
 from feeddrive.simulate.scenario.cycle_losses import CycleLosses, cycle_losses
-from feeddrive.thermal.laws.nut_preload import Spacer
-from feeddrive.thermal.thermal_coupling import Changes, Coupling, Temperatures, viscous_share
+from feeddrive.thermal.thermal_coupling import Changes, Coupling, Spacer, Temperatures, viscous_share
 from tests.analytic.warm_cases import COUPLING, PLANT_FILE, THERMAL, short_cycle
 
 PITCH, PRELOAD, STEEL = 0.0335, 2200.0, 11.7e-6

@@ -7,7 +7,7 @@ import pytest
 import scipy.sparse as sparse
 
 from feeddrive.compiler import compiled_library, find_compiler
-from feeddrive.thermal.full.marching import (
+from tests.heat_oracle.marching import (
     March,
     Progressing,
     Step,
@@ -65,7 +65,7 @@ def test_bands_make_up_the_matrix() -> None:
 
 
 def test_without_a_compiler_the_sparse_products_serve(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("feeddrive.thermal.full.marching._library", lambda: None)
+    monkeypatch.setattr("tests.heat_oracle.marching._library", lambda: None)
     at, _ = _marched(march_of([_step(), _step()]), 5)
     assert np.isfinite(at.rises).all()
     assert at.lost != 0

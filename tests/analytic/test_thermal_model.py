@@ -14,16 +14,15 @@ from scipy.optimize import brentq
 from scipy.special import j0, j1
 
 from feeddrive.errors import InputError
-from feeddrive.thermal.full.explicit import places_of, run_explicitly, stability_limit
 from feeddrive.thermal.full.full_model import Discretisation, discretise, full_model, model_of
-from feeddrive.thermal.full.grid import Cells, cylinder
-from feeddrive.thermal.full.occupancy import cell_edges, overlap
+from feeddrive.thermal.full.grid import Cells, cell_edges, cylinder, overlap, places_of
 from feeddrive.thermal.reduced.parametric_model import Path
 from feeddrive.thermal.reduced.system import HeatSystem
 from feeddrive.thermal.rig import Body, Nut, Seat, Steel, Travel
 from tests.analytic.node_classes import node_classes, printed_rates, stability_by_class
 from tests.analytic.thermal_cases import BENCH, bench_parts, conductances, nut_heat
 from tests.claims.book import CLAIMS
+from tests.heat_oracle.explicit import paper_cells, run_explicitly, stability_limit
 
 STEEL = Steel()
 
@@ -122,7 +121,7 @@ def test_mean_overlap_is_the_mean_over_the_places() -> None:
 def _paper_parts() -> Discretisation:
     nut = Nut(0.020, 0.100, end_share=1.0)
     rig = replace(BENCH.rig, nut=nut, rear=Seat(0.010, film=9.7, end_share=1.0))
-    return discretise(rig, Cells.of_paper(rig))
+    return discretise(rig, paper_cells(rig))
 
 
 def test_every_node_keeps_the_share_that_the_papers_class_prints() -> None:
@@ -138,7 +137,7 @@ def test_every_node_keeps_the_share_that_the_papers_class_prints() -> None:
 
 def test_class_one_limits_the_step_of_the_paper() -> None:
     steel = Steel(conductivity=50.0, heat_capacity=3.6e6)
-    parts = discretise(replace(BENCH.rig, steel=steel), Cells.of_paper(BENCH.rig))
+    parts = discretise(replace(BENCH.rig, steel=steel), paper_cells(BENCH.rig))
     limits = stability_by_class(parts, 0.25, conductances(500))
     assert min(limits, key=lambda kind: limits[kind]) == 1
     # 1/(α (2/Δz² + 4/Δr²)) with α = 1.389e-5: 4.41 ms.

@@ -9,17 +9,18 @@ import numpy as np
 import pytest
 
 from feeddrive.errors import InputError, ValidityWarning
-from feeddrive.thermal.full.explicit import ExplicitRun, run_explicitly
 from feeddrive.thermal.full.full_model import discretise, model_of
 from feeddrive.thermal.full.grid import Cells
 from feeddrive.thermal.full.moving import moving_system, ripple_number
-from feeddrive.thermal.full.moving_family import moving_family
 from feeddrive.thermal.reduced.parametric_model import Path
-from feeddrive.thermal.reduced.reduction import Sizes, compressed_basis, reduced_system
+from feeddrive.thermal.reduced.reduction import Sizes, compressed_basis
 from feeddrive.thermal.reduced.system import HeatSystem
 from feeddrive.thermal.rig import Travel
 from feeddrive.typing import FloatArray
 from tests.analytic.thermal_cases import BENCH, RPM, bench_parts, conductances, nut_heat
+from tests.heat_oracle.explicit import ExplicitRun, run_explicitly
+from tests.heat_oracle.moving_family import moving_family
+from tests.heat_oracle.reduction_error import reduced_system
 
 WORKING = Sizes(heats=(("nut", 1.3), ("front", 1.0), ("rear", 0.17)))
 """Nut of a small axis, heat of the motor at the front end, of a bearing at the rear one [W]; 2 K of the air."""

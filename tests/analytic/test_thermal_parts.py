@@ -1,4 +1,4 @@
-"""Expansion between bearings, preload of the nut, friction, films, contact, and the thermal section of plant files."""
+"""Expansion of the screw, preload of the nut, friction, films, contact, and the thermal section of plant files."""
 
 from __future__ import annotations
 
@@ -11,75 +11,37 @@ import pytest
 from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.thermal.full.full_model import full_model
-from feeddrive.thermal.full.occupancy import cell_edges
-from feeddrive.thermal.laws.expansion import FIXED_FREE, Supports, expansion, fixed_fixed, fixed_supported
+from feeddrive.thermal.full.grid import cell_edges
+from feeddrive.thermal.laws.expansion import growths
 from feeddrive.thermal.laws.films import Films, rotating_cylinder_film
 from feeddrive.thermal.laws.friction import Friction
-from feeddrive.thermal.laws.nut_preload import Spacer, preload_change
+from feeddrive.thermal.thermal_coupling import Spacer, preload_change
 from tests.analytic.thermal_cases import BENCH, BENCH_FILE, RPM, conductances
 
 RIG = BENCH.rig
 EDGES = cell_edges(RIG.length, 50)
-ALPHA, STIFFNESS = RIG.steel.expansion, RIG.steel.elasticity * math.pi * RIG.radius**2
+ALPHA = RIG.steel.expansion
 
 
 def test_free_end_grows_by_the_integral_of_the_rise() -> None:
     middle = (EDGES[1:] + EDGES[:-1]) / 2
-    found = expansion(RIG, 10 * middle / RIG.length, EDGES)
+    found = growths(RIG, 10 * middle / RIG.length, EDGES, np.array([0.3]))
     # A linear rise: the integral is a parabola, exact at the edges of the cells.
-    assert found.growth(0.3)[0] == pytest.approx(ALPHA * 10 * 0.3**2 / (2 * RIG.length), rel=1e-12)
-    assert found.force[0] == 0.0
-    assert found.stretch_lost[0] == 0.0
+    assert found[0, 0] == pytest.approx(ALPHA * 10 * 0.3**2 / (2 * RIG.length), rel=1e-12)
 
 
 def test_growth_is_that_of_the_model() -> None:
     model = full_model(RIG)
     states = model.at(conductances(500)).simulate(np.tile(np.eye(5)[0], (3, 1)), 600.0)
-    found = expansion(RIG, states @ model.profile.T, model.edges)
-    np.testing.assert_allclose(found.growth(0.25), states @ model.readings["growth_250mm"], rtol=1e-10)
-
-
-def test_rigid_bearings_hold_a_uniform_rise_completely() -> None:
-    found = expansion(RIG, np.full(50, 4.0), EDGES, fixed_fixed(math.inf, math.inf))
-    assert found.force[0] == pytest.approx(STIFFNESS * ALPHA * 4.0, rel=1e-12)
-    for position in (0.1, 0.25, 0.4):
-        assert found.growth(position)[0] == pytest.approx(0.0, abs=1e-18)
-
-
-def test_yielding_bearings_share_the_expansion_like_springs() -> None:
-    front, rear = 80e6, 120e6
-    found = expansion(RIG, np.full((2, 50), 4.0), EDGES, fixed_fixed(front, rear))
-    total = ALPHA * 4.0 * RIG.length
-    force = total / (RIG.length / STIFFNESS + 1 / front + 1 / rear)
-    assert found.force == pytest.approx([force, force], rel=1e-12)
-    # Each bearing yields by its force over its stiffness.
-    assert found.growth(0.0)[0] == pytest.approx(-force / front, rel=1e-12)
-    assert found.growth(RIG.length)[0] == pytest.approx(force / rear, rel=1e-12)
-
-
-def test_supports_go_over_into_each_other() -> None:
-    profile = np.linspace(6.0, 1.0, 50)
-    free = expansion(RIG, profile, EDGES, FIXED_FREE).growth(0.3)
-    np.testing.assert_allclose(expansion(RIG, profile, EDGES, fixed_supported(90e6)).growth(0.3), free)
-    np.testing.assert_allclose(expansion(RIG, profile, EDGES, fixed_supported(90e6, 1e-3)).growth(0.3), free, rtol=1e-9)
-
-
-def test_heat_takes_the_stretch_and_says_when_none_is_left() -> None:
-    supports = fixed_fixed(200e6, 200e6, tension=2000.0)
-    found = expansion(RIG, np.full(50, 2.0), EDGES, supports)
-    assert found.tension_left[0] == pytest.approx(2000.0 - found.force[0])
-    assert 0 < found.stretch_lost[0] < 1
-    with pytest.warns(ValidityWarning, match="the shaft is compressed"):
-        expansion(RIG, np.full(50, 20.0), EDGES, supports)
+    found = growths(RIG, states @ model.profile.T, model.edges, np.array([0.25]))
+    np.testing.assert_allclose(found[:, 0], states @ model.readings["growth_250mm"], rtol=1e-10)
 
 
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: Supports(front=-1.0), "supports.front"),
-        (lambda: Supports(tension=100.0), "free at one end"),
-        (lambda: expansion(RIG, np.zeros(50), EDGES).growth(0.6), "is not on the shaft"),
-        (lambda: expansion(RIG, np.zeros(7), EDGES), "profile and edges do not fit"),
+        (lambda: growths(RIG, np.zeros(50), EDGES, np.array([0.6])), "is not on the shaft"),
+        (lambda: growths(RIG, np.zeros(7), EDGES, np.zeros(1)), "profile and edges do not fit"),
         (lambda: preload_change(1.0, -5.0, 260e6, 0.04, 0.01675, 0.8, Spacer.OVERSIZE), "preload"),
         (lambda: Friction(-1.0, 10, 170e-6, 0.01675), "load_torque"),
         (lambda: Films(-1.0, 0.0, 0.0, 0.0), "film.screw"),

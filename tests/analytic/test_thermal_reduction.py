@@ -10,10 +10,10 @@ from feeddrive.thermal.full.full_model import full_model
 from feeddrive.thermal.full.grid import Cells
 from feeddrive.thermal.reduced.network import network
 from feeddrive.thermal.reduced.parametric_model import HeatModel, Path
-from feeddrive.thermal.reduced.reduction import Sizes, compressed, reduce_model, reduced_system
-from feeddrive.thermal.reduced.reduction_error import reduction_error
+from feeddrive.thermal.reduced.reduction import Sizes, compressed, reduce_model
 from feeddrive.thermal.rig import Body, Travel
 from tests.analytic.thermal_cases import BENCH, QUICK, conductances
+from tests.heat_oracle.reduction_error import reduced_system, reduction_error
 
 WORKING = Sizes(heats=(("nut", 1.3), ("front", 1.0), ("rear", 0.17)))
 """Nut of a small axis, heat of the motor at the front end, of a bearing at the rear one [W]; 2 K of the air."""

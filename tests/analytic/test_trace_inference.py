@@ -10,9 +10,8 @@ import pytest
 
 from feeddrive.errors import InputError
 from feeddrive.recording import Recording, read_recording, write_recording
-from feeddrive.recording.derived import with_angle
-from feeddrive.recording.traces.channel_choice import Wishes
-from feeddrive.recording.traces.held import at_updates, held_rows
+from feeddrive.recording.files.reading import with_angle
+from feeddrive.recording.traces.channel_choice import Wishes, at_updates, held_rows
 from feeddrive.recording.traces.opened import Understood, understand
 from feeddrive.recording.traces.resampling import Part, Series, on_one_grid, parts_of
 from feeddrive.recording.traces.trace import Signal, Trace

@@ -16,7 +16,7 @@ import pytest
 
 import feeddrive as fd
 from feeddrive.trend.checkpoint import load_checkpoint, save_checkpoint
-from feeddrive.trend.stamps import stamp_of
+from feeddrive.trend.folder import stamp_of
 from feeddrive.trend.watch import Trend
 from tests.recovery import trend_machine as machine
 from tests.recovery.trend_files import write_recording

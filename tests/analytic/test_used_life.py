@@ -9,7 +9,7 @@ import pytest
 
 import feeddrive as fd
 from feeddrive.recording import Recording
-from feeddrive.simulate.used_life import used_life
+from feeddrive.simulate.driven import used_life
 
 
 def ramp() -> tuple[np.ndarray, np.ndarray, float]:

@@ -7,8 +7,7 @@ from itertools import product
 
 import numpy as np
 
-from feeddrive.compensation.heat.thermal_error import table_error
-from feeddrive.compensation.heat.thermal_open_loop import compensation_model
+from feeddrive.compensation.heat.thermal_error import compensation_model, table_error
 from feeddrive.compensation.heat.thermal_trial import TriedMachine, random_duty, tried_machine
 from feeddrive.files import find_plant
 from feeddrive.plant.file.plant_file import read_plant

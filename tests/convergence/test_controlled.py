@@ -15,7 +15,7 @@ from feeddrive.effects.timing.drive_delay import DriveDelay
 from feeddrive.effects.transmission.backlash import Backlash
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant, Sensor
-from feeddrive.servo.sampled import SampledController
+from feeddrive.servo.sampled_plant import SampledController
 from feeddrive.simulate.controlled.controlled import (
     ControlledRun,
     TorqueLoop,

@@ -14,8 +14,7 @@ from feeddrive.files import plants_folder
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import PositionVelocityController
 from feeddrive.recording import read_recording
-from feeddrive.simulate.controlled.declared_loop import DeclaredLoop, declared_loop
-from feeddrive.simulate.controlled.replay import replayed_command
+from feeddrive.simulate.controlled.declared_loop import DeclaredLoop, declared_loop, replayed_command
 from feeddrive.typing import FloatArray
 from tests.convergence.declared_run import declared_run
 from tests.recovery.declared_controller import controlled_plant

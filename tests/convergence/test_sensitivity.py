@@ -17,7 +17,7 @@ from feeddrive.effects.friction.presliding import Presliding
 from feeddrive.effects.friction.shaft_drag import NutDrag
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
-from feeddrive.servo.sampled import SampledController
+from feeddrive.servo.sampled_plant import SampledController
 from feeddrive.simulate.controlled.controlled import TorqueLoop, simulate_controlled
 from feeddrive.simulate.controlled.sensitivity import simulate_sensitivity
 from tests.claims.book import CLAIMS

@@ -11,7 +11,8 @@ ROOT = Path(__file__).resolve().parents[2]
 DIAGNOSIS = ROOT / "feeddrive" / "diagnosis"
 METHOD = ROOT / "docs" / "method.md"
 
-DECIDING = ("finding/", "judging/", "calibration/", "certainty/ambiguity", "certainty/inclusion",
+DECIDING = ("finding/", "judging/effect", "judging/judge", "judging/veto",
+            "judging/physical_reading", "calibration/", "certainty/ambiguity", "certainty/inclusion",
             "certainty/uncertainty", "likelihood/set_evidence", "likelihood/cross_validation",
             "likelihood/predictor")  # fmt: skip
 """Rooms and files that decide which names are found; the others prepare recordings, read starts, or word the rest."""

@@ -13,9 +13,8 @@ import pytest
 from feeddrive.reproduce.paper_002 import rows
 from feeddrive.reproduce.paper_002_sets import GRID, PRELOADS, SPEEDS, Assumptions, plant, warm_up
 from feeddrive.reproduce.row import Row, Status
-from feeddrive.thermal.full.explicit import run_explicitly
 from feeddrive.thermal.full.full_model import discretise
-from feeddrive.thermal.full.grid import Cells
+from tests.heat_oracle.explicit import paper_cells, run_explicitly
 
 RPM = 0.10471975511965977
 WRONG_BY_A_LAW = {
@@ -108,7 +107,7 @@ def test_time_constants_are_compared_at_both_preloads(found: tuple[Row, ...]) ->
 def test_explicit_scheme_on_the_papers_grid_gives_the_same_rise() -> None:
     machine = plant(Assumptions.FITTED, 670)
     speed = 500 * RPM
-    parts = discretise(machine.rig, Cells.of_paper(machine.rig))
+    parts = discretise(machine.rig, paper_cells(machine.rig))
     heat = float(machine.heats(np.array([speed]))["nut"][0])
     run = run_explicitly(parts, machine.at_speed(speed), {"nut": heat}, machine.feed(speed), 180 * 60.0)
     assert run.imbalance < 1e-8

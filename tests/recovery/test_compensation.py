@@ -20,7 +20,7 @@ from feeddrive.compensation.predicted_accuracy import Applied, circle_figures, c
 from feeddrive.compensation.sheet import left, predicted_rows, sections, sheet_text, text
 from feeddrive.compensation.temperature import HeatTable
 from feeddrive.servo.cascade import Feedback
-from feeddrive.simulate.controlled.controller_file import read_controller
+from feeddrive.simulate.scenario.scenario_controller import read_controller
 from tests.analytic import compensation_readers as read
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -209,6 +209,20 @@ def test_backlash_that_is_not_sure_is_in_no_table(tmp_path: Path, entry: dict[st
     (tmp_path / "diagnosis.json").write_text(json.dumps({"effects": [], "ambiguous": []} | entry))
     with pytest.raises(fd.InputError, match=f"no table is written.*{words}"):
         fd.compensate(tmp_path, "linuxcnc", stroke=("0 mm", "400 mm"))
+
+
+def test_stroke_is_that_of_the_diagnosis_where_none_is_declared(tmp_path: Path) -> None:
+    """As the report has it; a stroke that is no range of positions is no stroke."""
+    fd.load("bench_axis").with_effects(fd.effect("backlash", width="7.5 um")).save(tmp_path / "plant_after.toml")
+    for stroke in ([0.05, 0.35], None, [0.3, 0.1], ["0", 0.3], [0.0, float("nan")]):
+        (tmp_path / "diagnosis.json").write_text(json.dumps({"effects": [], "recorded_stroke": stroke}))
+        if stroke == [0.05, 0.35]:
+            made = fd.compensate(tmp_path, "csv").done
+            assert isinstance(made, Compensated)
+            assert (made.table.positions[0], made.table.positions[-1]) == (0.05, 0.35)
+        else:
+            with pytest.raises(fd.InputError, match="no stroke is declared"):
+                fd.compensate(tmp_path, "csv")
 
 
 def test_play_that_weight_holds_closed_is_in_no_table() -> None:

@@ -11,12 +11,11 @@ import pytest
 from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.preparation import prepared
 from feeddrive.diagnosis.simulated.loop_evidence import loop_evidence
-from feeddrive.diagnosis.simulated.simulation import loop_errors
+from feeddrive.diagnosis.simulated.refinement import loop_errors
 from feeddrive.files import plants_folder
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.recording import Recording
-from feeddrive.simulate.controlled.declared_loop import declared_loop
-from feeddrive.simulate.controlled.replay import replayed_command
+from feeddrive.simulate.controlled.declared_loop import declared_loop, replayed_command
 from feeddrive.simulate.scenario.scenario_file import read_scenario
 from feeddrive.simulate.scenario.scenario_run import run_scenario
 from feeddrive.typing import FloatArray
@@ -153,8 +152,6 @@ def test_a_run_writes_what_it_injects_and_its_recording_is_simulated_again(
 def test_what_is_planted_is_found_and_nothing_else(
     kind: str, effects: tuple[Effect, ...], simulate: bool, tmp_path: Path
 ) -> None:
-    if kind != "binary" and any(isinstance(effect, Backlash) for effect in effects):
-        pytest.skip("free play excited without pause is chaotic: a torque multisine leaves it told as preload_loss")
     fitted, judged = recorded(kind, effects, 13), recorded(kind, effects, 14, judged=True)
     found, _ = diagnose(controlled_plant(tmp_path, "bench"), [fitted], [judged], simulate=simulate)
     assert [effect.name for effect in found.effects] == [effect.name for effect in effects]

@@ -15,8 +15,7 @@ from feeddrive.diagnosis.calibration.calibrate import calibrated, calibrated_lis
 from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
 from feeddrive.diagnosis.likelihood.folds import FOLDS, block_numbers, blocks_in_time
-from feeddrive.diagnosis.numbers.measurable import MEASURABLE, Setting
-from feeddrive.diagnosis.numbers.measured_file import MeasuredNumber
+from feeddrive.diagnosis.numbers.measured_file import MEASURABLE, MeasuredNumber, Setting
 from feeddrive.diagnosis.numbers.number_rows import MeasuredRows
 from feeddrive.diagnosis.preparation import prepared
 from feeddrive.effects.chain.payload import Payload
@@ -137,3 +136,19 @@ def test_a_diagnosis_tells_what_the_numbers_are_and_become(tmp_path: Path) -> No
     record = json.loads((written / "diagnosis.json").read_text(encoding="utf-8"))
     assert [row["met"] for row in record["measured"]] == [True, True]
     assert "Measured numbers" in (written / "report.html").read_text(encoding="utf-8")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("case", ["null", "payload"])
+def test_a_number_that_all_else_contradicts_is_told_and_not_fitted(case: str) -> None:
+    """A quarter less than the stiffness that recordings tell to a per cent; a right one beside it is fitted."""
+    plant = catalogued().plant
+    wrong, right = number(plant, "axial_stiffness", 0.01, 0.74), number(plant, "drag_torque", 0.05)
+    fitted, judged = pair("bench", case)
+    found, _ = diagnose(plant, [fitted], [judged], measured=[wrong, right])
+    assert [effect.name for effect in found.effects] == ([] if case == "null" else [case])
+    assert {one.number.quantity: one.fitted for one in found.measured} == {
+        "drag_torque": True,
+        "axial_stiffness": False,
+    }
+    assert any("axial_stiffness" in note and "it was not fitted" in note for note in found.notes)

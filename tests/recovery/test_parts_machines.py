@@ -17,6 +17,7 @@ from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
 from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant
+from feeddrive.plant.analysis.lumping import lump
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.recording import Recording
 from tests.generator.screw_elements import Recorder, drive_of
@@ -128,13 +129,13 @@ def test_nothing_is_found_where_nothing_is_planted() -> None:
 def with_the_lumped_file(name: str, seed: int, *changes: tuple[str, object]) -> Diagnosis:
     """Recordings of the parts, diagnosed with the three inertias that `feeddrive lump` writes."""
     fitted, judged = made(name, SECONDS, False, seed, changes), made(name, JUDGED, True, seed + 1, changes)
-    lumped = read_plant(find_plant(name)).lumped()
+    lumped = lump(read_plant(find_plant(name)))
     return diagnose(lumped.plant, [fitted], validation=[judged])[0]
 
 
 @pytest.mark.parametrize("name", ["kimm_testbed", "hsr_axis", "vertical_axis"])
 def test_what_the_lumping_misses_is_within_what_its_file_says(name: str) -> None:
-    recording, plant = made(name, SECONDS, False, 1), read_plant(find_plant(name)).lumped().plant
+    recording, plant = made(name, SECONDS, False, 1), lump(read_plant(find_plant(name))).plant
     evidence = prepare(recording, plant, 1.0)
     left = evidence.measured["table_position"] - AxisPredictor().predict(plant, evidence)["table_position"]
     missed = float(np.std(left[evidence.counted]))

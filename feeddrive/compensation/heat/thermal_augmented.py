@@ -22,9 +22,8 @@ from itertools import starmap
 
 import numpy as np
 
-from feeddrive.compensation.heat.thermal_deviation import NUT_FILMS, SCREW_FILMS
 from feeddrive.compensation.heat.thermal_sensors import Sensor
-from feeddrive.compensation.heat.thermal_unknowns import Unknowns, stationary_step
+from feeddrive.compensation.heat.thermal_unknowns import NUT_FILMS, SCREW_FILMS, Unknowns, stationary_step
 from feeddrive.errors import InputError
 from feeddrive.thermal.reduced.parametric_model import AMBIENT, HeatModel, Path
 from feeddrive.thermal.reduced.stepping import exact_propagator

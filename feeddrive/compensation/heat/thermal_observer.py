@@ -56,12 +56,12 @@ class ThermalObserver:
     """A compensation with sensors.
 
     Attributes:
-        plant: what the file declares.
+        heat: what the file declares.
         system: reduced model, sensors, unknowns, row.
         error: of the table along the stroke.
     """
 
-    plant: Heat
+    heat: Heat
     system: Augmented
     error: TableError
 
@@ -111,7 +111,7 @@ class ThermalObserver:
         """
         if not np.all(np.isfinite(ambient)):
             raise InputError("a recorded ambient is not finite", "ambient", "give the last good value where it failed")
-        given, model = declared_rows(self.plant, self.system.step, speeds, ambient), self.system.model
+        given, model = declared_rows(self.heat, self.system.step, speeds, ambient), self.system.model
         heat = sum(
             np.multiply.outer(given.inputs[name], vector)
             for name, vector in model.heats.items()

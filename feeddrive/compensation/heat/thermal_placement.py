@@ -80,7 +80,7 @@ def placements(
 def expected_deviation(observer: ThermalObserver, speed: float) -> FloatArray:
     """Standard deviation of the table's error along the stroke, settled at a speed [rad/s], (p,) [m]."""
     system, n = observer.system, observer.system.model.order
-    (row,), (transition,) = observer.rows(np.array([speed]), np.array([observer.plant.ambient]))
+    (row,), (transition,) = observer.rows(np.array([speed]), np.array([observer.heat.ambient]))
     z = np.zeros(system.size)
     z[:n] = np.linalg.solve(np.eye(n) - transition.propagator[:n, :n], transition.spread[:n] @ row.heat)
     _, F = system.predicted(z, row, transition)

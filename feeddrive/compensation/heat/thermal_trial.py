@@ -7,10 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from feeddrive.compensation.heat.thermal_deviation import deviating
 from feeddrive.compensation.heat.thermal_error import table_error
 from feeddrive.compensation.heat.thermal_sensors import Sensor, mountable_places, simulated_readings
-from feeddrive.thermal.laws.expansion import FIXED_FREE, Supports
+from feeddrive.compensation.heat.thermal_unknowns import deviating
 from feeddrive.thermal.machine_heat import Heat
 from feeddrive.thermal.reduced.parametric_model import HeatModel
 from feeddrive.thermal.rig import refuse_unless
@@ -54,7 +53,6 @@ class TriedMachine:
 def tried_machine(
     plant: Heat, model: HeatModel, step: float, speeds: FloatArray, ambient: FloatArray, *,
     heat: float = 1.0, film: float = 1.0, others: Mapping[str, FloatArray] | None = None,
-    supports: Supports = FIXED_FREE,
 ) -> TriedMachine:  # fmt: skip
     """Run a machine whose heats and films are not as declared, from a cold start.
 
@@ -67,12 +65,11 @@ def tried_machine(
         heat: factor on all heats [1].
         film: factor on all films [1].
         others: input name to a heat that the plant does not declare, such as a motor's, (k,) [W].
-        supports: of the screw along its axis.
     """
     rows = deviating(declared_rows(plant, step, speeds, ambient), heat, film, film)
     rows = replace(rows, inputs={**rows.inputs, **(others or {})})
     states = run(model, rows, substeps=_SUBSTEPS)
-    error = table_error(plant, model, supports)
+    error = table_error(plant, model)
     rises = {place: states @ model.readings[place] for place in mountable_places(plant)}
     return TriedMachine(step, speeds, ambient, error.positions, error.of(states), rises)
 

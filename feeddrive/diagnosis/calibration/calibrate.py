@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -72,6 +73,36 @@ def recalibrated(problem: Problem, effects: Sequence[Effect], rough: bool = Fals
     numbers = problem.numbers.with_variance(variance)
     sloped = replace(problem, calibration=replace(sloped.calibration, variance=variance), numbers=numbers)
     return _stepped(sloped, effects, sloped.unwhitened(effects) if len(numbers) else residual)
+
+
+def weighed_by_rest(problem: Problem, effects: Sequence[Effect]) -> Problem:
+    """The problem with no channel weighed by more than what is left of it, its declared values fitted anew from there.
+
+    A channel of which much is left has an error of the model, not of its sensor. Its variance is not known; the most
+    likely one is its mean square, n/2 log r'r in place of r'r / 2 σ², which is met by weighing in turn: begun at the
+    declared values, so that none of two channels is given up for the other.
+
+    Args:
+        problem: with declared values that are fitted.
+        effects: beside them.
+    """
+    known = problem.calibration
+    if known is None or not known.values:
+        return problem
+    there = replace(problem, calibration=replace(known, coordinates=np.zeros(len(known.values))))
+    for _ in range(PASSES):
+        before = there
+        residual, first, evidence = replace(there, evidence=problem.evidence).unwhitened(effects), 0, []
+        for e in problem.evidence:
+            count, noise = int(e.thinned(e.fit_rows).sum()), dict(e.noise)
+            for name in e.channels:
+                noise[name] *= math.sqrt(max(float(np.mean(residual[first : first + count] ** 2)), 1.0))
+                first += count
+            evidence.append(replace(e, noise=noise))
+        there = recalibrated(replace(there, evidence=tuple(evidence)), effects)
+        if np.max(np.abs(moved(before, there)), initial=0.0) < ENOUGH:
+            break
+    return there
 
 
 def with_new_slopes(problem: Problem, effects: Sequence[Effect], rough: bool = False) -> Problem:

@@ -20,6 +20,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
+from scipy.signal.windows import parzen
 
 from feeddrive.diagnosis.likelihood.evidence import BLOCK, AxisEvidence, Evidence
 from feeddrive.typing import BoolArray, ComplexArray, FloatArray, IntegerArray
@@ -150,9 +151,7 @@ def _scatter(pairs: ComplexArray, columns: FloatArray, stretch: Stretch) -> Floa
 def _smoothed(pairs: ComplexArray, stretch: Stretch) -> ComplexArray:
     """Spectra by Parzen's window, shape (c, c, f)."""
     window = np.zeros(stretch.size)
-    lags = np.arange(stretch.lags + 1)
-    share = lags / (stretch.lags + 0.5)
-    half = np.where(2 * lags <= stretch.lags, 1 - 6 * share**2 * (1 - share), 2 * (1 - share) ** 3)
+    half = parzen(2 * stretch.lags + 1)[stretch.lags :]
     window[: len(half)] = half
     window[-stretch.lags :] = half[:0:-1]
     smoothed: ComplexArray = rfft(irfft(pairs, stretch.size, axis=2) * window, axis=2) / len(stretch.places)

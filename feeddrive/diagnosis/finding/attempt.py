@@ -16,7 +16,7 @@ from feeddrive.diagnosis.likelihood.cross_validation import (
     left_out_residual,
 )
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit, linear_step
-from feeddrive.diagnosis.likelihood.folds import block_numbers
+from feeddrive.diagnosis.likelihood.folds import FOLDS, block_numbers
 from feeddrive.effects.base import Effect, TransmissionEffect
 from feeddrive.errors import InputError
 from feeddrive.typing import FloatArray
@@ -177,9 +177,14 @@ def with_short_blocks(problem: Problem) -> Problem:
 
 
 def with_predictable(problem: Problem, effects: Sequence[Effect]) -> Problem:
-    """The problem without the samples that tell nothing of a plant with these effects."""
+    """The problem without the samples that tell nothing of a plant with these effects.
+
+    Where those that are left fill fewer blocks than there are folds, the blocks are shortened: under a test signal that
+    never pauses, free play is chaotic but for some tenths of a second, of which no fold may hold all.
+    """
     plant = problem.machine(effects)
     kept = tuple(e.where_predictable(problem.predictor.to_fit(plant, e)) for e in problem.evidence)
     if any(not e.fit_rows.any() for e in kept):
         return problem
-    return replace(problem, evidence=kept)
+    left = replace(problem, evidence=kept)
+    return with_short_blocks(left) if len(np.unique(block_numbers(left))) < FOLDS else left

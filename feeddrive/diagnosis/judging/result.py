@@ -174,6 +174,10 @@ class Trial:
     taken: bool
 
 
+_ROOM = 0.02
+"""m: a shorter stroke was no stroke but a test about a point."""
+
+
 @dataclass(frozen=True)
 class Diagnosis:
     """Everything `feeddrive diagnose` has to say."""
@@ -207,6 +211,15 @@ class Diagnosis:
         differs = any(change.fitted for change in self.changes.changes)
         tables = any(left.carried for left in self.unexplained.values())
         return not (self.effects or differs or tables or self.calibrated)
+
+    @property
+    def recorded_stroke(self) -> tuple[float, float] | None:
+        """The range of the table position in the judged recordings [m]; None where it is too short to be a stroke."""
+        found = [one.variables["table_position"] for one in self.recordings if "table_position" in one.variables]
+        known = np.concatenate([one[np.isfinite(one)] for one in found]) if found else np.empty(0)
+        if not known.size or np.ptp(known) <= _ROOM:
+            return None
+        return float(known.min()), float(known.max())
 
 
 def error_figures(error: FloatArray, reference_rms: float) -> ErrorFigures:

@@ -24,7 +24,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.special import chdtri
 
-from feeddrive.diagnosis.calibration.beyond import SURE
+from feeddrive.diagnosis.calibration.beyond import SURE, without_effects
+from feeddrive.diagnosis.calibration.calibrate import weighed_by_rest, with_kept
 from feeddrive.diagnosis.certainty.uncertainty import certainty
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging.judge import Judged, Share, error_series, judged_channels, share_beyond, share_of
@@ -38,7 +39,7 @@ from feeddrive.diagnosis.likelihood.coordinates import (
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison, compare_left_out, left_out_residual
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit, linear_step
 from feeddrive.diagnosis.likelihood.folds import block_numbers
-from feeddrive.diagnosis.recordings.judged_changes import judged_changes
+from feeddrive.diagnosis.recordings.compared import judged_changes
 from feeddrive.diagnosis.recordings.recordings import RecordingShift, is_shift, without_shifts
 from feeddrive.effects.base import ChainEffect, Effect
 from feeddrive.typing import FloatArray, IntegerArray
@@ -76,8 +77,38 @@ def without_denied(
         rest = _without_lost_shifts([effect for i, effect in enumerate(effects) if i != denied.place])
         still_named = any(effect.name == gone.name for effect in rest)
         reasons = found.impossible if still_named else {**found.impossible, gone.name: denied.reason}
-        found = replace(found, fit=fit(found.problem, rest), impossible=reasons)
+        problem = without_effects(found.problem, [gone], rest)
+        found = replace(found, problem=problem, fit=fit(problem, rest), impossible=reasons)
         judged = judge(found)
+    return found, judged
+
+
+def not_worse_than_declared(
+    found: Search, judged: list[Judged], judge: Callable[[Search], list[Judged]]
+) -> tuple[Search, list[Judged]]:
+    """The search with declared values that leave no channel worse than declared, where names are not what does it.
+
+    What no name explains in one channel pulls the declared values, and another channel pays for it. They are fitted
+    anew with every channel weighed by what is left of it; where that is worse than declared still, they stay declared.
+
+    Args:
+        found: what was found.
+        judged: recordings with it in.
+        judge: judges another search.
+    """
+    known = found.problem.calibration
+    if known is None or not known.values or not _worst_channel(found.problem, judged):
+        return found, judged
+    if any(is_shift(effect) for effect in found.fit.effects):
+        return found, judged  # what one recording has otherwise is told of as a change
+    for problem in (
+        weighed_by_rest(found.problem, found.fit.effects),
+        with_kept(found.problem, [False] * len(known.values)),
+    ):
+        other = replace(found, problem=problem, fit=fit(problem, found.fit.effects))
+        again = judge(other)
+        if not _worst_channel(problem, again):
+            return other, again
     return found, judged
 
 

@@ -12,7 +12,6 @@ import numpy as np
 from feeddrive.diagnosis.likelihood.band import END_CUT, Band, comparison_band, held, sensor_noise
 from feeddrive.diagnosis.likelihood.encoder_error import Weighing, encoder_error
 from feeddrive.diagnosis.likelihood.slow_rows import is_slow, known_motion, refuse_unknown_motion, sentence
-from feeddrive.diagnosis.likelihood.zero_phase import zero_phase
 from feeddrive.diagnosis.suspicion.channel_timing import lagging
 from feeddrive.diagnosis.suspicion.flawed_rows import refuse_little_left, sound_rows, without_copied_position
 from feeddrive.diagnosis.suspicion.torque_channel import with_torque
@@ -106,10 +105,6 @@ class Evidence:
         """A series, (n,), as it shows in the comparison."""
         return series
 
-    def thinned_band(self, series: FloatArray) -> FloatArray:
-        """Every `thinning`-th sample of a series, (n,), as it shows in the comparison."""
-        return series[:: self.thinning]
-
     def known_to(self, name: str) -> float:
         """Rms of what the sensors add to a channel in the band."""
         return self.noise[name]
@@ -143,6 +138,7 @@ class AxisEvidence(Evidence):
         zero: table position where the motor angle is zero [m], for a chain that depends on it; 0 where it is not known.
         gains: channel to the gain of each frequency of its whole series, where the encoder's error shows in it.
         added: channel to the rms in the band that the encoder's error adds to its noise; as `gains`.
+        drawn: motions with the encoder's error once more; as `gains`.
         torque_rows: rows that the recorder writes a torque for, and the first row of one (`suspicion.logged_rows`);
             None where the torque is what the drive holds.
     """
@@ -153,15 +149,12 @@ class AxisEvidence(Evidence):
     zero: float = 0.0
     gains: dict[str, FloatArray] = field(default_factory=dict)
     added: dict[str, float] = field(default_factory=dict)
+    drawn: tuple[MotorMotion, ...] = ()
     torque_rows: tuple[int, int] | None = None
 
     def in_band(self, series: FloatArray) -> FloatArray:
         """A series or columns, (n,), in the band of the comparison."""
         return self.band.filter(series)
-
-    def thinned_band(self, series: FloatArray) -> FloatArray:
-        """Every `thinning`-th sample of a series, (n,), in the band of the comparison."""
-        return zero_phase(series, self.band.edge, self.band.sample_rate, self.thinning)
 
     def known_to(self, name: str) -> float:
         """Rms of what sensor and encoder add to a channel in the band."""
@@ -208,7 +201,7 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
         recording: with a torque, a current or the table position beside the motor angle.
         plant: whose lead and band apply.
         share: 1 to fit on all of it, 0 to judge on all of it.
-        hold: how long the drive holds a torque [s]; None for a whole row.
+        hold: how long the drive holds a torque [s]; None for a whole row, and for no time where rows are slow.
 
     Raises:
         InputError: too short, or channels that are needed are missing.
@@ -228,10 +221,10 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
     raw = {name: recording[name] for name in measured_names}
     slow = is_slow(recording)
     acting = dict(raw)
-    if "motor_torque" in raw and not slow:
-        acting["motor_torque"] = (
-            held(raw["motor_torque"]) if hold is None else lagging(raw["motor_torque"], hold / 2, recording.sample_time)
-        )
+    if "motor_torque" in raw and hold is not None:
+        acting["motor_torque"] = lagging(raw["motor_torque"], hold / 2, recording.sample_time)
+    elif "motor_torque" in raw and not slow:
+        acting["motor_torque"] = held(raw["motor_torque"])
     counted = (time >= END_CUT) & (time <= time[-1] - END_CUT)
     if slow:
         known = known_motion(recording, plant, band)
@@ -266,6 +259,7 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
         zero,
         encoder.gains if encoder is not None else {},
         encoder.added if encoder is not None else {},
+        encoder.drawn if encoder is not None else (),
     )
 
 

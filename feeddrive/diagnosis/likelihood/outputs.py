@@ -14,15 +14,11 @@ import numpy as np
 from feeddrive import __version__
 from feeddrive.diagnosis.calibration.calibrated_result import calibrated_record
 from feeddrive.diagnosis.judging.result import ChannelResult, Diagnosis, EffectResult, ErrorFigures, ParameterResult
-from feeddrive.diagnosis.numbers.number_rows import numbers_beside
 from feeddrive.diagnosis.plant_text import with_calibrated_values
-from feeddrive.diagnosis.recordings.change_outputs import changes_record
-from feeddrive.diagnosis.simulated.simulation_record import simulation_record
 from feeddrive.diagnosis.suspicion.quality import is_recorders, quality_record
-from feeddrive.diagnosis.unexplained.unexplained_record import carried_remarks, unexplained_record
 from feeddrive.effects.base import Effect
 from feeddrive.files import write_text_atomically
-from feeddrive.plant.file.effect_text import plant_text_with_effects
+from feeddrive.plant.file.lumped_text import plant_text_with_effects
 
 FORMAT = "feeddrive-diagnosis/1"
 
@@ -37,7 +33,7 @@ def write_outputs(diagnosis: Diagnosis, effects: Sequence[Effect], plant_text: s
         folder: made if missing.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    tables = carried_remarks(diagnosis)
+    tables = [one.remark for left in diagnosis.unexplained.values() for one in left.carried]
     # what only changed between recordings comes last, and is no finding of its own
     count = len(effects) - len(diagnosis.effects) - len(tables)
     changed = ["as in the last recording; see changes in diagnosis.json"] * count
@@ -70,7 +66,7 @@ def diagnosis_record(diagnosis: Diagnosis) -> dict[str, Any]:
             {"name": one.name, "odds": one.odds, "instead_of": one.instead_of, "settles": one.settles}
             for one in diagnosis.possible
         ],
-        "measured": numbers_beside(diagnosis.measured),
+        "measured": [one.record() for one in diagnosis.measured],
         "quality": quality_record(diagnosis.quality),
         "refused": [{"name": refused.name, "reason": refused.reason} for refused in diagnosis.refused],
         "ambiguous": [list(names) for names in diagnosis.ambiguous],
@@ -79,6 +75,7 @@ def diagnosis_record(diagnosis: Diagnosis) -> dict[str, Any]:
             for one in diagnosis.alike
         ],
         "rehomed": list(diagnosis.rehomed),
+        "recorded_stroke": None if diagnosis.recorded_stroke is None else list(diagnosis.recorded_stroke),
         "next_experiment": [
             {
                 "question": list(one.question),
@@ -90,13 +87,13 @@ def diagnosis_record(diagnosis: Diagnosis) -> dict[str, Any]:
             }
             for one in diagnosis.next_experiments
         ],
-        **changes_record(diagnosis.changes),
-        "unexplained": unexplained_record(diagnosis),
+        **diagnosis.changes.record(),
+        "unexplained": {name: left.record() for name, left in diagnosis.unexplained.items()},
         "notes": list(diagnosis.notes),
         "plant_after": "plant_after.toml",
     }
     if diagnosis.simulation is not None:
-        record["simulation"] = simulation_record(diagnosis.simulation)
+        record["simulation"] = diagnosis.simulation.record()
     if diagnosis.correlation is not None:
         known = diagnosis.correlation
         condition = known.condition if math.isfinite(known.condition) else None

@@ -16,7 +16,7 @@ from feeddrive.diagnosis.likelihood.band import white_noise
 from feeddrive.diagnosis.likelihood.evidence import AxisEvidence
 from feeddrive.effects.base import TransmissionEffect
 from feeddrive.plant.plant import Plant
-from feeddrive.recording.checks.findings import quantisation_step
+from feeddrive.recording.checks.flaws import quantisation_step
 from feeddrive.simulate.driven import simulate_driven
 from feeddrive.typing import BoolArray, FloatArray
 

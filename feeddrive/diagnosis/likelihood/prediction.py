@@ -16,7 +16,7 @@ from feeddrive.diagnosis.likelihood.predictor import Predictor
 from feeddrive.diagnosis.suspicion.channel_timing import lag_of, lagging, repeated
 from feeddrive.diagnosis.suspicion.torque_channel import scale_of, scale_sentence
 from feeddrive.effects.base import ChainEffect, DriveEffect, Effect, Kind, Motion, Port, SourceEffect
-from feeddrive.engine.step.step_constants import SimulationError
+from feeddrive.engine.step.linear_part import SimulationError
 from feeddrive.plant.motor_torque import asked_torques
 from feeddrive.plant.plant import Plant
 from feeddrive.simulate.driven import LoadMotion, MotorMotion, simulate_driven, unfollowed
@@ -169,4 +169,4 @@ def _at_motor_alone(effect: Effect) -> bool:
 
 
 def _values_key(plant: Plant) -> object:
-    return (tuple(plant.chain.values.items()), effects_key(plant.effects))
+    return (plant.chain.key, tuple(plant.chain.values.items()), effects_key(plant.effects))

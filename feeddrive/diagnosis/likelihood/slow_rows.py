@@ -1,8 +1,8 @@
 """Recordings with fewer rows than the drive has cycles: what their torque is, and where the motion is known.
 
 A drive holds its torque for one cycle, so that a recording with one row a cycle tells all of it. Where rows are further
-apart, a row is the torque of that instant, and between two rows the motor may have done anything. Where it was smooth,
-the fourth difference of its angle is small:
+apart, a row is the torque of that instant, held for the cycle that begins there (`suspicion.logged.declared_hold`), and
+between two rows the motor may have done anything. Where it was smooth, the fourth difference of its angle is small:
 
     delta a = |D4 theta| / (12 h^2),    delta T = J delta a,    delta x = s delta a
 
@@ -13,7 +13,7 @@ the fourth difference of its angle is small:
 | delta a | error of the acceleration, that of the second difference | rad/s^2 |
 | delta T, delta x | what it misses of the torque, of the table position | N m, m |
 | J | inertia of all that moves, at the motor | kg m^2 |
-| s | how far the table stays behind per acceleration (`feeddrive.plant.chain.moving_inertia`) | m s^2/rad |
+| s | how far the table stays behind per acceleration (`feeddrive.plant.analysis.modes`) | m s^2/rad |
 
 Rows at which either is more than the noise of its sensor are left out, and those at which the torque jumps from row to
 row. Valid where what the drive does between rows shows at the rows; a vibration at a multiple of their rate does not.
@@ -26,7 +26,7 @@ from scipy.ndimage import binary_dilation, uniform_filter1d
 
 from feeddrive.diagnosis.likelihood.band import Band, white_noise
 from feeddrive.errors import InputError
-from feeddrive.plant.chain.moving_inertia import inertia_at_motor, lag_per_acceleration
+from feeddrive.plant.analysis.modes import inertia_at_motor, lag_per_acceleration
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 from feeddrive.typing import BoolArray, FloatArray

@@ -2,18 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from feeddrive.diagnosis.calibration.beyond import is_within_tolerance
+from feeddrive.diagnosis.certainty.uncertainty import certainty
 from feeddrive.diagnosis.finding.materiality import is_material
-from feeddrive.diagnosis.likelihood.fit import Problem
-from feeddrive.diagnosis.recordings.change_result import CommonTrial, Measure, ParameterChange, PerRecording
-from feeddrive.diagnosis.recordings.change_values import Compared, compared_values, keys_of, material_difference
+from feeddrive.diagnosis.likelihood.coordinates import write_coordinates
+from feeddrive.diagnosis.likelihood.fit import Fit, Problem
+from feeddrive.diagnosis.recordings.change_candidates import keys_of, material_difference, targeted
+from feeddrive.diagnosis.recordings.change_result import Measure, ParameterChange, PerRecording
 from feeddrive.diagnosis.recordings.change_words import Moved, change_reading, change_statement
 from feeddrive.diagnosis.recordings.changes import Changes
 from feeddrive.diagnosis.recordings.recordings import Target, in_recording, without_shifts
 from feeddrive.effects.base import Effect
+from feeddrive.typing import FloatArray
+
+STEP = 1e-6
+"""Step of the differences in coordinates of size one."""
 
 
 @dataclass(frozen=True)
@@ -38,44 +46,60 @@ class Question:
 def parameter_changes(problem: Problem, changes: Changes, questions: Sequence[Question]) -> tuple[ParameterChange, ...]:
     """Every parameter that is clearly other in a recording, the recordings in their order."""
     result: list[ParameterChange] = []
-    for question in questions:
+    for q in questions:
         found = [
-            (target, compared)
+            (target, moved)
             for target in changes.targets
-            for compared in compared_values(problem, changes.fit, target, question.here, question.there)
+            for moved in _compared_values(problem, changes.fit, target, q.here, q.there)
         ]
-        moved = [_moved(target, compared) for target, compared in found]
-        for (target, compared), one in zip(found, moved, strict=True):
-            pair = question.here, question.there
-            if one.clear and material_difference(problem, changes.fit.effects, target, *pair):
-                result.append(_change(compared, one, moved, question))
+        together = [moved for _, moved in found]
+        for target, one in found:
+            if one.clear and material_difference(problem, changes.fit.effects, target, q.here, q.there):
+                result.append(
+                    ParameterChange(
+                        one.effect, one.key, str(one.port), q.name, one.unit, one.here, q.against, one.there,
+                        one.difference, change_statement(one, q.name, q.against), change_reading(one, together),
+                        q.fitted,
+                    )
+                )  # fmt: skip
     return tuple(result)
 
 
-def _moved(target: Target, one: Compared) -> Moved:
-    numbers = (one.here.value, one.there.value, one.difference.value, one.difference.half)
-    return Moved(target.name, target.port, one.key, one.unit, *numbers)
+def _compared_values(problem: Problem, fitted: Fit, target: Target, here: int, there: int | None) -> list[Moved]:
+    """The parameters of a target in one recording and in another, with intervals.
 
+    `here`, `there` are numbers of recordings; None for those without shifts.
+    """
+    covariance = certainty(problem, fitted).half_covariance
+    found = []
+    for key in keys_of(fitted.effects, problem, target):
 
-def _change(compared: Compared, one: Moved, together: Sequence[Moved], question: Question) -> ParameterChange:
-    here, there, difference = (Measure(v.value, v.ci95) for v in (compared.here, compared.there, compared.difference))
-    return ParameterChange(
-        one.effect, one.key, one.unit, str(one.port), question.name, here, question.against, there, difference,
-        change_statement(one, question.name, question.against), change_reading(one, together), question.fitted,
-    )  # fmt: skip
+        def values(effects: Sequence[Effect], key: str = key) -> FloatArray:
+            return np.array([targeted(effects, problem, target, n).values[key] for n in (here, there)], dtype=float)
+
+        def at(vector: FloatArray, values: Callable[[Sequence[Effect]], FloatArray] = values) -> FloatArray:
+            return values(write_coordinates(fitted.effects, problem.plant, vector))
+
+        base = at(fitted.coordinates)
+        units = np.eye(len(fitted.coordinates))
+        slope = np.column_stack([(at(fitted.coordinates + STEP * unit) - base) / STEP for unit in units])
+        rows = np.vstack([slope, slope[:1] - slope[1:]])
+        widths = np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", rows, covariance, rows), 0.0))
+        first, second = map(float, values(fitted.effects))
+        numbers = zip((first, second, first - second), map(float, widths), strict=True)
+        unit = targeted(fitted.effects, problem, target, here).parameter(key).unit
+        found.append(Moved(target.name, target.port, key, unit, *(Measure(*number) for number in numbers)))
+    return found
 
 
 def per_recording(problem: Problem, changes: Changes, names: Sequence[str]) -> tuple[PerRecording, ...]:
     """Values of what differs, in every fitted recording."""
     result = []
     for target in changes.targets:
-        for position, key in enumerate(keys_of(changes.fit.effects, problem, target)):
-            values = {}
-            for number, name in enumerate(names):
-                one = compared_values(problem, changes.fit, target, number, None)[position]
-                values[name] = Measure(one.here.value, one.here.ci95)
-                unit = one.unit
-            result.append(PerRecording(target.name, key, unit, str(target.port), values))
+        rows = [_compared_values(problem, changes.fit, target, number, None) for number in range(len(names))]
+        for same in zip(*rows, strict=True):
+            values = {name: one.here for name, one in zip(names, same, strict=True)}
+            result.append(PerRecording(target.name, same[0].key, str(target.port), same[0].unit, values))
     return tuple(result)
 
 
@@ -88,17 +112,6 @@ def shared_parameters(problem: Problem, effects: Sequence[Effect], changes: Chan
         for key in effect.values
         if (effect.name, effect.port, key) not in own
     )
-
-
-def common_trials(changes: Changes, judged: bool) -> tuple[CommonTrial, ...]:
-    """What was tried with a value of its own per recording."""
-    return tuple(
-        CommonTrial(
-            trial.target.name, trial.parameter, str(trial.target.port), trial.comparison.gain,
-            trial.comparison.standard_error, trial.taken, trial.reason, judged,
-        )
-        for trial in changes.trials
-    )  # fmt: skip
 
 
 def neutral_somewhere(problem: Problem, effects: Sequence[Effect], effect: Effect, count: int) -> bool:

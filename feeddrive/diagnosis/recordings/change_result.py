@@ -1,16 +1,26 @@
-"""What changed between recordings: the records behind `changes`, `shared` and `per_recording` of `diagnosis.json`."""
+"""What changed between recordings: the records behind the report, and their keys in `diagnosis.json`."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any
 
 
 @dataclass(frozen=True)
 class Measure:
-    """A number with its 95 % interval, SI."""
+    """A number and the half width of its 95 % interval, SI."""
 
     value: float
-    ci95: tuple[float, float]
+    half: float
+
+    @property
+    def ci95(self) -> tuple[float, float]:
+        """The interval."""
+        return self.value - self.half, self.value + self.half
+
+    def record(self, prefix: str = "") -> dict[str, Any]:
+        """Its keys in `diagnosis.json`."""
+        return {f"{prefix}value": self.value, f"{prefix}ci95": list(self.ci95)}
 
 
 @dataclass(frozen=True)
@@ -20,9 +30,9 @@ class ParameterChange:
     Attributes:
         effect: name of the effect, `friction_deviation` for a level of declared friction.
         parameter: its key.
-        unit: SI unit.
         port: where it acts.
         recording: where it is other.
+        unit: SI unit.
         here: value there.
         against: recording (or "the fitted recordings") that it is compared with.
         there: value in that one.
@@ -34,9 +44,9 @@ class ParameterChange:
 
     effect: str
     parameter: str
-    unit: str
     port: str
     recording: str
+    unit: str
     here: Measure
     against: str
     there: Measure
@@ -45,6 +55,15 @@ class ParameterChange:
     reading: str
     fitted: bool
 
+    def record(self) -> dict[str, Any]:
+        """Its keys in `diagnosis.json`."""
+        return {
+            "effect": self.effect, "parameter": self.parameter, "port": self.port, "recording": self.recording,
+            "unit": self.unit, **self.here.record(), "against": self.against, **self.there.record("against_"),
+            "difference": self.difference.value, "difference_ci95": list(self.difference.ci95),
+            "statement": self.statement, "reading": self.reading, "fitted": self.fitted,
+        }  # fmt: skip
+
 
 @dataclass(frozen=True)
 class PerRecording:
@@ -52,9 +71,14 @@ class PerRecording:
 
     effect: str
     parameter: str
-    unit: str
     port: str
+    unit: str
     values: dict[str, Measure]
+
+    def record(self) -> dict[str, Any]:
+        """Its keys in `diagnosis.json`."""
+        values = [{"recording": name, **value.record()} for name, value in self.values.items()]
+        return {**vars(self), "values": values}
 
 
 @dataclass(frozen=True)
@@ -81,6 +105,14 @@ class CommonTrial:
     reason: str
     judged: bool = False
 
+    def record(self) -> dict[str, Any]:
+        """Its keys in `diagnosis.json`."""
+        return {
+            "effect": self.effect, "parameter": self.parameter, "port": self.port,
+            "of": "judged recordings" if self.judged else "fitted recordings", "gain": self.gain,
+            "standard_error": self.standard_error, "taken": self.taken, "reason": self.reason,
+        }  # fmt: skip
+
 
 @dataclass(frozen=True)
 class RecordingChanges:
@@ -90,4 +122,14 @@ class RecordingChanges:
     per_recording: tuple[PerRecording, ...] = ()
     shared: tuple[str, ...] = ()
     trials: tuple[CommonTrial, ...] = ()
-    explains: dict[str, float] | None = None
+    explains: dict[str, float] = field(default_factory=dict)
+
+    def record(self) -> dict[str, Any]:
+        """Its keys in `diagnosis.json`; `changes` is empty where nothing differs, or where there is one recording."""
+        return {
+            "changes": [one.record() for one in self.changes],
+            "per_recording": [one.record() for one in self.per_recording],
+            "shared": list(self.shared),
+            "changes_tried": [one.record() for one in self.trials],
+            "changes_explain": self.explains,
+        }

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
+from feeddrive.diagnosis.recordings.change_result import Measure
 from feeddrive.effects.base import Port
 from feeddrive.units.quantity import format_quantity
 
@@ -27,37 +28,63 @@ FACTORS = ("coulomb_factor", "viscous_factor", "factor")
 """Parameters whose change is stated in per cent."""
 
 
+STRAINS = (("lead_error_cumulative", "slope"), ("thermal_growth", "strain"))
+"""Effects and parameters whose change is read as a temperature."""
+
+_MASS = "Another workpiece or fixture, or a mass that was added."
+_FORCE = "Another weight or counterbalance, a cable that pulls, or an offset of the drive."
+_PHASE = "At the same amplitude: the encoder counts from another zero."
+
+READINGS = {
+    ("backlash", "width"): ("The play grew: wear of the nut, or a fixing that loosened.", "The play shrank."),
+    ("payload", "mass"): (_MASS, _MASS),
+    ("stiffness_deviation", "factor"): (
+        "The transmission became stiffer: preload set anew.",
+        "The transmission became softer: preload lost, or a bearing or fixing that loosened.",
+    ),
+    ("constant_force", "force"): (_FORCE, _FORCE),
+    ("torque_ripple", "phase"): (_PHASE, _PHASE),
+    ("ball_pass_ripple", "phase"): (_PHASE, _PHASE),
+    ("lead_error_periodic", "phase"): (_PHASE, _PHASE),
+}
+"""Effect and parameter to the reading of a change to more, and to less."""
+
+
 @dataclass(frozen=True)
 class Moved:
-    """A difference of one parameter with its interval, SI."""
+    """One parameter in one recording, in another, and the difference of the first from the second."""
 
     effect: str
     port: Port
     key: str
     unit: str
-    here: float
-    there: float
-    difference: float
-    half: float
+    here: Measure
+    there: Measure
+    difference: Measure
+
+    @property
+    def by(self) -> float:
+        """The difference, SI."""
+        return self.difference.value
 
     @property
     def clear(self) -> bool:
         """Whether the interval of the difference leaves zero out."""
-        return abs(self.difference) > self.half
+        return abs(self.by) > self.difference.half
 
 
 def change_statement(moved: Moved, recording: str, against: str) -> str:
     """The change in one sentence."""
     name = WORDS.get((moved.effect, moved.port, moved.key))
     subject = name or f"{moved.effect.replace('_', ' ')} {moved.key.replace('_', ' ')}"
-    way = "higher" if moved.difference > 0 else "lower"
+    way = "higher" if moved.by > 0 else "lower"
     places = f"in {recording} than in {against}"
-    if moved.key in FACTORS and moved.there > 0:
-        percent = _percent(abs(moved.difference) / moved.there, moved.half / moved.there)
+    if moved.key in FACTORS and moved.there.value > 0:
+        percent = _percent(abs(moved.by) / moved.there.value, moved.difference.half / moved.there.value)
         return f"{subject} {percent} {way} {places}"
-    size, spread = _short(abs(moved.difference), moved.unit), _short(moved.half, moved.unit)
+    size, spread = _short(abs(moved.by), moved.unit), _short(moved.difference.half, moved.unit)
     # a level counts from what is declared, so that its values alone would say nothing
-    values = "" if name else f": {_short(moved.here, moved.unit)} after {_short(moved.there, moved.unit)}"
+    values = "" if name else f": {_short(moved.here.value, moved.unit)} after {_short(moved.there.value, moved.unit)}"
     return f"{subject} {size} (± {spread}) {way} {places}{values}"
 
 
@@ -74,12 +101,15 @@ def change_reading(moved: Moved, together: Sequence[Moved]) -> str:
     """What the change means on a machine; friction is read from its two parts together."""
     if moved.effect == "friction_deviation":
         return _friction(moved, together)
-    reading = READINGS.get((moved.effect, moved.key))
-    return reading(moved) if reading else ""
+    if (moved.effect, moved.key) in STRAINS:
+        kelvin = moved.by / EXPANSION
+        return f"The screw is about {abs(kelvin):.2g} K {'warmer' if kelvin > 0 else 'colder'}, if it is of steel."
+    more, less = READINGS.get((moved.effect, moved.key), ("", ""))
+    return more if moved.by > 0 else less
 
 
 def _friction(moved: Moved, together: Sequence[Moved]) -> str:
-    parts = {m.key: m.difference for m in together if (m.effect, m.port) == (moved.effect, moved.port) and m.clear}
+    parts = {m.key: m.by for m in together if (m.effect, m.port) == (moved.effect, moved.port) and m.clear}
     level, viscous = parts.get("coulomb_factor", 0.0), parts.get("viscous_factor", 0.0)
     if level and not viscous:
         return (
@@ -100,43 +130,3 @@ def _friction(moved: Moved, together: Sequence[Moved]) -> str:
     return (
         "Level and viscous drag moved apart: the shape of the friction over speed changed, as with another lubricant."
     )
-
-
-def _backlash(moved: Moved) -> str:
-    return "The play grew: wear of the nut, or a fixing that loosened." if moved.difference > 0 else "The play shrank."
-
-
-def _lead(moved: Moved) -> str:
-    kelvin = moved.difference / EXPANSION
-    return f"The screw is about {abs(kelvin):.2g} K {'warmer' if kelvin > 0 else 'colder'}, if it is of steel."
-
-
-def _mass(moved: Moved) -> str:
-    return "Another workpiece or fixture, or a mass that was added." if moved.difference else ""
-
-
-def _stiffness(moved: Moved) -> str:
-    lower = "The transmission became softer: preload lost, or a bearing or fixing that loosened."
-    return lower if moved.difference < 0 else "The transmission became stiffer: preload set anew."
-
-
-def _force(moved: Moved) -> str:
-    return "Another weight or counterbalance, a cable that pulls, or an offset of the drive."
-
-
-def _phase(moved: Moved) -> str:
-    return "At the same amplitude: the encoder counts from another zero."
-
-
-READINGS: dict[tuple[str, str], Callable[[Moved], str]] = {
-    ("backlash", "width"): _backlash,
-    ("lead_error_cumulative", "slope"): _lead,
-    ("thermal_growth", "strain"): _lead,
-    ("payload", "mass"): _mass,
-    ("stiffness_deviation", "factor"): _stiffness,
-    ("constant_force", "force"): _force,
-    ("torque_ripple", "phase"): _phase,
-    ("ball_pass_ripple", "phase"): _phase,
-    ("lead_error_periodic", "phase"): _phase,
-}
-"""Effect and parameter to the reading of a change."""

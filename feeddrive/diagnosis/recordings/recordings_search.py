@@ -21,15 +21,13 @@ from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
 from feeddrive.diagnosis.recordings.change_candidates import levels
 from feeddrive.diagnosis.recordings.change_words import FACTORS
 from feeddrive.diagnosis.recordings.changes import Changes, find_changes
-from feeddrive.diagnosis.recordings.drift_table import normalised
 from feeddrive.diagnosis.recordings.recordings import (
     RecordingPredictor,
     RecordingShift,
-    Target,
     is_shift,
     without_shifts,
 )
-from feeddrive.effects.base import Effect
+from feeddrive.effects.base import Effect, listed, number
 
 UNEXPLAINED = 1.3
 """Weighted squared error per sample beyond which much is left; noise alone gives one."""
@@ -91,14 +89,11 @@ def _followed(problem: Problem, held: Changes, earlier: Sequence[int], progress:
     progress("comparing the recordings with the effects found")
     changes = find_changes(found.problem, found.fit.effects, earlier)
     if changes.targets:
-        changes = _settled(replace(changes, fit=_still_needed(changes.problem, changes.fit)))
+        # the other declared values as they are most likely beside what differs
+        effects = _still_needed(changes.problem, changes.fit).effects
+        recalibrated_problem = recalibrated(changes.problem, effects)
+        changes = replace(changes, problem=recalibrated_problem, fit=fit(recalibrated_problem, effects))
     return Searched(replace(found, problem=changes.problem, fit=changes.fit), changes)
-
-
-def _settled(changes: Changes) -> Changes:
-    """The other declared values as they are most likely beside what differs."""
-    problem = recalibrated(changes.problem, changes.fit.effects)
-    return replace(changes, problem=problem, fit=fit(problem, changes.fit.effects))
 
 
 def _continued(problem: Problem, start: Sequence[Effect], progress: Callable[[str], None]) -> Searched:
@@ -177,12 +172,28 @@ def _levels_alone(problem: Problem, changes: Changes, earlier: Sequence[int]) ->
     wanted = [target for target in changes.targets if _levels_of(problem, replace(changes, targets=(target,)))]
     if not wanted:
         return _nothing(problem)
-    kept = [effect for effect in changes.fit.effects if _belongs(effect, wanted)]
+    kept = [
+        effect
+        for effect in changes.fit.effects
+        if (effect.target in wanted if isinstance(effect, RecordingShift) else any(t.meets(effect) for t in wanted))
+    ]
     return Changes(problem, fit(problem, kept), tuple(wanted), ())
 
 
-def _belongs(effect: Effect, targets: Sequence[Target]) -> bool:
-    if is_shift(effect):
-        assert isinstance(effect, RecordingShift)
-        return effect.target in targets
-    return any(target.meets(effect) for target in targets)
+def normalised(found: Search) -> Search:
+    """The search with tabulated drifts scaled; the same drift, its fit taken again where it stands."""
+    effects = [_scaled(effect) for effect in found.fit.effects]
+    if tuple(effects) == found.fit.effects:
+        return found
+    return replace(found, fit=fit(found.problem, effects, iterations=0))
+
+
+def _scaled(effect: Effect) -> Effect:
+    if effect.name != "ambient_drift" or not isinstance(effect.values["time"], tuple):
+        return effect
+    shape = listed(effect.values["shape"])
+    largest = max(shape, key=abs)
+    if largest == 0:
+        return effect
+    amplitude = number(effect.values["amplitude"]) * largest
+    return effect.with_values(amplitude=amplitude, shape=tuple(s / largest for s in shape))

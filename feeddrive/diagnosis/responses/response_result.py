@@ -23,7 +23,7 @@ from feeddrive.diagnosis.responses.response_problem import (
 )
 from feeddrive.diagnosis.responses.response_search import ResponseSearch, Step, search_response
 from feeddrive.effects.base import Effect
-from feeddrive.plant.file.effect_text import plant_text_with_effects
+from feeddrive.plant.file.lumped_text import plant_text_with_effects
 from feeddrive.plant.plant import Plant
 from feeddrive.recording.frequency_response import FrequencyResponse
 from feeddrive.servo.cascade import Cascade

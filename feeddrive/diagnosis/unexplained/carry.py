@@ -7,25 +7,23 @@ asked of a named effect.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from feeddrive.diagnosis.judging.judge import Judged, error_series, judged_residual
+from feeddrive.diagnosis.judging.result import ChannelResult
 from feeddrive.diagnosis.likelihood.coordinates import read_coordinates, write_coordinates
 from feeddrive.diagnosis.likelihood.cross_validation import compare_left_out
 from feeddrive.diagnosis.likelihood.fit import Problem
+from feeddrive.diagnosis.unexplained.analysis import Analysis, analyse, table_of
 from feeddrive.diagnosis.unexplained.functional_anova import Found
-from feeddrive.diagnosis.unexplained.shape import table_of
-from feeddrive.diagnosis.unexplained.term import Form
-from feeddrive.diagnosis.unexplained.unexplained_result import Carried, Table
+from feeddrive.diagnosis.unexplained.terms import Form
+from feeddrive.diagnosis.unexplained.unexplained_result import Carried, Table, no_gain
+from feeddrive.diagnosis.unexplained.view import views_of
 from feeddrive.effects.base import Effect, Port
-from feeddrive.effects.friction.tabulated_friction import TabulatedFriction
-from feeddrive.effects.source.tabulated_force import TabulatedForce
-from feeddrive.effects.source.tabulated_torque import TabulatedTorque
-from feeddrive.effects.tabulated import Tabulated
-from feeddrive.effects.travel.tabulated_travel import TabulatedTravel
+from feeddrive.effects.tabulated import Tabulated, TabulatedForce, TabulatedFriction, TabulatedTorque, TabulatedTravel
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray
@@ -36,59 +34,87 @@ DAMPING = 0.01
 WORSE = 1.02
 """Factor by which the error of another channel may rise."""
 
-MOTION = {"table_position": "position", "table_velocity": "velocity", "time": "time", "motor_angle": "position"}
-"""Variable to the word of a table at the table."""
-
 DEAR = 3.0
 """Squared error, in units of the noise, that a further breakpoint must take away."""
+
+MOTION = {"table_position": "position", "table_velocity": "velocity", "time": "time", "motor_angle": "position"}
+"""Variable to the word of a table at the table."""
 
 SHAFT = {"table_position": "angle", "table_velocity": "speed", "time": "time", "motor_angle": "angle"}
 """Variable to the word of a table at the motor."""
 
+NO_EFFECT = "not carried, since no tabulated effect stands for it"
 
-@dataclass(frozen=True)
-class Judgement:
-    """A tabulated effect on the judged data: the effect, what it explains, and whether it pays."""
 
-    effect: Tabulated
-    explains: dict[str, float]
-    before: dict[str, float]
-    after: dict[str, float]
-    pays: bool
+def analyses_of(
+    problem: Problem, effects: Sequence[Effect], judged: Sequence[Judged], channels: Sequence[ChannelResult]
+) -> dict[str, Analysis]:
+    """What is left of channels with these effects in the plant, taken apart; `judged` have them in the plant after."""
+    plant, names = problem.machine(effects), [channel.name for channel in channels]
+    fitted = views_of(problem, [(plant, evidence) for evidence in problem.evidence], names, False)
+    seen = views_of(problem, [(j.after, j.evidence) for j in judged], names, True)
+    radius = plant.chain.motor_radius if plant.has_motion else 0.0
+    return {one.name: analyse(fitted[one.name], seen[one.name], one.unit, radius) for one in channels}
+
+
+def tried(
+    problem: Problem, effects: Sequence[Effect], judged: Sequence[Judged], carried: Sequence[Carried],
+    forms: Sequence[Found], channel: ChannelResult,
+) -> Carried | str:  # fmt: skip
+    """The term as an effect that pays on the judged data, or why there is none."""
+    if not problem.predictor.of_motion:
+        return NO_EFFECT
+    own = [one.effect for one in carried]
+    options = []
+    try:
+        for start in [one for form in forms for one in effects_of(form, channel.name, channel.unit, problem.plant)]:
+            (fitted,), error = joint_step(problem, [*effects, *own], [start])
+            options.append((fitted, error + DEAR * len(fitted.breakpoints)))
+    except InputError as wrong:  # nothing there to act on, as friction that is not declared, or beyond what is physical
+        return f"not carried: {wrong.what}"
+    if not options:
+        return NO_EFFECT
+    best, _ = min(options, key=lambda option: option[1])
+    found = judged_with(problem, with_carried(judged, *own), best, channel.name)
+    return found if found.pays else no_gain(found.explains)
+
+
+def forms_of(found: Found, analyses: Iterable[Analysis]) -> list[Found]:
+    """The found term, and it with the breakpoints that another channel shows, where these are more."""
+    term, forms = found.term, [found]
+    if term.form is not Form.CURVE:
+        return forms
+    for other in [one.term for analysis in analyses for one in analysis.found]:
+        same = (other.form, other.variable, other.times) == (term.form, term.variable, term.times)
+        if same and other.size > term.size:
+            values, errors = (np.interp(other.nodes, term.nodes, series) for series in (found.values, found.errors))
+            forms.append(replace(found, term=other, values=values, errors=errors))
+    return forms
 
 
 def effects_of(found: Found, channel: str, unit: str, plant: Plant) -> list[Tabulated]:
     """The effects that a term may stand for, with the values of the residual; none where there is no such effect."""
     table, term, radius = table_of(found, unit), found.term, plant.chain.motor_radius
-    values = np.array(table.values)
+    values, word = np.array(table.values), MOTION.get(term.variable, "")
     if channel == "table_position":
-        return _travel(table, found, values, radius)
-    if term.variable not in MOTION and not (term.form is Form.LEVEL and term.variable == "direction"):
+        if term.times or word not in ("position", "time"):
+            return []
+        return [_made(TabulatedTravel, Port.TRANSMISSION, word, table, values - values.mean(), radius)]
+    if term.form is Form.LEVEL:  # friction whose level turns with the direction
+        if not word and term.variable != "direction":
+            return []
+        return [TabulatedFriction.of(Port.TABLE, "position", position=(0.0,), force=(float(values[0] / radius),))]
+    if term.times:  # a level of friction, or its viscous coefficient
+        if word in ("", "velocity"):
+            return []
+        key = "viscous" if term.times == "table_velocity" else "force"
+        return [_made(TabulatedFriction, Port.TABLE, word, table, values / radius, radius, key)]
+    if not word:
         return []
-    if term.form is Form.LEVEL or term.times:
-        return _friction(table, found, values / radius, radius)
-    made: list[Tabulated] = [_made(TabulatedForce, Port.TABLE, MOTION[term.variable], table, values / radius, radius)]
-    made.append(_made(TabulatedTorque, Port.MOTOR, SHAFT[term.variable], table, values, radius))
-    return made
-
-
-def _travel(table: Table, found: Found, values: FloatArray, radius: float) -> list[Tabulated]:
-    term = found.term
-    if term.times or MOTION.get(term.variable) not in ("position", "time"):
-        return []
-    return [_made(TabulatedTravel, Port.TRANSMISSION, MOTION[term.variable], table, values - values.mean(), radius)]
-
-
-def _friction(table: Table, found: Found, values: FloatArray, radius: float) -> list[Tabulated]:
-    """Friction at the table: its level where the term turns with the direction, or its viscous coefficient."""
-    term = found.term
-    if term.form is Form.LEVEL:
-        return [TabulatedFriction.of(Port.TABLE, "position", position=(0.0,), force=(float(values[0]),))]
-    word = MOTION[term.variable]
-    if word == "velocity":
-        return []
-    key = "viscous" if term.times == "table_velocity" else "force"
-    return [_made(TabulatedFriction, Port.TABLE, word, table, values, radius, key)]
+    return [
+        _made(TabulatedForce, Port.TABLE, word, table, values / radius, radius),
+        _made(TabulatedTorque, Port.MOTOR, SHAFT[term.variable], table, values, radius),
+    ]
 
 
 def _made(
@@ -100,27 +126,16 @@ def _made(
     scale = radius if to_travel else 1 / radius if to_angle and table.breakpoint_unit != "rad" else 1.0
     at, period = scale * at, scale * period
     place = f"periodic_{word}" if period else word
-    given = {kind.breakpoint_keys[place]: tuple(at.tolist()), key or kind.value_keys[0]: tuple(values.tolist())}
+    given = {word: tuple(at.tolist()), key or kind.value_keys[0]: tuple(values.tolist())}
     return kind.of(port, place, **given, **({"period": period} if period else {}))
-
-
-def resampled(found: Found, finer: Found) -> Found:
-    """The term with the breakpoints of another one over the same variable, its values read off at them."""
-    values = np.interp(finer.term.nodes, found.term.nodes, found.values)
-    errors = np.interp(finer.term.nodes, found.term.nodes, found.errors)
-    return replace(found, term=finer.term, values=values, errors=errors)
-
-
-def fitted_step(problem: Problem, before: Sequence[Effect], new: Tabulated) -> tuple[Tabulated, float]:
-    """The table after one damped linear step on all channels, the other effects as they are, and the squared error."""
-    (moved,), error = joint_step(problem, before, [new])
-    return moved, error
 
 
 def joint_step(
     problem: Problem, before: Sequence[Effect], tables: Sequence[Tabulated]
 ) -> tuple[list[Tabulated], float]:
-    """Several tables after one damped linear step together, and the squared error; as they are where it does not help.
+    """Tables after one damped linear step on all channels, and the squared error; as they are where it does not help.
+
+    The other effects stay as they are.
 
     Raises:
         InputError: the plant cannot be simulated with them.
@@ -143,16 +158,15 @@ def joint_step(
     return [one for one in moved if isinstance(one, Tabulated)], there
 
 
-def judged_with(problem: Problem, judged: Sequence[Judged], new: Tabulated) -> Judgement:
-    """What a further effect does on the judged data."""
+def judged_with(problem: Problem, judged: Sequence[Judged], new: Tabulated, channel: str) -> Carried:
+    """What a further effect, for a term of a channel, does on the judged data."""
     having = with_carried(judged, new)
     before, after = (_rms(problem, group) for group in (judged, having))
     without, blocks = judged_residual(problem, [(j.after, j.evidence) for j in judged])
     there, _ = judged_residual(problem, [(j.after, j.evidence) for j in having])
-    pays = compare_left_out(without, there, blocks).pays
     harmless = all(after[name] <= WORSE * before[name] for name in before)
     explains = {name: 1 - (after[name] / before[name]) ** 2 for name in before}
-    return Judgement(new, explains, before, after, pays and harmless)
+    return Carried(channel, new, explains, before, after, compare_left_out(without, there, blocks).pays and harmless)
 
 
 def with_carried(judged: Sequence[Judged], *effects: Effect) -> list[Judged]:
@@ -167,20 +181,3 @@ def _rms(problem: Problem, judged: Sequence[Judged]) -> dict[str, float]:
         for name, error in error_series(problem, j.after, j.evidence).items():
             squares.setdefault(name, []).append(error[np.isfinite(error)] ** 2)
     return {name: float(np.sqrt(np.mean(np.concatenate(parts)))) for name, parts in squares.items()}
-
-
-def carried_result(judgement: Judgement) -> Carried:
-    """The effect as it is reported."""
-    effect = judgement.effect
-    key, values = effect.breakpoint_key, effect.tables[0]
-    table = Table(
-        effect.breakpoints,
-        effect.parameter(key).unit,
-        effect.table(values),
-        (),
-        effect.parameter(values).unit,
-        effect.period,
-    )
-    return Carried(
-        effect.name, str(effect.port), effect.place, table, judgement.explains, judgement.before, judgement.after
-    )

@@ -7,6 +7,10 @@ at a time while they lower the error on blocks of time that were not fitted (fol
 that cannot be distinguished the simplest is taken, a function of one variable before a product.
 Sources: Hoeffding, Ann. Math. Stat. 19 (1948) 293; Hooker, J. Comput. Graph. Stat. 16 (2007) 709 (dependent variables);
 Roberts et al., Ecography 40 (2017) 913 (blocks).
+
+What a fold's own blocks alone tell of a term is drawn to the prior as in `cross_validation`: the term is
+absent, give or take its size. For linear columns both are one: with y = r + J c the fit without the fold is
+(H - H_k + P)^-1 (J'y - J_k'y_k).
 """
 
 from __future__ import annotations
@@ -14,13 +18,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
-from feeddrive.diagnosis.likelihood.cross_validation import Comparison
-from feeddrive.diagnosis.unexplained.functional_sums import Sample, Sums
-from feeddrive.diagnosis.unexplained.term import Term
-from feeddrive.typing import FloatArray
+from feeddrive.diagnosis.likelihood.cross_validation import Comparison, compare_left_out, prior_information
+from feeddrive.diagnosis.likelihood.folds import FOLDS
+from feeddrive.diagnosis.unexplained.terms import Term
+from feeddrive.typing import FloatArray, IntegerArray
 
 MOST_TERMS = 4
 """Terms at most: what needs more is not read by a person."""
@@ -33,6 +38,10 @@ TIE = 0.05
 
 COUNT = 2.0
 """Factor in columns by which a term is simpler."""
+
+
+RIDGE = 1e-8
+"""Ridge for columns of length one: settles tables whose hats add up to another column, and moves no value."""
 
 
 @dataclass(frozen=True)
@@ -54,18 +63,10 @@ class Found:
     alike: tuple[Term, ...]
 
 
-@dataclass(frozen=True)
-class Decomposition:
-    """Terms, the strongest first, and coefficients of the offsets, (m,)."""
-
-    found: tuple[Found, ...]
-    offsets: FloatArray
-
-
 def decompose(
     sample: Sample, terms: Sequence[Term], proposed: Callable[[FloatArray], list[Term]],
     refined: Callable[[Term], list[Term]],
-) -> Decomposition:  # fmt: skip
+) -> tuple[Found, ...]:  # fmt: skip
     """Take a residual apart.
 
     Args:
@@ -75,7 +76,7 @@ def decompose(
         refined: a term to finer ones of its form.
 
     Returns:
-        The terms that pay, none where nothing does.
+        The terms that pay, the strongest first; none where nothing does.
     """
     sums = Sums(sample)
     sums.add(terms)
@@ -95,12 +96,12 @@ def decompose(
     shares = {term: sums.compared([c for c in chosen if c != term], chosen).gain for term in chosen}
     scale = {term: sums.left_out([c for c in chosen if c != term]) for term in chosen}
     whole = float(np.sum(sums.left_out([]) ** 2))
-    values, errors, offsets = sums.coefficients(chosen)
+    values, errors = sums.coefficients(chosen)
     found = [
         Found(t, values[t], errors[t], shares[t] * float(np.sum(scale[t] ** 2)) / whole, alike.get(t, ()))
         for t in chosen
     ]
-    return Decomposition(tuple(sorted(found, key=lambda one: -one.share)), offsets)
+    return tuple(sorted(found, key=lambda one: -one.share))
 
 
 def _best(sums: Sums, chosen: list[Term], terms: Sequence[Term]) -> tuple[Term, tuple[Term, ...]] | None:
@@ -146,3 +147,158 @@ def _needed(sums: Sums, chosen: list[Term], new: Term) -> list[Term]:
         if not _pays(sums, sums.compared([*rest, new], [*kept, new]), [*rest, new]):
             kept = rest
     return kept
+
+
+@dataclass(frozen=True)
+class Sample:
+    """A residual, as it is taken apart.
+
+    Attributes:
+        residual: (n,), unit of its channel.
+        blocks: block of time of every value, (n,).
+        offsets: columns that are always there, (n, m); m may be 0.
+        columns: a term to its columns at the same values, (n, k).
+        noise_square: mean square of the noise.
+        least: least share of the squared error that a term must take away.
+    """
+
+    residual: FloatArray
+    blocks: IntegerArray
+    offsets: FloatArray
+    columns: Callable[[Term], FloatArray]
+    noise_square: float
+    least: float
+
+
+class Sums:
+    """Normal equations of the columns, per fold: products are taken when a sum asks for them, and kept.
+
+    Not a record: it grows by the terms that are added.
+    """
+
+    def __init__(self, sample: Sample) -> None:
+        self._sample = sample
+        folds = sample.blocks % FOLDS
+        self._order = np.argsort(folds, kind="stable")
+        ends = np.searchsorted(folds[self._order], np.arange(FOLDS + 1))
+        self._folds = [slice(first, last) for first, last in pairwise(ends)]
+        self._residual = sample.residual[self._order]
+        self._raw: dict[Term | None, FloatArray] = {}
+        self._scale: dict[Term | None, FloatArray] = {}
+        self._moments: dict[Term | None, FloatArray] = {}
+        self._products: dict[tuple[Term | None, Term | None], FloatArray] = {}
+        self._left: dict[tuple[Term, ...], FloatArray] = {}
+        self._take(None, sample.offsets)
+        self._squares = np.array([float(np.sum(self._residual[fold] ** 2)) for fold in self._folds])
+
+    def add(self, terms: Sequence[Term]) -> None:
+        """Take further terms in."""
+        for term in terms:
+            if term not in self._raw:
+                self._take(term, self._sample.columns(term))
+
+    def _take(self, term: Term | None, columns: FloatArray) -> None:
+        """Take columns of a term in, or those of the offsets."""
+        length: FloatArray = np.sqrt(np.sum(columns**2, axis=0))
+        self._raw[term], self._scale[term] = columns, np.where(length > 0, length, 1.0)
+        ordered = self._ordered(term)
+        self._moments[term] = np.stack([ordered[fold].T @ self._residual[fold] for fold in self._folds])
+        self._products[term, term] = np.stack([ordered[fold].T @ ordered[fold] for fold in self._folds])
+
+    def _ordered(self, term: Term | None) -> FloatArray:
+        """Columns of length one, fold after fold."""
+        ordered: FloatArray = self._raw[term][self._order] / self._scale[term]
+        return ordered
+
+    def _product(self, one: Term | None, other: Term | None) -> FloatArray:
+        """Columns of one term times those of another, (folds, k, l)."""
+        if (one, other) not in self._products:
+            a, b = self._ordered(one), self._ordered(other)
+            found = np.stack([a[fold].T @ b[fold] for fold in self._folds])
+            self._products[one, other], self._products[other, one] = found, found.transpose(0, 2, 1)
+        return self._products[one, other]
+
+    def _normal(self, terms: Sequence[Term]) -> tuple[FloatArray, FloatArray]:
+        """Products of all columns of a set, offsets first, and those with the residual: (folds, k, k), (folds, k)."""
+        every: list[Term | None] = [None, *terms]
+        gram = np.concatenate([np.concatenate([self._product(a, b) for b in every], axis=2) for a in every], axis=1)
+        return gram, np.concatenate([self._moments[term] for term in every], axis=1)
+
+    def _columns(self, terms: Sequence[Term]) -> FloatArray:
+        """Columns of length one of a set, offsets first, (n, k)."""
+        return np.hstack([self._raw[term] / self._scale[term] for term in (None, *terms)])
+
+    @property
+    def _fixed(self) -> int:
+        return int(self._sample.offsets.shape[1])
+
+    def _solved(self, gram: FloatArray, moment: FloatArray) -> FloatArray:
+        return np.asarray(np.linalg.solve(gram + RIDGE * np.eye(len(moment)), moment), dtype=np.float64)
+
+    def _fold_values(self, terms: Sequence[Term]) -> list[FloatArray]:
+        """Values fitted without each fold."""
+        grams, moments = self._normal(terms)
+        gram, moment = grams.sum(axis=0), moments.sum(axis=0)
+        known = np.diag(self._known(terms, gram, moment))
+        return [self._solved(gram - g + known, moment - m) for g, m in zip(grams, moments, strict=True)]
+
+    def _known(self, terms: Sequence[Term], gram: FloatArray, moment: FloatArray) -> FloatArray:
+        """Information of the prior on each column: a term has one width, the offsets are not known beforehand."""
+        values = self._solved(gram, moment)
+        square = float(self._squares.sum() - moment @ values) / max(len(self._sample.residual), 1)
+        count = self._fixed
+        groups = np.repeat(np.arange(len(terms)), [term.size for term in terms])
+        squares = np.bincount(groups, weights=values[count:] ** 2) / np.maximum(np.bincount(groups), 1)
+        known = np.zeros(len(values))
+        known[count:] = prior_information(np.sqrt(squares)[groups], max(square, 0.0))
+        return known
+
+    def squared_error(self, terms: Sequence[Term]) -> float:
+        """Squared error on blocks not fitted."""
+        total = float(self._squares.sum())
+        for values, gram, moment in zip(self._fold_values(terms), *self._normal(terms), strict=True):
+            total += float(values @ gram @ values - 2 * values @ moment)
+        return total
+
+    def left_out(self, terms: Sequence[Term]) -> FloatArray:
+        """Residual on blocks not fitted, (n,)."""
+        key = tuple(terms)
+        if key not in self._left:
+            columns, left = self._columns(terms), self._sample.residual.copy()
+            for fold, values in zip(self._folds, self._fold_values(terms), strict=True):
+                rows = self._order[fold]
+                left[rows] -= columns[rows] @ values
+            self._left[key] = left
+        return self._left[key]
+
+    def compared(self, before: Sequence[Term], after: Sequence[Term]) -> Comparison:
+        """Gain of one set of terms over another on blocks not fitted."""
+        return compare_left_out(self.left_out(before), self.left_out(after), self._sample.blocks, 0.0)
+
+    def least(self, terms: Sequence[Term]) -> float:
+        """Gain that is asked for beyond these terms."""
+        count, squared = len(self._sample.residual), float(np.sum(self.left_out(terms) ** 2))
+        return max(self._sample.least, self._sample.least * self._sample.noise_square * count / squared)
+
+    def fit_residual(self, terms: Sequence[Term]) -> FloatArray:
+        """Residual of the fit to all, (n,)."""
+        gram, moment = (parts.sum(axis=0) for parts in self._normal(terms))
+        left: FloatArray = self._sample.residual - self._columns(terms) @ self._solved(gram, moment)
+        return left
+
+    def coefficients(self, terms: Sequence[Term]) -> tuple[dict[Term, FloatArray], dict[Term, FloatArray]]:
+        """Values and standard errors of each term, from the fit to all.
+
+        The middle of the sandwich sums over blocks of time, which counts correlation inside them.
+        """
+        gram, moment = (parts.sum(axis=0) for parts in self._normal(terms))
+        inverse = np.linalg.inv(gram + RIDGE * np.eye(len(gram)))
+        scale = np.concatenate([self._scale[term] for term in (None, *terms)])
+        values = inverse @ moment / scale
+        scores = self._columns(terms) * self.fit_residual(terms)[:, None]
+        sums = np.zeros((int(self._sample.blocks.max(initial=0)) + 1, len(gram)))
+        np.add.at(sums, self._sample.blocks, scores)
+        errors = np.linalg.norm(sums @ inverse, axis=0) / scale
+        cuts = np.cumsum([self._fixed, *(term.size for term in terms)])[:-1]
+        parts, spreads = np.split(values, cuts), np.split(errors, cuts)
+        return dict(zip(terms, parts[1:], strict=True)), dict(zip(terms, spreads[1:], strict=True))

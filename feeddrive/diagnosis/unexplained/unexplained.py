@@ -1,24 +1,44 @@
-"""What the named effects leave: how much above the noise, what it depends on, and what of it the plant can carry."""
+"""What the named effects leave: how much above the noise, what it depends on, and what of it the plant can carry.
+
+Named effects may stand in for one of no name. A drag with the square of the velocity looks like another viscous
+friction, another Coulomb level and a Stribeck curve together; friction that sets in at a time looks like a little of
+anything. One tabulated term in the declared plant is held against all named effects together on the judged data. Does
+it do as well as two or more of them, that is reported. Does it do better, the named ones that do not pay beside it are
+dropped: a name is worse than none where it is wrong.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from feeddrive.diagnosis.judging.judge import Judged
+from feeddrive.diagnosis.finding.search import Search
+from feeddrive.diagnosis.judging.judge import Judged, channel_results, judged_residual
 from feeddrive.diagnosis.judging.result import ChannelResult
-from feeddrive.diagnosis.likelihood.fit import Problem
+from feeddrive.diagnosis.likelihood.cross_validation import (
+    LEAST_GAIN,
+    compare_left_out,
+    least_gain,
+    left_out_residual,
+)
+from feeddrive.diagnosis.likelihood.fit import Problem, fit
+from feeddrive.diagnosis.likelihood.folds import block_numbers
 from feeddrive.diagnosis.unexplained.analysis import Analysis
-from feeddrive.diagnosis.unexplained.carry import Judgement, carried_result, joint_step, judged_with, with_carried
-from feeddrive.diagnosis.unexplained.instead import instead_of
-from feeddrive.diagnosis.unexplained.trial import analyses_of, finer_forms, tried
-from feeddrive.diagnosis.unexplained.unexplained_result import Above, Dependence, Instead, Unexplained
-from feeddrive.diagnosis.unexplained.unexplained_words import rest_in_words, term_in_words
+from feeddrive.diagnosis.unexplained.carry import analyses_of, forms_of, joint_step, judged_with, tried, with_carried
+from feeddrive.diagnosis.unexplained.unexplained_result import Carried, Instead, Unexplained, rest_in_words
+from feeddrive.diagnosis.unexplained.view import above_noise, views_of
 from feeddrive.effects.base import Effect
+from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.effects.tabulated import Tabulated
 
 EVENT = 0.1
 """Share of the squared residual from which something that happened once is reported, though the judged data lack it."""
+
+FEWEST = 2
+"""Named effects from which a table that does as well is reported."""
+
+ITERATIONS = 4
+"""Steps of a fit of what is kept beside a table."""
 
 
 @dataclass(frozen=True)
@@ -48,66 +68,144 @@ def explain_rest(
         channels: errors with the named effects.
     """
     first = analyses_of(problem, effects, judged, channels)
-    carried: list[tuple[str, Judgement]] = []
+    carried: list[Carried] = []
     reasons: dict[str, list[str]] = {channel.name: [] for channel in channels}
-    for channel in sorted(channels, key=lambda one: one.name != "motor_torque"):
-        own = [judgement.effect for _, judgement in carried]
-        now = with_carried(judged, *own)
-        analyses = analyses_of(problem, (*effects, *own), now, [channel]) if own else first
-        analysis = analyses[channel.name]
+    for channel in _torque_first(channels):
+        analysis = first[channel.name]
+        if carried:
+            own = [one.effect for one in carried]
+            again = analyses_of(problem, (*effects, *own), with_carried(judged, *own), [channel])
+            analysis = again[channel.name]
         for found, seen in zip(analysis.found, analysis.dependences, strict=True):
-            forms = [found, *finer_forms(found, first)]
-            judgement = tried(problem, effects, judged, carried, forms, channel)
-            if isinstance(judgement, Judgement):
-                carried.append((channel.name, judgement))
+            table = tried(problem, effects, judged, carried, forms_of(found, first.values()), channel)
+            if isinstance(table, Carried):
+                carried.append(table)
             else:
-                reasons[channel.name].append(f"{term_in_words(seen)}: {judgement}")
-    carried = _together(problem, effects, judged, carried)
-    own = [judgement.effect for _, judgement in carried]
-    after = with_carried(judged, *own)
-    other = instead_of(problem, effects, judged, channels)
-    by_channel = {
-        c.name: _unexplained(
-            c, first[c.name], carried, reasons[c.name], other if other and other.channel == c.name else None
-        )
-        for c in channels
-    }
-    return Rest(by_channel, tuple(own), tuple(after))
+                reasons[channel.name].append(f"{seen.words}: {table}")
+    if len(carried) > 1:
+        carried = _together(problem, effects, judged, carried)
+    other = table_against(problem, effects, judged, channels) if len(effects) >= FEWEST else None
+    left = {}
+    for c in channels:
+        instead = other if other is not None and other.as_good and other.carried.channel == c.name else None
+        left[c.name] = _unexplained(c, first[c.name], carried, reasons[c.name], instead)
+    own = [one.effect for one in carried]
+    return Rest(left, tuple(own), tuple(with_carried(judged, *own)))
+
+
+def _torque_first(channels: Sequence[ChannelResult]) -> list[ChannelResult]:
+    return sorted(channels, key=lambda one: one.name != "motor_torque")
 
 
 def _together(
-    problem: Problem, effects: Sequence[Effect], judged: Sequence[Judged], carried: list[tuple[str, Judgement]]
-) -> list[tuple[str, Judgement]]:
+    problem: Problem, effects: Sequence[Effect], judged: Sequence[Judged], carried: list[Carried]
+) -> list[Carried]:
     """Several tables fitted together, since each was found while the others were not there."""
-    if len(carried) < 2:
-        return carried
-    tables, _ = joint_step(problem, effects, [judgement.effect for _, judgement in carried])
+    tables, _ = joint_step(problem, effects, [one.effect for one in carried])
     result = []
-    for place, (channel, _) in enumerate(carried):
+    for place, one in enumerate(carried):
         others = [*tables[:place], *tables[place + 1 :]]
-        result.append((channel, judged_with(problem, with_carried(judged, *others), tables[place])))
-    return result if all(judgement.pays for _, judgement in result) else carried
-
-
-def _happened(one: Dependence) -> bool:
-    """Whether a term is an event of the fitted recording, which need not come again in another one."""
-    return one.variable == "time" and one.share > EVENT and not one.alike
+        result.append(judged_with(problem, with_carried(judged, *others), tables[place], one.channel))
+    return result if all(one.pays for one in result) else carried
 
 
 def _unexplained(
-    channel: ChannelResult, analysis: Analysis, carried: Sequence[tuple[str, Judgement]], reasons: Sequence[str],
+    channel: ChannelResult, analysis: Analysis, carried: Sequence[Carried], reasons: Sequence[str],
     other: Instead | None,
 ) -> Unexplained:  # fmt: skip
     measured = channel.after.rms / channel.after.relative if channel.after.relative > 0 else float("inf")
-    seen = analysis.above
-    assert seen is not None
-    above = Above(seen.share, seen.standard_error, seen.rms, seen.floor, seen.is_left)
-    kept = tuple(one for one in analysis.dependences if one.confirmed or _happened(one))
-    lost = tuple(one for one in analysis.dependences if one not in kept)
-    mine = tuple(carried_result(judgement) for name, judgement in carried if name == channel.name)
-    last = carried[-1][1].after[channel.name] if carried else None
-    share_after = max(last**2 - seen.floor**2, 0.0) / measured**2 if last is not None else None
-    result = Unexplained(
-        max(seen.rms**2 - seen.floor**2, 0.0) / measured**2, kept, above, "", mine, tuple(reasons), share_after, other
+    above = analysis.above
+    assert above is not None
+    # an event of the fitted recording need not come again in another one
+    kept = tuple(
+        one
+        for one in analysis.dependences
+        if one.confirmed or (one.variable == "time" and one.share > EVENT and not one.alike)
     )
-    return replace(result, statement=rest_in_words(channel, result, lost, last))
+    lost = tuple(one for one in analysis.dependences if one not in kept)
+    last = carried[-1].after[channel.name] if carried else None
+    result = Unexplained(
+        share=max(above.rms**2 - above.floor**2, 0.0) / measured**2,
+        depends_on=kept,
+        above=above,
+        carried=tuple(one for one in carried if one.channel == channel.name),
+        not_carried=tuple(reasons),
+        share_after=max(last**2 - above.floor**2, 0.0) / measured**2 if last is not None else None,
+        instead=other,
+    )
+    return replace(result, statement=rest_in_words(channel.unit, result, lost, last))
+
+
+def without_stand_ins(found: Search, judged: Sequence[Judged]) -> Search:
+    """The search without the named effects that do not pay beside a table which beats all of them; else the same.
+
+    Asked only where there are two named effects or more, or where they leave something above the noise.
+
+    Args:
+        found: what the search took.
+        judged: recordings with the found effects in.
+    """
+    effects = found.fit.effects
+    if not effects or (len(effects) < FEWEST and not _is_left(found.problem, judged)):
+        return found
+    rival = table_against(found.problem, effects, judged, channel_results(found.problem, judged))
+    if rival is None or not rival.better:
+        return found
+    table = rival.carried.effect
+    kept = _needed_beside(found.problem, effects, table)
+    if len(kept) == len(effects):
+        return found
+    reason = (
+        f"beside a table over {table.place.replace('_', ' ')}, which predicts data not fitted better, it does not pay"
+    )
+    names = {effect.name for effect in effects} - {effect.name for effect in kept}
+    return replace(
+        found,
+        fit=fit(found.problem, kept, iterations=0),
+        impossible={**found.impossible, **dict.fromkeys(names, reason)},
+    )
+
+
+def table_against(
+    problem: Problem, effects: Sequence[Effect], judged: Sequence[Judged], channels: Sequence[ChannelResult]
+) -> Instead | None:
+    """The best single table in the declared plant, against the named effects; None where there is none."""
+    if not problem.predictor.of_motion or any(effect.name not in EFFECTS for effect in effects):
+        return None
+    bare = [replace(j, after=j.before) for j in judged]
+    analyses = analyses_of(problem, (), bare, channels)
+    for channel in _torque_first(channels):
+        for found in analyses[channel.name].found[:1]:
+            table = tried(problem, (), bare, (), forms_of(found, analyses.values()), channel)
+            if isinstance(table, Carried):
+                having = with_carried(bare, table.effect)
+                by_names, blocks = judged_residual(problem, [(j.after, j.evidence) for j in judged])
+                by_table, _ = judged_residual(problem, [(j.after, j.evidence) for j in having])
+                # each way round: the chance part of a gain is taken at the better one
+                names_gain = compare_left_out(by_table, by_names, blocks)
+                as_good = names_gain.gain < max(LEAST_GAIN, 2 * names_gain.standard_error)
+                better = compare_left_out(by_names, by_table, blocks).pays
+                return Instead(table, tuple(effect.name for effect in effects), as_good, better)
+    return None
+
+
+def _is_left(problem: Problem, judged: Sequence[Judged]) -> bool:
+    """Whether any channel stands above the noise with what was found."""
+    plants = [(j.after, j.evidence) for j in judged]
+    names = list(dict.fromkeys(name for j in judged for name in j.evidence.channels))
+    return any(above_noise(views).is_left for views in views_of(problem, plants, names, True).values())
+
+
+def _needed_beside(problem: Problem, effects: Sequence[Effect], table: Tabulated) -> tuple[Effect, ...]:
+    """The named effects that still pay beside a table, all fitted together."""
+    kept = fit(problem, (*effects, table), iterations=ITERATIONS)
+    blocks, place = block_numbers(problem), 0
+    while place < len(kept.effects) - 1:
+        rest = fit(problem, kept.effects[:place] + kept.effects[place + 1 :], iterations=ITERATIONS)
+        without = left_out_residual(problem, rest, blocks)
+        having = left_out_residual(problem, kept, blocks)
+        if compare_left_out(without, having, blocks, least_gain(problem, without, having)).pays:
+            place += 1
+        else:
+            kept = rest
+    return kept.effects[:-1]

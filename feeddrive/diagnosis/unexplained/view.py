@@ -2,26 +2,45 @@
 
 No variable holds what is being explained: motion and load are those of the plant driven by the measured motor, not the
 recorded torque nor the recorded table position.
+
+Whether anything is left above the noise, and how sure that is, says `excess`:
+
+    excess = (rms^2 - floor^2) / rms^2
+
+The floor is the sensor noise in the band as `band.white_noise` reads it: the tenth part of the quietest blocks. That
+quantile lies below the mean by z_0.1 times the scatter of a block's level, which for fourth differences of white noise
+is 5.25 / m of the square (m samples a block, 5.25 = 2 sum R_k^2 / R_0^2); here it is put right, and its own scatter is
+counted. A quantised motor angle moves the predicted table by up to r q / sqrt(12), more or less of which is in the band
+with the speed: half of its square is taken for noise, and half for doubt. Where the steps matter (`encoder_error`) what
+they add is drawn, and counted as noise and as doubt. The rms scatters with the blocks of time,
+which counts correlation inside them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from feeddrive.diagnosis.likelihood.evidence import Evidence
+from feeddrive.diagnosis.likelihood.band import NOISE_BLOCK
+from feeddrive.diagnosis.likelihood.evidence import AxisEvidence, Evidence
 from feeddrive.diagnosis.likelihood.fit import Problem
-from feeddrive.diagnosis.likelihood.folds import FOLDS, block_of_rows, dealt_blocks
-from feeddrive.diagnosis.unexplained.floor import Floor, noise_floor
-from feeddrive.diagnosis.unexplained.functional_sums import Sample
-from feeddrive.diagnosis.unexplained.term import Term
+from feeddrive.diagnosis.likelihood.folds import block_of_rows, dealt_blocks
+from feeddrive.diagnosis.unexplained.unexplained_result import Above
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import BoolArray, FloatArray, IntegerArray
 
 SLOW = 1e-3
 """Share of the highest speed at which a direction turns, where the plant declares no guide friction that says."""
+
+
+SCATTER = 5.25
+"""Variance of a block's mean square of fourth differences of white noise, over its square, times the samples."""
+
+QUANTILE, LOWER, DENSITY = 0.1, 1.2816, 0.1755
+"""Quantile that is read, its distance from the mean in standard deviations, and the normal density there."""
 
 
 @dataclass(frozen=True)
@@ -44,14 +63,13 @@ class View:
     rows: BoolArray
     values: Mapping[str, FloatArray]
     floor: Floor
-    shown: dict[Term, FloatArray]
+    shown: dict[Hashable, FloatArray]
 
-    def columns(self, term: Term) -> FloatArray:
-        """Columns of a term as the recording would show them: in the band, at the rows that count, (m, k)."""
-        if term not in self.shown:
-            columns = [self.evidence.thinned_band(column) for column in term.columns(self.values).T]
-            self.shown[term] = np.column_stack(columns)
-        return self.shown[term][self.rows[:: self.evidence.thinning]]
+    @property
+    def left(self) -> FloatArray:
+        """The residual where it counts, the zero of a scale taken out, (m,)."""
+        residual = self.residual[self.rows]
+        return residual - residual.mean() if self.channel in self.evidence.floating else residual
 
     @property
     def blocks(self) -> IntegerArray:
@@ -80,16 +98,15 @@ def views_of(
         predicted = problem.predictor.predict(plant, evidence)
         values = variables_of(problem, plant, evidence, predicted)
         thinned = evidence.thinned(evidence.judged_rows if judged else evidence.fit_rows)
-        shown: dict[Term, FloatArray] = {}
+        shown: dict[Hashable, FloatArray] = {}
         for channel in channels:
             if channel not in evidence.channels:
                 continue
             residual = evidence.measured[channel] - predicted[channel]
+            rows = thinned & np.isfinite(residual)
             radius = plant.chain.motor_radius if channel == "table_position" else 0.0
             floor = noise_floor(evidence, channel, radius)
-            views[channel].append(
-                View(evidence, channel, residual, thinned & np.isfinite(residual), values, floor, shown)
-            )
+            views[channel].append(View(evidence, channel, residual, rows, values, floor, shown))
     return {channel: tuple(own) for channel, own in views.items()}
 
 
@@ -137,21 +154,68 @@ def travel_since_reversal(position: FloatArray, direction: FloatArray) -> FloatA
     return distance
 
 
-def sample_of(views: Sequence[View], least: float) -> Sample:
-    """All recordings as one sample; each has its own offset, and blocks are counted on."""
-    residual = np.concatenate([view.residual[view.rows] for view in views])
-    counts = [int(view.rows.sum()) for view in views]
-    owner = np.repeat(np.arange(len(views)), counts)
-    blocks, first = [], 0
-    for view in views:
-        blocks.append(first + view.dealt)
-        first += FOLDS * (int(view.dealt.max(initial=0)) // FOLDS + 1)
-    floors = np.array([view.floor.rms**2 for view in views])
-    return Sample(
-        residual,
-        np.concatenate(blocks),
-        (owner[:, None] == np.arange(len(views))).astype(float),
-        lambda term: np.vstack([view.columns(term) for view in views]),
-        float(np.average(floors, weights=counts)),
-        least,
-    )
+@dataclass(frozen=True)
+class Floor:
+    """Rms of the sensor noise in the band, and its standard error; unit of the channel."""
+
+    rms: float
+    standard_error: float
+
+
+def noise_floor(evidence: Evidence, channel: str, radius: float = 0.0) -> Floor:
+    """Noise of a channel in the band, what the model itself may miss included.
+
+    Args:
+        evidence: the recording.
+        channel: its name.
+        radius: travel per motor angle [m/rad] by which the angle's steps show in the channel; 0 where they do not.
+    """
+    noise, missed = evidence.noise[channel], evidence.missed(channel)
+    if not isinstance(evidence, AxisEvidence):
+        return Floor(math.hypot(noise, missed), 0.1 * noise)
+    samples = max(16, int(NOISE_BLOCK / evidence.recording.sample_time))
+    level = 0.5 * math.sqrt(SCATTER / samples)  # scatter of a block's rms over the rms
+    blocks = max(len(evidence.recording) // samples, 1)
+    spread = math.sqrt(QUANTILE * (1 - QUANTILE) / blocks) / DENSITY * level
+    corrected = noise / (1 - LOWER * level)
+    half = 0.5 * (radius * angle_step(evidence.recording["motor_angle"])) ** 2 / 12 if radius else 0.0
+    if channel in evidence.added:  # known to what the drawn error says of it
+        half = evidence.added[channel] ** 2
+    rms = math.sqrt(corrected**2 + missed**2 + half)
+    doubt = math.hypot(2 * spread * corrected**2, half)  # of the square
+    return Floor(rms, doubt / (2 * rms) if rms > 0 else 0.0)
+
+
+def angle_step(angle: FloatArray) -> float:
+    """Least change between neighbouring samples [rad]: the step of an encoder; next to none where it is not seen."""
+    changes = np.abs(np.diff(angle))
+    return float(np.min(changes[changes > 0], initial=np.inf)) if np.any(changes > 0) else 0.0
+
+
+def above_noise(views: Sequence[View]) -> Above:
+    """What is left of a channel above the noise, its recordings pooled."""
+    return excess([v.left for v in views], [v.blocks for v in views], [v.floor for v in views])
+
+
+def excess(residuals: Sequence[FloatArray], blocks: Sequence[IntegerArray], floors: Sequence[Floor]) -> Above:
+    """What is left above the noise, recordings pooled.
+
+    Args:
+        residuals: per recording, (n,); the mean is not taken out.
+        blocks: block of time of every value, (n,).
+        floors: per recording.
+    """
+    counts = np.array([len(residual) for residual in residuals], dtype=float)
+    total = counts.sum()
+    square = sum(float(residual @ residual) for residual in residuals) / total
+    noise = float(np.sum(counts * [floor.rms**2 for floor in floors]) / total)
+    doubt = float(np.sqrt(np.sum((counts * [2 * f.rms * f.standard_error for f in floors]) ** 2)) / total)
+    scatter = 0.0
+    for residual, block in zip(residuals, blocks, strict=True):
+        sums = np.bincount(block, weights=residual**2 - square)
+        scatter += float(sums @ sums)
+    # scatter of the blocks about the mean is also how the error differs along the motion, which is no doubt about the
+    # rms of this recording; it is counted, so that a single bad block is not taken for a machine
+    error = math.hypot(noise / square * math.sqrt(scatter) / total, doubt) / square if square > 0 else 0.0
+    share = float(1 - noise / square) if square > 0 else 0.0
+    return Above(share, error, math.sqrt(square), math.sqrt(noise))

@@ -15,8 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from feeddrive.effects.base import FrictionEffect, Motion, Parameter, Port, Signature
-from feeddrive.effects.friction.direction import forward
+from feeddrive.effects.base import FrictionEffect, Motion, Parameter, Port, Signature, forward
 from feeddrive.typing import Expression
 
 
@@ -24,6 +23,7 @@ class CoulombAsymmetry(FrictionEffect):
     """Direction-dependent Coulomb level."""
 
     name = "coulomb_asymmetry"
+    words = "Coulomb friction different in the two directions"
     ports = (Port.TABLE,)
     parameters = (Parameter("delta_force", "N", size=10.0),)
     signature = Signature(

@@ -31,8 +31,7 @@ import math
 from collections.abc import Mapping
 from typing import ClassVar
 
-from feeddrive.effects.base import Motion, Parameter, Signature, number
-from feeddrive.effects.friction.direction import forward
+from feeddrive.effects.base import Motion, Parameter, Signature, forward, number
 from feeddrive.effects.friction.shaft_drag import ShaftDrag
 from feeddrive.parts.elementary import cosine, sine
 from feeddrive.parts.screw.double_nut import friction_torque_backward, friction_torque_forward, rigid_sharing

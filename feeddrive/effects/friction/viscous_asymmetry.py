@@ -14,8 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from feeddrive.effects.base import FrictionEffect, Motion, Parameter, Port, Signature
-from feeddrive.effects.friction.direction import forward
+from feeddrive.effects.base import FrictionEffect, Motion, Parameter, Port, Signature, forward
 from feeddrive.typing import Expression
 
 
@@ -23,6 +22,7 @@ class ViscousAsymmetry(FrictionEffect):
     """Direction-dependent viscous coefficient."""
 
     name = "viscous_asymmetry"
+    words = "viscous friction different in the two directions"
     ports = (Port.TABLE,)
     parameters = (Parameter("delta_viscous", "N s/m", size=50.0),)
     signature = Signature(

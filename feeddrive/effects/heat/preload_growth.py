@@ -8,7 +8,7 @@
 | ΔT | | rise of the nut's surface over the start of the run | K |
 
 The viscous torque is untouched. Source: paper 002, equations (18) to (22); the preload of a double nut rises where the
-nut warms more than the screw (`feeddrive.thermal.laws.nut_preload`).
+nut warms more than the screw (`feeddrive.thermal.thermal_coupling`).
 """
 
 from __future__ import annotations
@@ -26,6 +26,7 @@ class PreloadGrowth(ThermalEffect):
     """Load torque that follows the nut's temperature."""
 
     name = "preload_growth"
+    words = "preload torque growing as the nut warms"
     parameters = (Parameter("coefficient", "1/K", -1.0, 1.0, size=0.01),)
     signature = Signature(
         ("nut_temperature", "table_growth"),

@@ -4,7 +4,7 @@
 
 so that M_ref q'' = B u + f_beyond - C q' - K q holds with the propagators of the cell, and the motion does not depend
 on where cells begin. C and K are those of the cell; f has the springs' part
-(see `feeddrive.plant.chain.varying_chain`).
+(see `feeddrive.plant.equations`).
 
 | symbol | meaning |
 |---|---|
@@ -19,8 +19,9 @@ from dataclasses import dataclass, replace
 import casadi as ca
 
 from feeddrive.plant.chain.chain import symbolic
-from feeddrive.plant.equations import Forces, Symbols, chain_symbols, effect_forces
+from feeddrive.plant.equations import Forces, effect_forces
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.structure import Symbols, chain_symbols
 from feeddrive.typing import Expression
 
 

@@ -20,8 +20,7 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 
-from feeddrive.engine.step.algebra import part, solved_in_pairs
-from feeddrive.engine.step.propagators import NODES, RADAU
+from feeddrive.engine.step.propagators import NODES, RADAU, part, solved_in_pairs
 from feeddrive.engine.step.step_constants import CONVERGED
 from feeddrive.engine.step.step_symbols import StepSymbols
 from feeddrive.typing import Expression

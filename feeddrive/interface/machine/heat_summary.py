@@ -7,9 +7,8 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from feeddrive.interface.shown import Listing, Shown
-from feeddrive.thermal.machine_heat import Heat
+from feeddrive.thermal.machine_heat import Heat, HeatSensor
 from feeddrive.thermal.run.heat_figures import HeatRow, heat_rows
-from feeddrive.thermal.sensors import HeatSensor
 from feeddrive.units.quantity import format_quantity
 
 
@@ -18,10 +17,10 @@ class HeatSummary(Shown):
     """Values with their sources, films, heats, time constants and sensors of the heat of a machine.
 
     Attributes:
-        plant: the heat of the machine.
+        heat: of the machine.
     """
 
-    plant: Heat
+    heat: Heat
 
     def listing(self) -> Listing:
         """The declared values."""
@@ -29,11 +28,11 @@ class HeatSummary(Shown):
 
     def tables(self) -> tuple[Listing, ...]:
         """Every table; those without rows are left out."""
-        plant, found = self.plant, heat_rows(self.plant)
+        heat, found = self.heat, heat_rows(self.heat)
         values = [[key, format_quantity(value, unit), source] for key, value, unit, source in self._values()]
         records = [{"value": key, "quantity": v, "unit": unit, "source": s} for key, v, unit, s in self._values()]
         tables = (
-            Listing(f"{plant.name}, heat", ("value", "quantity", "source"), values, records),
+            Listing(f"{heat.name}, heat", ("value", "quantity", "source"), values, records),
             Listing(
                 "Films, contact and heats, effects not counted",
                 ("speed", "film of screw", "of nut", "contact", "heat of nut", "front bearing", "rear"),
@@ -44,28 +43,28 @@ class HeatSummary(Shown):
                 ("speed", "rise of nut", "of front end", "growth", *(f"τ{i}" for i in (1, 2, 3))),
                 [_settled(row) for row in found],
             ),
-            Listing("Sensors", ("channel", "kind", "at", "noise"), [_sensor(sensor) for sensor in plant.sensors]),
+            Listing("Sensors", ("channel", "kind", "at", "noise"), [_sensor(sensor) for sensor in heat.sensors]),
         )
         return tuple(one for one in tables if one.rows)
 
     def record(self) -> dict[str, Any]:
         """Everything as plain values, SI, of a machine that declares heat alone."""
-        named = {"format": "feeddrive-show/1", "name": self.plant.name, "structure": "heat alone"}
+        named = {"format": "feeddrive-show/1", "name": self.heat.name, "structure": "heat alone"}
         return {**named, **self.declared()}
 
     def declared(self) -> dict[str, Any]:
         """The heat as plain values, SI."""
-        plant = self.plant
+        heat = self.heat
         return {
             "values": {key: {"value": v, "unit": unit, "source": source} for key, v, unit, source in self._values()},
-            "speeds": [asdict(row) for row in heat_rows(plant)],
-            "bodies": [asdict(body) for body in plant.bodies],
-            "sensors": [asdict(sensor) for sensor in plant.sensors],
+            "speeds": [asdict(row) for row in heat_rows(heat)],
+            "bodies": [asdict(body) for body in heat.bodies],
+            "sensors": [asdict(sensor) for sensor in heat.sensors],
         }
 
     def _values(self) -> list[tuple[str, float, str, str]]:
         """Key, SI value, unit and source."""
-        plant, rig, steel = self.plant, self.plant.rig, self.plant.rig.steel
+        heat, rig, steel = self.heat, self.heat.rig, self.heat.rig.steel
         found = {
             "shaft_radius": (rig.radius, "m"),
             "shaft_length": (rig.length, "m"),
@@ -76,20 +75,20 @@ class HeatSummary(Shown):
             "conductivity": (steel.conductivity, "W/(m K)"),
             "heat_capacity": (steel.heat_capacity, "J/(m^3 K)"),
             "expansion": (steel.expansion, "1/K"),
-            "contact_conductance": (plant.contact, "W/(m^2 K)"),
-            "preload": (plant.preload, "N"),
-            "lead": (2 * math.pi * plant.lead, "m"),
-            "highest_speed": (plant.highest_speed, "rad/s"),
-            "nut.load_torque": (plant.nut.load_torque, "N m"),
-            "nut.heat_share": (plant.nut.heat_share, "1"),
+            "contact_conductance": (heat.contact, "W/(m^2 K)"),
+            "preload": (heat.preload, "N"),
+            "lead": (2 * math.pi * heat.lead, "m"),
+            "highest_speed": (heat.highest_speed, "rad/s"),
+            "nut.load_torque": (heat.nut.load_torque, "N m"),
+            "nut.heat_share": (heat.nut.heat_share, "1"),
         }
-        rows = [(f"thermal.{key}", v, unit, plant.origins.get(_origin(key), "")) for key, (v, unit) in found.items()]
-        for effect in plant.effects:
+        rows = [(f"thermal.{key}", v, unit, heat.origins.get(_origin(key), "")) for key, (v, unit) in found.items()]
+        for effect in heat.effects:
             for parameter in effect.parameters:
                 value = effect.values.get(parameter.key)
                 if isinstance(value, float):
                     key = f"{effect.label}.{parameter.key}"
-                    rows.append((key, value, parameter.unit, plant.origins.get(key, effect.place)))
+                    rows.append((key, value, parameter.unit, heat.origins.get(key, effect.place)))
         return rows
 
 

@@ -8,16 +8,16 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from feeddrive.interface.machine.check import RATED, Life, UsedLife
 from feeddrive.interface.machine.heat_summary import HeatSummary
-from feeddrive.interface.machine.life import RATED, Life, UsedLife
 from feeddrive.interface.shown import Listing, Shown, finite, write_figures, write_json
-from feeddrive.parts.guide.carriages import Carriages
+from feeddrive.parts.guide.guide_rating import Carriages
 from feeddrive.plant.analysis.modes import Modes
 from feeddrive.plant.analysis.rated_life import LifeRow
 from feeddrive.plant.analysis.stiffness_budget import StiffnessBudget
 from feeddrive.plant.analysis.summary import Summary as Figures
 from feeddrive.plant.plant import Plant
-from feeddrive.report.words.chain_words import chain_remark
+from feeddrive.report.words.words import chain_remark
 from feeddrive.units.quantity import format_quantity
 
 if TYPE_CHECKING:

@@ -10,10 +10,20 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from feeddrive.bench_page.page import bench_of_diagnosis
 from feeddrive.compensation.actions import actions
 from feeddrive.diagnosis.diagnose import diagnose
-from feeddrive.diagnosis.ledger.continued import Earlier, changed_since, earlier_run
-from feeddrive.diagnosis.ledger.ledger import FileUse, RunFiles, checksum, runs_of, write_ledger, written_earlier
+from feeddrive.diagnosis.ledger.ledger import (
+    Earlier,
+    FileUse,
+    RunFiles,
+    changed_since,
+    checksum,
+    earlier_run,
+    runs_of,
+    write_ledger,
+    written_earlier,
+)
 from feeddrive.diagnosis.likelihood.outputs import write_outputs
 from feeddrive.diagnosis.numbers.measured_file import read_measured_numbers
 from feeddrive.diagnosis.preparation import informative
@@ -22,7 +32,6 @@ from feeddrive.effects.tabulated import Tabulated
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant, shipped_plants
 from feeddrive.interface.axis import load
-from feeddrive.interface.benching import bench_of_diagnosis
 from feeddrive.interface.measured.diagnosed import Diagnosed
 from feeddrive.output_folder import finish_interrupted, output_folder, refuse_unusable, take_away
 from feeddrive.recording import Recording, read_recording
@@ -33,7 +42,7 @@ from feeddrive.report.records import Occasion
 DECIMAL_SIGNS = (None, ".", ",")
 
 SPLIT = 0.75
-"""Share that is fitted where nothing else is said."""
+"""Share that is fitted where nothing else is given."""
 
 
 @dataclass(frozen=True)
@@ -121,7 +130,7 @@ def continued_job(arguments: Sequence[str], folder: Path, options: Options) -> J
         options.simulate,
         tuple(effect for effect in earlier.effects if not isinstance(effect, Tabulated)),
         earlier,
-        options.measured,
+        options.measured or (earlier.measured.path if earlier.measured is not None else None),
     )
 
 
@@ -148,6 +157,7 @@ def diagnose_files(job: Job, progress: Callable[[str], None] = lambda _: None) -
         raise InputError("was changed while it was read", str(job.plant), "diagnose again")
     plant = axis.plant
     numbers = read_measured_numbers(job.measured, plant) if job.measured is not None else ()
+    as_read = checksum(job.measured) if job.measured is not None else ""
     result, effects = diagnose(plant, fitted, judged, job.split, job.simulate, progress, job.start, numbers)
     if job.earlier is not None:
         since = changed_since(job.earlier.reported, result.effects)
@@ -165,12 +175,12 @@ def diagnose_files(job: Job, progress: Callable[[str], None] = lambda _: None) -
         there = runs_of(job.out)
         take_away(folder, written_earlier(there))  # a figure that this run has no reason to draw
         before = there or (job.earlier.runs if job.earlier is not None else [])
-        write_ledger(folder, before, result, effects, _files(job, declared, fitted, judged, before))
+        write_ledger(folder, before, result, effects, _files(job, declared, as_read, fitted, judged, before))
     return Diagnosed(axis, result, tuple(effects))
 
 
 def _command(job: Job) -> str:
-    """The line that makes a diagnosis again; none for one that takes up an earlier one, whose ledger tells its runs."""
+    """The line that makes a diagnosis again; none for one that takes up an earlier one, whose ledger lists its runs."""
     if job.earlier is not None:
         return ""
     words = ["feeddrive", "diagnose", job.plant.stem if job.plant in shipped_plants() else str(job.plant)]
@@ -192,7 +202,7 @@ def _today() -> str:
 
 
 def _bytes(plant: Path) -> bytes:
-    """The plant file as it is now; what is said and written of it at the end is of these bytes."""
+    """The plant file as it is now; what is reported and written of it at the end is of these bytes."""
     try:
         return plant.read_bytes()
     except OSError as error:
@@ -204,12 +214,18 @@ def _read(source: Source) -> Recording:
 
 
 def _files(
-    job: Job, declared: bytes, fitted: Sequence[Recording], judged: Sequence[Recording], before: Sequence[object]
+    job: Job,
+    declared: bytes,
+    numbers: str,
+    fitted: Sequence[Recording],
+    judged: Sequence[Recording],
+    before: Sequence[object],
 ) -> RunFiles:
     continues = len(before) if job.earlier is not None else None
     uses = (_uses(job.recordings, fitted), _uses(job.validation, judged))
     plant = FileUse(job.plant.resolve(), hashlib.sha256(declared).hexdigest())
-    return RunFiles(plant, uses[0], uses[1], job.split, continues)
+    measured = FileUse(job.measured.resolve(), numbers) if job.measured is not None else None
+    return RunFiles(plant, uses[0], uses[1], job.split, continues, measured)
 
 
 def _uses(sources: Sequence[Source], recordings: Sequence[Recording]) -> tuple[FileUse, ...]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,11 +21,10 @@ from feeddrive.files import write_bytes_atomically, write_text_atomically
 from feeddrive.interface.axis import Axis, axis_of_text
 from feeddrive.interface.measured.reading import read_response_file
 from feeddrive.interface.servo import Servo, cascade_for
-from feeddrive.interface.shown import Listing, Shown
+from feeddrive.interface.shown import Listing, Shown, write_json
 from feeddrive.plant.file.named_parts import with_named_parts
 from feeddrive.recording.frequency_response import FrequencyResponse
-from feeddrive.report.words.numbers_words import numbers_verdict, value_text
-from feeddrive.report.words.response_words import response_verdict
+from feeddrive.report.words.explained_words import numbers_verdict, response_verdict, value_text
 from feeddrive.servo.mechanics_response import Case
 from feeddrive.units.quantity import format_quantity
 
@@ -78,8 +76,7 @@ class Explained(Shown):
             InputError: the folder cannot be written.
         """
         from feeddrive.report.figures.drawing import render
-        from feeddrive.report.pages.numbers_page import numbers_page
-        from feeddrive.report.pages.response_page import response_page
+        from feeddrive.report.pages.explained_page import numbers_page, response_page
 
         place, result = Path(folder), self.result
         picture = render(self._figures()[0])
@@ -87,8 +84,7 @@ class Explained(Shown):
         write_text_atomically(place / "plant_after.toml", self._text_after())
         write_bytes_atomically(place / f"{picture.stem}.png", picture.png)
         write_text_atomically(place / "report.html", page)
-        record = json.dumps(self.record(), indent=1, ensure_ascii=False, allow_nan=False)
-        write_text_atomically(place / "diagnosis.json", record + "\n")
+        write_json(self.record(), place / "diagnosis.json", indent=1)
         return place
 
     def _text_after(self) -> str:
@@ -98,8 +94,7 @@ class Explained(Shown):
         )
 
     def _figures(self) -> tuple[ReportFigure, ...]:
-        from feeddrive.report.figures.figure_numbers import numbers_figure
-        from feeddrive.report.figures.figure_response_fit import response_fit_figure
+        from feeddrive.report.figures.figure_response import numbers_figure, response_fit_figure
 
         result = self.result
         return (numbers_figure(result) if isinstance(result, NumbersResult) else response_fit_figure(result),)
@@ -156,10 +151,10 @@ def explain(
     entries = with_named_parts(axis.entries, str(axis.path))
     if axis.values or axis.added:
         raise InputError("the axis was changed after it was loaded", axis.name, "save it, and load the file")
-    tell = progress or (lambda _: None)
+    report = progress or (lambda _: None)
     if not isinstance(measured, FrequencyResponse) and Path(measured).suffix.lower() == ".toml":
         numbers = read_measured_numbers(Path(measured), axis.plant)
-        return Explained(axis, diagnose_numbers(entries, axis.path, axis.plant, numbers, tell))
+        return Explained(axis, diagnose_numbers(entries, axis.path, axis.plant, numbers, report))
     response = measured if isinstance(measured, FrequencyResponse) else read_response_file(Path(measured))
     if response is None:
         what = "is neither measured numbers nor a frequency response"
@@ -167,5 +162,5 @@ def explain(
     point = export_point(axis.plant, at, "at")
     case = Case(point.position, point.linearised_at)
     cascade = None if controller is None else cascade_for(axis.plant, controller)
-    found = diagnose_response(entries, axis.path, axis.plant, response, case, tell, cascade)
+    found = diagnose_response(entries, axis.path, axis.plant, response, case, report, cascade)
     return Explained(axis, found)

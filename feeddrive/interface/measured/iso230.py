@@ -8,19 +8,16 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
-import numpy as np
-
 from feeddrive.errors import InputError
 from feeddrive.interface.axis import Axis
 from feeddrive.interface.measured.reading import read
 from feeddrive.interface.quantities import Quantity, si
-from feeddrive.interface.shown import Listing, Shown
+from feeddrive.interface.shown import Listing, Shown, finite
 from feeddrive.metrology.circular import Circular, circular
 from feeddrive.metrology.measured.forms import circle_test, drift_test, linear_test, part_of
-from feeddrive.metrology.measured.laser_file import is_laser_file
 from feeddrive.metrology.measured.measurements import CircleTest, DriftTest, LinearTest, refuse_radius
 from feeddrive.metrology.measured.plant_share import PlantShare, plant_share
-from feeddrive.metrology.measured.readings import Readings, read_readings
+from feeddrive.metrology.measured.readings import Readings, is_laser_file, read_readings
 from feeddrive.metrology.measured.standing import (
     believed,
     circle_angle,
@@ -96,7 +93,7 @@ class Iso230(Shown):
             "format": "feeddrive-iso230/1",
             "name": self.name,
             "standard": STANDARDS[self.part],
-            "figures": {key: {"value": _finite(v), "unit": unit_of(key)} for key, v in self.figures_si().items()},
+            "figures": {key: {"value": finite(v), "unit": unit_of(key)} for key, v in self.figures_si().items()},
         }
         if isinstance(self.test, LinearTest):
             content["targets"] = _target_records(self.test)
@@ -139,11 +136,11 @@ def iso230(
     Args:
         measured: a table of readings, or a recording with `table_position`; for a circle of two axes two recordings.
         plant: an axis; says what of E, M and B it explains, and knows the lead where a recording has no set-point.
-        part: 2 positioning, 3 drift of an axis that warms itself, 4 circle; told by what is measured if left out.
+        part: 2 positioning, 3 drift of an axis that warms itself, 4 circle; identified from the columns if left out.
         radius: nominal, of a circle.
         stop: when the axis stops, of a test of drift.
         map: mapping file of a recording in a foreign format.
-        decimal: "." or ",", where it cannot be told.
+        decimal: "." or ",", where the file leaves it open.
 
     Raises:
         InputError: what is given makes no such test; one line with the remedy.
@@ -315,7 +312,3 @@ def _target_records(test: LinearTest) -> list[dict[str, Any]]:
         for record, reversal in zip(records, both.reversal, strict=True):
             record["B [m]"] = float(reversal)
     return records
-
-
-def _finite(value: float) -> float | None:
-    return value if np.isfinite(value) else None

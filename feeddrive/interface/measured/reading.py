@@ -18,7 +18,7 @@ def read(path: str | Path, map: str | Path | None = None, decimal: str | None = 
     Args:
         path: CSV or CSV.gz with a header `name [unit]`, or with a mapping a `.mat` or foreign text file.
         map: mapping file, channel to column, factor and unit.
-        decimal: "." or ","; the file tells if left out.
+        decimal: "." or ","; found in the file if left out.
 
     Raises:
         InputError: the file cannot be used; one line with file, row, column, reason and the remedy.

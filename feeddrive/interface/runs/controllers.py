@@ -13,7 +13,7 @@ from feeddrive.errors import InputError
 from feeddrive.export.point import export_point
 from feeddrive.interface.quantities import Quantity, quantities, si
 from feeddrive.interface.servo import Servo, cascade_for
-from feeddrive.plant.analysis.linear import INPUTS, OUTPUTS
+from feeddrive.plant.analysis.ode import INPUTS, OUTPUTS
 from feeddrive.plant.plant import Plant
 from feeddrive.servo import state_feedback as observed
 from feeddrive.servo.cascade import Cascade, Feedback, FeedForward
@@ -21,8 +21,7 @@ from feeddrive.servo.cascade_function import cascade_controller, velocity_loop_o
 from feeddrive.servo.linear_loop import open_position_loop, open_velocity_loop
 from feeddrive.servo.margins import Margins, margins
 from feeddrive.servo.mechanics_response import Case
-from feeddrive.servo.sampled import SampledController
-from feeddrive.servo.sampled_plant import Matrices, sampled_plant
+from feeddrive.servo.sampled_plant import Matrices, SampledController, sampled_plant
 from feeddrive.servo.scheduled import scheduled
 from feeddrive.simulate.controlled.controlled_machine import TorqueLoop
 from feeddrive.tuning.bare_drive import bare_drive
@@ -150,7 +149,7 @@ def schedule(axis: Axis, servo: Servo, positions: Sequence[Quantity]) -> tuple[C
     The velocity loop is that of the servo at all positions; feed-forward is left out.
 
     Args:
-        axis: the machine, with a scale, which tells where the table is.
+        axis: the machine, with a scale, which measures where the table is.
         servo: of `tune`; gives the velocity loop and the margins asked for.
         positions: of the table, ascending, two or more.
 

@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from feeddrive.compensation.heat.thermal_error import LeftOver, left_over
+from feeddrive.compensation.heat.thermal_error import LeftOver, left_over, model_alone
 from feeddrive.compensation.heat.thermal_line import Convention, LineTable, straight_line
-from feeddrive.compensation.heat.thermal_open_loop import model_alone
 from feeddrive.compensation.heat.thermal_sensors import Sensor
 from feeddrive.compensation.heat.thermal_trial import TriedMachine
 from feeddrive.files import write_text_atomically
@@ -142,7 +141,7 @@ class ThermalTrial(Shown):
         return place
 
     def _figures(self) -> Sequence[ReportFigure]:
-        from feeddrive.report.figures.figure_thermal_compensation import (
+        from feeddrive.report.figures.figure_compensation import (
             axis_heating_figure,
             compensation_figure,
             stroke_figure,

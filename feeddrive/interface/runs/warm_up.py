@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -15,21 +15,23 @@ import numpy as np
 from feeddrive import __version__
 from feeddrive.errors import InputError
 from feeddrive.interface.axis import Axis
-from feeddrive.interface.quantities import Quantity, quantities, si
-from feeddrive.interface.runs.warm_up_tables import warm_up_tables
+from feeddrive.interface.quantities import Quantities, Quantity, quantities, si
 from feeddrive.interface.shown import Listing, Shown, finite, write_figures, write_json
 from feeddrive.recording.files.writing import write_recording
 from feeddrive.recording.recording import Recording
+from feeddrive.thermal.full.full_model import NUT
 from feeddrive.thermal.reduced.network import Network, network
 from feeddrive.thermal.reduced.reduction import DEFAULT_ORDER
 from feeddrive.thermal.rig import Travel
 from feeddrive.thermal.run.duty import AMBIENT_CHANNEL, SPEED, constant_duty, read_duty
 from feeddrive.thermal.run.study import ThermalStudy, study
+from feeddrive.thermal.run.study import WarmUp as Settled
 from feeddrive.typing import FloatArray
 from feeddrive.units.quantity import format_quantity
 
 if TYPE_CHECKING:
     from feeddrive.report.figures.drawing import ReportFigure
+
 
 _USUAL_DURATION = "180 min"
 
@@ -55,7 +57,7 @@ class WarmUp(Shown):
         if name == "time":
             return self.study.duty.times
         if name not in self.study.series:
-            raise InputError(f'no channel "{name}"', self.study.plant.name, f"it has {', '.join(self.study.series)}")
+            raise InputError(f'no channel "{name}"', self.study.heat.name, f"it has {', '.join(self.study.series)}")
         return self.study.series[name]
 
     @property
@@ -80,14 +82,14 @@ class WarmUp(Shown):
             for name, one in self.study.warm_up.items()
         ]
         headings = ("growth", "settles at", f"within {format_quantity(self.study.within, 'm')} after", "63 % after")
-        return Listing(f"{self.study.plant.name}: warm-up", headings, rows, records)
+        return Listing(f"{self.study.heat.name}: warm-up", headings, rows, records)
 
     @cached_property
     def network(self) -> Network:
         """Lumped network at the mean conductances of the run, for reading; its errors are some per cent."""
         found = self.study
-        bodies = (*found.plant.bodies, *found.plant.attached)
-        return network(found.plant.rig, found.conductances, self.segments, bodies)
+        bodies = (*found.heat.bodies, *found.heat.attached)
+        return network(found.heat.rig, found.conductances, self.segments, bodies)
 
     def tables(self) -> tuple[Listing, ...]:
         """Temperatures, error at the table, warm-up, time constants, energy, models, network."""
@@ -96,11 +98,11 @@ class WarmUp(Shown):
     def record(self) -> dict[str, Any]:
         """Everything that was found, plain values, SI."""
         found, lumps = self.study, self.network
-        duty, energy, travel = found.duty, found.energy, found.plant.rig.travel
+        duty, energy, travel = found.duty, found.energy, found.heat.rig.travel
         return {
             "format": "feeddrive-thermal/1",
             "version": __version__,
-            "plant": found.plant.name,
+            "plant": found.heat.name,
             "duty": {
                 "source": duty.source,
                 "duration": duty.duration,
@@ -143,7 +145,7 @@ class WarmUp(Shown):
         found, duty = self.study, self.study.duty
         series = {re.sub(r"[^a-z0-9_]+", "_", name.lower()): values for name, values in found.series.items()}
         channels = {SPEED: duty.speeds, AMBIENT_CHANNEL: duty.ambient, **series}
-        return Recording(found.plant.name, duty.times, channels, duty.step)
+        return Recording(found.heat.name, duty.times, channels, duty.step)
 
     def save(self, folder: str | Path) -> Path:
         """Write `thermal.json`, `recording.csv` and the figures.
@@ -171,7 +173,7 @@ def warm_up(
     duration: Quantity | None = None,
     within: Quantity = "1 µm",
     order: int = DEFAULT_ORDER,
-    stroke: Quantity | Sequence[Quantity] | None = None,
+    stroke: Quantities = None,
     segments: int = 10,
 ) -> WarmUp:
     """Let a machine warm up from rest and cold.
@@ -221,3 +223,122 @@ def _travel(stroke: Quantity | Sequence[Quantity], declared: Travel) -> Travel:
         raise InputError(f'"{stroke}" is no stroke', "stroke", 'write "150 mm", or "150 mm to 350 mm"')
     middle = (declared.low + declared.high) / 2
     return Travel(middle - ends[0] / 2, middle + ends[0] / 2)
+
+
+_ROWS = 10
+
+
+def warm_up_tables(found: ThermalStudy, lumps: Network) -> tuple[Listing, ...]:
+    """What people read, in the order in which they ask."""
+    return (*_over_time(found), _warm_ups(found), _constants(found), _energy(found), _models(found), *_network(lumps))
+
+
+def _over_time(found: ThermalStudy) -> list[Listing]:
+    """Temperatures, and the error at the table, at some times."""
+    duty, travel = found.duty, found.heat.rig.travel
+    speed = format_quantity(float(np.mean(np.abs(duty.speeds))), "rad/s")
+    what = f"{speed} constant" if duty.is_constant else f"{speed} on average ({duty.source})"
+    title = f"{found.heat.name}: {what}, nut from {travel.low * 1e3:.4g} to {travel.high * 1e3:.4g} mm"
+    grown = [name for name in found.series if name.startswith("table_growth")]
+    others = [name for name in found.series if name not in grown]
+    return [_series(title, others, found), _series("Error at the table, growth of the screw", grown, found)]
+
+
+def _series(title: str, names: Sequence[str], found: ThermalStudy) -> Listing:
+    times = found.duty.times
+    step = max(len(times) // _ROWS, 1)
+    kept = range(len(times) - 1, -1, -step)[::-1]
+    rows = [[_time(times[i]), *(_shown(name, float(found.series[name][i])) for name in names)] for i in kept]
+    return Listing(title, ["time", *(_heading(name) for name in names)], rows)
+
+
+def _heading(name: str) -> str:
+    if name.startswith("table_growth"):
+        return f"nut at {name.removeprefix('table_growth_').replace('mm', ' mm')} [µm]"
+    return f"{name.removesuffix('_temperature').replace('_', ' ')} [°C]"
+
+
+def _shown(name: str, value: float) -> str:
+    return f"{1e6 * value:.2f}" if name.startswith("table_growth") else f"{value:.2f}"
+
+
+def _time(seconds: float) -> str:
+    if not math.isfinite(seconds):
+        return "not in this run"
+    return f"{seconds / 60:.4g} min" if seconds >= 60 else f"{seconds:.3g} s"
+
+
+def _warm_ups(found: ThermalStudy) -> Listing:
+    rows = [_warm_up(name, one, found) for name, one in found.warm_up.items()]
+    band = format_quantity(found.within, "m")
+    last = "error it settles at" if found.duty.is_constant else "error at the end of the run"
+    return Listing("Warm-up of the table's position", ("nut at", last, f"within {band} after", "63.2 % after"), rows)
+
+
+def _warm_up(name: str, one: Settled, found: ThermalStudy) -> list[str]:
+    place = name.removeprefix("growth_").replace("mm", " mm")
+    beyond = " (beyond this run)" if math.isfinite(one.time) and one.time > found.duty.duration else ""
+    return [place, format_quantity(one.final, "m"), _time(one.time) + beyond, _time(one.rise_time)]
+
+
+def _constants(found: ThermalStudy) -> Listing:
+    names = list(found.constants[0].shares) if found.constants else []
+    rows = [
+        [_time(one.value), *(f"{one.shares[name] + 0.0:.1%}".replace("-0.0%", "0.0%") for name in names)]
+        for one in found.constants
+    ]
+    headings = [_heading("nut_temperature" if name == NUT else f"table_{name}").split(" [")[0] for name in names]
+    return Listing("Time constants, and their shares in a step", ["τ", *headings], rows)
+
+
+def _energy(found: ThermalStudy) -> Listing:
+    energy = found.energy
+    rows = [[f"heat in: {_words(name)}", _energy_text(value)] for name, value in energy.heats.items() if value]
+    rows += [
+        ["to the surroundings", _energy_text(energy.to_surroundings)],
+        ["stored in steel and bodies", _energy_text(energy.stored)],
+        ["does not close by", f"{energy.imbalance:.1e} of the largest"],
+    ]
+    return Listing("Energy of the run", ("", "energy"), rows)
+
+
+def _words(name: str) -> str:
+    return {"front": "front bearing", "rear": "rear bearing"}.get(name, name)
+
+
+def _energy_text(value: float) -> str:
+    return f"{value / 1e3:.4g} kJ"
+
+
+def _models(found: ThermalStudy) -> Listing:
+    rise, growth = _largest(found.reduction_errors)
+    rows = [
+        ["full, finite volumes", str(found.model.order - 1), "", ""],
+        ["reduced", str(found.order), f"{1e3 * rise:.2g} mK", f"{1e9 * growth:.2g} nm"],
+    ]
+    return Listing("Models, errors in this run", ("model", "states", "temperatures", "growths"), rows)
+
+
+def _largest(errors: Mapping[str, float]) -> tuple[float, float]:
+    grown = [error for name, error in errors.items() if name.startswith("table_growth")]
+    others = [error for name, error in errors.items() if not name.startswith("table_growth")]
+    return max(others), max(grown)
+
+
+def _network(lumps: Network) -> list[Listing]:
+    edges = 1e3 * lumps.edges
+    spans = {f"shaft_{i + 1}": f"{edges[i]:.4g} to {edges[i + 1]:.4g} mm" for i in range(len(edges) - 1)}
+    nodes = [
+        [one.name, spans.get(one.name, ""), f"{one.capacity:.4g} J/K", f"{one.to_air:.3g} W/K"] for one in lumps.lumps
+    ]
+    links = [
+        [one.first, one.second, f"{one.conductance:.3g} W/K", f"{1 / one.conductance:.3g} K/W"]
+        for one in lumps.links
+        if one.conductance > 0
+    ]
+    title = "Network: nodes, at the mean conductances of the run"
+    remark = "The network is for reading; its errors are some per cent. Numbers above are those of the full model."
+    return [
+        Listing(title, ("node", "shaft from the front end", "capacity", "to the air"), nodes),
+        Listing("Network: conductances between nodes", ("from", "to", "conductance", "resistance"), links, (), remark),
+    ]

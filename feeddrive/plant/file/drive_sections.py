@@ -19,17 +19,14 @@ from dataclasses import asdict
 from typing import TypeVar
 
 from feeddrive.errors import InputError, ValidityWarning
-from feeddrive.parts.bearings.bearing import SupportBearing
-from feeddrive.parts.bearings.supports import ScrewSupports, Support
-from feeddrive.parts.coupling import Coupling
-from feeddrive.parts.material import STEEL, ShaftMaterial
+from feeddrive.parts.bearings.supports import ScrewSupports, Support, SupportBearing
+from feeddrive.parts.coupling import Coupling, Transmission
 from feeddrive.parts.motor import HoldingBrake, Motor
-from feeddrive.parts.screw.ball_screw import ScrewShaft
+from feeddrive.parts.screw.ball_screw import STEEL, ScrewShaft, ShaftMaterial
 from feeddrive.parts.screw.nut import CATALOGUE_VALUES, Nut, stiffness_at_preload
 from feeddrive.parts.screw.screw_drive import BallScrewDrive
-from feeddrive.parts.screw.transmission import Transmission
-from feeddrive.parts.values import PartValue
-from feeddrive.plant.file.entries import Table
+from feeddrive.parts.values import PartValue, part_values
+from feeddrive.schema.table import Table
 
 Made = TypeVar("Made")
 
@@ -42,9 +39,9 @@ _MEASURED = {
 
 _PRELOADED = ("catalogue_stiffness", "catalogue_preload", "preload", "accuracy_factor")
 _NUT_VALUES = (*Nut.values, *CATALOGUE_VALUES)
-BEARING_RATING = PartValue(
-    "static_rating", "N", 0.0, 1e8, usual=(500.0, 5e6), meaning="static load rating C0 of the bearing"
-)
+(BEARING_RATING,) = part_values("""
+static_rating | N | (0, 1e8) usual 500 to 5e6 | | static load rating C0 of the bearing
+""")
 """C0 of a bearing, for plausibility rules."""
 
 BEARING_VALUES = (*SupportBearing.values, BEARING_RATING)
@@ -57,11 +54,9 @@ PART_VALUES: dict[str, tuple[PartValue, ...]] = {
     "belt": Transmission.values,
     "gear": Transmission.values,
     "ball_screw": (*ScrewShaft.values, *ShaftMaterial.values),
-    "support": (
-        PartValue(
-            "housing_stiffness", "N/m", meaning="axial stiffness of bearing housing and nut bracket; rigid if left out"
-        ),
-    ),
+    "support": part_values("""
+housing_stiffness | N/m | | | axial stiffness of bearing housing and nut bracket; rigid if left out
+"""),
     "nut": _NUT_VALUES,
 }
 """Values of parts by section."""

@@ -1,26 +1,18 @@
-"""What a plant file declares around the mechanics: sensors and the controller."""
+"""What a plant file declares around the mechanics: sensors of motion and of heat, the controller."""
 
 from __future__ import annotations
 
-import re
-
 from feeddrive.errors import InputError
-from feeddrive.plant.file.entries import Table, declares_heat_alone
+from feeddrive.plant.file.ratings import declares_heat_alone
 from feeddrive.plant.plant import DeclaredCascade, PositionVelocityController, Sensor
 from feeddrive.recording.channels import channel_unit
+from feeddrive.schema.table import Table
+from feeddrive.thermal.machine_heat import PLACES, SCALE, THERMOMETER, HeatSensor
+from feeddrive.units.quantity import parse
 
 SENSOR_KINDS = ("encoder", "scale", "tachometer", "current")
 SENSOR_PLACES = ("motor", "screw", "table")
 _SENSOR_KEYS = ("channel", "kind", "at", "resolution", "absolute", "model_error", "source")
-_OF_HEAT = re.compile(r".*_temperature|table_growth_.*")
-_CONTROLLER_UNITS = {
-    "position_gain": "1/s",
-    "velocity_gain": "V s/m",
-    "output_limit": "V",
-    "torque_per_output": "N m/V",
-}
-MOST_SAMPLES = 64
-"""Over which a controller may take the difference of positions for its velocity."""
 
 
 def read_sensors(top: Table) -> tuple[Sensor, ...]:
@@ -31,8 +23,8 @@ def read_sensors(top: Table) -> tuple[Sensor, ...]:
     """
     sensors: list[Sensor] = []
     for table in () if declares_heat_alone(top.entries) else top.tables("sensor"):
-        if "thermal" in top.entries and _OF_HEAT.fullmatch(str(table.entries.get("channel"))):
-            continue  # `feeddrive.plant.file.heat.sensor_sections` reads it
+        if "thermal" in top.entries and _of_heat(str(table.entries.get("channel"))):
+            continue  # `read_heat_sensors` reads it
         sensor = _sensor(table)
         if any(sensor.channel == other.channel for other in sensors):
             raise InputError(f"{sensor.channel} is declared twice", table.where, "keep one of them")
@@ -50,9 +42,7 @@ def _sensor(table: Table) -> Sensor:
             sizes[key] = table.quantity(key, unit, f"{channel}.{key}")
         if sizes[key] < 0:
             raise InputError(f"the {key} is negative", table.place(key), "write it positive")
-    absolute = table.entries.get("absolute", False)
-    if not isinstance(absolute, bool):
-        raise InputError(f"{absolute!r} is neither true nor false", table.place("absolute"), "write absolute = true")
+    absolute = table.switch("absolute")
     kind, at = table.choice("kind", SENSOR_KINDS), table.choice("at", SENSOR_PLACES)
     return Sensor(channel, kind, at, sizes["resolution"], absolute, sizes["model_error"])
 
@@ -66,12 +56,53 @@ def read_controller(top: Table) -> PositionVelocityController | DeclaredCascade 
     if "controller" not in top.entries:
         return None
     table = top.table("controller")
-    if table.choice("kind", ("position_velocity", "cascade")) == "cascade":
+    if table.choice("kind") == "cascade":
         return DeclaredCascade({key: value for key, value in table.entries.items() if key != "kind"}, table.where)
     table = table.of_kind("position_velocity")
     table.refuse_undeclared()
-    values = {key: table.quantity(key, unit, f"controller.{key}") for key, unit in _CONTROLLER_UNITS.items()}
-    for key, value in values.items():
-        if value <= 0:
-            raise InputError(f"{value:g} is not above zero", table.place(key), "write a positive value")
-    return PositionVelocityController(**values, velocity_samples=table.whole("velocity_samples", 0, MOST_SAMPLES, 0))
+    keys = ("position_gain", "velocity_gain", "output_limit", "torque_per_output")
+    values = {key: table.positive(key, origin=f"controller.{key}") for key in keys}
+    return PositionVelocityController(**values, velocity_samples=table.whole("velocity_samples"))
+
+
+_HEAT_SENSOR_KEYS = ("channel", "kind", "at", "noise", "source")
+
+
+def read_heat_sensors(top: Table) -> tuple[HeatSensor, ...]:
+    """The sensors for temperature and growth; sensors of motion, in a file that declares it, are passed over.
+
+    Raises:
+        InputError: unknown key, channel, kind or place, a channel declared twice, two sensors of one place.
+    """
+    tables = top.tables("sensor")
+    if "structure" in top.entries:
+        tables = [table for table in tables if _of_heat(str(table.entries.get("channel")))]
+    sensors: list[HeatSensor] = []
+    for table in tables:
+        sensor = _heat_sensor(table)
+        for other in sensors:
+            if sensor.channel == other.channel or sensor.output == other.output:
+                what = f"{sensor.channel} and {other.channel} are the same channel or the same place"
+                raise InputError(what, table.where, "keep one of them")
+        sensors.append(sensor)
+    return tuple(sensors)
+
+
+def _of_heat(channel: str) -> bool:
+    return channel.endswith("_temperature") or channel.startswith("table_growth_")
+
+
+def _heat_sensor(table: Table) -> HeatSensor:
+    table.refuse_unknown(_HEAT_SENSOR_KEYS)
+    channel, kind = table.text("channel"), table.choice("kind", (THERMOMETER, SCALE))
+    unit = channel_unit(channel, table.place("channel"))
+    if unit != ("m" if kind == SCALE else "degC") or not _of_heat(channel):
+        mend = "a thermometer reads NAME_temperature, a scale table_growth_NAME"
+        raise InputError(f"{channel} is no channel of a {kind}", table.place("channel"), mend)
+    at = table.choice("at", PLACES) if kind == THERMOMETER else parse(table.text("at"), "m", table.place("at"))
+    noise = (
+        table.quantity("noise", "m" if kind == SCALE else "K", f"{channel}.noise") if "noise" in table.entries else 0.0
+    )
+    if noise < 0:
+        raise InputError("the noise is negative", table.place("noise"), "write it positive")
+    return HeatSensor(channel, kind, at, noise)

@@ -11,8 +11,57 @@ from itertools import chain
 import numpy as np
 
 from feeddrive.errors import InputError
-from feeddrive.recording.files.csv_faults import locate_fault
 from feeddrive.typing import FloatArray
+
+
+def locate_fault(body: str, separator: str, names: tuple[str, ...], first_row: int, where: str) -> InputError:
+    """Return the error of the first row that cannot be read.
+
+    Args:
+        body: rows of numbers with decimal points.
+        separator: separator of the columns.
+        names: column headings.
+        first_row: row in the file of the first row of the body.
+        where: file name.
+    """
+    for number, line in enumerate(body.split("\n"), start=first_row):
+        fault = _fault_of_row(line, separator, names, f"{where}, row {number}")
+        if fault is not None:
+            return fault
+    return InputError("the numbers cannot be read", where, "write plain decimal numbers")
+
+
+def _fault_of_row(line: str, separator: str, names: tuple[str, ...], where: str) -> InputError | None:
+    if not line.strip():
+        return InputError("the row is blank", where, "remove blank rows between rows of numbers")
+    cells = line.split(separator)
+    if len(cells) != len(names):
+        what = f"the row has {len(cells)} cells, the header names {len(names)} columns"
+        return InputError(what, where, "complete the row or remove it")
+    for name, cell in zip(names, cells, strict=True):
+        fault = _fault_of_cell(cell.strip(), f'{where}, column "{name}"')
+        if fault is not None:
+            return fault
+    return None
+
+
+def _fault_of_cell(cell: str, where: str) -> InputError | None:
+    if not cell:
+        return InputError("the cell is empty", where, "fill the cell or remove the row")
+    if not is_number(cell):
+        shown = cell if len(cell) <= 40 else cell[:37] + "..."
+        return InputError(f'"{shown}" is not a number', where, "write a plain decimal number")
+    return None
+
+
+def is_number(cell: str) -> bool:
+    """Tell whether a cell with a decimal point is a number, NaN and infinity among them."""
+    try:
+        float(cell)
+    except ValueError:
+        return False
+    return True
+
 
 MOST_HEAD = 16_000_000
 """Letters within which a header, and a row, must end."""
@@ -29,7 +78,7 @@ _SEPARATOR_NAMES = {"\t": "tab", ";": "semicolon", ",": "comma"}
 
 @dataclass(frozen=True)
 class Layout:
-    """Where a table stands in its file; None where the file itself tells.
+    """Where a table stands in its file; None where it is found in the file.
 
     Attributes:
         header_row: row of the column names, 1 for the first; 0 if there is none (columns are then named 1, 2, ...).
@@ -80,7 +129,7 @@ class TextTable:
     where: str
 
     def numbers(self, decimal: str | None) -> Table:
-        """Return the table with its numbers; decimal is `.` or `,`, None to let the file tell.
+        """Return the table with its numbers; decimal is `.` or `,`, None to find it in the file.
 
         Raises:
             InputError: no rows, undecidable decimal sign, blank row, row of another length, a cell that is no number.

@@ -1,10 +1,13 @@
-"""Opening a file: bytes, checksum, decompression, and text out of whatever a logger writes."""
+"""Opening a file: bytes, checksum, decompression, and text out of whatever a logger writes, whole or block by block."""
 
 from __future__ import annotations
 
+import codecs
 import hashlib
 import os
+import re
 import stat
+import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -12,7 +15,69 @@ from pathlib import Path
 from typing import BinaryIO
 
 from feeddrive.errors import InputError
-from feeddrive.recording.files.unpacking import GZIP, Unpacker, unpacked
+
+GZIP = b"\x1f\x8b"
+"""First bytes of a .gz file."""
+
+BLOCK = 4_000_000
+"""Bytes that are read at once: many rows, and little beside the numbers of a long file."""
+
+MOST_UNPACKED = 200
+"""Size of a .gz file's content over its own from which it is no recording: a row differs from the one before by its
+time at least, which takes two bytes, and has some hundred letters."""
+
+SMALL = 64_000_000
+"""Bytes up to which a content may be anything over the size of its .gz file."""
+
+
+class Unpacker:
+    """Content of a .gz file of one or several members, block by block."""
+
+    def __init__(self, where: str) -> None:
+        self.where, self.packed, self.unpacked = where, 0, 0
+        self.inner = zlib.decompressobj(31)
+
+    def __call__(self, raw: bytes) -> Iterator[bytes]:
+        self.packed += len(raw)
+        try:
+            while raw:
+                if self.inner.eof:
+                    raw = raw.lstrip(b"\x00")  # padding, as tapes and some tools leave it
+                    if not raw:
+                        return
+                    self.inner = zlib.decompressobj(31)
+                part = self.inner.decompress(raw, BLOCK)
+                raw = self.inner.unconsumed_tail or self.inner.unused_data
+                self.unpacked += len(part)
+                if self.unpacked > max(SMALL, MOST_UNPACKED * self.packed):
+                    what = f"the .gz file holds more than {MOST_UNPACKED} times its own size"
+                    raise InputError(what, self.where, "unpack it first, if it is a recording")
+                if part:
+                    yield part
+        except zlib.error:
+            raise self.damaged() from None
+
+    def end(self) -> None:
+        """Refuse a file that ends within a member."""
+        if not self.inner.eof:
+            raise self.damaged()
+
+    def damaged(self) -> InputError:
+        """Return the error of a file that is damaged."""
+        return InputError("the .gz file is damaged or cut short", self.where, "copy or compress it again")
+
+
+def unpacked(raw: bytes, where: str) -> bytes:
+    """Return the content of the bytes of a .gz file.
+
+    Raises:
+        InputError: it is damaged, or holds more than a recording does.
+    """
+    unpack = Unpacker(where)
+    content = b"".join(unpack(raw))
+    unpack.end()
+    return content
+
 
 _HDF5 = b"\x89HDF\r\n\x1a\n"
 BYTE_ORDER_MARKS = ((b"\xef\xbb\xbf", "utf-8-sig"), (b"\xff\xfe", "utf-16"), (b"\xfe\xff", "utf-16"))
@@ -59,7 +124,7 @@ def opened(path: Path, kind_of_file: str = "recording") -> Iterator[BinaryIO]:
 
 
 def first_bytes(path: Path) -> bytes:
-    """Return the first bytes of a file after decompression, as many as tell its format.
+    """Return the first bytes of a file after decompression, as many as identify its format.
 
     Raises:
         InputError: as `opened`, or a damaged .gz.
@@ -127,3 +192,85 @@ def refuse_known_binary(data: bytes, where: str) -> None:
         raise InputError("is a .mat file by its content", where, "give it the ending .mat and a mapping (--map)")
     if data.startswith(b"PK\x03\x04"):
         raise InputError("is a workbook or zip archive, not CSV", where, "save the sheet as CSV")
+
+
+_CONTROLS = re.compile("[\x00-\x08\x0b\x0e-\x19\x1b-\x1f]")  # tab, line ends, form feed; 0x1a ends some DOS files
+
+
+class TextFile:
+    """A text file, plain or compressed, that is read once from its beginning to its end.
+
+    Attributes:
+        path: of the file.
+        where: the path, as errors show it.
+        notes: remarks about its encoding; complete when all is read.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path, self.where = path, str(path)
+        self.notes: tuple[str, ...] = ()
+        self._digest = hashlib.sha256()
+
+    @property
+    def sha256(self) -> str:
+        """Checksum of the file as it lies on the disk; complete when all is read."""
+        return self._digest.hexdigest()
+
+    def blocks(self) -> Iterator[str]:
+        """Read the file; line ends are \\n, and only the last block may end within a line end.
+
+        Raises:
+            InputError: not found, no file, unreadable, empty, damaged, or not text.
+        """
+        decode, held, anything = None, "", False
+        for data, last in self._plain():
+            if decode is None:
+                refuse_known_binary(data, self.where)
+                mark = next((name for sign, name in BYTE_ORDER_MARKS if data.startswith(sign)), "utf-8")
+                decode = _Decoder(mark)
+            text = held + decode(data, last)
+            held = "\r" if text.endswith("\r") and not last else ""  # its \n may come with the next block
+            text = text[: len(text) - len(held)]
+            if "\r" in text:
+                text = text.replace("\r\n", "\n").replace("\r", "\n")
+            if _CONTROLS.search(text):
+                mend = "name a .csv or .csv.gz file, or a .mat file with its mapping"
+                raise InputError("is not a text file", self.where, mend)
+            anything = anything or bool(text.strip())
+            yield text
+            self.notes = decode.notes
+        if not anything:
+            raise InputError("the file is empty", self.where, "record again or name another file")
+
+    def _plain(self) -> Iterator[tuple[bytes, bool]]:
+        """Read blocks of bytes after decompression, and whether each is the last; the last one may be empty."""
+        with opened(self.path) as file:
+            raw = file.read(BLOCK)
+            unpack = Unpacker(self.where) if raw.startswith(GZIP) else None
+            while raw:
+                self._digest.update(raw)
+                if unpack is None:
+                    yield raw, False
+                else:
+                    yield from ((part, False) for part in unpack(raw))
+                raw = file.read(BLOCK)
+            if unpack is not None:
+                unpack.end()
+        yield b"", True
+
+
+class _Decoder:
+    """Bytes to text: the encoding that the file begins in, and Latin-1 from the first byte on that is none of it."""
+
+    def __init__(self, encoding: str) -> None:
+        self.decoder = codecs.getincrementaldecoder(encoding)("strict")
+        self.notes: tuple[str, ...] = ()
+
+    def __call__(self, data: bytes, last: bool) -> str:
+        pending = self.decoder.getstate()[0]
+        try:
+            return self.decoder.decode(data, last)
+        except UnicodeError:
+            self.decoder = codecs.getincrementaldecoder("latin-1")("strict")
+            self.notes = ("not UTF-8; read as Latin-1",)
+            return self.decoder.decode(pending + data, last)

@@ -9,24 +9,21 @@ import numpy as np
 from feeddrive.errors import InputError, printable, quoted
 from feeddrive.recording.channels import Heading, read_heading
 from feeddrive.recording.checks.find_flaws import find_flaws
-from feeddrive.recording.checks.findings import sample_notes
-from feeddrive.recording.checks.flaws import filled, sentence
-from feeddrive.recording.checks.time_checks import check_time, clock_notes, mean_sample_time
+from feeddrive.recording.checks.flaws import filled, sample_notes, sentence
 from feeddrive.recording.checks.unusable_samples import (
     check_alive,
     check_finite,
     check_length,
     check_sample_time,
     check_size,
+    check_time,
+    clock_notes,
+    mean_sample_time,
 )
-from feeddrive.recording.derived import with_angle
 from feeddrive.recording.files.channel_mapping import FileMapping, read_mapping
-from feeddrive.recording.files.csv_faults import is_number
-from feeddrive.recording.files.csv_file import Layout, TextTable, find_table
-from feeddrive.recording.files.foreign import mapped_columns, table_variables
-from feeddrive.recording.files.mat_file import read_variables
-from feeddrive.recording.files.opening import FileContent, first_bytes, open_file
-from feeddrive.recording.files.text_blocks import TextFile
+from feeddrive.recording.files.csv_file import Layout, TextTable, find_table, is_number
+from feeddrive.recording.files.foreign import mapped_columns, read_variables, table_variables
+from feeddrive.recording.files.opening import FileContent, TextFile, first_bytes, open_file
 from feeddrive.recording.frequency_response import FrequencyResponse
 from feeddrive.recording.recording import Recording
 from feeddrive.recording.traces.channel_choice import Wishes
@@ -42,7 +39,7 @@ def read_recording(path: Path, mapping: Path | None = None, *, decimal: str | No
         path: .csv or .csv.gz with headings `name [unit]`, a trace file of a drive or control, or with a mapping a .mat
             or foreign text file.
         mapping: mapping file; None for files with canonical headings.
-        decimal: "." or ","; None to let the file tell.
+        decimal: "." or ","; None to find it in the file.
 
     Raises:
         InputError: the file cannot be used; one line with file, row, column, reason and mend.
@@ -161,3 +158,21 @@ def _checked(
     )
     name = printable(source.path.name)
     return Recording(name, time, columns, sample_time, where, source.sha256, found, tuple(flaws))
+
+
+def with_angle(columns: dict[str, FloatArray], time: FloatArray) -> tuple[dict[str, FloatArray], tuple[str, ...]]:
+    """Return columns, SI, (n,) each, with the motor angle where only its speed was recorded, and a note on it.
+
+    The angle is the integral by the trapezoidal rule, zero at the first sample: it has no relation to a position on the
+    screw from one recording to the next, and an offset of the speed makes it drift.
+
+    Args:
+        columns: channel -> samples.
+        time: (n,) [s].
+    """
+    if "motor_speed" not in columns or "motor_angle" in columns or "table_position" in columns:
+        return columns, ()
+    speed = columns["motor_speed"]
+    angle = np.concatenate(([0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time))))
+    note = "motor_angle is the integral of motor_speed: its zero is that of the recording, an offset makes it drift"
+    return {**columns, "motor_angle": angle}, (note,)

@@ -18,8 +18,7 @@ import numpy as np
 
 from feeddrive.errors import InputError
 from feeddrive.recording.traces.naming import axis_in
-from feeddrive.recording.traces.rows import number_rows
-from feeddrive.recording.traces.trace import Signal, Trace, clean, unique_names
+from feeddrive.recording.traces.trace import Signal, Trace, clean, number_rows, unique_names
 from feeddrive.typing import FloatArray
 
 NAME, SAMPLER = "halscope log", "halsampler output"

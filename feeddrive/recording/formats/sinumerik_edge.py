@@ -16,8 +16,7 @@ import numpy as np
 
 from feeddrive.errors import InputError
 from feeddrive.recording.traces.naming import known_unit
-from feeddrive.recording.traces.rows import number_rows
-from feeddrive.recording.traces.trace import Signal, Trace, unique_names
+from feeddrive.recording.traces.trace import Signal, Trace, number_rows, unique_names
 from feeddrive.typing import FloatArray
 
 NAME = "SINUMERIK Edge capture"

@@ -15,8 +15,7 @@ from feeddrive.errors import InputError
 from feeddrive.recording.formats.twincat_header import Header, read_header
 from feeddrive.recording.formats.twincat_scaling import scaled
 from feeddrive.recording.traces.naming import axis_in
-from feeddrive.recording.traces.rows import whole_rows
-from feeddrive.recording.traces.trace import Signal, Trace, clean, unique_names
+from feeddrive.recording.traces.trace import Signal, Trace, clean, unique_names, whole_rows
 from feeddrive.typing import BoolArray, FloatArray
 
 NAME = "TwinCAT 3 Scope export"

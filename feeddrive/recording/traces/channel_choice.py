@@ -1,4 +1,9 @@
-"""Which signals of a trace become which channels: axis, names, units; what cannot be settled is asked for."""
+"""Which signals of a trace become which channels: axis, names, units; what cannot be settled is asked for.
+
+A slow bus holds samples in a fast file: a channel that changes only every k-th row. Read as they stand they are a
+staircase, late by half its step on average, and their derivative is a comb. So the channel is read at its updates
+alone, with their times.
+"""
 
 from __future__ import annotations
 
@@ -7,14 +12,49 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+import numpy as np
+
 from feeddrive.errors import InputError
 from feeddrive.recording.channels import channel_unit
-from feeddrive.recording.traces.held import at_updates
 from feeddrive.recording.traces.inference import Finding, infer
 from feeddrive.recording.traces.naming import MOTOR_SIDE, Candidate, candidate, conversion, is_rotary, known_unit
 from feeddrive.recording.traces.resampling import Part, Series, part_read, parts_of
 from feeddrive.recording.traces.trace import Signal, Trace
 from feeddrive.units.quantity import format_quantity
+
+_FEWEST = 30  # updates; fewer can stand k rows apart by chance
+_REGULAR = 0.8  # of the steps between changes; an update that brings the same value doubles one
+_STEPS = 5  # different sizes of change; an encoder that moves evenly steps by one count in even times
+
+
+def held_rows(signal: Signal) -> int:
+    """Return every how many rows a signal is updated; 1 where it is in every row or unknown."""
+    changes = np.flatnonzero(np.diff(signal.values) != 0.0) + 1
+    if changes.size < _FEWEST:
+        return 1
+    between = np.diff(changes)
+    counts = np.bincount(between[between <= 1000], minlength=2)
+    rows = int(np.argmax(counts))
+    if rows < 2 or counts[rows] < _REGULAR * between.size or int(between.min()) < rows:
+        return 1
+    if np.any(between % rows):  # out of step: a clock of its own, and no grid of rows
+        return 1
+    sizes = np.abs(np.diff(signal.values)[changes - 1])
+    distinct = np.unique(np.round(sizes / float(np.max(sizes)), 6)).size
+    return rows if distinct >= _STEPS else 1
+
+
+def at_updates(signal: Signal) -> tuple[Signal, str]:
+    """Return a signal at its updates alone, and a note; the signal itself and nothing where none is held."""
+    rows = held_rows(signal)
+    if rows == 1:
+        return signal, ""
+    first = int(np.flatnonzero(np.diff(signal.values) != 0.0)[0] + 1) % rows
+    kept = slice(first, None, rows)
+    every = f"{rows} rows, {rows * signal.step * 1e3:.6g} ms"
+    note = f"{signal.name} is updated every {every}: held samples of a slow bus; read at its updates"
+    return replace(signal, time=signal.time[kept], values=signal.values[kept]), note
+
 
 _FAMILIES = (
     ("table_position", "motor_angle", MOTOR_SIDE, "motor_speed", "table_velocity"),
@@ -31,9 +71,9 @@ class Wishes:
     """What a person says about a trace file.
 
     Attributes:
-        axis: that is read, as the file names it; None to let the file tell.
+        axis: that is read, as the file names it; None to take the file's.
         lead: travel per motor revolution [m]; makes a motor angle of a motor encoder counted in the unit of the axis.
-        channels: canonical channel -> name of its signal and its unit; the unit is empty where the file tells it.
+        channels: canonical channel -> name of its signal and its unit; the unit is empty where the file holds it.
         rate: samples per second; None for that of the slowest channel.
         part: stretch between gaps, 1 for the first; None for the longest.
         sample_time: [s], where the file holds none.

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
+from feeddrive.errors import InputError
 from feeddrive.typing import FloatArray
 
 _LONGEST_NAME = 120  # of a name that is shown; a damaged file can hold a megabyte of it
@@ -24,7 +25,7 @@ class Signal:
         axis: machine axis that it belongs to, as the file names it; empty if the file names none.
         about: description in the file; empty if there is none.
         kind: class of the unit where the file gives no more than that (`position`, `velocity`, `current`, ...).
-        timed: whether the file tells its times; if not, `time` counts samples, or sample times once one is given.
+        timed: whether the file holds its times; if not, `time` counts samples, or sample times once one is given.
     """
 
     name: str
@@ -80,3 +81,102 @@ def unique_names(names: Sequence[str]) -> list[str]:
         taken.add(name)
         found.append(name)
     return found
+
+
+_CHUNK = 20_000  # rows that are held as split text at a time
+
+
+def number_rows(
+    lines: Sequence[str],
+    split: Callable[[str], list[str]],
+    width: int,
+    first_row: int,
+    where: str,
+    gaps: bool = False,
+    separator: str | None = "",
+) -> tuple[FloatArray, tuple[str, ...]]:
+    """Return the numbers of lines, (rows, width), and remarks.
+
+    Args:
+        lines: rows of numbers; blank ones at the end are passed over.
+        split: a line into its cells.
+        width: cells of a row.
+        first_row: row in the file of lines[0], for messages.
+        where: file name.
+        gaps: whether an empty cell is allowed and read as NaN.
+        separator: of the cells, None for blanks, where `split` does no more than divide by it and drop an empty last
+            cell: such rows are read fast as long as they are whole.
+
+    Raises:
+        InputError: a row with other cells, or a cell that is no number; not for the last row, which is left out.
+    """
+    last = len(lines)
+    while last and not lines[last - 1].strip():
+        last -= 1
+    if not last:
+        raise InputError("there is no row of numbers", where, "record again or name another file")
+    parts: list[FloatArray] = []
+    notes: tuple[str, ...] = ()
+    whole = whole_rows(lines[:last], separator, width) if separator != "" else None
+    if whole is not None:
+        return whole, notes
+    for start in range(0, last, _CHUNK):
+        rows = [split(line) for line in lines[start : min(start + _CHUNK, last)]]
+        if start + _CHUNK >= last and last > 1 and _fault(rows[-1], width, gaps):
+            rows.pop()
+            notes = ("the last row is cut short and left out",)
+        if rows:
+            parts.append(_numbers(rows, width, first_row + start, where, gaps))
+    return np.concatenate(parts), notes
+
+
+def whole_rows(lines: Sequence[str], separator: str | None, width: int) -> FloatArray | None:
+    """Return the numbers of lines, (rows, width), in one go; None where a line is not whole, whatever the reason.
+
+    Args:
+        lines: rows of numbers with decimal points.
+        separator: of the cells; None for blanks. One at the end of each line is passed over.
+        width: cells of a row.
+    """
+    if not lines or not lines[0].strip():  # numpy warns where there is nothing but blank lines
+        return None
+    if separator is not None and lines[0].rstrip().endswith(separator):
+        lines = [line.rstrip().removesuffix(separator) for line in lines]
+    try:
+        numbers = np.loadtxt(lines, delimiter=separator, comments=None, ndmin=2, dtype=np.float64)
+    except ValueError:
+        return None
+    return numbers if numbers.shape == (len(lines), width) else None  # it passes over blank lines
+
+
+def _numbers(rows: list[list[str]], width: int, first_row: int, where: str, gaps: bool) -> FloatArray:
+    try:
+        numbers = np.array(rows, dtype=np.float64)
+        if numbers.shape == (len(rows), width):
+            return numbers
+    except ValueError:
+        pass
+    for row, cells in enumerate(rows, start=first_row):
+        fault = _fault(cells, width, gaps)
+        if fault:
+            raise InputError(fault, f"{where}, row {row}", "correct the row, remove it or export again")
+    return np.array([[_number(cell) for cell in cells] for cells in rows])
+
+
+def _fault(cells: list[str], width: int, gaps: bool) -> str:
+    """Return what is wrong with a row; empty if nothing is."""
+    if len(cells) != width:
+        return f"the row has {len(cells)} cells, {width} are named"
+    for cell in cells:
+        try:
+            _number(cell)
+        except ValueError:
+            shown = clean(cell)
+            return f'"{shown}" is not a number'
+        if not gaps and not cell.strip():
+            return "a cell is empty"
+    return ""
+
+
+def _number(cell: str) -> float:
+    return float(cell) if cell.strip() else float("nan")

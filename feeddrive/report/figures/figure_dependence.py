@@ -90,7 +90,7 @@ def _row(diagnosis: Diagnosis, channel: ChannelResult, variable: str) -> _Row | 
 
 
 def _forward(found: list[tuple[JudgedRecording, ChannelSeries, FloatArray]]) -> BoolArray | None:
-    """Whether the table moves in + direction, pooled; None where a recording does not tell."""
+    """Whether the table moves in + direction, pooled; None where a recording has no position."""
     velocities = [recording.variables.get("table_velocity") for recording, _, _ in found]
     known = [velocity for velocity in velocities if velocity is not None]
     return np.concatenate(known) > 0.0 if len(known) == len(found) else None

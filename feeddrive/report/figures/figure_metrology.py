@@ -11,10 +11,9 @@ import numpy as np
 from feeddrive.metrology.circular import Circular
 from feeddrive.metrology.evaluate import Evaluated
 from feeddrive.metrology.following import Settling
-from feeddrive.metrology.linear_response import linear_response
 from feeddrive.metrology.loops import ForceLoop, FrictionPoint, TorqueLoop
 from feeddrive.metrology.positioning import EDITION, Positioning
-from feeddrive.metrology.response import Response, StepResponse
+from feeddrive.metrology.response import Response, StepResponse, linear_response
 from feeddrive.report.figures.drawing import (
     AFTER,
     BEFORE,
@@ -27,7 +26,7 @@ from feeddrive.report.figures.drawing import (
 )
 from feeddrive.report.thinning import envelope
 from feeddrive.report.words.people import significant, with_unit
-from feeddrive.simulate.scenario.scenario_result import SERIES, ScenarioResult
+from feeddrive.simulate.scenario.scenario import SERIES, ScenarioResult
 from feeddrive.typing import ComplexArray, FloatArray
 
 if TYPE_CHECKING:

@@ -1,13 +1,15 @@
-"""Figures of a finished scenario: the motion over time, and one figure for every figure of metrology it asks for."""
+"""Figures of motions: a finished scenario, a run of the nonlinear machine, and loops before and after tuning."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from feeddrive.metrology.circular import Circular
 from feeddrive.metrology.evaluate import Evaluated
+from feeddrive.metrology.loop_trial import LoopTrial, Ran
 from feeddrive.report.figures.drawing import AFTER, BEFORE, MEASURED, ReportFigure, dress, legend_above, new_figure
 from feeddrive.report.figures.figure_metrology import (
     circular_figure,
@@ -20,11 +22,13 @@ from feeddrive.report.figures.figure_metrology import (
     torque_loop_figure,
 )
 from feeddrive.report.thinning import envelope
-from feeddrive.simulate.scenario.scenario_result import ScenarioResult
+from feeddrive.report.words.people import scale_for_signal
+from feeddrive.simulate.scenario.scenario import ScenarioResult
 from feeddrive.typing import FloatArray
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
 
 _DRAWERS: dict[str, Callable[[ScenarioResult, Evaluated], ReportFigure]] = {
     "settling": settling_figure,
@@ -81,3 +85,80 @@ def motion_figure(result: ScenarioResult) -> ReportFigure:
 
 def _line(axes: Axes, time: FloatArray, values: FloatArray, colour: str, label: str = "", width: float = 0.9) -> None:
     axes.plot(*envelope(time, values, 2500), color=colour, linewidth=width, label=label or None)
+
+
+_PANELS = {"table_position": "m", "table_velocity": "m/s", "motor_torque": "N m"}
+
+
+def run_figure(name: str, time: FloatArray, series: Mapping[str, FloatArray]) -> ReportFigure:
+    """Panels of what a run has of position, velocity and torque.
+
+    Args:
+        name: of the machine.
+        time: [s], shape (n,).
+        series: name to samples, SI, shape (n,) each.
+    """
+    shown = [one for one in _PANELS if one in series]
+    figure = new_figure(1.0 + 1.9 * len(shown))
+    panels = figure.subplots(len(shown), 1, sharex=True, squeeze=False)[:, 0]
+    for axes, one in zip(panels, shown, strict=True):
+        scale = scale_for_signal(one, float(abs(series[one]).max()), _PANELS[one])
+        if one == "motor_torque" and "command" in series:
+            axes.plot(time, scale.factor * series["command"], color=BEFORE, linewidth=0.8, label="command")
+            axes.plot(time, scale.factor * series[one], color=AFTER, linewidth=1.0, label="motor")
+            legend_above(axes, 2)
+        else:
+            axes.plot(time, scale.factor * series[one], color=AFTER, linewidth=1.0)
+        dress(axes, "time [s]" if axes is panels[-1] else "", f"{one.replace('_', ' ')} [{scale.unit}]")
+    return ReportFigure("run", name, "Exact values at the ticks, before any sensor.", figure)
+
+
+_LOOKS = ((BEFORE, "present"), (AFTER, "recommended"))
+
+
+def retuned_step_figure(before: Sequence[LoopTrial], after: Sequence[LoopTrial]) -> ReportFigure | None:
+    """Table position after a small step, every case; None where no step was run."""
+    figure = new_figure(3.2)
+    axes = figure.subplots()
+    drawn = False
+    for some, (colour, name) in zip((before, after), _LOOKS, strict=True):
+        for place, one in enumerate(ran.step for ran in some if ran.step is not None):
+            series = one.result.series
+            axes.plot(
+                1e3 * one.result.time,
+                1e6 * (series["table_position"] - series["setpoint"][0]),
+                color=colour,
+                lw=1.0,
+                label=name if not place else None,
+            )
+            drawn = True
+    if not drawn:
+        return None
+    dress(axes, "time [ms]", "table position [µm]", "Step of the position")
+    axes.legend(fontsize=8, frameon=False)
+    return ReportFigure(
+        "retuned_step", "Step of the position", "Every position and payload; friction and limits act.", figure
+    )
+
+
+def retuned_circle_figure(before: Sequence[LoopTrial], after: Sequence[LoopTrial]) -> ReportFigure | None:
+    """Radial deviation over the angle of the circle, every case; None where no circle was run."""
+    figure = new_figure(3.2)
+    axes = figure.subplots()
+    drawn = False
+    for some, (colour, name) in zip((before, after), _LOOKS, strict=True):
+        for place, found in enumerate(_radial(ran.circle) for ran in some if ran.circle is not None):
+            axes.plot(*found, color=colour, lw=1.0, label=name if not place else None)
+            drawn = True
+    if not drawn:
+        return None
+    dress(axes, "angle along the circle [°]", "radial deviation [µm]", "Circle of 5 mm at 3 m/min")
+    axes.legend(fontsize=8, frameon=False)
+    caption = "Every position and payload; the axis reverses at 90° and 270°, where friction leaves its glitch."
+    return ReportFigure("retuned_circle", "Circle", caption, figure)
+
+
+def _radial(ran: Ran) -> tuple[np.ndarray, np.ndarray]:
+    assert isinstance(ran.figure, Circular)
+    angle = np.degrees(ran.figure.angle - ran.figure.angle[0])
+    return angle, 1e6 * ran.figure.radial

@@ -14,7 +14,7 @@ from feeddrive.report.words.words import figure_text, plain
 from feeddrive.simulate.sweep.sweep_table import SweepRow, SweepTable
 from feeddrive.simulate.sweep.sweep_values import Parameter
 from feeddrive.typing import FloatArray
-from feeddrive.units.display import shown_unit
+from feeddrive.units.quantity import shown_unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -18,6 +18,7 @@ from feeddrive.report.figures.drawing import (
     legend_above,
     new_figure,
 )
+from feeddrive.simulate.warm.warm_up_result import WarmUpRun
 from feeddrive.thermal.full.full_model import FRONT, NUT, REAR, SHAFT, discretise
 from feeddrive.thermal.full.grid import Cylinder
 from feeddrive.thermal.run.study import ThermalStudy
@@ -28,6 +29,7 @@ from feeddrive.units.quantity import format_quantity
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.collections import QuadMesh
+
 
 HOURS_FROM = 4 * 3600.0
 """Duration from which time is drawn in hours [s]."""
@@ -82,7 +84,7 @@ def _temperatures(axes: Axes, found: ThermalStudy, time: FloatArray) -> None:
 
 
 def _drawn(found: ThermalStudy) -> Sequence[str]:
-    bodies = [body.name for body in found.plant.bodies]
+    bodies = [body.name for body in found.heat.bodies]
     return [NUT, SHAFT, FRONT, REAR, *bodies]
 
 
@@ -116,22 +118,22 @@ def _caption(found: ThermalStudy) -> str:
 
 def field_figure(found: ThermalStudy) -> ReportFigure:
     """Temperature over length and radius of shaft and nut at the end of the run, the nut in mid-travel."""
-    parts = discretise(found.plant.rig, found.plant.cells)
+    parts = discretise(found.heat.rig, found.heat.cells)
     start, state = float(found.duty.ambient[0]), found.states[-1]
     shaft = start + state[: parts.shaft.nodes].reshape(-1, parts.shaft.axial)
     nut = start + state[parts.shaft.nodes : parts.nodes].reshape(-1, parts.nut.axial)
     span = float(min(shaft.min(), nut.min())), float(max(shaft.max(), nut.max()))
     figure = new_figure(3.8)
     axes = figure.subplots()
-    travel = found.plant.rig.travel
-    at = (travel.low + travel.high - found.plant.rig.nut.length) / 2
+    travel = found.heat.rig.travel
+    at = (travel.low + travel.high - found.heat.rig.nut.length) / 2
     mesh = _cylinder(axes, parts.shaft, shaft, 0.0, span)
     _cylinder(axes, parts.nut, nut, at, span)
     bar = figure.colorbar(mesh, ax=axes, pad=0.02)
     bar.set_label("temperature [°C]", fontsize=9)
     bar.ax.tick_params(labelsize=8.5)
     _travel(axes, found)
-    axes.set_ylim(0, 1.18e3 * found.plant.rig.nut.outer_radius)
+    axes.set_ylim(0, 1.18e3 * found.heat.rig.nut.outer_radius)
     factor, label = time_axis(found.duty.duration)
     when = f"{factor * found.duty.duration:.4g} {label[6:-1]}"
     dress(
@@ -163,8 +165,68 @@ def _cylinder(axes: Axes, body: Cylinder, values: FloatArray, at: float, span: t
 
 def _travel(axes: Axes, found: ThermalStudy) -> None:
     """The stretch that the nut sweeps, as an arrow above it."""
-    rig = found.plant.rig
+    rig = found.heat.rig
     half, height = rig.nut.length / 2, 1.08e3 * rig.nut.outer_radius
     ends = 1e3 * (rig.travel.low - half), 1e3 * (rig.travel.high + half)
     axes.annotate("", (ends[0], height), (ends[1], height), arrowprops={"arrowstyle": "<->", "color": "#555555"})
     axes.text(ends[1] + 6, height, "swept by the nut", fontsize=8.5, color="#333333", va="center")
+
+
+_GREEN, _PINK = "#009e73", "#cc79a7"
+_PARTS = {
+    NUT: ("nut", BEFORE),
+    SHAFT: ("shaft at the nut", AFTER),
+    FRONT: ("front bearing", _GREEN),
+    REAR: ("rear bearing", _PINK),
+}
+
+
+def warm_axis_figure(run: WarmUpRun) -> ReportFigure:
+    """Four panels over the run's time."""
+    factor, label = time_axis(float(run.time[-1]))
+    time = factor * run.time
+    figure = new_figure(9.4)
+    heat, error, torque, preload = figure.subplots(4, 1, sharex=True, height_ratios=(3, 3, 2.6, 1.8))
+    _node_temperatures(heat, run, time)
+    _errors(error, run, time)
+    _torques(torque, run, time)
+    preload.plot(time, 1e-3 * run.figure_of_cycle("preload"), ".-", color=MEASURED)
+    dress(preload, label, "preload [kN]", "preload of the nut; the marks are the cycles that were simulated")
+    preload.set_xlim(0, time[-1])
+    return ReportFigure("warm_axis", "An axis that warms up", _warm_caption(run), figure)
+
+
+def _node_temperatures(axes: Axes, run: WarmUpRun, time: FloatArray) -> None:
+    for name, (words, colour) in _PARTS.items():
+        axes.plot(time, run.temperature(name), color=colour, label=words)
+    shades = (NOISE, "#5c5c5c", "#b08d57", "#7f7f00")
+    for body, shade in zip(run.thermal.bodies, shades * len(run.thermal.bodies), strict=False):
+        axes.plot(time, run.temperature(body.name), color=shade, ls="--", label=body.name.replace("_", " "))
+    dress(axes, "", "temperature [°C]")
+    legend_above(axes, 4)
+
+
+def _errors(axes: Axes, run: WarmUpRun, time: FloatArray) -> None:
+    for i, colour in zip(np.argsort(run.stops), (AFTER, BEFORE, _GREEN, _PINK) * len(run.stops), strict=False):
+        axes.plot(time, 1e6 * run.stop_errors[:, i], color=colour, label=f"table at {1e3 * run.stops[i]:.4g} mm")
+    dress(axes, "", "position error [µm]", "table position less target, at rest")
+    legend_above(axes, 4)
+
+
+def _torques(axes: Axes, run: WarmUpRun, time: FloatArray) -> None:
+    axes.plot(time, run.figure_of_cycle("nut_torque"), color=BEFORE, label="nut")
+    axes.plot(time, run.figure_of_cycle("bearing_torque"), color=_GREEN, label="bearings")
+    axes.set_ylim(0, None)
+    dress(axes, "", "drag torque [N m]", "at the screw, mean over the way of a cycle")
+    legend_above(axes, 4)
+
+
+def _warm_caption(run: WarmUpRun) -> str:
+    nut, errors = run.figure_of_cycle("nut_torque"), run.stop_errors
+    worst = int(np.argmax(np.abs(errors[-1])))
+    return (
+        f"After {run.time[-1] / 3600:.3g} h the table is {1e6 * errors[-1, worst]:.1f} µm off at "
+        f"{1e3 * run.stops[worst]:.4g} mm, and the nut drags with {nut[-1]:.3g} in place of {nut[0]:.3g} N m. "
+        f"{run.cycles} cycles of {run.cycle_duration:.3g} s were simulated; of the work in "
+        f"{100 * abs(run.energy.imbalance):.2g} % is not accounted for."
+    )

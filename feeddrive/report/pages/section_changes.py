@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from feeddrive.diagnosis.judging.result import Diagnosis, ParameterResult
 from feeddrive.diagnosis.recordings.change_result import CommonTrial, Measure, ParameterChange, PerRecording
-from feeddrive.report.pages.markup import bullets, number, paragraph, section, table, words
+from feeddrive.report.pages.markup import bullets, paragraph, section, table
 from feeddrive.report.parameters import parameter_text
 from feeddrive.report.words.people import fixed, share_text, with_unit
 from feeddrive.report.words.words import effect_words, joined, plain
@@ -56,8 +56,8 @@ def _values(own: tuple[PerRecording, ...]) -> str:
         for position, (name, value) in enumerate(one.values.items()):
             shown = _text(one, value)
             label = f"{effect_words(one.effect)} ({one.port}): {plain(one.parameter)}" if position == 0 else ""
-            rows.append([words(label), words(name), number(shown[0]), number(shown[1])])
-    heads = [words("Parameter"), words("Recording"), number("value"), number("95 % interval")]
+            rows.append([label, name, shown[0], shown[1]])
+    heads = ["Parameter", "Recording", "#value", "#95 % interval"]
     return table(heads, rows)
 
 
@@ -67,7 +67,7 @@ def _text(one: PerRecording, value: Measure) -> tuple[str, str]:
 
 
 def _explained(diagnosis: Diagnosis) -> str:
-    shares = diagnosis.changes.explains or {}
+    shares = diagnosis.changes.explains
     if not shares:
         return ""
     listed = joined([f"{share_text(share)} of {plain(name)}" for name, share in shares.items()])
@@ -76,14 +76,14 @@ def _explained(diagnosis: Diagnosis) -> str:
 
 def _tried(trials: tuple[CommonTrial, ...]) -> str:
     """Which parameters were asked for a value of their own, the best first."""
-    heads = [words("Asked for a value of its own"), words("in"), number("gain"), number("standard error"), words("")]
+    heads = ["Asked for a value of its own", "in", "#gain", "#standard error", "result"]
     rows = [
         [
-            words(f"{effect_words(one.effect)} ({one.port}): {plain(one.parameter)}"),
-            words("judged recordings" if one.judged else "fitted recordings"),
-            number(with_unit(fixed(100 * one.gain, 2), "%")),
-            number(with_unit(fixed(100 * one.standard_error, 2), "%")),
-            words("differs" if one.taken else "in common"),
+            f"{effect_words(one.effect)} ({one.port}): {plain(one.parameter)}",
+            "judged recordings" if one.judged else "fitted recordings",
+            with_unit(fixed(100 * one.gain, 2), "%"),
+            with_unit(fixed(100 * one.standard_error, 2), "%"),
+            "differs" if one.taken else "in common",
         ]
         for one in sorted(trials, key=lambda one: (not one.taken, -one.gain))[:_MOST_TRIALS]
     ]

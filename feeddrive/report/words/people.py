@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from feeddrive.units.display import shown_unit
+from feeddrive.units.quantity import shown_unit
 
 DASH = "\N{EN DASH}"
 MINUS = "\N{MINUS SIGN}"

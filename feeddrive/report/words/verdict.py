@@ -7,7 +7,7 @@ import math
 from feeddrive.diagnosis.judging.result import ChannelResult, Diagnosis
 from feeddrive.report.pages.section_changes import change_sentences
 from feeddrive.report.parameters import effect_sentence
-from feeddrive.report.words.numbers_words import odds_text
+from feeddrive.report.words.explained_words import odds_text
 from feeddrive.report.words.people import error_text, share_text, significant
 from feeddrive.report.words.words import effect_words, joined, plain, variable_words
 
@@ -103,8 +103,8 @@ def _doubts(diagnosis: Diagnosis) -> list[str]:
     for one in diagnosis.possible:
         if not one.instead_of:
             odds = odds_text(one.odds / (1 + one.odds))
-            said = f"Possible beside these: {effect_words(one.name)} (odds {odds})"
-            sentences.append(f"{said}; {one.settles} settles it.")
+            possible = f"Possible beside these: {effect_words(one.name)} (odds {odds})"
+            sentences.append(f"{possible}; {one.settles} settles it.")
     idle = [effect_words(effect.name) for effect in diagnosis.effects if not effect.carries]
     if idle:
         sentences.append(f"Not confirmed on data not fitted: {joined(idle)}.")

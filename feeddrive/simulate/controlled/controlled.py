@@ -25,11 +25,11 @@ from feeddrive.engine.engine import Feed, Machine, rested, run_machine
 from feeddrive.engine.program import TOLERANCE, Position, StepReport
 from feeddrive.engine.timing import Timing
 from feeddrive.errors import InputError
-from feeddrive.plant.analysis.linear import state_names
+from feeddrive.plant.analysis.ode import state_names
 from feeddrive.plant.equations import bristle_count
 from feeddrive.plant.motor_torque import warn_beyond_top
 from feeddrive.plant.plant import Plant
-from feeddrive.servo.sampled import SampledController
+from feeddrive.servo.sampled_plant import SampledController
 from feeddrive.simulate.controlled.controlled_machine import TorqueLoop, machine_for, resolutions_of
 from feeddrive.simulate.held_torque import initial_state
 from feeddrive.typing import FloatArray

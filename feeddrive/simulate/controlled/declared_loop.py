@@ -7,22 +7,44 @@ over a few milliseconds, because a recorded set-point is rounded.
     v_i = x'(t_i - h / 2),    a_i = x''(t_i - h)        h: from one position tick to the next
 
 A test signal that was injected and recorded is fed as it is: held over the ticks of a sample, which keeps its mean.
+
+The declared cascade of a position and a velocity gain as the function of one tick that engine and replay take.
+
+    u = K_vel (K_pos (x_set - x) + r w_e - v),   |u| <= limit,   T = gain u + T_e,     v = (x_i - x_(i-m)) / (m h)
+
+| symbol | meaning | unit |
+|---|---|---|
+| x_set, x, v | set-point, position and velocity read at the sample | m, m, m/s |
+| u, T | controller output and motor torque, from the sample to the next | V, N m |
+| w_e, T_e, r | injected speed and torque at the motor, travel per radian of it | rad/s, N m, m |
+| m, h | samples over which the position is differenced, sample time; m = 0: v is the velocity itself | 1, s |
+
+A drive with an encoder alone has no velocity but such a difference, and reads it m h / 2 late. The position is read at
+the table, or from the motor angle where the sensor of the channel `table_position` is declared to sit at the motor.
+
+What a declared controller commands when it is fed the recorded set-point and motion, no plant in between.
+
+Beside the recorded torque this says whether the declared controller is the one that was recorded, and where something
+else had a part in the torque, such as a test signal that was injected and not recorded.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
+import casadi as ca
 import numpy as np
 from scipy.interpolate import CubicSpline
 
 from feeddrive.errors import InputError
-from feeddrive.plant.file.entries import Origins, Table
-from feeddrive.plant.plant import DeclaredCascade, Plant
+from feeddrive.plant.plant import DeclaredCascade, Plant, PositionVelocityController
+from feeddrive.recording import Recording
+from feeddrive.schema.table import Origins, Table
 from feeddrive.servo.cascade import Feedback
 from feeddrive.servo.cascade_function import cascade_controller
-from feeddrive.servo.sampled import SampledController
+from feeddrive.servo.sampled_plant import SampledController
 from feeddrive.simulate.controlled.acting_torque import ActingTorque
 from feeddrive.simulate.controlled.controlled import (
     ControlledRun,
@@ -31,9 +53,57 @@ from feeddrive.simulate.controlled.controlled import (
     resting_state,
     simulate_controlled,
 )
-from feeddrive.simulate.controlled.position_velocity import position_velocity_controller
 from feeddrive.simulate.scenario.scenario_controller import read_cascade
-from feeddrive.typing import FloatArray
+from feeddrive.symbolic_turn import SYMBOLS
+from feeddrive.typing import Expression, FloatArray
+
+PARAMETERS = ("position_gain", "velocity_gain", "output_limit", "torque_per_output", "radius", "sample_time")
+"""Parameters of the function, in order."""
+
+REFERENCES = ("position", "speed_excitation", "torque_excitation")
+"""References: of the table [m]; injected at the motor [rad/s, N m]."""
+
+
+def position_velocity_controller(
+    plant: Plant, declared: PositionVelocityController, sample_time: float
+) -> SampledController:
+    """The declared controller, its earlier positions at 0.
+
+    Args:
+        plant: says where the position is read, and how far the table goes per radian of the motor.
+        declared: gains, limit and how the velocity is read.
+        sample_time: from one tick to the next [s].
+    """
+    at_motor = any(sensor.channel == "table_position" and sensor.at == "motor" for sensor in plant.sensors)
+    samples = declared.velocity_samples
+    # with differences the motor angle alone is read, as a drive does; a rigid table is there too
+    position = "motor_angle" if at_motor else "table_position"
+    rates = () if samples else ("motor_speed" if at_motor else "table_velocity",)
+    values = [declared.position_gain, declared.velocity_gain, declared.output_limit, declared.torque_per_output]
+    parameters = np.array([*values, plant.chain.motor_radius, sample_time])
+    function = _function(samples, at_motor)
+    return SampledController(
+        function, np.zeros(samples), parameters, sample_time, REFERENCES, (position, *rates), ("output",)
+    )
+
+
+@lru_cache(maxsize=16)
+@SYMBOLS.taken()
+def _function(samples: int, at_motor: bool) -> ca.Function:
+    state, fed, tick = ca.SX.sym("state", samples), ca.SX.sym("fed", len(REFERENCES)), ca.SX.sym("tick")
+    measured = ca.SX.sym("measured", 1 if samples else 2)
+    p = ca.SX.sym("p", len(PARAMETERS))
+    scale = p[4] if at_motor else ca.SX(1.0)
+    position = scale * measured[0]
+    velocity = (position - state[0]) / (samples * p[5]) if samples else scale * measured[1]
+    output = _clipped(p[1] * (p[0] * (fed[0] - position) + p[4] * fed[1] - velocity), p[2])
+    after = ca.vertcat(*[state[i] for i in range(1, samples)], position) if samples else state
+    return ca.Function("position_velocity", [state, fed, measured, tick, p], [after, p[3] * output + fed[2], output])
+
+
+def _clipped(value: Expression, limit: Expression) -> Expression:
+    return ca.fmin(ca.fmax(value, -limit), limit)
+
 
 SMOOTHING = 5e-3
 """Half width of the polynomial that smooths a recorded set-point for its derivatives [s]; a cubic."""
@@ -162,3 +232,46 @@ def declared_loop(plant: Plant, sample_time: float) -> DeclaredLoop | None:
     slow = cascade.sample_time * cascade.position_divider
     loop = TorqueLoop(cascade.current_lag, cascade.dead_time)
     return DeclaredLoop(cascade_controller(cascade), loop, ticks, slow, cascade.feedback is Feedback.MOTOR)
+
+
+AT_ONCE = 1000
+"""Ticks that are computed in one call."""
+
+
+def replayed_command(plant: Plant, loop: DeclaredLoop, recording: Recording) -> FloatArray:
+    """Torque that the controller brings about over a recording [N m], shape (n,), within the torque limit.
+
+    Args:
+        plant: gives the torque limit, and the table's motion where it was not recorded.
+        loop: from `declared_loop`, for the recording's sample time.
+        recording: with setpoint and motor_angle; what was injected counts where it was recorded.
+    """
+    controller = loop.controller
+    fed = loop.reference(recording["setpoint"], recording.channels)
+    time: FloatArray = controller.sample_time * np.arange(len(fed), dtype=np.float64)
+    readings = _readings(plant, loop, recording, time)
+    measured = np.column_stack([readings[name] for name in controller.measurements])
+    position = readings["motor_angle"][0] * plant.chain.motor_radius if loop.at_motor else readings["table_position"][0]
+    state = loop.started(plant, float(position)).initial
+    many, parts = controller.function.mapaccum("replay", AT_ONCE), []
+    for first in range(0, len(fed), AT_ONCE):
+        ticks = np.minimum(np.arange(first, first + AT_ONCE), len(fed) - 1)  # the last tick fills up the last part
+        states, asked, _ = many(
+            state, fed[ticks].T, measured[ticks].T, ticks[None, :].astype(float), controller.parameters
+        )
+        state = states[:, -1]
+        parts.append(np.array(asked).ravel())
+    command = np.concatenate(parts)[: len(fed)]
+    return loop.recorded_torque(np.clip(command, -plant.torque_limit, plant.torque_limit))
+
+
+def _readings(plant: Plant, loop: DeclaredLoop, recording: Recording, time: FloatArray) -> dict[str, FloatArray]:
+    """All that a controller may measure, at its ticks; the table follows the motor where it was not recorded."""
+    angle = recording["motor_angle"]
+    table = recording["table_position"] if "table_position" in recording else plant.chain.motor_radius * angle
+    recorded = recording.sample_time * np.arange(len(recording))
+    readings: dict[str, FloatArray] = {}
+    for position, rate, series in (("motor_angle", "motor_speed", angle), ("table_position", "table_velocity", table)):
+        followed = CubicSpline(recorded, series)
+        readings[position], readings[rate] = followed(time), followed(time, 1)
+    return readings

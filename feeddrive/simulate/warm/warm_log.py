@@ -26,15 +26,14 @@ from scipy.interpolate import RegularGridInterpolator
 from scipy.ndimage import uniform_filter1d
 
 from feeddrive.errors import InputError
-from feeddrive.plant.equations import parameter_values
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.structure import parameter_values
 from feeddrive.plant.warmed import followed
 from feeddrive.recording import Recording
 from feeddrive.simulate.uniform_motion import UniformMotion, uniform_motion
-from feeddrive.thermal.bound_function import BoundFunction
 from feeddrive.thermal.full.full_model import FRONT, NUT, REAR
-from feeddrive.thermal.laws.expansion import expansion
-from feeddrive.thermal.laws.laws import FOLLOWED, INPUTS, PATHS, Laws, laws_of, values_of
+from feeddrive.thermal.laws.expansion import growths
+from feeddrive.thermal.laws.laws import FOLLOWED, INPUTS, PATHS, BoundFunction, Laws, laws_of, values_of
 from feeddrive.thermal.machine_heat import Heat
 from feeddrive.thermal.reduced.parametric_model import HeatModel
 from feeddrive.thermal.run.warm_up import Rows, channel_of, lagging, run
@@ -226,8 +225,7 @@ def _grown(
     """Growth of screw and frame where the nut is at the rows, (n,) [m]."""
     place = plant.coupling.nut_at_zero + radius * log.angle
     places = np.linspace(float(place.min()), float(place.max()) + 1e-9, _PLACES)
-    found = expansion(plant.heat.rig, states @ np.asarray(model.profile).T, model.edges)
-    table = found.growths(places)
+    table = growths(plant.heat.rig, states @ np.asarray(model.profile).T, model.edges, places)
     grown = RegularGridInterpolator((times, places), table, bounds_error=False, fill_value=None)(
         np.column_stack([log.time, place])
     )

@@ -23,8 +23,8 @@ from feeddrive.simulate.scenario.cycle_losses import CycleLosses, cycle_losses
 from feeddrive.simulate.scenario.scenario import Scenario
 from feeddrive.simulate.setpoints.cutting_force import held
 from feeddrive.thermal.full.full_model import FRONT, NUT, REAR, SHAFT
-from feeddrive.thermal.laws.contact_conductance import conductance_at_preload
-from feeddrive.thermal.laws.expansion import expansion
+from feeddrive.thermal.laws.expansion import growths
+from feeddrive.thermal.laws.films import conductance_at_preload
 from feeddrive.thermal.laws.laws import FOLLOWED, INPUTS, PATHS, laws_of, values_of
 from feeddrive.thermal.machine_heat import Heat
 from feeddrive.thermal.reduced.parametric_model import AMBIENT, HeatModel, Path
@@ -129,13 +129,12 @@ class ServoCycle:
                 preload=changes.preload * float(effect.load_factor(nut - start, effect.values)),
                 nut_viscous=changes.nut_viscous * float(effect.viscous_factor(nut - start, effect.values)),
             )
-        grown = expansion(rig, np.asarray(model.profile @ state), model.edges)
-        low, high = (float(grown.growth(place)[0]) for place in (rig.travel.low, rig.travel.high))
-        slope = (high - low) / rig.travel.stroke
+        places = [self.coupling.nut_at_zero + stop for stop in self.stops]
+        ends = rig.travel.low, rig.travel.high
+        (grown,) = growths(rig, np.asarray(model.profile @ state), model.edges, np.array([*places, *ends]))
+        growth, slope = grown[:-2], float(grown[-1] - grown[-2]) / rig.travel.stroke
         plant = warmed(self.scenario.plant, changes, slope, self.coupling.nut_stiffness)
         run = self._run(plant)
-        places = [self.coupling.nut_at_zero + stop for stop in self.stops]
-        growth = np.array([float(grown.growth(place)[0]) for place in places])
         frame = [sum(float(e.growth(place, time, e.values)) for e in self.thermal.effects) for place in places]
         cycle = self._result(model, changes, plant, run, growth, slope, time)
         return replace(cycle, stop_errors=cycle.stop_errors + np.array(frame))

@@ -13,8 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sparse
 
-from feeddrive.thermal.full.grid import Cells, Cylinder, cylinder
-from feeddrive.thermal.full.occupancy import covered_share, overlap
+from feeddrive.thermal.full.grid import Cells, Cylinder, covered_share, cylinder, overlap
 from feeddrive.thermal.reduced.parametric_model import AMBIENT, COOLANT, HeatModel, Path, Way
 from feeddrive.thermal.rig import Rig, Seat, Travel
 from feeddrive.typing import Expression, FloatArray

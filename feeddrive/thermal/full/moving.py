@@ -30,8 +30,8 @@ import numpy as np
 import scipy.sparse as sparse
 
 from feeddrive.errors import InputError, ValidityWarning
-from feeddrive.thermal.full.explicit import places_of
 from feeddrive.thermal.full.full_model import NUT, Discretisation, contact_way, model_of
+from feeddrive.thermal.full.grid import places_of
 from feeddrive.thermal.reduced.parametric_model import AMBIENT, Path
 from feeddrive.thermal.reduced.system import HeatSystem
 from feeddrive.thermal.rig import Travel, refuse_unless_positive

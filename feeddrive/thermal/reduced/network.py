@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from feeddrive.thermal.full.full_model import END, FRONT, NUT, REAR, SHAFT, growth_name
-from feeddrive.thermal.full.occupancy import covered_share, overlap
+from feeddrive.thermal.full.grid import covered_share, overlap
 from feeddrive.thermal.reduced.parametric_model import AMBIENT, COOLANT, Path
 from feeddrive.thermal.reduced.system import HeatSystem
 from feeddrive.thermal.rig import Body, Rig, Travel, refuse_unless

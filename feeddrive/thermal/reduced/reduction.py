@@ -1,12 +1,25 @@
 """The reduced model: a few states, the full model's class, its conductances still parameters.
 
-1. Moments of the full model at several rates and at operating points spread over the range (`krylov`): a wide basis.
+1. Moments of the full model at several rates and at operating points spread over the range (`moments`): a wide basis.
 2. On that basis, dense, each point is balanced; its strongest directions are gathered, weighted, and an SVD gives the
    basis V of the order that was asked for.
 3. Congruence: C_r = VᵀCV = 1, K_r(g) = VᵀK₀V + Σ gᵢ VᵀKᵢV. As every g ≥ 0 keeps K_r symmetric and not negative, the
    model is stable and passive at every operating point, also while conductances change within a run.
 
-At one operating point `reduced_system` is smaller still: two-sided balancing.
+Moment matching: a basis on which a heat model keeps its answer at chosen rates and operating points.
+
+The columns (s C + K)⁻¹ B and (s C + K)⁻¹ Lᵀ span a space on which the projected model has the full model's transfer
+function and its first derivative at s (K is symmetric, so that both sides need one factorisation). Several s and
+several operating points are gathered, and an SVD weighted by C leaves out what they have in common.
+
+Balanced truncation of a dense heat system, the inputs and outputs weighted by the sizes they work at.
+
+| symbol | meaning |
+|---|---|
+| P, Q | Gramians of what the inputs reach and what the outputs see, A P + P Aᵀ + B Bᵀ = 0, AᵀQ + Q A + LᵀL = 0 |
+| σ | Hankel singular values: σ² are the eigenvalues of P Q; the error is at most twice the sum of those left out |
+
+Source: Moore 1981; square-root form. A stable system stays stable. It is two-sided: K is no longer symmetric.
 """
 
 from __future__ import annotations
@@ -16,12 +29,51 @@ from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
+import scipy.linalg
 
-from feeddrive.thermal.reduced.balancing import balance, truncated
-from feeddrive.thermal.reduced.krylov import moments, orthonormal
 from feeddrive.thermal.reduced.parametric_model import AMBIENT, COOLANT, HeatModel, Path
 from feeddrive.thermal.reduced.system import HeatSystem
+from feeddrive.thermal.rig import refuse_unless
 from feeddrive.typing import FloatArray
+
+RATES = (1e-5, 2e-4, 1e-3, 5e-3, 3e-2, 0.2)
+"""Matched rates s [1/s]: from the steady state (a day) to the quickest that a minute's step shows."""
+
+
+def moments(system: HeatSystem, rates: Iterable[float] = RATES, scales: FloatArray | None = None) -> FloatArray:
+    """Answers of the states to each input, and of the transposed system to each output, at some rates.
+
+    Args:
+        system: full system, K symmetric.
+        rates: s [1/s].
+        scales: working size of each input, (m,); None for equal sizes.
+
+    Returns:
+        Columns (n, k) of length one in the norm of C; inputs and outputs that do nothing are left out.
+    """
+    sizes = np.ones(len(system.input_names)) if scales is None else scales
+    right = np.hstack([system.gains * sizes, system.rows.T])
+    right = right[:, np.any(right != 0, axis=0)]
+    found = np.hstack([system.shifted_solve(rate, right) for rate in rates])
+    return np.asarray(found / np.sqrt(system.capacity @ found**2))
+
+
+def orthonormal(columns: FloatArray, capacity: FloatArray, order: int | None = None) -> FloatArray:
+    """Basis V of the dominant directions of some columns, VᵀCV = 1.
+
+    Args:
+        columns: (n, k).
+        capacity: C, (n,).
+        order: number of directions; None for all above rounding.
+
+    Returns:
+        (n, r).
+    """
+    root = np.sqrt(capacity)[:, None]
+    left, strengths, _ = np.linalg.svd(root * columns, full_matrices=False)
+    kept = int(np.sum(strengths > 1e-9 * strengths[0]))
+    return np.asarray(left[:, : kept if order is None else min(order, kept)] / root)
+
 
 DEFAULT_ORDER = 36
 """Within 2 mK and 5 nm of the full model over the wide range of `Heat.limits`."""
@@ -129,24 +181,50 @@ def compressed(system: HeatSystem, sizes: Sizes | None = None) -> HeatSystem:
     )
 
 
-def reduced_system(system: HeatSystem, order: int, sizes: Sizes | None = None) -> HeatSystem:
-    """A system at one operating point, balanced to `order` states.
-
-    Args:
-        system: full, or dense with every C one.
-        order: number of states.
-        sizes: working sizes.
-
-    Raises:
-        InputError: an order that is not possible.
-    """
-    sizes = sizes or Sizes()
-    small = compressed(system, sizes) if system.is_sparse else system
-    return truncated(small, order, sizes.of_inputs(small.input_names), sizes.of_outputs(small.output_names))
-
-
 def _directions(system: HeatSystem, inputs: FloatArray, outputs: FloatArray) -> FloatArray:
     """Balanced directions of both sides, each as long as its part in the answer, (n, k)."""
     found = balance(system, min(_GATHERED, system.order), inputs, outputs)
     weights = np.sqrt(found.strengths[: found.right.shape[1]])
     return np.hstack([found.right * weights, found.left * weights])
+
+
+@dataclass(frozen=True, eq=False)
+class Balance:
+    """Balancing transformation of a system.
+
+    Attributes:
+        left, right: (n, r) each, leftᵀ right = 1; the reduced A is leftᵀ A right.
+        strengths: Hankel singular values in the weighted sizes, (n,), largest first.
+    """
+
+    left: FloatArray
+    right: FloatArray
+    strengths: FloatArray
+
+
+def balance(system: HeatSystem, order: int, input_sizes: FloatArray, output_sizes: FloatArray) -> Balance:
+    """Balance a dense system.
+
+    Args:
+        system: dense, every C one, stable.
+        order: number of states to keep.
+        input_sizes: working size of each input, (m,) [W, K].
+        output_sizes: size of each output that counts as one, (p,) [K, m].
+
+    Raises:
+        InputError: an order below one or above that of the system.
+    """
+    what = f"order {order} of a system of order {system.order}"
+    refuse_unless(1 <= order <= system.order, what, "order", f"write a number from 1 to {system.order}")
+    A, B, L = -system.conductance, system.gains * input_sizes, system.rows / output_sizes[:, None]
+    reached = _root(scipy.linalg.solve_continuous_lyapunov(A, -B @ B.T))
+    seen = _root(scipy.linalg.solve_continuous_lyapunov(A.T, -L.T @ L))
+    u, strengths, vh = np.linalg.svd(seen.T @ reached)
+    scale = 1 / np.sqrt(strengths[:order])
+    return Balance(seen @ u[:, :order] * scale, reached @ vh[:order].T * scale, strengths)
+
+
+def _root(gramian: FloatArray) -> FloatArray:
+    """R with R Rᵀ = gramian, which rounding may have made slightly indefinite."""
+    values, vectors = np.linalg.eigh((gramian + gramian.T) / 2)
+    return np.asarray(vectors * np.sqrt(np.clip(values, 0.0, None)))

@@ -22,9 +22,8 @@ import casadi as ca
 import numpy as np
 
 from feeddrive.symbolic_turn import SYMBOLS
-from feeddrive.thermal.bound_function import BoundFunction
 from feeddrive.thermal.full.full_model import NUT
-from feeddrive.thermal.laws.laws import FOLLOWED, INPUTS, PATHS, Laws, growth_places, laws_of, values_of
+from feeddrive.thermal.laws.laws import FOLLOWED, INPUTS, PATHS, BoundFunction, Laws, growth_places, laws_of, values_of
 from feeddrive.thermal.machine_heat import Heat
 from feeddrive.thermal.reduced.heat_propagators import Propagator, propagator
 from feeddrive.thermal.reduced.parametric_model import HeatModel, Path

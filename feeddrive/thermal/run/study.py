@@ -63,7 +63,7 @@ class ThermalStudy:
     """Outcome of a study.
 
     Attributes:
-        plant: the machine.
+        heat: of the machine.
         duty: that it went through.
         series: channel to its values at the ends of the rows, (k,): temperatures [degC], growths [m].
         reduced: the same by the reduced model.
@@ -78,7 +78,7 @@ class ThermalStudy:
         energy: the balance.
     """
 
-    plant: Heat
+    heat: Heat
     duty: Duty
     series: Mapping[str, FloatArray]
     reduced: Mapping[str, FloatArray]

@@ -18,15 +18,13 @@ import casadi as ca
 import numpy as np
 
 from feeddrive.errors import InputError, ValidityWarning
-from feeddrive.thermal.bound_function import BoundFunction
 from feeddrive.thermal.full.full_model import FRONT, NUT, REAR
-from feeddrive.thermal.laws.laws import FOLLOWED, INPUTS, PATHS, Laws, growth_places, laws_of, values_of
-from feeddrive.thermal.machine_heat import Heat
+from feeddrive.thermal.laws.laws import FOLLOWED, INPUTS, PATHS, BoundFunction, Laws, growth_places, laws_of, values_of
+from feeddrive.thermal.machine_heat import CHANNELS, Heat
 from feeddrive.thermal.reduced.heat_propagators import propagator
 from feeddrive.thermal.reduced.parametric_model import HeatModel, Path
 from feeddrive.thermal.reduced.stepping import Stepper
 from feeddrive.thermal.reduced.system import HeatSystem
-from feeddrive.thermal.sensors import CHANNELS
 from feeddrive.typing import FloatArray, IntegerArray
 from feeddrive.units.quantity import format_quantity
 
