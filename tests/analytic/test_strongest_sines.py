@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from feeddrive.diagnosis.starts.periodogram import strongest_orders, strongest_sines
+
+from feeddrive.diagnosis.starts.residual_readings import strongest_orders, strongest_sines
 
 STEP, EDGE = 2e-3, 50.0
 

@@ -72,7 +72,7 @@ def recalibrated(problem: Problem, effects: Sequence[Effect], rough: bool = Fals
     variance = _variance(sloped, left)
     numbers = problem.numbers.with_variance(variance)
     sloped = replace(problem, calibration=replace(sloped.calibration, variance=variance), numbers=numbers)
-    return _stepped(sloped, effects, sloped.unwhitened(effects) if len(numbers) else residual)
+    return sloped.stepped(effects, sloped.unwhitened(effects) if len(numbers) else residual)
 
 
 def weighed_by_rest(problem: Problem, effects: Sequence[Effect]) -> Problem:
@@ -169,21 +169,6 @@ def with_recordings(problem: Problem, effects: Sequence[Effect], more: Sequence[
     return replace(joined, calibration=replace(known, slopes={**slopes, **known.slopes}))
 
 
-def _stepped(problem: Problem, effects: Sequence[Effect], residual: FloatArray) -> Problem:
-    """The problem at the most likely values, or as far towards them as the error falls."""
-    known = problem.calibration
-    assert known is not None and problem.whitener is not None
-    wanted = problem.whitener.most_likely(residual)
-    before = float(residual @ residual) + known.variance * float(known.coordinates @ known.coordinates)
-    for share in (1.0, 0.5, 0.1):
-        coordinates = known.coordinates + share * (wanted - known.coordinates)
-        there = replace(problem, calibration=replace(known, coordinates=coordinates))
-        left = there.unwhitened(effects)
-        if np.all(np.isfinite(left)) and left @ left + known.variance * float(coordinates @ coordinates) < before:
-            return there
-    return problem
-
-
 def _variance(problem: Problem, residual: FloatArray) -> float:
     """λ: square of a row times the rows that one independent value stands for, along the slopes of the values."""
     assert problem.whitener is not None
@@ -254,14 +239,13 @@ class Calibrated:
 
 def calibrated_list(problem: Problem, found: Fit) -> tuple[Calibrated, ...]:
     """What is known of the declared values beside a fitted set."""
-    known, calibration, whitened = known_values(problem, found), problem.calibration, problem.whitener
-    if known is None or calibration is None or whitened is None:
+    known, settled = known_values(problem, found), problem.settled(found.effects).calibration
+    if known is None or settled is None:
         return ()
-    settled = whitened.most_likely(problem.unwhitened(found.effects))
     deviations = np.sqrt(np.diag(known.covariance))
     result = []
     for i, value in enumerate(known.values):
-        coordinate, (low, high) = float(settled[i]), known.interval(i)
+        coordinate, (low, high) = float(settled.coordinates[i]), known.interval(i)
         ends = min(low, coordinate), max(high, coordinate)
         result.append(Calibrated(value, coordinate, float(deviations[i]), ends))
     return tuple(result)

@@ -167,7 +167,8 @@ def _density(series: Sequence[FloatArray], sample_time: float) -> tuple[FloatArr
     reach = np.maximum(SMOOTHED[0], (SMOOTHED[1] * at).astype(int))
     first, last = np.maximum(at - reach, 0), np.minimum(at + reach + 1, len(power))
     density: FloatArray = (total[last] - total[first]) / (last - first)
-    return np.fft.rfftfreq(len(series[0]), sample_time), density
+    frequency: FloatArray = np.asarray(np.fft.rfftfreq(len(series[0]), sample_time), dtype=float)
+    return frequency, density
 
 
 def drawn_error(expected: FloatArray, step: float, sample_time: float, draw: int) -> FloatArray:

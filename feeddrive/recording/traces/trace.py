@@ -141,9 +141,11 @@ def whole_rows(lines: Sequence[str], separator: str | None, width: int) -> Float
     if not lines or not lines[0].strip():  # numpy warns where there is nothing but blank lines
         return None
     if separator is not None and lines[0].rstrip().endswith(separator):
-        lines = [line.rstrip().removesuffix(separator) for line in lines]
+        rows: Iterator[str] = (line.rstrip().removesuffix(separator) for line in lines)
+    else:
+        rows = iter(lines)
     try:
-        numbers = np.loadtxt(lines, delimiter=separator, comments=None, ndmin=2, dtype=np.float64)
+        numbers = np.loadtxt(rows, delimiter=separator, comments=None, ndmin=2, dtype=np.float64)
     except ValueError:
         return None
     return numbers if numbers.shape == (len(lines), width) else None  # it passes over blank lines
