@@ -152,6 +152,7 @@ def prediction_table(diagnosis: Diagnosis) -> str:
     for recording in diagnosis.recordings:
         columns = [column for s in recording.channels for column in (s.measured, s.before, s.after)]
         tail = f",{recording.name}" if several else ""
-        for time, row in zip(recording.time, np.column_stack(columns).tolist(), strict=True):
-            text.write(f"{time:.6f}," + ",".join("" if v != v else f"{v:.10g}" for v in row) + tail + "\n")
+        line = "%.6f" + ",%.10g" * len(columns)
+        rows = [line % tuple(row) for row in np.column_stack([recording.time, *columns]).tolist()]
+        text.write("".join(f"{row.replace('nan', '')}{tail}\n" for row in rows))
     return text.getvalue()

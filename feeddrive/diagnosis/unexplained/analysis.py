@@ -94,7 +94,7 @@ def _sample_of(views: Sequence[View], least: float) -> Sample:
         residual,
         np.concatenate(blocks),
         (owner[:, None] == np.arange(len(views))).astype(float),
-        lambda terms: np.vstack([columns_in(view, terms) for view in views]),
+        lambda term: np.vstack([columns_in(view, term) for view in views]),
         float(np.average(floors, weights=counts)),
         least,
     )
@@ -109,7 +109,7 @@ def _least(views: Sequence[View]) -> float:
 
 
 def _dependences(found: Sequence[Found], judged: Sequence[View], unit: str, radius: float) -> list[Dependence]:
-    components = {one.term: [columns_in(view, [one.term]) @ one.values for view in judged] for one in found}
+    components = {one.term: [columns_in(view, one.term) @ one.values for view in judged] for one in found}
 
     def left(leaving: Term | None = None) -> FloatArray:
         """What the terms, but for one, leave of all recordings, each about its mean."""
@@ -258,7 +258,7 @@ def _seen_on(views: Sequence[View], found: Found, left: FloatArray) -> Seen:
     factor = np.ones(len(at))
     if term.times:
         factor = np.concatenate([view.values[term.times][view.rows] for view in views])
-    own = np.vstack([columns_in(view, [term]) for view in views]) @ found.values
+    own = np.vstack([columns_in(view, term) for view in views]) @ found.values
     low, high = (float(end) for end in np.quantile(at, [0.002, 0.998]))
     edges = np.linspace(low, high, BINS + 1)
     if term.variable == "travel_since_reversal":

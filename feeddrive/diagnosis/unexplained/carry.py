@@ -46,15 +46,15 @@ SHAFT = {"table_position": "angle", "table_velocity": "speed", "time": "time", "
 NO_EFFECT = "not carried, since no tabulated effect stands for it"
 
 
-def analysis_of(
-    problem: Problem, effects: Sequence[Effect], judged: Sequence[Judged], channel: ChannelResult
-) -> Analysis:
-    """What is left of a channel with these effects in the plant, taken apart; `judged` have them in the plant after."""
-    plant = problem.machine(effects)
-    fitted = views_of(problem, [(plant, evidence) for evidence in problem.evidence], channel.name, False)
-    seen = views_of(problem, [(j.after, j.evidence) for j in judged], channel.name, True)
+def analyses_of(
+    problem: Problem, effects: Sequence[Effect], judged: Sequence[Judged], channels: Sequence[ChannelResult]
+) -> dict[str, Analysis]:
+    """What is left of channels with these effects in the plant, taken apart; `judged` have them in the plant after."""
+    plant, names = problem.machine(effects), [channel.name for channel in channels]
+    fitted = views_of(problem, [(plant, evidence) for evidence in problem.evidence], names, False)
+    seen = views_of(problem, [(j.after, j.evidence) for j in judged], names, True)
     radius = plant.chain.motor_radius if plant.has_motion else 0.0
-    return analyse(fitted, seen, channel.unit, radius)
+    return {one.name: analyse(fitted[one.name], seen[one.name], one.unit, radius) for one in channels}
 
 
 def tried(

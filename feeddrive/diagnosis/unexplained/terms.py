@@ -13,9 +13,6 @@ from feeddrive.diagnosis.starts.residual_readings import strongest_orders
 from feeddrive.diagnosis.unexplained.view import View
 from feeddrive.typing import FloatArray
 
-MOST_COLUMNS = 16
-"""Columns that are filtered at a time, which bounds the memory of long recordings."""
-
 HARMONICS = 3
 """Sines of a periodic term: the order itself, twice and three times it."""
 
@@ -98,16 +95,14 @@ class Term:
         return shape * values[self.times][:, None] if self.times else shape
 
 
-def columns_in(view: View, terms: Sequence[Term]) -> FloatArray:
-    """Columns of terms as the recording would show them: in the band, at the rows that count, (m, sum of k)."""
-    parts: list[FloatArray] = []
-    waiting: list[FloatArray] = []
-    for term in terms:
-        waiting.append(term.columns(view.values))
-        if sum(part.shape[1] for part in waiting) >= MOST_COLUMNS or term is terms[-1]:
-            parts.append(view.evidence.in_band(np.hstack(waiting))[view.rows])
-            waiting = []
-    return np.hstack(parts)
+def columns_in(view: View, term: Term) -> FloatArray:
+    """Columns of a term as the recording would show them: in the band, at the rows that count, (m, k)."""
+    evidence = view.evidence
+    if term not in view.shown:
+        # one by one, and thinned at once, which bounds the memory of long recordings
+        columns = [evidence.in_band(column)[:: evidence.thinning] for column in term.columns(view.values).T]
+        view.shown[term] = np.column_stack(columns)
+    return view.shown[term][view.rows[:: evidence.thinning]]
 
 
 def hats(at: FloatArray, nodes: tuple[float, ...]) -> FloatArray:

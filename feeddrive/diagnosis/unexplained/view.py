@@ -19,7 +19,7 @@ which counts correlation inside them.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -54,6 +54,7 @@ class View:
         rows: samples that count, thinned to those that carry what is in the band, (n,).
         values: variable to its series, (n,), SI.
         floor: of the noise.
+        shown: terms to their columns in the band, thinned; the channels of a recording share them.
     """
 
     evidence: Evidence
@@ -62,6 +63,7 @@ class View:
     rows: BoolArray
     values: Mapping[str, FloatArray]
     floor: Floor
+    shown: dict[Hashable, FloatArray]
 
     @property
     def left(self) -> FloatArray:
@@ -81,27 +83,31 @@ class View:
 
 
 def views_of(
-    problem: Problem, plants: Sequence[tuple[Plant, Evidence]], channel: str, judged: bool
-) -> tuple[View, ...]:
-    """Views of one channel of those recordings that have it, at the fitted or at the judged samples.
+    problem: Problem, plants: Sequence[tuple[Plant, Evidence]], channels: Sequence[str], judged: bool
+) -> dict[str, tuple[View, ...]]:
+    """Views of channels, of those recordings that have them, at the fitted or at the judged samples.
 
     Args:
         problem: whose predictor is used.
         plants: for each recording the plant that predicts it, and the recording.
-        channel: name.
+        channels: names.
         judged: whether the judged samples count, or else the fitted ones.
     """
-    views = []
+    views: dict[str, list[View]] = {channel: [] for channel in channels}
     for plant, evidence in plants:
-        if channel not in evidence.channels:
-            continue
         predicted = problem.predictor.predict(plant, evidence)
-        residual = evidence.measured[channel] - predicted[channel]
-        rows = evidence.thinned(evidence.judged_rows if judged else evidence.fit_rows) & np.isfinite(residual)
-        radius = plant.chain.motor_radius if channel == "table_position" else 0.0
         values = variables_of(problem, plant, evidence, predicted)
-        views.append(View(evidence, channel, residual, rows, values, noise_floor(evidence, channel, radius)))
-    return tuple(views)
+        thinned = evidence.thinned(evidence.judged_rows if judged else evidence.fit_rows)
+        shown: dict[Hashable, FloatArray] = {}
+        for channel in channels:
+            if channel not in evidence.channels:
+                continue
+            residual = evidence.measured[channel] - predicted[channel]
+            rows = thinned & np.isfinite(residual)
+            radius = plant.chain.motor_radius if channel == "table_position" else 0.0
+            floor = noise_floor(evidence, channel, radius)
+            views[channel].append(View(evidence, channel, residual, rows, values, floor, shown))
+    return {channel: tuple(own) for channel, own in views.items()}
 
 
 def variables_of(
