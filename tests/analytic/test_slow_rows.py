@@ -87,3 +87,23 @@ def test_declared_cycle_is_taken_however_far_rows_are_apart() -> None:
     slow = recording(np.zeros(1000), np.zeros(1000))
     assert declared_hold(plant, [slow]) == pytest.approx(2e-3)
     assert declared_hold(plant, [replace(slow, sample_time=2e-3)]) is None  # a row a cycle
+
+
+def test_steps_of_a_coarse_encoder_are_no_unknown_motion() -> None:
+    time = STEP * np.arange(2000)
+    made = recording(30.0 * time, np.ones(2000))
+    coarse = 2 * np.pi / 2**12
+    angle = coarse * np.round(30.0 * time / coarse)
+    rows = known(replace(made, channels={**made.channels, "motor_angle": angle}))
+    assert rows[20:-20].mean() > 0.98
+
+
+def test_rows_are_left_out_where_a_faster_loop_moves_between_them() -> None:
+    """Rows of 2 ms, the axis turning round within one: known of a drive of one cycle a row alone."""
+    time = 2e-3 * np.arange(4000)
+    angle = np.where(time < 4.0, 30.0 * time, 120.0 - 30.0 * (time - 4.0))
+    made = recording(angle, np.where(time < 4.0, 1.0, -1.0))
+    made = replace(made, time=time, sample_time=2e-3)
+    every, faster = (prepare(made, PLANT, 1.0, hold).counted for hold in (None, 5e-4))
+    assert every[2000] and not faster[1995:2005].any()
+    assert faster[600:1900].all()

@@ -231,6 +231,8 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
         refuse_unknown_motion(known, counted, recording)
         recording = replace(recording, notes=(*recording.notes, sentence(known, recording)))
         counted &= known
+    elif hold is not None:  # the loop is faster than the rows: what it does between them is not known either
+        counted &= known_motion(recording, plant, band)
     counted &= sound_rows(recording, plant.torque_limit, band)
     refuse_little_left(counted, recording)
     sensed = dict(raw)
