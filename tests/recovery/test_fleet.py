@@ -20,8 +20,9 @@ from tests.recovery.fleet.case import LEAST_TOLD, SHARES, Case, case, encoder_nu
 from tests.recovery.fleet.floor import true_errors
 from tests.recovery.fleet.run import cases_done
 from tests.recovery.fleet.state import state_files
-from tests.recovery.fleet.table import put_into, section, wilson
+from tests.recovery.fleet.table import section, wilson
 from tests.recovery.fleet.verdict import Verdict, possible
+from tests.recovery.page import with_section
 
 NULL, PAIR, SPOILT = 10, 3, 20
 """Seeds of quick cases: nothing planted, two relatives at 250 Hz, a torque from an rms current."""
@@ -194,8 +195,8 @@ def test_share_intervals() -> None:
 def test_table_goes_into_its_page() -> None:
     """In place of the section that is there, the rest untouched."""
     verdicts = [verdict([planted("backlash")], ["backlash"]), verdict([], ["stribeck"])]
-    page = put_into("# Recovery\n\nbefore\n", section(verdicts, "abc"))
-    again = put_into(page + "\nafter\n", section(verdicts[:1], "def"))
+    page = with_section("# Recovery\n\nbefore\n", section(verdicts, "abc"))
+    again = with_section(page + "\nafter\n", section(verdicts[:1], "def"))
     assert "before" in again and "after" in again and again.count("## Fleet") == 1
     assert "abc" not in again and "nothing planted: cases with a false name | 0 of 120 | 1 |" in page
 

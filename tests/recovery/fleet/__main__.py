@@ -11,8 +11,9 @@ from feeddrive.files import write_text_atomically
 from tests.recovery.fleet.case import encoder_null_seeds
 from tests.recovery.fleet.run import cases_done, run_missing
 from tests.recovery.fleet.state import fleet_state
-from tests.recovery.fleet.table import put_into, section
+from tests.recovery.fleet.table import section
 from tests.recovery.fleet.verdict import Verdict
+from tests.recovery.page import with_section
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -45,7 +46,7 @@ def write_table(folder: Path, page: Path | None) -> int:
         print_line(part)
         return 0
     old = page.read_text(encoding="utf-8") if page.exists() else "# Recovery\n"
-    write_text_atomically(page, put_into(old, part))
+    write_text_atomically(page, with_section(old, part))
     print_line(f"{page}: {len(verdicts)} cases of state {state}")
     return 0
 

@@ -169,11 +169,3 @@ def wrong(verdicts: Sequence[Verdict]) -> list[str]:
         said = ", ".join(one["name"] for one in v.asserted) or v.record["outcome"].replace("done", "nothing")
         lines.append(f"| {v.truth['seed']} | {planted}{' (off)' if v.truth['off'] else ''} | {said} |")
     return lines
-
-
-def put_into(text: str, part: str) -> str:
-    """Return a page with the section in place of the one that is there, or at its end."""
-    if BEGIN in text and END in text:
-        before, rest = text.split(BEGIN, 1)
-        return before + part.rstrip() + rest.split(END, 1)[1]
-    return text.rstrip() + "\n\n" + part

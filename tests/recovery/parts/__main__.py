@@ -8,9 +8,10 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from feeddrive.files import write_text_atomically
-from tests.recovery.parts.cases import MACHINES, PUBLISHED, WHAT, Case
+from tests.recovery.page import with_section
+from tests.recovery.parts.cases import MACHINES, NULLS, PUBLISHED, WHAT, Case
 from tests.recovery.parts.run import RESULTS, records_of, run_missing
-from tests.recovery.parts.table import put_into, section
+from tests.recovery.parts.table import section
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -26,7 +27,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         run_missing(cases, options.out, options.limit, options.minutes, options.resume, _say)
     if options.page:
         part = section(list(records_of(options.out).values()))
-        write_text_atomically(options.page, put_into(options.page.read_text(encoding="utf-8"), part))
+        write_text_atomically(options.page, with_section(options.page.read_text(encoding="utf-8"), part))
     return 0
 
 
@@ -44,7 +45,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--draw", type=int, default=PUBLISHED, help=f"of sizes and noise; below {PUBLISHED} for development"
     )
-    parser.add_argument("--nulls", type=int, default=10, help="machines with nothing planted, of each")
+    parser.add_argument("--nulls", type=int, default=NULLS, help="machines with nothing planted, of each")
     parser.add_argument("--out", type=Path, required=True, help=f"folder of {RESULTS}")
     parser.add_argument("--resume", action="store_true", help="go on where it stopped, in the same state of the code")
     parser.add_argument("--table-only", action="store_true", help="no runs: the table of the records that are there")

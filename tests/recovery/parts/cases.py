@@ -27,6 +27,9 @@ SOFT = {"nut": ("nut", 0.8), "bearing": ("near", 0.7), "drive": ("coupling", 0.7
 WHAT = ("nothing", "nut", "bearing", "drive", "payload", "backlash", "bump", "lead", "stribeck")
 """Nothing, a softer part (nut -20 %, bearing -30 %, coupling -25 %), or an effect of which the size is drawn."""
 
+NULLS = 10
+"""Recordings of each machine with nothing planted, the noise drawn anew."""
+
 PUBLISHED = 100
 """Draws below are for development; those of the published table begin here."""
 

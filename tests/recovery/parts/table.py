@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from tests.recovery.fleet.table import wilson
-from tests.recovery.parts.cases import MACHINES, PUBLISHED, WHAT
+from tests.recovery.parts.cases import MACHINES, NULLS, PUBLISHED, WHAT
 from tests.recovery.parts.run import FLOOR, Row
 
 BEGIN, END = "<!-- parts -->", "<!-- end of parts -->"
@@ -38,7 +38,8 @@ def section(records: Sequence[dict[str, Any]]) -> str:
     draws, states = {r.record["draw"] for r in rows}, sorted({r.record["state"] for r in rows})
     used = "published" if min(draws, default=0) >= PUBLISHED else "development"
     lines = [BEGIN, "## Machines described by their parts", "", *INTRODUCTION, ""]
-    lines += [f"State of code {', '.join(states)}; {len(rows)} cases, draws of {used}.", ""]
+    asked = len(MACHINES) * (len(WHAT) + NULLS - 1)
+    lines += [f"State of code {', '.join(states)}; {len(rows)} of {asked} cases, draws of {used}.", ""]
     lines += ["| figure | asked | found | 95 % | cases |", "| --- | --- | --- | --- | --- |"]
     nulls = [r for r in rows if r.record["what"] == "nothing"]
     planted = [r for r in rows if r.record["what"] != "nothing"]
@@ -87,11 +88,3 @@ def _row(row: Row) -> str:
 def _value(key: str, found: float, true: float) -> str:
     factor, unit = UNITS[key]
     return f"{key} {found * factor:.3g} {unit} ({true * factor:.3g})".replace("  ", " ")
-
-
-def put_into(text: str, part: str) -> str:
-    """A page with the section in place of the one that is there, or at its end."""
-    if BEGIN in text and END in text:
-        before, rest = text.split(BEGIN, 1)
-        return before + part.rstrip() + rest.split(END, 1)[1]
-    return text.rstrip() + "\n\n" + part

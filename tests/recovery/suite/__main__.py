@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from feeddrive.files import write_text_atomically
+from tests.recovery.page import with_sections_of
 from tests.recovery.suite import sizes
 from tests.recovery.suite.cases import all_cases, smoke_cases
 from tests.recovery.suite.planting import MACHINES
@@ -44,7 +45,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _write_table(records: Path, path: Path) -> None:
     cases, code = all_cases(), code_state()
     found = [Verdict(record) for case in cases if (record := kept(records, case, code)) is not None]
-    write_text_atomically(path, document(cases, found))
+    before = path.read_text(encoding="utf-8") if path.exists() else ""
+    write_text_atomically(path, with_sections_of(document(cases, found), before))
     _say(f"{path}: {len(found)} of {len(cases)} cases")
 
 
