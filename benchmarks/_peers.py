@@ -15,8 +15,8 @@ from _drive import CHAIN, DIVIDER, DURATION, GAINS, LAG, SAMPLE, controller, dri
 from _hand import RungeKutta
 from scipy.integrate import solve_ivp
 
-from feeddrive.plant.analysis.linear import ode
-from feeddrive.plant.equations import parameter_values
+from feeddrive.plant.analysis.ode import ode
+from feeddrive.plant.structure import parameter_values
 from feeddrive.typing import FloatArray
 
 

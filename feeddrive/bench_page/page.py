@@ -13,19 +13,22 @@ from typing import Any
 import numpy as np
 
 from feeddrive.bench_page.page_equations import bench_equations
+from feeddrive.compensation.compensate import cascade_of
+from feeddrive.diagnosis.judging.result import Diagnosis
 from feeddrive.effects.base import Effect
 from feeddrive.effects.chain.payload import Payload
 from feeddrive.errors import InputError, printable
 from feeddrive.metrology.circular import GLITCH_SPAN
 from feeddrive.metrology.response import SETTLED_BY
+from feeddrive.plant.analysis.modes import inertia_at_motor
 from feeddrive.plant.analysis.steady import MOVING
-from feeddrive.plant.chain.moving_inertia import inertia_at_motor
-from feeddrive.plant.equations import parameter_names, parameter_values
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.structure import parameter_names, parameter_values
 from feeddrive.servo.cascade import Cascade
 from feeddrive.servo.filters import Filter, notch
+from feeddrive.servo.loop_response import refuse_unstable_case
 from feeddrive.servo.margins import GROWTH
-from feeddrive.servo.mechanics_response import grid
+from feeddrive.servo.mechanics_response import Case, grid
 from feeddrive.simulate.setpoints.trial_motions import HEIGHT, RADIUS, STEP_AT, Trial, circle_about, step_at
 from feeddrive.tuning.reasons import current_loop_lines
 
@@ -246,3 +249,25 @@ def _feed_forward(cascade: Cascade) -> list[str]:
         f'smoothing_speed = "{forward.smoothing_speed!r} rad/s"',
         f'viscous = "{forward.viscous!r} N m s/rad"',
     ]
+
+
+def bench_of_diagnosis(after: Plant, diagnosis: Diagnosis) -> str:
+    """The page for the tab of a report: the machine as diagnosed, at its declared or a recommended cascade.
+
+    Args:
+        after: the machine with what was found.
+        diagnosis: what was found.
+
+    Returns:
+        The page; empty where there is nothing to play on: no effect was found, a machine without elastic chain or that
+        declares heat alone, or one whose loop cannot be made or shown.
+    """
+    if not after.has_motion or not after.chain.elastic or not diagnosis.effects:
+        return ""
+    try:
+        cascade = cascade_of(after, None)
+        refuse_unstable_case(after, cascade, Case(after.middle), "controller")
+        names = tuple(one.name for one in diagnosis.effects)
+        return bench_page(BenchPage(after, cascade, max(100.0, after.chain_values()["table_mass"]), names))
+    except InputError:
+        return ""

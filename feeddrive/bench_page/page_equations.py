@@ -23,11 +23,11 @@ from feeddrive.engine.program import CELL, DEEPEST, TOLERANCE
 from feeddrive.engine.step.linear_part import FORGETTING
 from feeddrive.engine.step.step_constants import CONVERGED, FULL_SCALE
 from feeddrive.errors import InputError
-from feeddrive.plant.analysis.linear import OUTPUTS
-from feeddrive.plant.analysis.ode import ode
+from feeddrive.plant.analysis.ode import OUTPUTS, ode
 from feeddrive.plant.chain.chain import symbolic
-from feeddrive.plant.equations import bristle_count, chain_symbols, parameter_symbols, parameter_values
+from feeddrive.plant.equations import bristle_count
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.structure import chain_symbols, parameter_symbols, parameter_values
 from feeddrive.plant.transmission_law import travel_deviation
 from feeddrive.servo.cascade import Cascade
 from feeddrive.servo.cascade_function import PARAMETERS, cascade_controller

@@ -20,7 +20,7 @@ def command(
     out: Annotated[Path | None, typer.Option("--out", help="The page, such as bench.html.")] = None,
 ) -> None:
     """Write a page on which the axis can be tried: loops with margins, step and circle follow the sliders, offline."""
-    from feeddrive.cli.output import tell_written, warnings_as_lines
+    from feeddrive.cli.output import print_written, warnings_as_lines
     from feeddrive.errors import InputError
     from feeddrive.files import find_plant
     from feeddrive.interface.axis import load
@@ -31,4 +31,4 @@ def command(
     with warnings_as_lines():
         axis = load(find_plant(plant))
         bench(axis, controller=scenario or None, diagnosis=diagnosis, payload=payload).save(out)
-    tell_written(out, False)
+    print_written(out, False)

@@ -7,11 +7,16 @@ from typing import Annotated
 
 import typer
 
-from feeddrive.cli.output import JsonOption, deliver, parts_of, tables_of, tell_written, warnings_as_lines
+from feeddrive.cli.output import (
+    JsonOption,
+    deliver_saved,
+    parts_of,
+    warnings_as_lines,
+)
 from feeddrive.errors import InputError
 from feeddrive.interface.axis import load
 from feeddrive.interface.measured.reading import read, read_response_file
-from feeddrive.output_folder import output_folder, refuse_unusable
+from feeddrive.output_folder import refuse_unusable
 
 
 def command(
@@ -53,8 +58,4 @@ def command(
             frequencies=parts_of(frequencies),
             measured=measured,
         )
-        if out is not None:
-            with output_folder(out) as folder:
-                found.save(folder)
-    deliver(found.record(), [] if as_json else tables_of(found.tables()), as_json, None)
-    tell_written(out, as_json)
+        deliver_saved(found, as_json, out)

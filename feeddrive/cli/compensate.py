@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.console import Console
 
-from feeddrive.cli.output import JsonOption
+from feeddrive.cli.output import JsonOption, escaped, print_written, tables_of, warnings_as_lines
+from feeddrive.errors import InputError, printable
+from feeddrive.interface.compensating import compensate
+from feeddrive.interface.measured.reading import read
 
 
 def command(
@@ -42,9 +47,35 @@ def command(
     ] = None,
 ) -> None:
     """Write a compensation table as a control reads it: sign rule, check of one point, what it brings, what is left."""
-    from feeddrive.cli.compensating import Request, run
-
-    ends = (start, end)
-    run(
-        Request(source, form, every, reference, ends, axis, controller, lead, resolution, mapping, figure), as_json, out
-    )
+    if out is not None and out.is_dir():
+        raise InputError("is a folder", str(out), "name a file, such as --out enc_comp.ini")
+    if bool(start) != bool(end):
+        raise InputError("--from and --to belong together", "", 'write both, such as --from "0 mm" --to "500 mm"')
+    with warnings_as_lines(), Console(stderr=True).status("simulating"):
+        done = compensate(
+            source if mapping is None else read(source, mapping),
+            form,
+            every=every or None,
+            reference=reference or None,
+            stroke=(start, end) if start else None,
+            axis=axis,
+            controller=controller or None,
+            lead=lead or None,
+            resolution=resolution or None,
+        )
+        if figure is not None:
+            done.save_figure(figure)
+        if out is not None:
+            done.save(out)
+    if as_json:
+        typer.echo(escaped(json.dumps(done.record(), indent=2, ensure_ascii=False)))
+        return
+    console = Console(soft_wrap=True, highlight=False, markup=False, emoji=False)
+    if out is None:
+        console.print(escaped(done.text), end="")
+        return
+    console.print(*tables_of([done.listing()]))
+    for line in done.left:
+        console.print(f"left: {printable(line)}")
+    print_written(out, False)
+    typer.echo(f"its sheet: {printable(str(out.resolve()))}.txt")

@@ -18,7 +18,7 @@ from feeddrive.interface.measured.diagnosis_run import Job, Options, continued_j
 from feeddrive.interface.measured.explaining import explain
 from feeddrive.interface.measured.reading import read_response_file
 from feeddrive.output_folder import output_folder, refuse_unusable
-from feeddrive.plant.file.entries import read_toml
+from feeddrive.schema.toml_text import read_toml
 
 
 def command(
@@ -114,7 +114,7 @@ def _is_no_recording(path: Path) -> bool:
     try:
         return read_response_file(path) is not None
     except InputError:
-        return False  # told where it is read as a recording
+        return False  # reported where it is read as a recording
 
 
 def _explain(plant: str, measured: str, at: str, controller: str | None, out: Path | None, as_json: bool) -> None:

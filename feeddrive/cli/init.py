@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from feeddrive.cli.output import deliver, tables_of, tell_written, warnings_as_lines
+from feeddrive.cli.output import deliver, print_written, tables_of, warnings_as_lines
 from feeddrive.errors import InputError
 from feeddrive.interface.machine.drafts import draft
 
@@ -38,7 +38,7 @@ def command(
     structure: Annotated[str, typer.Option(help="distributed_screw or three_inertias.")] = "distributed_screw",
     name: Annotated[str, typer.Option(help="Name of the machine; that of the file if left out.")] = "",
 ) -> None:
-    """Write a plant file: parts of the catalogue, guesses where nothing is said, every further key as a comment."""
+    """Write a plant file: parts of the catalogue, guesses where nothing is given, every further key as a comment."""
     if path.exists():
         raise InputError("exists already", str(path), "name another file, or remove this one")
     given = {"screw": screw, "motor": motor, "mass": mass, "stroke": stroke, "guide": guide}
@@ -66,4 +66,4 @@ def command(
         checked = made.check()
         made.save(path)
     deliver({}, tables_of([checked.listing(), made.listing()]), False, None)
-    tell_written(path, False)
+    print_written(path, False)

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from feeddrive.cli.output import JsonOption, deliver, escaped, tables_of, tell_written, warnings_as_lines
+from feeddrive.cli.output import (
+    JsonOption,
+    deliver_saved,
+    warnings_as_lines,
+)
 from feeddrive.interface.axis import load
 from feeddrive.interface.measured.iso230 import iso230
-from feeddrive.output_folder import output_folder, refuse_unusable
+from feeddrive.output_folder import refuse_unusable
 
 
 def command(
@@ -20,11 +23,11 @@ def command(
         typer.Argument(help="Table of a laser's or ball-bar's readings, or a recording with a scale; two of a circle."),
     ],
     plant: Annotated[str, typer.Option(help="Machine: what of E, M and B it explains, and by which effect.")] = "",
-    part: Annotated[int, typer.Option(help="2 positioning, 3 drift, 4 circle; told by what is measured else.")] = 0,
+    part: Annotated[int, typer.Option(help="2 positioning, 3 drift, 4 circle; else taken from the columns.")] = 0,
     radius: Annotated[str, typer.Option(help="Nominal radius of a circle, '150 mm'.")] = "",
     stop: Annotated[str, typer.Option(help="When the axis stops in a test of drift, '4 h'.")] = "",
     mapping: Annotated[Path | None, typer.Option("--map", help="Mapping file of a foreign recording.")] = None,
-    decimal: Annotated[str, typer.Option(help="Decimal sign, where it cannot be told.")] = "",
+    decimal: Annotated[str, typer.Option(help="Decimal sign, where the file leaves it open.")] = "",
     as_json: JsonOption = False,
     out: Annotated[Path | None, typer.Option("--out", help="Folder for report.html, iso230.json, figures.")] = None,
 ) -> None:
@@ -33,8 +36,7 @@ def command(
     Columns of tables: target with up 1, down 1, up 2, ... (or direction and deviation); time with at 0 mm, at 250 mm,
     ...; angle with radius or radial; x and y. Units stand in the headings, as in "target [mm],up 1 [µm]".
     """
-    if out is not None:
-        refuse_unusable(out)
+    refuse_unusable(out)
     with warnings_as_lines():
         found = iso230(
             list(files),
@@ -45,11 +47,4 @@ def command(
             map=mapping,
             decimal=decimal or None,
         )
-        if out is not None:
-            with output_folder(out) as folder:
-                found.save(folder)
-    if as_json:
-        print(escaped(json.dumps(found.record(), indent=2, ensure_ascii=False)))
-        return
-    deliver({}, tables_of(found.tables()), False, None)
-    tell_written(out, as_json)
+        deliver_saved(found, as_json, out)

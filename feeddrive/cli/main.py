@@ -191,7 +191,7 @@ def _refuse_usage(error: Any, arguments: Sequence[str]) -> int:
 
 
 def _refuse_system(error: OSError) -> int:
-    """A file that cannot be read or written, a full disk; an error that no system has told is one of feeddrive."""
+    """A file that cannot be read or written, a full disk; an error that no system call raised is one of feeddrive."""
     if error.errno is None:
         return _apologise(error)
     if error.errno == errno.EPIPE:
@@ -238,7 +238,7 @@ def _pipe_left() -> int:
 
 
 def _flushed(status: int) -> int:
-    """Write out what is printed, so that a full disk behind `>` is told."""
+    """Write out what is printed, so that a full disk behind `>` is reported."""
     try:
         sys.stdout.flush()
     except BrokenPipeError:

@@ -7,9 +7,9 @@ from typing import Annotated
 
 import typer
 
-from feeddrive.cli.output import JsonOption, deliver, tables_of, tell_written, warnings_as_lines
+from feeddrive.cli.output import JsonOption, deliver_saved, warnings_as_lines
 from feeddrive.interface.axis import load
-from feeddrive.output_folder import output_folder, refuse_unusable
+from feeddrive.output_folder import refuse_unusable
 
 
 def command(
@@ -24,8 +24,4 @@ def command(
     refuse_unusable(out)
     with warnings_as_lines():
         found = load(plant).modes(at or None)
-        if out is not None:
-            with output_folder(out) as folder:
-                found.save(folder)
-    deliver(found.record(), tables_of([found.listing()]), as_json, None)
-    tell_written(out, as_json)
+        deliver_saved(found, as_json, out)

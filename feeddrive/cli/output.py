@@ -10,7 +10,7 @@ import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Protocol
 
 import typer
 from rich.console import Console, RenderableType
@@ -28,6 +28,7 @@ from rich.table import Table
 from feeddrive.errors import ValidityWarning, printable, quoted
 from feeddrive.files import write_text_atomically
 from feeddrive.interface.shown import Listing
+from feeddrive.output_folder import output_folder
 from feeddrive.units.quantity import parse
 
 JsonOption = Annotated[bool, typer.Option("--json", help="JSON in place of tables; SI units.")]
@@ -102,12 +103,33 @@ def deliver(content: Mapping[str, Any], tables: Sequence[RenderableType], as_jso
     text = escaped(json.dumps(content, indent=2, ensure_ascii=False)) + "\n" if as_json else None
     if out is not None:
         write_text_atomically(out, text or _as_text(tables))
-        tell_written(out, as_json)
+        print_written(out, as_json)
     elif text is not None:
         typer.echo(text, nl=False)
     else:
         width = None if sys.stdout.isatty() or os.environ.get("COLUMNS", "").isdigit() else _WIDTH
         _print(Console(markup=False, highlight=False, emoji=False, width=width), tables)
+
+
+class _Saved(Protocol):
+    """A result that has tables, a record and files."""
+
+    def tables(self) -> Sequence[Listing]: ...
+    def record(self) -> Mapping[str, Any]: ...
+    def save(self, path: str | Path, /) -> Path: ...
+
+
+def deliver_saved(found: _Saved, as_json: bool, out: Path | None) -> None:
+    """Write the files of a result into a folder where one is named, and print its tables or its JSON.
+
+    Raises:
+        InputError: the folder cannot be written.
+    """
+    if out is not None:
+        with output_folder(out) as folder:
+            found.save(folder)
+    deliver(found.record(), [] if as_json else tables_of(found.tables()), as_json, None)
+    print_written(out, as_json)
 
 
 @contextmanager
@@ -148,30 +170,30 @@ def progress_bar(name: str) -> Iterator[Callable[[float, float], None] | None]:
         yield lambda done, total: bar.update(task, completed=done, total=total)
 
 
-def tell_written(out: Path | None, as_json: bool) -> None:
-    """Say after the tables where the files are; nothing where there are none, or where JSON is printed."""
+def print_written(out: Path | None, as_json: bool) -> None:
+    """Print after the tables where the files are; nothing where there are none, or where JSON is printed."""
     if out is not None and not as_json:
         typer.echo(f"written: {quoted(str(out.resolve()), LONGEST_LINE)}")
 
 
 @contextmanager
 def warnings_as_lines() -> Iterator[None]:
-    """Tell what leaves the range of its formula in one line each, on stderr."""
+    """Print what leaves the range of its formula in one line each, on stderr."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", ValidityWarning)
         yield
-    told: set[str] = set()
+    printed: set[str] = set()
     for warning in caught:
         if issubclass(warning.category, ValidityWarning):
-            if str(warning.message) not in told:  # a plant is made more than once on the way to its figures
-                tell(f"warning: {warning.message}")
-            told.add(str(warning.message))
+            if str(warning.message) not in printed:  # a plant is made more than once on the way to its figures
+                print_line(f"warning: {warning.message}")
+            printed.add(str(warning.message))
         else:
             warnings.warn_explicit(warning.message, warning.category, warning.filename, warning.lineno)
 
 
-def tell(line: str) -> None:
-    """Say something in one line on stderr."""
+def print_line(line: str) -> None:
+    """Print a line on stderr."""
     typer.echo(quoted(line, LONGEST_LINE), err=True)
 
 

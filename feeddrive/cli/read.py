@@ -16,7 +16,7 @@ from feeddrive.interface.shown import Listing
 
 def command(
     file: Annotated[Path, typer.Argument(help="Trace file, recording or frequency response.", show_default=False)],
-    mapping: Annotated[Path | None, typer.Option("--map", help="Mapping file, in place of what names tell.")] = None,
+    mapping: Annotated[Path | None, typer.Option("--map", help="Mapping file, in place of the names.")] = None,
     axis: Annotated[str, typer.Option(help="Axis of a file that holds several, such as X1.")] = "",
     lead: Annotated[str, typer.Option(help="Lead, such as '10 mm': makes angles of motor encoders in mm.")] = "",
     channels: Annotated[
@@ -29,7 +29,7 @@ def command(
     part: Annotated[int, typer.Option(help="Stretch between gaps, 1 for the first; the longest else.")] = 0,
     sample_time: Annotated[str, typer.Option(help="Distance of samples where the file has no time: '1 ms'.")] = "",
     columns: Annotated[str, typer.Option(help="Names of columns without any, between commas (halsampler).")] = "",
-    decimal: Annotated[str, typer.Option(help="Decimal sign of a CSV file, where it cannot be told.")] = "",
+    decimal: Annotated[str, typer.Option(help="Decimal sign of a CSV file, where it leaves it open.")] = "",
     out: Annotated[
         Path | None,
         typer.Option(

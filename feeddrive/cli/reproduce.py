@@ -15,7 +15,7 @@ from rich.table import Table
 from rich.text import Text
 
 from feeddrive import __version__
-from feeddrive.cli.output import JsonOption, deliver, tell_written, warnings_as_lines, working
+from feeddrive.cli.output import JsonOption, deliver, print_written, warnings_as_lines, working
 from feeddrive.files import write_text_atomically
 from feeddrive.output_folder import output_folder, refuse_unusable
 from feeddrive.reproduce.collection import as_csv, counts, find_papers, record, rows_of
@@ -66,7 +66,7 @@ def command(
             _write(content, rows, folder)
     comparisons = [Comparison(one, [row for row in rows if row.paper is one]) for one in papers]
     deliver(content, [*comparisons, summary_table(rows, papers), Text(_LEGEND)], as_json, None)
-    tell_written(out, as_json)
+    print_written(out, as_json)
 
 
 def _announced(papers: tuple[Paper, ...], progress: Callable[[str], None]) -> Iterator[Paper]:

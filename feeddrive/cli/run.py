@@ -7,9 +7,9 @@ from typing import Annotated
 
 import typer
 
-from feeddrive.cli.output import deliver, progress_bar, tables_of, tell_written, warnings_as_lines
+from feeddrive.cli.output import deliver_saved, progress_bar, warnings_as_lines
 from feeddrive.interface.runs.scenario import run
-from feeddrive.output_folder import output_folder, refuse_unusable
+from feeddrive.output_folder import refuse_unusable
 from feeddrive.simulate.scenario.scenario_overrides import parse_overrides
 
 CHECKPOINT = "checkpoint.npz"
@@ -35,8 +35,4 @@ def command(
             checkpoint=None if out is None else out / CHECKPOINT,
             progress=None if bar is None else lambda share: bar(share, 1.0),
         )
-    if out is not None:
-        with output_folder(out) as folder:
-            found.save(folder)
-    deliver(found.record(), [] if as_json else tables_of(found.tables()), as_json, None)
-    tell_written(out, as_json)
+    deliver_saved(found, as_json, out)

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from feeddrive.cli.output import JsonOption, deliver, tables_of, tell_written, warnings_as_lines
+from feeddrive.cli.output import JsonOption, deliver, print_written, tables_of, warnings_as_lines
 from feeddrive.interface.axis import load
 from feeddrive.interface.machine.summary import Summary
 from feeddrive.output_folder import output_folder
@@ -17,7 +17,7 @@ def command(
     plant: Annotated[str, typer.Argument(help="Plant file, or the name of a shipped machine.")],
     at: Annotated[str, typer.Option(help="Table position for stiffness and modes, such as 250mm.")] = "",
     recording: Annotated[
-        Path | None, typer.Option(help="Recording with the motor angle: tell what it takes of the life of each nut.")
+        Path | None, typer.Option(help="Recording with the motor angle: what it takes of the life of each nut.")
     ] = None,
     as_json: JsonOption = False,
     out: Annotated[
@@ -39,7 +39,7 @@ def command(
             with output_folder(out) as folder:
                 found.save(folder)
     deliver(found.record(), tables, as_json, None if into else out)
-    tell_written(out if into else None, as_json)
+    print_written(out if into else None, as_json)
     if into and isinstance(found, Summary) and not as_json:
         for line in found.not_drawn:
             typer.echo(f"not drawn: {line}")

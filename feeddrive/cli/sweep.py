@@ -7,10 +7,10 @@ from typing import Annotated
 
 import typer
 
-from feeddrive.cli.output import deliver, progress_bar, tables_of, tell_written
+from feeddrive.cli.output import deliver_saved, progress_bar
 from feeddrive.errors import InputError
 from feeddrive.interface.runs.sweep import sweep
-from feeddrive.output_folder import output_folder, refuse_unusable
+from feeddrive.output_folder import refuse_unusable
 from feeddrive.simulate.scenario.scenario_overrides import parse_overrides
 
 _EXAMPLE = '"controller.position_gain=40:80:9 1/s"'
@@ -57,8 +57,4 @@ def command(
         except KeyboardInterrupt:
             typer.echo("stopped; started again with the same --out it goes on", err=True)
             raise
-    if out is not None:
-        with output_folder(out) as folder:
-            found.save(folder)
-    deliver(found.record(), tables_of(found.tables()), as_json, None)
-    tell_written(out, as_json)
+    deliver_saved(found, as_json, out)

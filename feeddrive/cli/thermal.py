@@ -7,10 +7,15 @@ from typing import Annotated
 
 import typer
 
-from feeddrive.cli.output import JsonOption, deliver, tables_of, tell_written, warnings_as_lines, working
+from feeddrive.cli.output import (
+    JsonOption,
+    deliver_saved,
+    warnings_as_lines,
+    working,
+)
 from feeddrive.interface.axis import load
 from feeddrive.interface.runs.warm_up import warm_up
-from feeddrive.output_folder import output_folder, refuse_unusable
+from feeddrive.output_folder import refuse_unusable
 
 
 def command(
@@ -49,8 +54,4 @@ def command(
                 stroke=None if stroke is None else [one.strip() for one in stroke.split(" to ")],
                 segments=segments,
             )
-    if out is not None:
-        with output_folder(out) as folder:
-            found.save(folder)
-    deliver(found.record(), [] if as_json else tables_of(found.tables()), as_json, None)
-    tell_written(out, as_json)
+    deliver_saved(found, as_json, out)

@@ -22,9 +22,9 @@ def command(
     plant: Annotated[str, typer.Option(help="Plant file, or the name of a shipped machine.")],
     out: Annotated[Path | None, typer.Option(help="Folder of the results; FOLDER_watch beside it if left out.")] = None,
     mapping: Annotated[Path | None, typer.Option("--map", help="Mapping file of foreign recordings.")] = None,
-    decimal: Annotated[str, typer.Option(help="Decimal sign, where files do not tell.")] = "",
+    decimal: Annotated[str, typer.Option(help="Decimal sign, where files leave it open.")] = "",
     stamp: Annotated[
-        str, typer.Option(help="Pattern of the date in names, '%Y%m%d_%H%M'; content or name tell else.")
+        str, typer.Option(help="Pattern of the date in names, '%Y%m%d_%H%M'; else taken from content or name.")
     ] = "",
     every: Annotated[str, typer.Option(help="Distance of recordings without dates, '1 day', in order of names.")] = "",
     first: Annotated[str, typer.Option(help="Date of the first of them, '2026-01-31 06:00'.")] = "",

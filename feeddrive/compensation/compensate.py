@@ -19,8 +19,8 @@ from feeddrive.compensation.points import table_for
 from feeddrive.compensation.predicted_accuracy import Applied, Figures, best_reversal, figures, motions, sticking
 from feeddrive.compensation.table import CompensationTable, Deviations, fitted
 from feeddrive.errors import InputError
-from feeddrive.plant.file.entries import Origins, Table
 from feeddrive.plant.plant import DeclaredCascade, Plant
+from feeddrive.schema.table import Origins, Table
 from feeddrive.servo.cascade import Cascade, Feedback
 from feeddrive.simulate.scenario.scenario_controller import read_cascade
 from feeddrive.simulate.setpoints.trajectories import Circle

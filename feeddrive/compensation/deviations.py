@@ -43,8 +43,8 @@ from feeddrive.effects.tabulated import TabulatedTravel
 from feeddrive.effects.travel.lead_error_periodic import LeadErrorPeriodic
 from feeddrive.effects.travel.thermal_growth import ThermalGrowth
 from feeddrive.errors import InputError
-from feeddrive.plant.equations import parameter_symbols, parameter_values
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.structure import parameter_symbols, parameter_values
 from feeddrive.plant.transmission_law import travel_deviation
 from feeddrive.recording.recording import Recording
 from feeddrive.symbolic_turn import SYMBOLS

@@ -28,8 +28,7 @@ from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade
 from feeddrive.servo.cascade_function import REFERENCES, cascade_controller
 from feeddrive.simulate.controlled.controlled import TorqueLoop, resting_state, simulate_controlled
-from feeddrive.simulate.setpoints.jerk_limited import Limits
-from feeddrive.simulate.setpoints.setpoint_motion import Motion, Pieces, Trajectory
+from feeddrive.simulate.setpoints.setpoint_motion import Limits, Motion, Pieces, Trajectory
 from feeddrive.simulate.setpoints.trajectories import Circle, staircase
 from feeddrive.typing import FloatArray
 

@@ -79,7 +79,9 @@ def left(done: Compensated) -> list[str]:
     if done.measured is not None:
         lines.append(difference_words(done.measured))
         lines.append(f"Single samples scatter by {micrometres(done.measured.scatter)} about what is known.")
-    lines.append(f"By its points and its rounding the table leaves up to {micrometres(done.left_by_table)} of the map.")
+    most = micrometres(done.left_by_table)
+    most = f"up to {most}" if done.left_by_table >= 5e-9 else "less than 0.01 um"
+    lines.append(f"By its points and its rounding the table leaves {most} of the map.")
     if done.control.stepwise:
         jump = max(float(np.max(np.abs(np.diff(one)))) for one in (done.table.forward, done.table.reverse))
         if jump > 4 * done.control.resolution:

@@ -23,7 +23,7 @@ from feeddrive.diagnosis.judging.result import (
     Diagnosis,
     FileStamp,
 )
-from feeddrive.diagnosis.judging.veto import without_denied
+from feeddrive.diagnosis.judging.veto import not_worse_than_declared, without_denied
 from feeddrive.diagnosis.ledger.entry import kept_of
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.fit import Problem
@@ -95,37 +95,44 @@ def diagnose(
     if measured and not in_motion:
         mend = "diagnose the numbers alone, or beside a recording of motion and torque"
         raise InputError("measured numbers beside recordings of heat", plant.name, mend)
-    begun = _begun(plant, recordings, validation, split, declared, declared_sentence, measured)
-    settled = _settled(begun.problem, begun.judged, in_the_loop, progress, start)
-    hold = _logged_hold(settled.searched.search, every) if declared is None else declared
-    if hold is not None and declared is None:
-        progress("the torque is logged more slowly than the drive holds it: again")
-        begun = _begun(plant, recordings, validation, split, hold, held_for, measured)
-        settled = _settled(begun.problem, begun.judged, in_the_loop, progress, start)
-    begun, settled, doubted = _without_wrong_numbers(
-        begun, settled, lambda one: _settled(one, begun.judged, in_the_loop, progress, start)
-    )
-    measured = [number for number in measured if number not in doubted]
+
+    def begin(files: Files, hold: float | None, numbers: Sequence[MeasuredNumber]) -> _Begun:
+        problem, judged, notes = prepared(plant, *files, split, hold)
+        problem = replace(problem, numbers=MeasuredRows(tuple(numbers)))
+        refuse_ungiven(problem.numbers, plant)
+        refuse_faulty(problem, (*problem.evidence, *judged))
+        held = held_for if declared is None else declared_sentence
+        also = () if hold is None else (held(hold, files[0][0].sample_time),)
+        problem, judged, quality = with_recorder_that_holds(problem, judged)
+        return _Begun(files, problem, judged, (*notes, *also), quality)
+
+    def settle(begun: _Begun) -> _Settled:
+        return _settled(begun, in_the_loop, progress, start)
+
+    begun = begin((recordings, validation), declared, measured)
+    settled, hold = settle(begun), declared
+    if hold is None and may_be_logged(every):
+        found = settled.searched.search
+        spans = intervals(found.problem, found.fit, certainty(found.problem, found.fit))
+        hold = hold_of(found.fit.effects, spans, every)
+        if hold is not None:
+            progress("the torque is logged more slowly than the drive holds it: again")
+            begun = begin(begun.files, hold, measured)
+            settled = settle(begun)
+    begun, settled, doubted = _without_wrong_numbers(begun, settled, settle)
     progress("asking whether it is the recorder")
-    begun, settled, (recordings, validation) = _without_fault(
-        begun,
-        settled,
-        (recordings, validation),
-        lambda files: _begun(
-            plant, *files, split, hold, declared_sentence if declared is not None else held_for, measured
-        ),
-        lambda one: _settled(one.problem, one.judged, in_the_loop, progress, start),
-    )
+    kept = [number for number in measured if number not in doubted]
+    begun, settled = _without_fault(begun, settled, lambda files: begin(files, hold, kept), settle)
     logged = () if hold is not None else open_lag(settled.searched.search.fit.effects, every)
     begun = replace(begun, notes=(*begun.notes, *logged))
-    return _reported(plant, begun, settled, (recordings, validation), doubted, progress)
+    return _reported(plant, begun, settled, doubted, progress)
 
 
 def _reported(
-    plant: Plant, begun: _Begun, settled: _Settled, files: Files, doubted: Sequence[MeasuredNumber], progress: Progress
+    plant: Plant, begun: _Begun, settled: _Settled, doubted: Sequence[MeasuredNumber], progress: Progress
 ) -> tuple[Diagnosis, tuple[Effect, ...]]:
     """What was found, as it is reported, and the effects to add to the plant."""
-    recordings, validation = files
+    recordings, validation = begun.files
     searched, judged, refinement = settled.searched, settled.judged, settled.refinement
     found = searched.search
     progress("looking at what is left")
@@ -185,34 +192,19 @@ def _numbers_met(found: Search, doubted: Sequence[MeasuredNumber]) -> tuple[Numb
     return number_results(rows, problem.plant, problem.machine(found.fit.effects), len(doubted))
 
 
-def _logged_hold(found: Search, recordings: Sequence[Recording]) -> float | None:
-    if not may_be_logged(recordings):
-        return None
-    spans = intervals(found.problem, found.fit, certainty(found.problem, found.fit))
-    return hold_of(found.fit.effects, spans, recordings)
+Files = tuple[Sequence[Recording], Sequence[Recording]]
+"""Recordings to fit and to judge on."""
 
 
 @dataclass(frozen=True)
 class _Begun:
-    """The problem, the recordings judged on, remarks about them, and what was mended of them."""
+    """The recordings, the problem, what is judged on, remarks about them, and what was mended of them."""
 
+    files: Files
     problem: Problem
     judged: list[Evidence]
     notes: tuple[str, ...]
     quality: tuple[Quality, ...]
-
-
-def _begun(
-    plant: Plant, recordings: Sequence[Recording], validation: Sequence[Recording],
-    split: float, hold: float | None, sentence: Callable[[float, float], str], measured: Sequence[MeasuredNumber],
-) -> _Begun:  # fmt: skip
-    problem, judged, notes = prepared(plant, recordings, validation, split, hold)
-    problem = replace(problem, numbers=MeasuredRows(tuple(measured)))
-    refuse_ungiven(problem.numbers, plant)
-    refuse_faulty(problem, (*problem.evidence, *judged))
-    also = () if hold is None else (sentence(hold, recordings[0].sample_time),)
-    problem, judged, quality = with_recorder_that_holds(problem, judged)
-    return _Begun(problem, judged, (*notes, *also), quality)
 
 
 @dataclass(frozen=True)
@@ -233,10 +225,8 @@ class _Settled:
     refinement: Refinement
 
 
-def _settled(
-    problem: Problem, evidence: Sequence[Evidence], simulate: bool, progress: Progress, start: Sequence[Effect]
-) -> _Settled:
-    searched = search_recordings(problem, progress, start)
+def _settled(begun: _Begun, simulate: bool, progress: Progress, start: Sequence[Effect]) -> _Settled:
+    searched, evidence = search_recordings(begun.problem, progress, start), begun.judged
     found = searched.search
     progress("judging on data not fitted")
     judged, rehomed = _judged(found, evidence)
@@ -259,6 +249,7 @@ def _settled(
         kept, judged = without_denied(preferred, judge(preferred), judge)
         rivals = rivals if kept is preferred else rivals_of(kept, judged)
         found = kept
+    found, judged = not_worse_than_declared(found, judged, judge)
     judged, rehomed = _judged(found, evidence)
     refinement = Refinement(found, (judged, rehomed))
     if simulate:
@@ -268,44 +259,40 @@ def _settled(
     return _Settled(replace(searched, search=found), rivals, judged, rehomed, refinement)
 
 
-Files = tuple[Sequence[Recording], Sequence[Recording]]
-"""Recordings to fit and to judge on."""
-
-
 def _without_fault(
-    begun: _Begun, settled: _Settled, files: Files,
-    begin: Callable[[Files], _Begun], settle: Callable[[_Begun], _Settled],
-) -> tuple[_Begun, _Settled, Files]:  # fmt: skip
+    begun: _Begun, settled: _Settled, begin: Callable[[Files], _Begun], settle: Callable[[_Begun], _Settled]
+) -> tuple[_Begun, _Settled]:
     """What was found, in the recordings as mended where a fault of the recorder says more than what was found in them.
 
     A fault is read from slopes, so that what is left of it in the mended recordings is mended as well.
     """
     fault = suspected(settled.searched.search)
     if fault is None:
-        return begun, settled, files
+        return begun, settled
     left: Suspect | None = fault
     for _ in range(2):
-        mended = tuple([fault.mended(recording) for recording in part] for part in files)
+        mended = [[fault.mended(recording) for recording in part] for part in begun.files]
         try:
             other = begin((mended[0], mended[1]))
         except InputError:  # what it makes of the recordings is none of any machine
-            return begun, settled, files
+            return begun, settled
         left = again(calibrated(other.problem), fault.kind)
         if left is None or abs(left.size) < left.deviation:
             break
         fault = replace(fault, size=fault.size + left.size, deviation=left.deviation)
     again_settled = settle(other)
     if not is_better(fault, again_settled.searched.search, settled.searched.search):
-        return begun, settled, files
-    mended_run = replace(other, quality=(*other.quality, fault.quality(mended[0])))
-    return mended_run, again_settled, (mended[0], mended[1])
+        return begun, settled
+    return replace(other, quality=(*other.quality, fault.quality(mended[0]))), again_settled
 
 
 def _without_wrong_numbers(
-    begun: _Begun, settled: _Settled, settle: Callable[[Problem], _Settled]
+    begun: _Begun, settled: _Settled, settle: Callable[[_Begun], _Settled]
 ) -> tuple[_Begun, _Settled, tuple[MeasuredNumber, ...]]:
     """What was found without measured numbers that are wrong, and these."""
-    problem, settled, wrong = without_wrong(begun.problem, settled, lambda one: one.searched.search, settle)
+    problem, settled, wrong = without_wrong(
+        begun.problem, settled, lambda one: one.searched.search, lambda problem: settle(replace(begun, problem=problem))
+    )
     notes = tuple(sentence(one, settled.searched.search) for one in wrong)
     return replace(begun, problem=problem, notes=(*begun.notes, *notes)), settled, wrong
 

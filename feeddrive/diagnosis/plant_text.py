@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from feeddrive.diagnosis.calibration.calibrated_result import CalibratedResult
 from feeddrive.diagnosis.numbers.declared_values import DeclaredValue
 from feeddrive.errors import InputError
-from feeddrive.plant.file.entries import parse_toml
+from feeddrive.schema.toml_text import parse_toml
 from feeddrive.typing import FloatArray
 from feeddrive.units.quantity import format_quantity
 

@@ -10,8 +10,7 @@ import numpy as np
 
 from feeddrive.diagnosis.heat.heat_evidence import left_out_channels, prepare_heat, within_range
 from feeddrive.diagnosis.heat.heat_prediction import heat_predictor
-from feeddrive.diagnosis.heat.warm_evidence import is_warm_log, prepare_warm
-from feeddrive.diagnosis.heat.warm_prediction import warm_predictor
+from feeddrive.diagnosis.heat.warm import is_warm_log, prepare_warm, warm_predictor
 from feeddrive.diagnosis.likelihood.evidence import AxisEvidence, Evidence, prepare
 from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.diagnosis.likelihood.prediction import AxisPredictor

@@ -131,6 +131,8 @@ class Effect:
         repeatable: whether one search may find it more than once.
         additive: whether a plant may hold more than one at a port, their sum or product having a meaning.
         reads_force: whether it reads `Motion.force`, so that a rigid structure cannot hold it.
+        words: what it is called in a sentence; its name where empty.
+        headline: parameters that a verdict of one line names; the first where empty.
         place: the word under `place_key` that says where it acts, as "nut"; empty where the port says all.
         place_key: key of that word in plant files and reports; empty where there is none.
         places: words that it may be; any word that the machine knows where there are none.
@@ -142,6 +144,8 @@ class Effect:
     ports: ClassVar[tuple[Port, ...]]
     parameters: ClassVar[tuple[Parameter, ...]] = ()
     signature: ClassVar[Signature]
+    words: ClassVar[str] = ""
+    headline: ClassVar[tuple[str, ...]] = ()
     repeatable: ClassVar[bool] = False
     additive: ClassVar[bool] = False
     reads_force: ClassVar[bool] = False

@@ -163,6 +163,7 @@ class TabulatedForce(Tabulated, SourceEffect):
     """Force at the table over one variable."""
 
     name = "tabulated_force"
+    words = "a force on the table"
     ports = (Port.TABLE,)
     places = ("position", "periodic_position", "velocity", "time")
     value_keys = ("force",)
@@ -180,6 +181,7 @@ class TabulatedTorque(Tabulated, SourceEffect):
     """Torque at a shaft over one variable."""
 
     name = "tabulated_torque"
+    words = "a torque on a shaft"
     ports = (Port.MOTOR, Port.SCREW)
     places = ("angle", "periodic_angle", "speed", "time")
     value_keys = ("torque",)
@@ -201,6 +203,7 @@ class TabulatedTravel(Tabulated, TravelEffect):
     """Travel deviation over one variable."""
 
     name = "tabulated_travel"
+    words = "a travel error"
     ports = (Port.TRANSMISSION,)
     places = ("position", "periodic_position", "time")
     value_keys = ("travel",)
@@ -218,6 +221,7 @@ class TabulatedFriction(Tabulated, FrictionEffect):
     """Friction at the table over one variable."""
 
     name = "tabulated_friction"
+    words = "friction of the table"
     ports = (Port.TABLE,)
     places = ("position", "periodic_position", "time")
     value_keys = ("force", "viscous")

@@ -28,10 +28,11 @@ from feeddrive.engine.program import (
     Tangents,
     Task,
 )
-from feeddrive.engine.step.step_constants import Linear, SimulationError, linear_part, step_constants
+from feeddrive.engine.step.linear_part import Linear, SimulationError, linear_part
+from feeddrive.engine.step.step_constants import step_constants
 from feeddrive.plant.chain.chain import DistributedScrew
-from feeddrive.plant.equations import parameter_values
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.structure import parameter_values
 from feeddrive.typing import FloatArray
 
 

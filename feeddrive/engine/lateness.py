@@ -19,8 +19,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from feeddrive.effects.timing.channel_delay import ChannelDelay, lateness
-from feeddrive.engine.timing import SPLIT
 from feeddrive.plant.plant import Plant
+from feeddrive.servo.sampled_plant import SPLIT
 from feeddrive.typing import FloatArray
 
 RATES = {"motor_angle": "motor_speed", "table_position": "table_velocity"}

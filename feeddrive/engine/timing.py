@@ -11,16 +11,13 @@ split there, so that the shifted torque is exact.
 
 from __future__ import annotations
 
-import math
 import warnings
 from dataclasses import dataclass
 
 from feeddrive.effects.base import TimingEffect
 from feeddrive.errors import ValidityWarning
 from feeddrive.plant.plant import Plant
-
-SPLIT = 1e-9
-"""Part of a sample below which the rest of a delay counts as none."""
+from feeddrive.servo.sampled_plant import whole_and_rest
 
 
 @dataclass(frozen=True)
@@ -57,6 +54,4 @@ def timing_of(plant: Plant, sample: float, dead_time: float = 0.0) -> Timing:
         text = f"{plant.name}: torque cannot act before its command; the drive delay of {delay:g} s is taken as 0"
         warnings.warn(text, ValidityWarning, stacklevel=4)
         delay = 0.0
-    late = math.floor(delay / sample + SPLIT)
-    fraction = delay / sample - late
-    return Timing(late, fraction if fraction > SPLIT else 0.0)
+    return Timing(*whole_and_rest(delay / sample))

@@ -16,8 +16,7 @@ from collections.abc import Sequence
 import casadi as ca
 
 from feeddrive.errors import printable
-from feeddrive.export.equation_quantities import Quantity
-from feeddrive.export.nonlinear_model import Model, slopes_of
+from feeddrive.export.nonlinear_model import Model, Quantity, slopes_of
 from feeddrive.symbolic_turn import SYMBOLS
 
 

@@ -21,9 +21,8 @@ import casadi as ca
 
 from feeddrive import __version__
 from feeddrive.errors import InputError
-from feeddrive.export.equation_quantities import Quantity
 from feeddrive.export.json_file import rows
-from feeddrive.export.nonlinear_model import Model
+from feeddrive.export.nonlinear_model import Model, Quantity
 from feeddrive.symbolic_turn import SYMBOLS
 
 

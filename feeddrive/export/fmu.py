@@ -45,7 +45,7 @@ from feeddrive.export.c_source import call, comment, header_text, numbers, sourc
 from feeddrive.export.fmu_description import description_text, fixed_parameters
 from feeddrive.export.kinks import Kinks, kinks_of
 from feeddrive.export.nonlinear_model import Model, nominals
-from feeddrive.plant.equations import chain_symbols, parameter_symbols
+from feeddrive.plant.structure import chain_symbols, parameter_symbols
 from feeddrive.symbolic_turn import SYMBOLS
 from feeddrive.typing import Expression
 

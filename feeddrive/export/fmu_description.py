@@ -14,8 +14,7 @@ import casadi as ca
 
 from feeddrive import __version__
 from feeddrive.errors import printable
-from feeddrive.export.equation_quantities import Quantity
-from feeddrive.export.nonlinear_model import Model, nominals
+from feeddrive.export.nonlinear_model import Model, Quantity, nominals
 from feeddrive.symbolic_turn import SYMBOLS
 
 _BASE = {

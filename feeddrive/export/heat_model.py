@@ -10,8 +10,7 @@ Inputs are the speed of the screw [rad/s] and the temperature of the air [degC],
 from __future__ import annotations
 
 from feeddrive import __version__
-from feeddrive.export.equation_quantities import Quantity
-from feeddrive.export.nonlinear_model import Model, identifier_of
+from feeddrive.export.nonlinear_model import Model, Quantity, identifier_of
 from feeddrive.export.point import Point
 from feeddrive.thermal.heat_equations import HEAT_INPUT_UNITS, HEAT_INPUTS, heat_equations, linear_heat
 from feeddrive.thermal.machine_heat import Heat

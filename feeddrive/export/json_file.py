@@ -14,8 +14,8 @@ from collections.abc import Sequence
 from typing import Any
 
 from feeddrive import __version__
-from feeddrive.export.equation_quantities import Quantity, parameters
 from feeddrive.export.linear_model import LinearModel
+from feeddrive.export.nonlinear_model import Quantity, parameters
 from feeddrive.export.notes import included, left_out, linear_notes
 from feeddrive.plant.analysis.modes import Modes, braked_modes, free_modes
 from feeddrive.plant.plant import Plant

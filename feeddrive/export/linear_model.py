@@ -27,21 +27,23 @@ from __future__ import annotations
 import io
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import control
 import numpy as np
 from scipy.io import savemat
 
 from feeddrive import __version__
 from feeddrive.errors import printable
-from feeddrive.export.equation_quantities import Quantity, inputs, outputs, parameters, states
-from feeddrive.export.nonlinear_model import identifier_of
+from feeddrive.export.nonlinear_model import Quantity, identifier_of, inputs, outputs, parameters, states
 from feeddrive.export.notes import included, left_out, linear_notes
 from feeddrive.export.point import Point, refuse_outside
-from feeddrive.plant.analysis.linear import state_space, steady_motion
+from feeddrive.plant.analysis.linear import state_space
+from feeddrive.plant.analysis.steady import steady_motion
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray
+
+if TYPE_CHECKING:
+    import control
 
 
 @dataclass(frozen=True)

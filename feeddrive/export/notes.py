@@ -8,7 +8,7 @@ import casadi as ca
 
 from feeddrive.effects.base import BristleEffect, Kind, TimingEffect, TransmissionEffect
 from feeddrive.effects.timing.channel_delay import ChannelDelay
-from feeddrive.plant.analysis.linear import timed_ode
+from feeddrive.plant.analysis.ode import timed_ode
 from feeddrive.plant.plant import Plant
 from feeddrive.symbolic_turn import SYMBOLS
 from feeddrive.units.quantity import format_quantity

@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass
 
 from feeddrive.errors import InputError
-from feeddrive.plant.analysis.linear import MOVING
+from feeddrive.plant.analysis.steady import MOVING
 from feeddrive.plant.plant import Plant
 from feeddrive.units.quantity import format_quantity, parse
 

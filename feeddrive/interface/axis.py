@@ -18,21 +18,21 @@ from feeddrive.files import find_plant, write_text_atomically
 from feeddrive.interface.machine.check import Check, Life, UsedLife
 from feeddrive.interface.machine.modes import Modes
 from feeddrive.interface.machine.summary import Stiffness, Summary
-from feeddrive.interface.quantities import Quantity, quantities, si
+from feeddrive.interface.quantities import Quantities, Quantity, quantities, si
 from feeddrive.plant.analysis.lumping import lump
 from feeddrive.plant.analysis.mode_map import mode_map
+from feeddrive.plant.analysis.modes import inertia_at_motor
 from feeddrive.plant.analysis.plausibility import check_plant
 from feeddrive.plant.analysis.rated_life import rated_life
 from feeddrive.plant.analysis.stiffness_budget import stiffness_budget
 from feeddrive.plant.analysis.summary import summarise
-from feeddrive.plant.chain.moving_inertia import inertia_at_motor
-from feeddrive.plant.derived_effects import GRAVITY
 from feeddrive.plant.file.declared_check import check_declared
-from feeddrive.plant.file.entries import parse_toml
+from feeddrive.plant.file.guide_section import GRAVITY
 from feeddrive.plant.file.lumped_text import plant_text_with_effects
 from feeddrive.plant.file.plant_file import plant_from_entries
 from feeddrive.plant.file.plant_schema import plant_table
 from feeddrive.plant.plant import Plant
+from feeddrive.schema.toml_text import parse_toml
 from feeddrive.simulate.scenario.scenario_overrides import with_overrides
 from feeddrive.thermal.machine_heat import Heat
 
@@ -254,7 +254,7 @@ class Axis:
 
         Args:
             at: table position for stiffness and modes; the middle of the stroke if left out.
-            recording: of which the life that it takes is told, see `used_life`; none if left out.
+            recording: whose share of the life is added, see `used_life`; none if left out.
 
         Raises:
             InputError: a position off the screw, a recording without motor angle, or of a machine of heat alone.
@@ -297,7 +297,7 @@ class Axis:
         place = None if at is None else si(at, "m", "at")
         return Lumped(self.name, lump(self.plant, place, further if self.has_heat else ()))
 
-    def modes(self, at: Quantity | Sequence[Quantity] | None = None) -> Modes:
+    def modes(self, at: Quantities = None) -> Modes:
         """Natural frequencies, motor held and free.
 
         Args:
@@ -400,8 +400,8 @@ class Axis:
         output: str = "",
         *,
         at: str = "",
-        positions: Quantity | Sequence[Quantity] | None = None,
-        payload: Quantity | Sequence[Quantity] | None = None,
+        positions: Quantities = None,
+        payload: Quantities = None,
         controller: Servo | str | Path | None = None,
         loop: str = "",
         frequencies: Sequence[Quantity] = ("1 Hz", "2 kHz"),
@@ -429,20 +429,14 @@ class Axis:
         >>> len(bode.curves)
         2
         """
-        from feeddrive.interface.machine.bode import bode
+        from feeddrive.interface.machine.bode import frequency_range, loops_bode, mechanics_bode, operating_cases
 
-        return bode(
-            self.plant,
-            given,
-            output,
-            at=at,
-            positions=positions,
-            payload=payload,
-            controller=controller,
-            loop=loop,
-            frequencies=frequencies,
-            measured=measured,
-        )
+        cases, ends = operating_cases(self.plant, at, positions, payload), frequency_range(frequencies)
+        if not loop and controller is None:
+            return mechanics_bode(self.plant, given, output, cases, ends, measured)
+        if measured is not None:
+            raise InputError("a recording is laid over the mechanics, not loops", "recording", "leave out the loop")
+        return loops_bode(self.plant, given, output, cases, ends, controller, loop)
 
     def export(self, form: str, folder: str | Path, at: str = "", heat: bool = False) -> tuple[Path, ...]:
         """Write the axis in the form of another tool.
@@ -462,7 +456,7 @@ class Axis:
         """
         from feeddrive.export.exported_plant import Form, write_export, write_heat_export
         from feeddrive.export.point import export_point
-        from feeddrive.plant.file.entries import nearest
+        from feeddrive.schema.toml_text import nearest
 
         forms = {str(one): one for one in Form}
         if form not in forms:
@@ -479,7 +473,7 @@ def heat_velocity(axis: Axis, at: str) -> float:
         InputError: a point that cannot be read, or that says where the table is to a machine without one.
     """
     from feeddrive.export.point import Point, export_point, written_point
-    from feeddrive.plant.analysis.linear import MOVING
+    from feeddrive.plant.analysis.steady import MOVING
 
     point = export_point(axis.plant, at, "at") if axis.has_motion else Point(0.0, written_point(at, "at").get("v"))
     return MOVING if point.velocity is None else point.velocity

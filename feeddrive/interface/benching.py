@@ -2,25 +2,19 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from feeddrive.bench_page.page import BenchPage, bench_page
-from feeddrive.compensation.compensate import cascade_of
-from feeddrive.diagnosis.judging.result import Diagnosis
 from feeddrive.errors import InputError
 from feeddrive.files import DIAGNOSED, write_text_atomically
 from feeddrive.interface.axis import Axis, load
 from feeddrive.interface.measured.diagnosed import Diagnosed
-from feeddrive.interface.quantities import Quantity, si
+from feeddrive.interface.measured.reading import diagnosis_content
+from feeddrive.interface.quantities import Quantity, positive
 from feeddrive.interface.servo import Servo, cascade_for, tune
-from feeddrive.plant.plant import Plant
 from feeddrive.servo.loop_response import refuse_unstable_case
 from feeddrive.servo.mechanics_response import Case
-
-_MOST_BYTES = 200_000_000
 
 
 @dataclass(frozen=True)
@@ -74,34 +68,10 @@ def bench(
     """
     axis, found = _diagnosed(axis, diagnosis)
     plant = axis.plant
-    heaviest = si(payload, "kg", "payload")
-    if not heaviest > 0:
-        raise InputError(f"{payload} is not above zero", "payload", "write a positive mass")
+    heaviest = positive(payload, "kg", "payload", "100 kg")
     cascade = cascade_for(plant, controller) if controller is not None else tune(axis).cascade
     refuse_unstable_case(plant, cascade, Case(plant.middle), "controller")
     return Bench(BenchPage(plant, cascade, heaviest, found))
-
-
-def bench_of_diagnosis(after: Plant, diagnosis: Diagnosis) -> str:
-    """The page for the tab of a report: the machine as diagnosed, at its declared or a recommended cascade.
-
-    Args:
-        after: the machine with what was found.
-        diagnosis: what was found.
-
-    Returns:
-        The page; empty where there is nothing to play on: no effect was found, a machine without elastic chain or that
-        declares heat alone, or one whose loop cannot be made or shown.
-    """
-    if not after.has_motion or not after.chain.elastic or not diagnosis.effects:
-        return ""
-    try:
-        cascade = cascade_of(after, None)
-        refuse_unstable_case(after, cascade, Case(after.middle), "controller")
-        names = tuple(one.name for one in diagnosis.effects)
-        return bench_page(BenchPage(after, cascade, max(100.0, after.chain_values()["table_mass"]), names))
-    except InputError:
-        return ""
 
 
 def _diagnosed(axis: Axis, diagnosis: Diagnosed | str | Path | None) -> tuple[Axis, tuple[str, ...]]:
@@ -111,20 +81,8 @@ def _diagnosed(axis: Axis, diagnosis: Diagnosed | str | Path | None) -> tuple[Ax
     if isinstance(diagnosis, Diagnosed):
         return diagnosis.plant, tuple(one.name for one in diagnosis.diagnosis.effects)
     folder = Path(diagnosis)
-    content = _content(folder / "diagnosis.json")
+    content = diagnosis_content(folder)
+    if not str(content.get("format", "")).startswith("feeddrive-diagnosis/"):
+        raise InputError("is no diagnosis of recordings", str(folder), "name a folder that holds one")
     named = [one.get("name") for one in content.get("effects", []) if isinstance(one, dict)]
     return load(folder / DIAGNOSED), tuple(str(name) for name in named if name)
-
-
-def _content(path: Path) -> dict[str, Any]:
-    try:
-        if path.stat().st_size > _MOST_BYTES:
-            raise InputError(
-                "is too large for a diagnosis", str(path), "give the folder that `feeddrive diagnose` wrote"
-            )
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError, RecursionError):
-        content = None
-    if not isinstance(content, dict) or not str(content.get("format", "")).startswith("feeddrive-diagnosis/"):
-        raise InputError("is no diagnosis", str(path), "give the folder that `feeddrive diagnose` wrote")
-    return content

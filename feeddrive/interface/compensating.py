@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from feeddrive.compensation import sheet
 from feeddrive.compensation.actions import unsure_of_play
@@ -20,20 +19,20 @@ from feeddrive.compensation.temperature import HeatTable, heat_table, recorded_h
 from feeddrive.errors import InputError
 from feeddrive.files import shipped_plants, write_text_atomically
 from feeddrive.interface.axis import Axis, load
-from feeddrive.interface.measured.diagnosed import Diagnosed
-from feeddrive.interface.measured.reading import as_recording
-from feeddrive.interface.quantities import Quantity, quantities, si
+from feeddrive.interface.measured.reading import as_recording, diagnosis_content
+from feeddrive.interface.quantities import Quantity, positive, quantities, si
 from feeddrive.interface.servo import Servo, cascade_for
 from feeddrive.interface.shown import Listing, Shown
-from feeddrive.plant.file.entries import nearest
 from feeddrive.recording.recording import Recording
+from feeddrive.schema.toml_text import nearest
 from feeddrive.servo.cascade import Cascade
 from feeddrive.units.quantity import format_quantity
 
 if TYPE_CHECKING:
+    from feeddrive.interface.measured.diagnosed import Diagnosed
     from feeddrive.report.figures.drawing import ReportFigure
 
-Source = Axis | Diagnosed | Recording | str | Path
+Source: TypeAlias = "Axis | Diagnosed | Recording | str | Path"
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -177,20 +176,20 @@ def compensate(
         raise InputError(f'no form "{form}"', "form", nearest(str(form), FORMS))
     wishes = Wishes(
         form,
-        _positive(every, "every"),
+        None if every is None else positive(every, "m", "every", "10 mm"),
         None if reference is None else si(reference, "m", "reference"),
         _ends(stroke),
         checked_axis(axis),
-        _positive(resolution, "resolution"),
+        None if resolution is None else positive(resolution, "m", "resolution", "0.1 um"),
     )
-    travel = _positive(lead, "lead")
+    travel = None if lead is None else positive(lead, "m", "lead", "10 mm")
     found, unsure, where, recorded = _opened(source)
     if isinstance(found, Recording):
         if form == HEAT:
             return Compensation(recorded_heat_table(found, wishes.reference), axis)
         radius = None if travel is None else travel / (2 * math.pi)
-        told = recorded_deviations(found, radius, travel)
-        return Compensation(compensate_recording(found.name, told, wishes, travel or math.inf), axis)
+        measured = recorded_deviations(found, radius, travel)
+        return Compensation(compensate_recording(found.name, measured, wishes, travel or math.inf), axis)
     if form == HEAT:
         if not found.has_heat:
             raise InputError("declares no heat", where or found.name, "declare [thermal], or give a warm recording")
@@ -201,15 +200,6 @@ def compensate(
     if wishes.stroke is None and found.plant.stroke is None:
         wishes = replace(wishes, stroke=recorded)
     return Compensation(compensate_plant(found.plant, wishes, loop, unsure, where), axis)
-
-
-def _positive(value: Quantity | None, where: str) -> float | None:
-    if value is None:
-        return None
-    found = si(value, "m", where)
-    if not found > 0:
-        raise InputError(f"{value} is not above zero", where, 'write a length, such as "10 mm"')
-    return found
 
 
 def _ends(stroke: Sequence[Quantity] | None) -> tuple[float, float] | None:
@@ -223,7 +213,7 @@ def _ends(stroke: Sequence[Quantity] | None) -> tuple[float, float] | None:
 
 def _opened(source: Source) -> tuple[Axis | Recording, str, str, tuple[float, float] | None]:
     """The axis or recording of a source, why its backlash is not sure, its name for messages, the recorded stroke."""
-    if isinstance(source, Diagnosed):
+    if not isinstance(source, Axis | Recording | str | Path) and hasattr(source, "diagnosis"):
         return source.plant, _unsure(source.record()), source.axis.name, source.diagnosis.recorded_stroke
     if isinstance(source, Axis | Recording):
         return source, "", "", None
@@ -231,7 +221,7 @@ def _opened(source: Source) -> tuple[Axis | Recording, str, str, tuple[float, fl
         raise InputError(f"{type(source).__name__} is no source", "compensate", "give a diagnosis, an axis or a file")
     path = Path(source)
     if path.is_dir():
-        content = _diagnosis(path)
+        content = diagnosis_content(path)
         return load(path / "plant_after.toml"), _unsure(content), str(path), _recorded(content)
     if path.suffix.lower() == ".toml" or (not path.is_file() and _is_shipped(str(source))):
         return load(source), "", str(path), None
@@ -248,18 +238,6 @@ def _recorded(content: dict[str, Any]) -> tuple[float, float] | None:
 
 def _is_shipped(name: str) -> bool:
     return name in {path.stem for path in shipped_plants()}
-
-
-def _diagnosis(folder: Path) -> dict[str, Any]:
-    where = folder / "diagnosis.json"
-    mend = "name the folder that `feeddrive diagnose --out` has written"
-    try:
-        content = json.loads(where.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        raise InputError("holds no diagnosis", str(folder), mend) from None
-    if not isinstance(content, dict) or not isinstance(content.get("effects", []), list):
-        raise InputError("is no diagnosis", str(where), mend)
-    return content
 
 
 def _unsure(content: dict[str, Any]) -> str:

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 
 from feeddrive.errors import InputError
 from feeddrive.interface.shown import Listing, Shown
-from feeddrive.plant.file.entries import nearest_choice
 from feeddrive.plant.file.plant_schema import PLANT
 from feeddrive.schema.controller import CONTROLLER
 from feeddrive.schema.key import Key
 from feeddrive.schema.mapping import MAPPING
 from feeddrive.schema.measured import MEASURED
 from feeddrive.schema.section import Section
+from feeddrive.schema.toml_text import nearest_choice
 from feeddrive.simulate.scenario.scenario_file import SCENARIO
 
 ROOTS = {one.path: one for one in (PLANT, CONTROLLER, SCENARIO, MAPPING, MEASURED)}

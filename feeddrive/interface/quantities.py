@@ -14,6 +14,9 @@ from feeddrive.units.quantity import parse
 Quantity = str | float
 """A string with its unit, such as "20 mm", or a number in SI."""
 
+Quantities = Quantity | Sequence[Quantity] | None
+"""One quantity or several; None for none."""
+
 
 def si(value: Quantity, unit: str, where: str = "quantity") -> float:
     """A quantity in SI.
@@ -37,7 +40,19 @@ def si(value: Quantity, unit: str, where: str = "quantity") -> float:
     return float(value)
 
 
-def quantities(values: Quantity | Sequence[Quantity] | None, unit: str, where: str) -> tuple[float, ...]:
+def positive(value: Quantity, unit: str, where: str, example: str) -> float:
+    """A quantity in SI that is above zero; `example` is how one is written.
+
+    Raises:
+        InputError: as `si`, or zero or less.
+    """
+    found = si(value, unit, where)
+    if not found > 0:
+        raise InputError(f"{value} is not above zero", where, f'write e.g. "{example}"')
+    return found
+
+
+def quantities(values: Quantities, unit: str, where: str) -> tuple[float, ...]:
     """One quantity or several, in SI; none for None.
 
     Raises:

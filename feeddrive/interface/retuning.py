@@ -15,7 +15,7 @@ from feeddrive.servo.cascade import KV_UNIT, Cascade
 from feeddrive.servo.filters import Filter
 from feeddrive.servo.loop_response import loops_of
 from feeddrive.servo.response_family import open_family
-from feeddrive.simulate.controlled.controller_file import read_controller
+from feeddrive.simulate.scenario.scenario_controller import read_controller
 from feeddrive.tuning.drive_forms.drive_file import read_drive_file
 from feeddrive.tuning.drive_settings import facts_of
 from feeddrive.tuning.filter_choice import is_low_pass

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 import tomllib
 from collections.abc import Mapping, Sequence
@@ -12,17 +11,17 @@ from typing import TYPE_CHECKING, Any
 
 from feeddrive import __version__
 from feeddrive.errors import InputError
-from feeddrive.files import find_scenario_or_controller, write_bytes_atomically, write_text_atomically
-from feeddrive.interface.quantities import Quantity, quantities, si
+from feeddrive.files import find_scenario_or_controller, write_text_atomically
+from feeddrive.interface.quantities import Quantities, Quantity, positive, quantities, si
 from feeddrive.interface.retuning import Retuned, compare, read_present
-from feeddrive.interface.shown import Listing, Shown
-from feeddrive.plant.file.entries import nearest
+from feeddrive.interface.shown import Listing, Shown, finite, write_figures, write_json
 from feeddrive.plant.plant import Plant
+from feeddrive.schema.toml_text import nearest
 from feeddrive.servo.cascade import KV_UNIT, Cascade, Feedback
 from feeddrive.servo.loop_response import loops_of
 from feeddrive.servo.margins import Margins
 from feeddrive.servo.response_family import margins_content, open_family
-from feeddrive.simulate.controlled.controller_file import read_controller
+from feeddrive.simulate.scenario.scenario_controller import read_controller
 from feeddrive.tuning.bare_drive import bare_drive
 from feeddrive.tuning.demand import Demand, operating_points
 from feeddrive.tuning.drive_settings import DriveSettings, drive_settings
@@ -152,8 +151,8 @@ def tune(
     *,
     phase: Quantity = "45 deg",
     gain: Quantity = "8 dB",
-    positions: Quantity | Sequence[Quantity] | None = None,
-    payload: Quantity | Sequence[Quantity] | None = None,
+    positions: Quantities = None,
+    payload: Quantities = None,
     velocity: Quantity = "3 m/min",
     drive: str | Path | None = None,
     velocity_rate: Quantity = "8 kHz",
@@ -188,9 +187,9 @@ def tune(
             raise InputError(f"{dead_time} is negative", "dead_time", "write zero or more")
         bare = bare_drive(
             plant,
-            _positive(velocity_rate, "Hz", "velocity_rate"),
-            _positive(position_rate, "Hz", "position_rate"),
-            _positive(current_bandwidth, "Hz", "current_bandwidth"),
+            positive(velocity_rate, "Hz", "velocity_rate", "8 kHz"),
+            positive(position_rate, "Hz", "position_rate", "2 kHz"),
+            positive(current_bandwidth, "Hz", "current_bandwidth", "1 kHz"),
             late,
             place,
         )
@@ -232,13 +231,6 @@ def _feedback(written: str | None) -> Feedback | None:
     return None if written is None else Feedback(written)
 
 
-def _positive(value: Quantity, unit: str, where: str) -> float:
-    found = si(value, unit, where)
-    if not found > 0:
-        raise InputError(f"{value} is not above zero", where, "write a positive value")
-    return found
-
-
 FORMAT = "feeddrive-tune/1"
 
 
@@ -263,7 +255,7 @@ def tuned_record(servo: Servo, typed: DriveSettings | None, retuned: Retuned | N
         "position_feedback": str(cascade.feedback),
         "filters": [
             {"kind": one.kind, "frequency": one.frequency, "damping": one.damping,
-             "depth_db": one.depth if math.isfinite(one.depth) else None,
+             "depth_db": finite(one.depth),
              "resonance": None if one.resonance is None else list(one.resonance), "brings": one.brings}
             for one in found.velocity.filters
         ],
@@ -300,23 +292,12 @@ def save_tuned(servo: Servo, typed: DriveSettings | None, retuned: Retuned | Non
     Raises:
         InputError: a file cannot be written.
     """
-    from feeddrive.report.figures.drawing import render
-    from feeddrive.report.figures.figure_bode import bode_figure
-
-    cases = [one.case for one in servo.recommendation.reached]
-    figures = [
-        bode_figure(open_family(servo.plant, servo.cascade, loop, cases, LOWEST, HIGHEST))
-        for loop in loops_of(servo.cascade)
-    ]
-    if retuned is not None:
-        figures += [one for one in retuned.figures() if one.stem.startswith("retuned")]
-    for one in figures:
-        write_bytes_atomically(folder / f"{one.stem}.png", render(one).png)
+    compared = retuned.figures() if retuned is not None else ()
+    write_figures([*servo._figures(), *(one for one in compared if one.stem.startswith("retuned"))], folder)
     if typed is not None:
         ending = "hal" if typed.form == "linuxcnc" else "txt"
         write_text_atomically(folder / f"{typed.form}.{ending}", typed.text)
-    content = json.dumps(tuned_record(servo, typed, retuned), indent=2, ensure_ascii=False, allow_nan=False)
-    write_text_atomically(folder / "tune.json", content + "\n")
+    write_json(tuned_record(servo, typed, retuned), folder / "tune.json")
     servo.save(folder / "controller.toml")
 
 

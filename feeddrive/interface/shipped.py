@@ -11,9 +11,9 @@ from feeddrive.files import shipped_plants, shipped_scenarios
 from feeddrive.interface.axis import load
 from feeddrive.interface.shown import Listing, Shown
 from feeddrive.plant.file.effect_sections import read_effects
-from feeddrive.plant.file.entries import nearest, parse_toml
 from feeddrive.plant.file.plant_schema import plant_table
 from feeddrive.report.words.words import effect_words
+from feeddrive.schema.toml_text import nearest, parse_toml
 
 
 def list_plants() -> tuple[str, ...]:

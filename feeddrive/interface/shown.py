@@ -68,6 +68,10 @@ class Shown:
         """The table."""
         raise NotImplementedError
 
+    def tables(self) -> tuple[Listing, ...]:
+        """Every table; the one alone where there are no others."""
+        return (self.listing(),)
+
     def _figures(self) -> Sequence[ReportFigure]:
         """The figures, the telling one first; none where there is nothing to draw."""
         return ()
@@ -96,10 +100,24 @@ class Shown:
         Raises:
             InputError: nothing to draw.
         """
+        return self._telling().figure
+
+    def save_figure(self, path: str | Path) -> Path:
+        """Write the figure as PNG.
+
+        Raises:
+            InputError: nothing to draw, or the file cannot be written.
+        """
+        from feeddrive.report.figures.drawing import render  # matplotlib takes time to import
+
+        write_bytes_atomically(Path(path), render(self._telling()).png)
+        return Path(path)
+
+    def _telling(self) -> ReportFigure:
         figures = self._figures()
         if not figures:
             raise InputError("there is nothing to draw", self.listing().title, "look at its table")
-        return figures[0].figure
+        return figures[0]
 
 
 def write_json(content: Mapping[str, Any], path: Path, indent: int = 2) -> None:

@@ -15,8 +15,7 @@ from feeddrive.metrology.following import Following, Settling, following, settli
 from feeddrive.metrology.loops import ForceLoop, FrictionPoint, TorqueLoop, force_loop, friction_map, torque_loop
 from feeddrive.metrology.positioning import EDITION, Positioning, positioning
 from feeddrive.metrology.response import Response, StepResponse, measured_response, periodic_response, step_response
-from feeddrive.simulate.scenario.scenario import Evaluation
-from feeddrive.simulate.scenario.scenario_result import ScenarioResult
+from feeddrive.simulate.scenario.scenario import Evaluation, ScenarioResult
 from feeddrive.simulate.setpoints.trajectories import Circle, Wave
 from feeddrive.simulate.setpoints.waveforms import Multisine, Prbs, Sweep, Waveform
 from feeddrive.typing import BoolArray, FloatArray, IntegerArray

@@ -16,7 +16,7 @@ from feeddrive.servo.cascade import Cascade
 from feeddrive.servo.loop_response import Loop, closed_figures, closed_response
 from feeddrive.servo.margins import GROWTH
 from feeddrive.servo.mechanics_response import Case
-from feeddrive.simulate.scenario.scenario_result import ScenarioResult
+from feeddrive.simulate.scenario.scenario import ScenarioResult
 from feeddrive.simulate.setpoints.trial_motions import Trial, circle_about, run_trial, step_at
 from feeddrive.tuning.recommendation import Reached, reached_in
 

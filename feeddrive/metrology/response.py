@@ -30,13 +30,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feeddrive.errors import InputError
-from feeddrive.plant.analysis.linear import MOVING, OUTPUTS
+from feeddrive.plant.analysis.ode import OUTPUTS
+from feeddrive.plant.analysis.steady import MOVING
 from feeddrive.recording.recording import Recording
 from feeddrive.servo.cascade_function import velocity_loop_of
 from feeddrive.servo.linear_loop import closed_loop
 from feeddrive.servo.margins import frequency_response
 from feeddrive.servo.sampled_plant import sampled_plant
-from feeddrive.simulate.scenario.scenario_result import ScenarioResult
+from feeddrive.simulate.scenario.scenario import ScenarioResult
 from feeddrive.typing import ComplexArray, FloatArray
 
 SETTLED_BY = 0.8

@@ -18,7 +18,7 @@ from feeddrive.metrology.following import Following, Settling, following
 from feeddrive.metrology.loops import ForceLoop, FrictionPoint, TorqueLoop
 from feeddrive.metrology.positioning import Positioning
 from feeddrive.metrology.response import StepResponse
-from feeddrive.simulate.scenario.scenario_result import SERIES, ScenarioResult
+from feeddrive.simulate.scenario.scenario import SERIES, ScenarioResult
 from feeddrive.simulate.sweep.sweep_unit import Metric
 
 _UNITS: dict[type, dict[str, str]] = {

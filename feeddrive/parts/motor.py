@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from feeddrive.parts.values import PartValue, check_values
+from feeddrive.parts.values import PartValue, check_values, part_values
 
 
 @dataclass(frozen=True)
@@ -30,17 +30,11 @@ class HoldingBrake:
     holding_torque: float
     stiffness: float
 
-    values: ClassVar[tuple[PartValue, ...]] = (
-        PartValue("holding_torque", "N m", 0.0, 1e6, usual=(0.05, 2e3), meaning="torque above which the brake slips"),
-        PartValue(
-            "stiffness",
-            "N m/rad",
-            0.1,
-            1e10,
-            usual=(10.0, 1e7),
-            meaning="torsional stiffness of the closed brake between rotor and motor housing",
-        ),
-    )
+    values: ClassVar[tuple[PartValue, ...]] = part_values("""
+holding_torque | N m | (0, 1e6) usual 0.05 to 2000 | | torque above which the brake slips
+stiffness | N m/rad | (0.1, 1e10) usual 10 to 1e7 | | torsional stiffness of the closed brake between rotor and \
+motor housing
+""")
 
     def __post_init__(self) -> None:
         check_values("brake", self.values, vars(self))
@@ -72,25 +66,12 @@ class Motor:
     shaft_stiffness: float | None = None
     brake: HoldingBrake | None = None
 
-    values: ClassVar[tuple[PartValue, ...]] = (
-        PartValue(
-            "rotor_inertia",
-            "kg m^2",
-            0.0,
-            100.0,
-            usual=(1e-7, 1.0),
-            meaning="inertia of the rotor, with encoder and brake",
-        ),
-        PartValue("torque_limit", "N m", 0.0, 1e6, usual=(0.01, 5e3), meaning="peak torque of the motor"),
-        PartValue(
-            "shaft_stiffness",
-            "N m/rad",
-            0.1,
-            1e10,
-            usual=(10.0, 1e7),
-            meaning="torsional stiffness from the rotor to the hub; rigid if left out",
-        ),
-    )
+    values: ClassVar[tuple[PartValue, ...]] = part_values("""
+rotor_inertia | kg m^2 | (0, 100) usual 1e-7 to 1 | | inertia of the rotor, with encoder and brake
+torque_limit | N m | (0, 1e6) usual 0.01 to 5000 | | peak torque of the motor
+shaft_stiffness | N m/rad | (0.1, 1e10) usual 10 to 1e7 | | torsional stiffness from the rotor to the hub; rigid if \
+left out
+""")
 
     def __post_init__(self) -> None:
         given = {key: value for key, value in vars(self).items() if value is not None}

@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from feeddrive.errors import InputError, ValidityWarning
+from feeddrive.schema.key import bounds, table_rows
 from feeddrive.units.quantity import format_quantity
 
 
@@ -37,6 +38,22 @@ class PartValue:
     default: float | None = None
     open_ends: bool = True
     meaning: str = ""
+
+
+def part_values(table: str) -> tuple[PartValue, ...]:
+    """Values declared in a table, one a line: key | SI unit | range | = default, or nothing | meaning.
+
+    Ranges are written as in `feeddrive.schema.key`: (0.1, 1e9) usual 10 to 5e6.
+    """
+    return tuple(_part_value(*cells) for cells in table_rows(table))
+
+
+def _part_value(key: str, unit: str, ends: str, default: str, meaning: str) -> PartValue:
+    found = bounds(ends)
+    assert found is not None, ends
+    open_ends = found.open_ends or math.isinf(found.minimum)
+    given = float(default.removeprefix("=")) if default else None
+    return PartValue(key, unit, found.minimum, found.maximum, found.usual, given, open_ends, meaning)
 
 
 def check_values(part: str, known: tuple[PartValue, ...], values: Mapping[str, float]) -> None:

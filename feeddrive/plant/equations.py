@@ -44,26 +44,11 @@ import casadi as ca
 
 from feeddrive.effects.base import BristleEffect, Motion, Port
 from feeddrive.plant.chain.linear_chain import Chain, Spring, Values
-from feeddrive.plant.friction_law import friction_force, friction_level, resisting_force
+from feeddrive.plant.friction_law import resisting_force
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.symbols import Symbols, chain_symbols, parameter_names, parameter_symbols, parameter_values
-from feeddrive.plant.transmission_law import nut_force, travel_deviation
+from feeddrive.plant.structure import Symbols, chain_symbols
+from feeddrive.plant.transmission_law import nut_force
 from feeddrive.typing import Expression
-
-__all__ = [
-    "Forces",
-    "Symbols",
-    "bristle_count",
-    "chain_symbols",
-    "effect_forces",
-    "friction_force",
-    "friction_level",
-    "parameter_names",
-    "parameter_symbols",
-    "parameter_values",
-    "transmitted_force",
-    "travel_deviation",
-]
 
 
 @dataclass(frozen=True)
@@ -130,13 +115,6 @@ def effect_forces(
         total -= row.T * force
         rates += port_rates
     return Forces(total, ca.vertcat(*rates) if rates else ca.SX.zeros(0, 1), transmitted)
-
-
-def transmitted_force(plant: Plant, symbols: Symbols, q: Expression, rate: Expression, time: Expression) -> Expression:
-    """F of the nut on the table [N], travel errors and free play included; for an elastic structure."""
-    p = chain_symbols(plant, symbols)
-    rows = (ca.horzcat(*plant.chain.screw(p)), ca.horzcat(*plant.chain.table(p)))
-    return nut_force(plant, symbols, plant.chain.nut(p), rows, q, rate, time).force
 
 
 def force_beyond_reference(

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from feeddrive.effects.base import BristleEffect, FrictionEffect, Motion, Port, SourceEffect
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.symbols import Symbols
+from feeddrive.plant.structure import Symbols
 from feeddrive.typing import Expression
 
 

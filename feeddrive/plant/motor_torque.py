@@ -28,7 +28,7 @@ import numpy as np
 from feeddrive.effects.base import DriveEffect, Parameter, Signature
 from feeddrive.errors import ValidityWarning
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.symbols import Symbols
+from feeddrive.plant.structure import Symbols
 from feeddrive.typing import Expression, FloatArray
 from feeddrive.units.quantity import format_quantity
 

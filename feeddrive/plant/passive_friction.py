@@ -28,8 +28,7 @@ from feeddrive.effects.base import BristleEffect, Effect, FrictionEffect, Motion
 from feeddrive.errors import InputError
 from feeddrive.plant.least_sum import least_sum
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.structure import per_structure
-from feeddrive.plant.symbols import parameter_symbols, parameter_values
+from feeddrive.plant.structure import parameter_symbols, parameter_values, per_structure
 from feeddrive.typing import Expression, FloatArray, IntegerArray
 from feeddrive.units.quantity import format_quantity
 

@@ -28,7 +28,7 @@ import casadi as ca
 from feeddrive.effects.base import TransmissionEffect, TravelEffect
 from feeddrive.plant.chain.linear_chain import Spring
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.symbols import Symbols
+from feeddrive.plant.structure import Symbols
 from feeddrive.typing import Expression
 
 CONTACT_SMOOTHING = 1e-9

@@ -8,8 +8,8 @@ from feeddrive.effects.base import Effect, number
 from feeddrive.effects.friction.nut_friction import NutFriction
 from feeddrive.effects.friction.shaft_drag import BearingDrag, NutDrag
 from feeddrive.effects.travel.lead_error_cumulative import LeadErrorCumulative
-from feeddrive.plant.equations import parameter_names
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.structure import parameter_names
 from feeddrive.thermal.thermal_coupling import Changes
 
 LOAD, NUT_OIL, BEARING_OIL = 0, 1, 2

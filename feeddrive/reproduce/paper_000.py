@@ -17,8 +17,12 @@ from feeddrive.parts.screw.contact_angle_optimum import (
     highest_efficiency,
     largest_lead_angle,
 )
-from feeddrive.parts.screw.preload_torque import ideal_torque, preload_torque, relative_preload_torque
-from feeddrive.parts.screw.screw_efficiency import driving_efficiency
+from feeddrive.parts.screw.screw_efficiency import (
+    driving_efficiency,
+    ideal_torque,
+    preload_torque,
+    relative_preload_torque,
+)
 from feeddrive.parts.screw.screw_friction import ScrewFriction, ScrewGeometry
 from feeddrive.parts.screw.slip_angle import Groove, groove_at, slip_angle
 from feeddrive.parts.screw.torque_regression import split_torque

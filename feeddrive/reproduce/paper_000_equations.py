@@ -9,8 +9,12 @@ import math
 
 import numpy as np
 
-from feeddrive.parts.screw.preload_torque import friction_from_torque, relative_preload_torque
-from feeddrive.parts.screw.screw_efficiency import back_driving_efficiency, driving_efficiency
+from feeddrive.parts.screw.screw_efficiency import (
+    back_driving_efficiency,
+    driving_efficiency,
+    friction_from_torque,
+    relative_preload_torque,
+)
 from feeddrive.parts.screw.slip_angle import Groove, groove_at, slip_angles_nut_drives, slip_angles_screw_drives
 from feeddrive.parts.screw.slip_forces import axial_force, screw_moment
 from feeddrive.reproduce.row import Paper, Row, claim

@@ -10,9 +10,8 @@ import numpy as np
 from feeddrive.parts.contact import PointContact
 from feeddrive.parts.guide.guide_carriage import carriage_friction
 from feeddrive.parts.guide.guide_coefficients import SET_A
-from feeddrive.parts.guide.guide_equilibrium import guide_equilibrium
+from feeddrive.parts.guide.guide_equilibrium import guide_equilibrium, preload_force, unloading_force
 from feeddrive.parts.guide.guide_geometry import HSR_20R, HSR_30R, BallGuide
-from feeddrive.parts.guide.guide_stiffness import preload_force, unloading_force
 from feeddrive.reproduce.row import Paper, Row, claim, number
 
 _PAPER = Paper.GUIDE

@@ -10,9 +10,8 @@ from feeddrive.parts.combined_stiffness import (
     axial_from_torsional,
 )
 from feeddrive.parts.coupling import Coupling
-from feeddrive.parts.material import STEEL, ShaftMaterial
 from feeddrive.parts.motor import Motor
-from feeddrive.parts.screw.ball_screw import ScrewShaft
+from feeddrive.parts.screw.ball_screw import STEEL, ScrewShaft, ShaftMaterial
 from feeddrive.parts.screw.nut import Nut
 from feeddrive.parts.screw.screw_drive import BallScrewDrive
 

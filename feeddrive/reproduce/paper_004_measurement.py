@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from feeddrive.parts.combined_stiffness import combined_stiffness
 from feeddrive.parts.screw.screw_drive import BallScrewDrive
-from feeddrive.plant.analysis.held_frequency import held_frequency
+from feeddrive.plant.analysis.modes import held_frequency
 from feeddrive.reproduce.paper_004_drive import FORCE_LENGTH, MODULI, TORQUE_LENGTH, paper_drive
 from feeddrive.reproduce.row import Paper, Row, claim, not_possible, number
 

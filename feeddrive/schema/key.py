@@ -1,8 +1,22 @@
-"""A key of a file: what it means, its unit, range, default, and whether it must stand there."""
+"""A key of a file: what it means, its unit, range, default, and whether it must stand there.
+
+Keys are declared in tables, one a line, cells between bars:
+
+    velocity | m/s       | > 0                         | required | greatest velocity
+    repeat   | whole     | [0, 10000]                  | = 1      | how often all targets are gone through
+    at       | text      | torque, speed               | = torque | where the filter acts
+    ratio    | 1         | [0, 1] usual 0.01 to 0.05   |          | damping ratio | where it counts
+    targets  | m list    |                             | required | positions in their order
+
+name | SI unit, or text, words, whole, switch | range or choices | required or default | meaning | when it counts.
+Ranges: > a, >= a, (a, b) without its ends, [a, b] with them.
+"""
 
 from __future__ import annotations
 
 import math
+import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -83,3 +97,60 @@ class Key:
         ends = self.range if not self.choices else ""
         parts = [f"{self.name}{unit} is {self.meaning}", ends, f"usual {self.usual_range}" if self.usual else ""]
         return ", ".join(part for part in parts if part)
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """The range cell of a table: possible range, whether its ends are impossible themselves, usual range."""
+
+    minimum: float = -math.inf
+    maximum: float = math.inf
+    open_ends: bool = False
+    usual: tuple[float, float] | None = None
+
+
+_NUMBER = r"([-+.\de]+)"
+_RANGE = re.compile(rf"(?:(>=?) {_NUMBER}|([(\[]){_NUMBER}, {_NUMBER}[)\]])?(?: ?usual {_NUMBER} to {_NUMBER})?")
+
+
+def bounds(cell: str) -> Bounds | None:
+    """What a range cell says; None where it holds no range."""
+    match = _RANGE.fullmatch(cell)
+    if match is None:
+        return None
+    sign, least, bracket, low, high, *usual = match.groups()
+    ends = (float(least), math.inf) if least else (float(low), float(high)) if low else (-math.inf, math.inf)
+    return Bounds(*ends, sign == ">" or bracket == "(", (float(usual[0]), float(usual[1])) if usual[0] else None)
+
+
+def table_rows(table: str) -> Iterator[list[str]]:
+    """The cells of each line that is not empty."""
+    for line in table.splitlines():
+        if line.strip():
+            yield [cell.strip() for cell in line.split("|")]
+
+
+_KINDS = {str(kind).split()[0]: kind for kind in (Kind.TEXT, Kind.WHOLE)} | {"words": Kind.WORDS, "switch": Kind.SWITCH}
+
+
+def keys(table: str) -> tuple[Key, ...]:
+    """The keys that a table declares, in its order; its form is that of the module."""
+    return tuple(_key(*cells) for cells in table_rows(table))
+
+
+def _key(name: str, holds: str, ends: str, needed: str, meaning: str, when: str = "") -> Key:
+    kind, unit = _KINDS.get(holds, Kind.QUANTITY), "" if holds in _KINDS else holds
+    if holds.endswith(" list"):
+        kind, unit = Kind.QUANTITIES, holds.removesuffix(" list")
+    found = bounds(ends)
+    choices = tuple(ends.split(", ")) if found is None else ()
+    found = found or Bounds()
+    default = needed.removeprefix("=").strip() if needed.startswith("=") else None
+    return Key(
+        name, meaning, "1" if kind is Kind.WHOLE else unit, kind, found.minimum, found.maximum, found.open_ends,
+        found.usual, default, needed == "required", choices, when,
+    )  # fmt: skip
+
+
+SOURCE = "source | text | | | where the values come from, of every value here that names none itself"
+"""Row of the key that names the source of a whole section."""

@@ -2,49 +2,27 @@
 
 from __future__ import annotations
 
-from feeddrive.schema.controller import SOURCE
-from feeddrive.schema.key import Key, Kind
-from feeddrive.schema.section import Section, keyed
+from feeddrive.schema.key import SOURCE
+from feeddrive.schema.section import sections
 
 _MODES = "of a natural frequency"
-_MOVING = "of drag torque and lost motion"
-_NUMBER = Section(
-    "measured.measured",
-    "one measured number",
-    keyed(
-        Key(
-            "quantity",
-            "what was measured",
-            kind=Kind.TEXT,
-            required=True,
-            choices=("axial_stiffness", "natural_frequency", "drag_torque", "lost_motion", "inertia_at_motor"),
-        ),
-        Key("value", "measured, in the unit of its quantity", minimum=0.0, open_ends=True, required=True),
-        Key("at", "table position; the middle of the stroke if left out", "m"),
-        Key(
-            "tolerance",
-            "two standard deviations, as a share or in the unit of the value; a usual one if left out",
-            kind=Kind.TEXT,
-        ),
-        Key(
-            "motor", "held by its brake or free", kind=Kind.TEXT, choices=("held", "free"), default="held", when=_MODES
-        ),
-        Key("mode", "counted from 1", "1", Kind.WHOLE, 1, 100, default="1", when=_MODES),
-        Key("velocity", "of the table", "m/s", minimum=0.0, open_ends=True, default="1 mm/s", when=_MOVING),
-        SOURCE,
-    ),
-    listed=True,
-)
+_QUANTITIES = "axial_stiffness, natural_frequency, drag_torque, lost_motion, inertia_at_motor"
 
-MEASURED = Section(
-    "measured",
-    "numbers that were measured at a machine",
-    keyed(
-        Key("format", '"feeddrive-measured/1"; may be left out', kind=Kind.TEXT),
-        Key("name", "of the measurements", kind=Kind.TEXT),
-        Key("description", "in a sentence", kind=Kind.TEXT),
-        SOURCE,
-    ),
-    {"measured": _NUMBER},
-)
+MEASURED = sections(f"""
+[measured] numbers that were measured at a machine
+format | text | | | "feeddrive-measured/1"; may be left out
+name | text | | | of the measurements
+description | text | | | in a sentence
+{SOURCE}
+
+[[measured.measured]] one measured number
+quantity | text | {_QUANTITIES} | required | what was measured
+value | | > 0 | required | measured, in the unit of its quantity
+at | m | | | table position; the middle of the stroke if left out
+tolerance | text | | | two standard deviations, as a share or in the unit of the value; a usual one if left out
+motor | text | held, free | = held | held by its brake or free | {_MODES}
+mode | whole | [1, 100] | = 1 | counted from 1 | {_MODES}
+velocity | m/s | > 0 | = 1 mm/s | of the table | of drag torque and lost motion
+{SOURCE}
+""")
 """A file of measured numbers."""

@@ -4,340 +4,192 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from feeddrive.schema.controller import CONTROLLER, SOURCE
-from feeddrive.schema.key import Key, Kind
-from feeddrive.schema.section import Section, keyed
+from feeddrive.schema.controller import CONTROLLER
+from feeddrive.schema.key import SOURCE, keys
+from feeddrive.schema.section import Section, keyed, sections
 
 _RECORDED = (
-    "setpoint",
-    "motor_torque",
-    "motor_angle",
-    "motor_speed",
-    "table_position",
-    "table_velocity",
-    "cutting_force",
-    "injected_torque",
-    "injected_speed",
+    "setpoint, motor_torque, motor_angle, motor_speed, table_position, table_velocity, cutting_force, injected_torque, "
+    "injected_speed"
 )
-_EVALUATED = (*_RECORDED, "speed_command")
+_NOISE = "\n".join(f"{name} | | >= 0 | | standard deviation of its noise" for name in _RECORDED.split(", "))
+_FIGURES = "following, settling, positioning, circular, friction_map, force_loop, torque_loop, step, response"
+_LIMITS = """
+acceleration | m/s^2 | > 0 | required | greatest acceleration
+jerk | m/s^3 | > 0 | required | greatest jerk
+"""
+_WAVEFORM = """
+waveform | text | sweep, multisine, prbs | required | its shape over time
+low | Hz | > 0 | | least frequency | of a sweep or a multisine
+high | Hz | > 0 | | greatest frequency | of a sweep or a multisine
+duration | s | > 0 | | of the sweep | of a sweep
+period | s | > 0 | | of the multisine | of a multisine
+periods | whole | [0, 1e9] | = 1 | how often it is repeated | of a multisine or a binary sequence
+lines | whole | [0, 1e9] | = 0 | about so many frequencies in equal ratios; 0 for all | of a multisine
+bit | s | > 0 | | shortest time between changes | of a binary sequence
+order | whole | [0, 1e9] | | of the shift register: 2^order - 1 bits | of a binary sequence
+"""
 
+_SCENARIO = sections(f"""
+[scenario] an experiment
+format | text | | required | its first line, "feeddrive-scenario/1"
+name | text | | | of the experiment
+description | text | | | in a sentence
+plant | text | | required | shipped name, or path from the folder of the scenario
+controller | text | | required | path of a controller file, or a table [controller]
+travel | m list | | | least and greatest set-point; the plant's stroke if left out
+{SOURCE}
 
-def _needed(name: str, unit: str, meaning: str) -> Key:
-    return Key(name, meaning, unit, minimum=0.0, open_ends=True, required=True)
+[scenario.run] how long
+duration | s | > 0 | | that of the trajectory if left out
 
+[scenario.record] what is written down
+rate | Hz | > 0 | | of the rows; velocity_rate is an integer multiple of it; position_rate if left out
+channels | words | {_RECORDED} | | what is written down
+quantised | switch | | = false | round to the resolution of the plant's sensors
+seed | whole | [0, 1e9] | = 0 | of the noise
+{SOURCE}
 
-def _place(name: str, meaning: str) -> Key:
-    return Key(name, meaning, "m", required=True)
+[scenario.record.noise] standard deviation of white noise on a recorded channel, in its unit
+{_NOISE}
+{SOURCE}
 
+[scenario.trajectory] the set-point
+kind | text | hold, moves, staircase, position_step, velocity_steps, circle, sine, wave | required | of motion
+{SOURCE}
 
-def _optional(name: str, unit: str, meaning: str, default: str | None = None) -> Key:
-    return Key(name, meaning, unit, minimum=0.0, default=default)
+(scenario.trajectory.hold) rest at one position
+position | m | | required | of the table
+duration | s | > 0 | required | how long
 
+(scenario.trajectory.moves) from target to target
+start | m | | required | first position
+targets | m list | | required | positions in their order
+velocity | m/s list | | required | greatest velocity, one or one per target
+{_LIMITS}
+dwell | s | >= 0 | = 0 s | rest at each target
+repeat | whole | [0, 10000] | = 1 | how often all targets are gone through
 
-def _listed(name: str, unit: str, meaning: str) -> Key:
-    return Key(name, meaning, unit, Kind.QUANTITIES, required=True)
+(scenario.trajectory.staircase) forward and backward through targets, as ISO 230-2 asks
+targets | m list | | required | positions, ascending
+runs | whole | [0, 10000] | required | runs in each direction
+overrun | m | > 0 | required | beyond the ends before turning
+velocity | m/s | > 0 | required | greatest velocity
+{_LIMITS}
+dwell | s | > 0 | required | rest at each target
 
+(scenario.trajectory.position_step) a step of the position
+start | m | | required | before the step
+height | m | | required | of the step
+at | s | > 0 | required | when it steps
+duration | s | > 0 | required | of the whole run, longer than `at`
 
-def _count(name: str, meaning: str, default: str | None = None, most: float = 1e9) -> Key:
-    return Key(name, meaning, "1", Kind.WHOLE, 0, most, default=default, required=default is None)
+(scenario.trajectory.velocity_steps) constant velocities one after the other
+start | m | | required | first position
+velocities | m/s list | | required | with their sign
+durations | s list | | required | one per velocity
 
+(scenario.trajectory.circle) one axis of a circle
+centre | m | | required | of the circle
+radius | m | > 0 | required | of the circle
+turns | 1 | > 0 | required | how many
+velocity | m/s | > 0 | required | the feed along the circle
+{_LIMITS}
+dwell | s | >= 0 | = 0 s | rest before and after
 
-_VELOCITY = _needed("velocity", "m/s", "greatest velocity")
-_LIMITS = (
-    Key("acceleration", "greatest acceleration", "m/s^2", minimum=0.0, open_ends=True, required=True),
-    Key("jerk", "greatest jerk", "m/s^3", minimum=0.0, open_ends=True, required=True),
-)
-_SWEPT = "of a sweep or a multisine"
-_WAVEFORM = (
-    Key("waveform", "its shape over time", kind=Kind.TEXT, choices=("sweep", "multisine", "prbs"), required=True),
-    Key("low", "least frequency", "Hz", minimum=0.0, open_ends=True, when=_SWEPT),
-    Key("high", "greatest frequency", "Hz", minimum=0.0, open_ends=True, when=_SWEPT),
-    Key("duration", "of the sweep", "s", minimum=0.0, open_ends=True, when="of a sweep"),
-    Key("period", "of the multisine", "s", minimum=0.0, open_ends=True, when="of a multisine"),
-    Key(
-        "periods",
-        "how often it is repeated",
-        "1",
-        Kind.WHOLE,
-        0,
-        1e9,
-        default="1",
-        when="of a multisine or a binary sequence",
-    ),
-    Key(
-        "lines",
-        "about so many frequencies in equal ratios; 0 for all",
-        "1",
-        Kind.WHOLE,
-        0,
-        1e9,
-        default="0",
-        when="of a multisine",
-    ),
-    Key("bit", "shortest time between changes", "s", minimum=0.0, open_ends=True, when="of a binary sequence"),
-    Key("order", "of the shift register: 2^order - 1 bits", "1", Kind.WHOLE, 0, 1e9, when="of a binary sequence"),
-)
+(scenario.trajectory.sine) a sine that fades in and out
+centre | m | | required | of the sine
+amplitude | m | > 0 | required | of the sine
+frequency | Hz | > 0 | required | of the sine
+duration | s | > 0 | required | of the whole
+fade | s | > 0 | required | in and out
 
+(scenario.trajectory.wave) a velocity as a waveform
+start | m | | required | first position
+offset_velocity | m/s | | = 0 m/s | added to the waveform
+amplitude | m/s | > 0 | required | of the velocity
+{_WAVEFORM}
 
-def _motion(kind: str, meaning: str, *keys: Key) -> Section:
-    return Section(f"scenario.trajectory.{kind}", meaning, keyed(*keys))
+[scenario.excitation] a waveform added inside the controller
+at | text | speed, torque | required | where it is added
+amplitude | | > 0 | required | in rad/s at the speed, in N m at the torque
+start | s | >= 0 | = 0 s | when it begins
+{_WAVEFORM}
+{SOURCE}
 
+[[scenario.force]] one force on the table; several add
+kind | text | step, triangle, sine, file, milling | required | of force
+{SOURCE}
 
-_DWELL = _optional("dwell", "s", "rest at each target", "0 s")
-TRAJECTORY = Section(
-    "scenario.trajectory",
-    "the set-point",
-    keyed(
-        Key(
-            "kind",
-            "of motion",
-            kind=Kind.TEXT,
-            required=True,
-            choices=("hold", "moves", "staircase", "position_step", "velocity_steps", "circle", "sine", "wave"),
-        ),
-        SOURCE,
-    ),
-    kinds={
-        "hold": _motion(
-            "hold", "rest at one position", _place("position", "of the table"), _needed("duration", "s", "how long")
-        ),
-        "moves": _motion(
-            "moves",
-            "from target to target",
-            _place("start", "first position"),
-            _listed("targets", "m", "positions in their order"),
-            _listed("velocity", "m/s", "greatest velocity, one or one per target"),
-            *_LIMITS,
-            _DWELL,
-            _count("repeat", "how often all targets are gone through", "1", 10_000),
-        ),
-        "staircase": _motion(
-            "staircase",
-            "forward and backward through targets, as ISO 230-2 asks",
-            _listed("targets", "m", "positions, ascending"),
-            _count("runs", "runs in each direction", None, 10_000),
-            _needed("overrun", "m", "beyond the ends before turning"),
-            _VELOCITY,
-            *_LIMITS,
-            _needed("dwell", "s", "rest at each target"),
-        ),
-        "position_step": _motion(
-            "position_step",
-            "a step of the position",
-            _place("start", "before the step"),
-            Key("height", "of the step", "m", required=True),
-            _needed("at", "s", "when it steps"),
-            _needed("duration", "s", "of the whole run, longer than `at`"),
-        ),
-        "velocity_steps": _motion(
-            "velocity_steps",
-            "constant velocities one after the other",
-            _place("start", "first position"),
-            _listed("velocities", "m/s", "with their sign"),
-            _listed("durations", "s", "one per velocity"),
-        ),
-        "circle": _motion(
-            "circle",
-            "one axis of a circle",
-            _place("centre", "of the circle"),
-            _needed("radius", "m", "of the circle"),
-            _needed("turns", "1", "how many"),
-            _needed("velocity", "m/s", "the feed along the circle"),
-            *_LIMITS,
-            _optional("dwell", "s", "rest before and after", "0 s"),
-        ),
-        "sine": _motion(
-            "sine",
-            "a sine that fades in and out",
-            _place("centre", "of the sine"),
-            _needed("amplitude", "m", "of the sine"),
-            _needed("frequency", "Hz", "of the sine"),
-            _needed("duration", "s", "of the whole"),
-            _needed("fade", "s", "in and out"),
-        ),
-        "wave": _motion(
-            "wave",
-            "a velocity as a waveform",
-            _place("start", "first position"),
-            Key("offset_velocity", "added to the waveform", "m/s", default="0 m/s"),
-            _needed("amplitude", "m/s", "of the velocity"),
-            *_WAVEFORM,
-        ),
-    },
-)
+(scenario.force.step) a constant force for a time
+force | N | | required | with its sign
+start | s | | = 0 s | when it begins
+end | s | | | when it ends; never if left out
 
-EXCITATION = Section(
-    "scenario.excitation",
-    "a waveform added inside the controller",
-    keyed(
-        Key("at", "where it is added", kind=Kind.TEXT, choices=("speed", "torque"), required=True),
-        Key("amplitude", "in rad/s at the speed, in N m at the torque", minimum=0.0, open_ends=True, required=True),
-        _optional("start", "s", "when it begins", "0 s"),
-        *_WAVEFORM,
-        SOURCE,
-    ),
-)
+(scenario.force.triangle) up, down, and back
+amplitude | N | > 0 | required | greatest force
+period | s | > 0 | required | of one cycle
+cycles | whole | [0, 1e9] | = 1 | how many
+start | s | | = 0 s | when it begins
 
+(scenario.force.sine) a sine
+amplitude | N | > 0 | required | of the sine
+frequency | Hz | > 0 | required | of the sine
+mean | N | | = 0 N | added
+start | s | | = 0 s | when it begins
 
-def _force(kind: str, meaning: str, *keys: Key) -> Section:
-    return Section(f"scenario.force.{kind}", meaning, keyed(*keys))
+(scenario.force.file) as recorded
+path | text | | required | of a CSV with the columns time [s] and cutting_force [N], from the folder of the scenario
 
+(scenario.force.milling) of a milling cutter
+teeth | whole | [0, 1000] | required | of the cutter
+spindle_speed | rad/s | > 0 | required | of the cutter
+depth | m | > 0 | required | of cut, axial
+feed_per_tooth | m | > 0 | required | of each tooth
+tangential | Pa | > 0 | required | cutting coefficient along the speed
+radial | Pa | | = 0 Pa | cutting coefficient across it
+entry | rad | | = 0 deg | angle at which a tooth enters
+exit | rad | | = 180 deg | angle at which it leaves
+start | s | | = 0 s | when it begins
+end | s | | | when it ends; never if left out
 
-_START = Key("start", "when it begins", "s", default="0 s")
-_END = Key("end", "when it ends; never if left out", "s")
-FORCE = Section(
-    "scenario.force",
-    "one force on the table; several add",
-    keyed(
-        Key("kind", "of force", kind=Kind.TEXT, choices=("step", "triangle", "sine", "file", "milling"), required=True),
-        SOURCE,
-    ),
-    kinds={
-        "step": _force(
-            "step", "a constant force for a time", Key("force", "with its sign", "N", required=True), _START, _END
-        ),
-        "triangle": _force(
-            "triangle",
-            "up, down, and back",
-            _needed("amplitude", "N", "greatest force"),
-            _needed("period", "s", "of one cycle"),
-            _count("cycles", "how many", "1"),
-            _START,
-        ),
-        "sine": _force(
-            "sine",
-            "a sine",
-            _needed("amplitude", "N", "of the sine"),
-            _needed("frequency", "Hz", "of the sine"),
-            Key("mean", "added", "N", default="0 N"),
-            _START,
-        ),
-        "file": _force(
-            "file",
-            "as recorded",
-            Key(
-                "path",
-                "of a CSV with the columns time [s] and cutting_force [N], from the folder of the scenario",
-                kind=Kind.TEXT,
-                required=True,
-            ),
-        ),
-        "milling": _force(
-            "milling",
-            "of a milling cutter",
-            _count("teeth", "of the cutter", None, 1000),
-            _needed("spindle_speed", "rad/s", "of the cutter"),
-            _needed("depth", "m", "of cut, axial"),
-            _needed("feed_per_tooth", "m", "of each tooth"),
-            _needed("tangential", "Pa", "cutting coefficient along the speed"),
-            Key("radial", "cutting coefficient across it", "Pa", default="0 Pa"),
-            Key("entry", "angle at which a tooth enters", "rad", default="0 deg"),
-            Key("exit", "angle at which it leaves", "rad", default="180 deg"),
-            _START,
-            _END,
-        ),
-    },
-    listed=True,
-)
+[[scenario.evaluate]] one set of figures worked out from the run
+kind | text | {_FIGURES} | required | of figures
 
+(scenario.evaluate.following) following error
+start | s | >= 0 | | of the stretch
+end | s | >= 0 | | of the stretch
 
-def _evaluation(kind: str, meaning: str, *keys: Key) -> Section:
-    return Section(f"scenario.evaluate.{kind}", meaning, keyed(*keys))
+(scenario.evaluate.settling) settling at every stop
+window | m | >= 0 | required | half-width that counts as settled
 
+(scenario.evaluate.positioning) accuracy and repeatability, ISO 230-2
+average | s | >= 0 | required | mean over the last of each dwell
 
-def _since(name: str, meaning: str, required: bool = False) -> Key:
-    return Key(name, meaning, "s", minimum=0.0, required=required)
+(scenario.evaluate.circular) circular deviation of one axis, ISO 230-4
 
+(scenario.evaluate.friction_map) mean torque at each constant velocity
+skip | s | >= 0 | | left out at the beginning of each
 
-def _series(name: str, meaning: str) -> Key:
-    return Key(name, meaning, kind=Kind.TEXT, choices=_EVALUATED, required=True)
+(scenario.evaluate.force_loop) stiffness and lost motion of a loading cycle
+start | s | >= 0 | required | of the first cycle
+period | s | >= 0 | required | of one cycle
 
+(scenario.evaluate.torque_loop) the same under torque at the motor
+start | s | >= 0 | required | of the first cycle
+period | s | >= 0 | required | of one cycle
 
-_CYCLE = (_since("start", "of the first cycle", True), _since("period", "of one cycle", True))
-EVALUATE = Section(
-    "scenario.evaluate",
-    "one set of figures worked out from the run",
-    keyed(
-        Key(
-            "kind",
-            "of figures",
-            kind=Kind.TEXT,
-            required=True,
-            choices=(
-                "following",
-                "settling",
-                "positioning",
-                "circular",
-                "friction_map",
-                "force_loop",
-                "torque_loop",
-                "step",
-                "response",
-            ),
-        ),
-    ),
-    kinds={
-        "following": _evaluation(
-            "following", "following error", _since("start", "of the stretch"), _since("end", "of the stretch")
-        ),
-        "settling": _evaluation(
-            "settling",
-            "settling at every stop",
-            Key("window", "half-width that counts as settled", "m", minimum=0.0, required=True),
-        ),
-        "positioning": _evaluation(
-            "positioning",
-            "accuracy and repeatability, ISO 230-2",
-            _since("average", "mean over the last of each dwell", True),
-        ),
-        "circular": _evaluation("circular", "circular deviation of one axis, ISO 230-4"),
-        "friction_map": _evaluation(
-            "friction_map", "mean torque at each constant velocity", _since("skip", "left out at the beginning of each")
-        ),
-        "force_loop": _evaluation("force_loop", "stiffness and lost motion of a loading cycle", *_CYCLE),
-        "torque_loop": _evaluation("torque_loop", "the same under torque at the motor", *_CYCLE),
-        "step": _evaluation(
-            "step",
-            "rise, overshoot, settling of a step",
-            _series("channel", "that is looked at"),
-            _since("at", "when it steps", True),
-        ),
-        "response": _evaluation(
-            "response",
-            "frequency response by averaged spectra",
-            _series("input", "of the response"),
-            _series("output", "of the response"),
-            _since("segment", "length of one spectrum", True),
-            _since("start", "left out before"),
-        ),
-    },
-    listed=True,
-)
+(scenario.evaluate.step) rise, overshoot, settling of a step
+channel | text | {_RECORDED}, speed_command | required | that is looked at
+at | s | >= 0 | required | when it steps
 
-RECORD = Section(
-    "scenario.record",
-    "what is written down",
-    keyed(
-        Key(
-            "rate",
-            "of the rows; velocity_rate is an integer multiple of it; position_rate if left out",
-            "Hz",
-            minimum=0.0,
-            open_ends=True,
-        ),
-        Key("channels", "what is written down", kind=Kind.WORDS, choices=_RECORDED),
-        Key("quantised", "round to the resolution of the plant's sensors", kind=Kind.SWITCH, default="false"),
-        Key("seed", "of the noise", "1", Kind.WHOLE, 0, 1e9, default="0"),
-        SOURCE,
-    ),
-    {
-        "noise": Section(
-            "scenario.record.noise",
-            "standard deviation of white noise on a recorded channel, in its unit",
-            keyed(*(Key(name, "standard deviation of its noise", minimum=0.0) for name in _RECORDED), SOURCE),
-        )
-    },
-)
+(scenario.evaluate.response) frequency response by averaged spectra
+input | text | {_RECORDED}, speed_command | required | of the response
+output | text | {_RECORDED}, speed_command | required | of the response
+segment | s | >= 0 | required | length of one spectrum
+start | s | >= 0 | | left out before
+""")
+_ORDER = ("controller", "run", "record", "trajectory", "excitation", "force", "effect", "evaluate")
 
 
 def scenario(effect: Section) -> Section:
@@ -346,38 +198,7 @@ def scenario(effect: Section) -> Section:
     Args:
         effect: [[effect]], as a plant file has it.
     """
-    held = replace(
-        CONTROLLER,
-        path="scenario.controller",
-        keys={
-            **CONTROLLER.keys,
-            "file": Key("file", "controller file that the rest of the table changes", kind=Kind.TEXT),
-        },
-    )
-    return Section(
-        "scenario",
-        "an experiment",
-        keyed(
-            Key("format", 'its first line, "feeddrive-scenario/1"', kind=Kind.TEXT, required=True),
-            Key("name", "of the experiment", kind=Kind.TEXT),
-            Key("description", "in a sentence", kind=Kind.TEXT),
-            Key("plant", "shipped name, or path from the folder of the scenario", kind=Kind.TEXT, required=True),
-            Key("controller", "path of a controller file, or a table [controller]", kind=Kind.TEXT, required=True),
-            Key("travel", "least and greatest set-point; the plant's stroke if left out", "m", Kind.QUANTITIES),
-            SOURCE,
-        ),
-        {
-            "controller": held,
-            "run": Section(
-                "scenario.run",
-                "how long",
-                keyed(Key("duration", "that of the trajectory if left out", "s", minimum=0.0, open_ends=True)),
-            ),
-            "record": RECORD,
-            "trajectory": TRAJECTORY,
-            "excitation": EXCITATION,
-            "force": FORCE,
-            "effect": replace(effect, path="scenario.effect"),
-            "evaluate": EVALUATE,
-        },
-    )
+    file = keyed(*keys("file | text | | | controller file that the rest of the table changes"))
+    held = replace(CONTROLLER, path="scenario.controller", keys={**CONTROLLER.keys, **file})
+    inner = {**_SCENARIO.sections, "controller": held, "effect": replace(effect, path="scenario.effect")}
+    return replace(_SCENARIO, sections={name: inner[name] for name in _ORDER})

@@ -1,15 +1,23 @@
 """A section of a file: its keys, the sections inside it, and those that a kind chooses.
 
-A reader gets its table together with the section that declares it (`feeddrive.plant.file.entries.Table`): a key that no
+A reader gets its table together with the section that declares it (`feeddrive.schema.table.Table`): a key that no
 section declares cannot be read, and the reference is written from the same objects.
+
+Sections are declared in a text, each a heading with the table of its keys (`feeddrive.schema.key`) below:
+
+    [scenario.record] what is written down
+    [[scenario.force]] one force on the table; several add          may stand more than once
+    (scenario.force.sine) a sine                                    the kind "sine" of scenario.force
+    [mapping.channels.*] one channel                                a section of any name
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
-from feeddrive.schema.key import Key
+from feeddrive.schema.key import Key, keys
 
 
 class UndeclaredKeyError(LookupError):
@@ -88,3 +96,25 @@ def keyed(*keys: Key) -> dict[str, Key]:
     for key in keys:
         found.setdefault(key.name, key)
     return found
+
+
+_HEADING = re.compile(r"^(\[\[?|\()([\w.*]+)(?:\]\]?|\)) (.*)$", re.MULTILINE)
+
+
+def sections(text: str) -> Section:
+    """The section that a text declares first, with those below it that its path leads to."""
+    _, *found = _HEADING.split(text)
+    made: dict[str, tuple[str, Section]] = {}
+    for bracket, path, meaning, table in zip(*(found[i::4] for i in range(4)), strict=True):
+        made[path] = bracket, Section(path, meaning, keyed(*keys(table)), listed=bracket == "[[")
+    for path, (bracket, section) in reversed(made.items()):  # what stands inside is whole before what holds it
+        outer, _, name = path.rpartition(".")
+        if outer not in made:
+            return section
+        around, holder = made[outer]
+        if bracket == "(":
+            holder = replace(holder, kinds={name: section, **holder.kinds})
+        else:
+            holder = replace(holder, sections={name: section, **holder.sections}, any_name=name == "*")
+        made[outer] = around, holder
+    raise ValueError("a text without a heading")

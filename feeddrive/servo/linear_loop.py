@@ -23,7 +23,8 @@ import casadi as ca
 import numpy as np
 
 from feeddrive.errors import InputError
-from feeddrive.plant.analysis.linear import INPUTS, MOVING, OUTPUTS
+from feeddrive.plant.analysis.ode import INPUTS, OUTPUTS
+from feeddrive.plant.analysis.steady import MOVING
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade, FeedForward
 from feeddrive.servo.cascade_function import cascade_controller, velocity_loop_of

@@ -13,12 +13,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from typing import TYPE_CHECKING
 
-import control
 import numpy as np
 
 from feeddrive.errors import InputError
-from feeddrive.plant.analysis.linear import INPUTS
+from feeddrive.plant.analysis.ode import INPUTS
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade, FeedForward
 from feeddrive.servo.cascade_function import REFERENCES
@@ -32,6 +32,9 @@ from feeddrive.servo.linear_loop import (
 from feeddrive.servo.margins import GROWTH, Margins, frequency_response, margins
 from feeddrive.servo.mechanics_response import UNITS, Case, Response, grid, refuse_no_range, refuse_unknown
 from feeddrive.typing import FloatArray
+
+if TYPE_CHECKING:
+    import control
 
 _LOOP_UNITS = UNITS | {
     "position": "m",

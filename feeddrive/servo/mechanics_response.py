@@ -16,20 +16,25 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from typing import TYPE_CHECKING
 
-import control
 import numpy as np
 
 from feeddrive.effects.base import TimingEffect
 from feeddrive.effects.chain.payload import Payload
 from feeddrive.errors import InputError
-from feeddrive.plant.analysis.linear import INPUTS, MOVING, OUTPUTS, state_space
+from feeddrive.plant.analysis.linear import state_space
+from feeddrive.plant.analysis.ode import INPUTS, OUTPUTS
 from feeddrive.plant.analysis.rest import freed, held
-from feeddrive.plant.file.entries import nearest
+from feeddrive.plant.analysis.steady import MOVING
 from feeddrive.plant.plant import Plant
+from feeddrive.schema.toml_text import nearest
 from feeddrive.servo.margins import frequency_response
 from feeddrive.servo.resonances import Resonance, resonances
 from feeddrive.typing import ComplexArray, FloatArray
+
+if TYPE_CHECKING:
+    import control
 
 UNITS: dict[str, str] = {
     "motor_torque": "N m", "cutting_force": "N", "motor_angle": "rad", "motor_speed": "rad/s", "table_position": "m",
@@ -114,6 +119,8 @@ class Response:
 
     def frd(self) -> control.FrequencyResponseData:
         """The response as a `control` object, its frequencies in rad/s."""
+        import control  # takes half a second, with the plotting that it brings
+
         return control.frd(self.values, 2 * math.pi * self.frequency)
 
 

@@ -17,12 +17,14 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import TYPE_CHECKING
 
-import control
 import numpy as np
-from scipy.signal import find_peaks
 
 from feeddrive.typing import ComplexArray, FloatArray
+
+if TYPE_CHECKING:
+    import control
 
 _MOST_DAMPED = 0.5
 """Roots of more damping leave no extremum worth the name."""
@@ -98,6 +100,8 @@ def extrema(frequency: FloatArray, values: ComplexArray) -> tuple[Extremum, ...]
         frequency: ascending [Hz], shape (n,).
         values: complex, shape (n,).
     """
+    from scipy.signal import find_peaks  # takes a second to import
+
     curve: FloatArray = 20 * np.log10(np.maximum(np.abs(values), np.finfo(float).tiny))
     found: list[Extremum] = []
     for kind, sign in ((Kind.RESONANCE, 1.0), (Kind.ANTI_RESONANCE, -1.0)):

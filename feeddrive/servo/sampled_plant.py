@@ -20,13 +20,14 @@ from dataclasses import dataclass
 
 import casadi as ca
 import numpy as np
-from scipy.linalg import expm
 
 from feeddrive.effects.base import TimingEffect
 from feeddrive.errors import InputError
-from feeddrive.plant.analysis.linear import MOVING, linear_matrices
+from feeddrive.plant.analysis.linear import linear_matrices
+from feeddrive.plant.analysis.steady import MOVING
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade
+from feeddrive.thermal.reduced.stepping import exact_propagator
 from feeddrive.typing import FloatArray
 
 MEASUREMENTS: dict[str, str] = {
@@ -83,8 +84,14 @@ class SampledController:
             raise InputError(f"sample time {self.sample_time:g} s is not positive", name)
 
 
-_SPLIT = 1e-9
-"""Part of a tick below which the rest of a dead time counts as none."""
+SPLIT = 1e-9
+"""Part of a tick below which the rest of a delay counts as none."""
+
+
+def whole_and_rest(delay: float) -> tuple[int, float]:
+    """Whole ticks of a delay, in ticks, and the rest as part of a tick."""
+    late = math.floor(delay + SPLIT)
+    return late, delay - late if delay - late > SPLIT else 0.0
 
 
 @dataclass(frozen=True)
@@ -115,11 +122,10 @@ def sampled_plant(plant: Plant, cascade: Cascade, velocity: float = MOVING, posi
     tick = cascade.sample_time
     delays = (effect.delay(effect.values) for effect in plant.effects if isinstance(effect, TimingEffect))
     dead = (cascade.dead_time + max(0.0, float(sum(delays)))) / tick
-    late = math.floor(dead + _SPLIT)
-    rest = dead - late if dead - late > _SPLIT else 0.0
-    whole, held = _sampled(a, b, tick)
+    late, rest = whole_and_rest(dead)
+    whole, held = exact_propagator(-a, b, tick)
     if rest:
-        _, newest = _sampled(a, b[:, :1], (1 - rest) * tick)
+        _, newest = exact_propagator(-a, b[:, :1], (1 - rest) * tick)
         torques = [held[:, :1] - newest, newest]
     else:
         torques = [held[:, :1]]
@@ -135,15 +141,6 @@ def _with_lag(matrices: tuple[FloatArray, ...], lag: float) -> tuple[FloatArray,
     lagged = np.block([[a, b[:, :1]], [np.zeros((1, n)), np.array([[-1 / lag]])]])
     inputs = np.block([[np.zeros((n, 1)), b[:, 1:]], [np.array([[1 / lag]]), np.zeros((1, b.shape[1] - 1))]])
     return lagged, inputs, np.hstack([c, np.zeros((len(c), 1))])
-
-
-def _sampled(a: FloatArray, b: FloatArray, step: float) -> tuple[FloatArray, FloatArray]:
-    """exp(A h) and its integral times B, exactly, from one matrix exponential."""
-    n, m = b.shape
-    joined = np.zeros((n + m, n + m))
-    joined[:n, :n], joined[:n, n:] = a * step, b * step
-    exponential = expm(joined)
-    return exponential[:n, :n], exponential[:n, n:]
 
 
 def _with_torques_under_way(

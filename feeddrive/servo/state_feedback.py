@@ -22,16 +22,19 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import casadi as ca
-import control
 import numpy as np
 
 from feeddrive.errors import InputError
-from feeddrive.plant.analysis.linear import OUTPUTS
+from feeddrive.plant.analysis.ode import OUTPUTS
 from feeddrive.servo.sampled_plant import Matrices, SampledController
 from feeddrive.symbolic_turn import SYMBOLS
 from feeddrive.typing import FloatArray
+
+if TYPE_CHECKING:
+    import control
 
 MEASURED = ("motor_angle", "table_position")
 """What the observer reads: encoder and linear scale."""
@@ -114,6 +117,8 @@ def open_loop(
         observer: L_x above L_d, shape (n + 1, 2).
         actual: another plant with the same states, such as at another position; `machine` if None.
     """
+    import control  # takes half a second, with the plotting that it brings
+
     plant, n = actual or machine, len(machine.a)
     steady = steady_columns(machine, tick)
     by_load = -(steady.torques[3] + gain @ steady.states[:, 3:4])

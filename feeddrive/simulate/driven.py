@@ -18,20 +18,15 @@ from scipy.interpolate import make_interp_spline
 
 from feeddrive.engine.engine import Feed, Machine, machine_of, rested, run_machine
 from feeddrive.engine.program import Program, StepReport, joined
+from feeddrive.engine.step.linear_part import Layout
 from feeddrive.engine.step.step import driven_step
-from feeddrive.engine.step.step_constants import Layout
 from feeddrive.parts.life.consumed_life import ConsumedLife, consumed_life, rigid_nut_forces
 from feeddrive.plant.analysis.rated_life import preload_of
 from feeddrive.plant.chain.chain import symbolic
-from feeddrive.plant.equations import (
-    chain_symbols,
-    effect_forces,
-    parameter_symbols,
-    parameter_values,
-    travel_deviation,
-)
+from feeddrive.plant.equations import effect_forces
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.structure import per_structure
+from feeddrive.plant.structure import chain_symbols, parameter_symbols, parameter_values, per_structure
+from feeddrive.plant.transmission_law import travel_deviation
 from feeddrive.typing import FloatArray
 
 TOLERANCE = 1e-10
@@ -149,19 +144,9 @@ def simulate_driven(plant: Plant, motion: MotorMotion, tolerance: float = TOLERA
         place = outcome.position
         reports.append(outcome.report)
     at = motion.samples
-    phi, screw_speed, x, velocity, torque, force = shown
-    return LoadMotion(
-        motion.time[at],
-        motion.angle[at],
-        motion.speed[at],
-        phi,
-        screw_speed,
-        x,
-        velocity,
-        torque,
-        force,
-        joined(reports),
-    )
+    phi, rate, x, velocity, torque, force = shown
+    kept = motion.time[at], motion.angle[at], motion.speed[at]
+    return LoadMotion(*kept, phi, rate, x, velocity, torque, force, joined(reports))
 
 
 def _fed(motion: MotorMotion, sample: int, count: int) -> FloatArray:
@@ -180,18 +165,8 @@ def unfollowed(motion: MotorMotion) -> LoadMotion:
     at = motion.samples
     nothing = np.full(len(motion.time[at]), np.nan)
     report = StepReport(0, 0, 0, 0, 0, np.inf, 0, np.inf, np.inf)
-    return LoadMotion(
-        motion.time[at],
-        motion.angle[at],
-        motion.speed[at],
-        nothing,
-        nothing,
-        nothing,
-        nothing,
-        nothing,
-        nothing,
-        report,
-    )
+    kept = motion.time[at], motion.angle[at], motion.speed[at]
+    return LoadMotion(*kept, nothing, nothing, nothing, nothing, nothing, nothing, report)
 
 
 @per_structure

@@ -10,14 +10,14 @@ import numpy as np
 
 from feeddrive.engine.engine import Feed, Machine, machine_of, rested, run_machine
 from feeddrive.engine.program import TOLERANCE, Program, StepReport
+from feeddrive.engine.step.linear_part import Layout
 from feeddrive.engine.step.step import torque_step
-from feeddrive.engine.step.step_constants import Layout
 from feeddrive.engine.timing import timing_of
 from feeddrive.errors import InputError
-from feeddrive.plant.equations import chain_symbols, parameter_symbols, parameter_values, travel_deviation
 from feeddrive.plant.motor_torque import acting_torque, warn_beyond_top
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.structure import per_structure
+from feeddrive.plant.structure import chain_symbols, parameter_symbols, parameter_values, per_structure
+from feeddrive.plant.transmission_law import travel_deviation
 from feeddrive.typing import Expression, FloatArray
 
 Command = Callable[[Expression, Expression, Expression], tuple[Expression, Expression]]

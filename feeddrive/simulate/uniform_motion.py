@@ -21,9 +21,9 @@ import numpy as np
 
 from feeddrive.effects.base import BristleEffect, TransmissionEffect
 from feeddrive.plant.analysis.ode import timed_ode
-from feeddrive.plant.equations import bristle_count, chain_symbols, parameter_symbols, parameter_values
+from feeddrive.plant.equations import bristle_count
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.structure import per_structure
+from feeddrive.plant.structure import chain_symbols, parameter_symbols, parameter_values, per_structure
 from feeddrive.simulate.scenario.cycle_losses import POWERS, power_function
 from feeddrive.typing import FloatArray
 

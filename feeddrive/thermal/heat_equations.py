@@ -15,9 +15,9 @@ The rows of `warm_up` are these equations with speed and surroundings held. A co
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import casadi as ca
-import control
 import numpy as np
 
 from feeddrive.symbolic_turn import SYMBOLS
@@ -29,6 +29,9 @@ from feeddrive.thermal.reduced.reduction import reduce_model
 from feeddrive.thermal.rig import refuse_unless
 from feeddrive.thermal.run.warm_up import channel_of
 from feeddrive.typing import Expression, FloatArray
+
+if TYPE_CHECKING:
+    import control
 
 HEAT_INPUTS = ("screw_speed", "ambient_temperature")
 HEAT_INPUT_UNITS = ("rad/s", "degC")
@@ -127,6 +130,8 @@ def linear_heat(heat: Heat, speed: float, model: HeatModel | None = None) -> con
 
     Inputs and outputs are deviations, with their names, SI.
     """
+    import control  # takes half a second, with the plotting that it brings
+
     equations = heat_equations(heat, model)
     with SYMBOLS.taken():
         arguments = [ca.SX.sym(of, equations.function.size1_in(of)) for of in equations.function.name_in()]

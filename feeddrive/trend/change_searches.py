@@ -37,11 +37,11 @@ def searched_events(
         before, after = beside(trend, event, number)
         if before is None or after is None:
             continue
-        name = f"{before.digest}+{after.digest}"
+        name = f"{before.digest}+{after.digest}: {', '.join(event.causes)}"
         if name not in kept.searched:
             progress(f"searching what changed between {before.key} and {after.key}")
             try:
-                answer = _answer(plant, *(_read(one, there, options) for one in (before, after)))
+                answer = _answer(plant, _read(before, there, options), _read(after, there, options), event)
             except InputError as error:
                 found[number] = f"not searched: {error}"
                 continue
@@ -74,11 +74,21 @@ def _read(entry: Entry, there: dict[str, Source], options: Options) -> Recording
     return replace(found, name=entry.key)
 
 
-def _answer(plant: Plant, before: Recording, after: Recording) -> str:
-    """What differs between two recordings, in the words of the search."""
+def _answer(plant: Plant, before: Recording, after: Recording, event: Event) -> str:
+    """What differs between two recordings, in the words of the search, and whether that is what all of them say.
+
+    Two recordings know less than all: what is the same in all is not taken out of them.
+    """
     found, _ = diagnose(plant, [before, after])
-    statements = [change.statement for change in found.changes.changes]
-    if statements:
-        return "; ".join(dict.fromkeys(statements))
-    names = ", ".join(effect.name for effect in found.effects) or "nothing"
-    return f"both recordings together: {names} beyond the declared plant; no parameter that must differ between them"
+    changes = found.changes.changes
+    said = "; ".join(dict.fromkeys(change.statement for change in changes))
+    if not event.causes or any(change.effect in event.causes for change in changes):
+        names = ", ".join(effect.name for effect in found.effects) or "nothing"
+        return said or f"{names} beyond the declared plant in both; no parameter that must differ between them"
+    wanted = " or ".join(name.replace("_", " ") for name in event.causes[:2])
+    length = f"{before.duration:.3g} s and {after.duration:.3g} s"
+    beside = f"; they would say {said}, which all recordings together do not" if said else ""
+    return (
+        f"{before.name} and {after.name} alone ({length}) are too little to tell {wanted}{beside}; "
+        "what is said above rests on all recordings"
+    )

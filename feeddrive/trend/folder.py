@@ -1,8 +1,8 @@
 """What lies in a folder: recordings, archives and dumps of a control, and when each was made.
 
 Files in sub-folders and members of zip archives are recordings of their own. A file whose size or time has not changed
-since it was read is not opened again. Its date is told by a pattern of its name, by its content, or by a date in its
-name: the time of the clock that wrote it; time zones are passed over, as a control writes its own all year.
+since it was read is not opened again. Its date is taken from a pattern of its name, from its content, or from a date
+in its name: the time of the clock that wrote it; time zones are passed over, as a control writes its own all year.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ _LINES = 60
 
 
 def stamp_of(name: str, head: str, pattern: str) -> tuple[datetime, str] | None:
-    """When a recording was made, and where that stands; None where nothing tells.
+    """When a recording was made, and where that stands; None where it is not known.
 
     Args:
         name: of the file, or of the member of an archive.

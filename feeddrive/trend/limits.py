@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.stats import t as student
+from scipy.special import stdtrit
 
 from feeddrive.errors import InputError
 from feeddrive.trend.change_points import Course
@@ -77,7 +77,7 @@ def limit_of(
         if len(first) < FEWEST_FIRST:
             return None
         share = FALSE_YEARS / (2 * A_YEAR * max(watched, 1))
-        reach = float(student.isf(share, len(first) - 1)) * float(np.std(first, ddof=1)) * math.sqrt(1 + 1 / len(first))
+        reach = -float(stdtrit(len(first) - 1, share)) * float(np.std(first, ddof=1)) * math.sqrt(1 + 1 / len(first))
         low, high, origin = float(np.mean(first)) - reach, float(np.mean(first)) + reach, "first recordings"
     outside = (course.fitted < low) | (course.fitted > high)
     left = int(np.argmax(outside)) if outside.any() and outside[-1] else None

@@ -55,8 +55,8 @@ class Options:
 
     Attributes:
         mapping, decimal: as for reading a recording.
-        stamp: pattern of `strptime` in names; empty to let content and name tell.
-        first, every: date of the first recording by name, and the distance of recordings; where nothing else tells.
+        stamp: pattern of `strptime` in names; empty to take it from content and name.
+        first, every: date of the first recording by name, and the distance of recordings; where nothing else does.
         absolute: whether the zero of the table against the motor is kept, so that an offset that moves is growth.
         limits: quantity to what it may move by.
     """

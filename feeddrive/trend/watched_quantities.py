@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from feeddrive.plant.analysis.modes import inertia_at_motor
 from feeddrive.plant.analysis.stiffness_budget import stiffness_budget
-from feeddrive.plant.chain.moving_inertia import inertia_at_motor
 from feeddrive.plant.plant import Plant
 from feeddrive.trend.pooling import Pooled
 from feeddrive.trend.regressors import TERMS, Grid

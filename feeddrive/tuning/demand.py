@@ -10,8 +10,8 @@ import numpy as np
 
 from feeddrive.effects.base import Port
 from feeddrive.errors import InputError
-from feeddrive.plant.analysis.linear import MOVING
 from feeddrive.plant.analysis.rest import ports_without_presliding
+from feeddrive.plant.analysis.steady import MOVING
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.mechanics_response import Case, Friction
 

@@ -7,8 +7,7 @@ import math
 from dataclasses import dataclass
 
 from feeddrive.errors import printable
-from feeddrive.plant.analysis.modes import braked_modes
-from feeddrive.plant.chain.moving_inertia import inertia_at_motor
+from feeddrive.plant.analysis.modes import braked_modes, inertia_at_motor
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import KV_UNIT, Cascade
 from feeddrive.servo.mechanics_response import Case, Friction

@@ -10,11 +10,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-
-import control
+from typing import TYPE_CHECKING
 
 from feeddrive.errors import InputError
-from feeddrive.plant.chain.moving_inertia import inertia_at_motor
+from feeddrive.plant.analysis.modes import inertia_at_motor
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade, FeedForward
 from feeddrive.servo.linear_loop import open_position_loop, open_velocity_loop, worst_eigenvalue
@@ -25,6 +24,9 @@ from feeddrive.tuning.filter_choice import NO_LIMITS, FilterLimits
 from feeddrive.tuning.largest_gain import GainLimit
 from feeddrive.tuning.position_loop import position_gain
 from feeddrive.tuning.velocity_loop import VelocityGains, velocity_gains
+
+if TYPE_CHECKING:
+    import control
 
 USABLE = 1.0
 """Least K_v worth recommending [1/s]; machine tools have 10 to 100."""

@@ -12,7 +12,7 @@
 The static shape is a guess of the mode's shape, so the frequency is a bound from above. Against finite elements it is
 0.5 to 1 % too high for the drive of paper 004, up to 3.5 % with its nut near the motor and 5 % with both ends fixed:
 the more the screw turns beside the table, the more. With heavy wheels on a soft belt it can be above 10 %; a warning
-says where the added mass exceeds a quarter of the table's. `feeddrive.plant.analysis.held_frequency` has no
+says where the added mass exceeds a quarter of the table's. `feeddrive.plant.analysis.modes` has no
 such limit. Valid for the first mode, motor held. Source: Rayleigh's quotient.
 """
 

@@ -6,9 +6,8 @@ from hypothesis import strategies as st
 
 from feeddrive.parts.bearings.supports import ScrewSupports, Support, SupportBearing
 from feeddrive.parts.coupling import Coupling
-from feeddrive.parts.material import ShaftMaterial
 from feeddrive.parts.motor import Motor
-from feeddrive.parts.screw.ball_screw import ScrewShaft
+from feeddrive.parts.screw.ball_screw import ScrewShaft, ShaftMaterial
 from feeddrive.parts.screw.nut import Nut
 from feeddrive.parts.screw.screw_drive import BallScrewDrive
 

@@ -20,7 +20,7 @@ from feeddrive.interface.benching import Bench
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.loop_response import Loop, open_response
 from feeddrive.servo.mechanics_response import Case
-from feeddrive.simulate.controlled.controller_file import read_controller
+from feeddrive.simulate.scenario.scenario_controller import read_controller
 from feeddrive.simulate.setpoints.trial_motions import HEIGHT, circle_about, step_at
 from tests.analytic.browser import found_in_page
 

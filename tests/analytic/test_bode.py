@@ -27,8 +27,8 @@ from feeddrive.servo.margins import frequency_response, margins
 from feeddrive.servo.mechanics_response import Case, delay_of, mechanics
 from feeddrive.servo.resonances import Kind, extrema, on_curve
 from feeddrive.servo.response_family import mechanics_family
-from feeddrive.simulate.controlled.controller_file import read_controller
 from feeddrive.simulate.held_torque import simulate_torque
+from feeddrive.simulate.scenario.scenario_controller import read_controller
 from feeddrive.typing import FloatArray
 
 LEAD, VISCOUS = 0.020, 300.0

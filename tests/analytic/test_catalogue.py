@@ -17,9 +17,9 @@ from feeddrive.parts.catalogue.part_files import CataloguePart, catalogue
 from feeddrive.parts.guide.guide_rating import rated_friction
 from feeddrive.parts.values import check_values
 from feeddrive.plant.file.drive_sections import BEARING_VALUES, PART_VALUES
-from feeddrive.plant.file.entries import read_toml
 from feeddrive.plant.file.plant_file import plant_from_entries
 from feeddrive.plant.file.ratings import RATINGS
+from feeddrive.schema.toml_text import read_toml
 from feeddrive.units.quantity import parse
 
 PARTS = list(catalogue().values())

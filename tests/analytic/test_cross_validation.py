@@ -87,7 +87,7 @@ def test_sums_of_the_unexplained_agree() -> None:
     terms = [Term(Form.LEVEL, "a"), Term(Form.LEVEL, "b")]
     given = {terms[0]: columns[0], terms[1]: columns[1]}
     offsets = np.zeros((len(signal), 0))
-    sums = Sums(Sample(signal, BLOCK, offsets, lambda new: np.column_stack([given[t] for t in new]), 1.0, 0.0))
+    sums = Sums(Sample(signal, BLOCK, offsets, lambda term: given[term][:, None], 1.0, 0.0))
     sums.add(terms)
     residual, jacobian, values = fitted(columns, signal)
     theirs = left_out(residual, jacobian, BLOCK, Prior(values, np.abs(values)))

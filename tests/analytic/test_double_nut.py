@@ -17,8 +17,7 @@ from feeddrive.parts.screw.double_nut import (
     friction_torque_forward,
     rigid_sharing,
 )
-from feeddrive.parts.screw.preload_torque import preload_torque
-from feeddrive.parts.screw.screw_efficiency import back_driving_loss, driving_loss, jamming_friction
+from feeddrive.parts.screw.screw_efficiency import back_driving_loss, driving_loss, jamming_friction, preload_torque
 from feeddrive.parts.screw.screw_friction import ScrewFriction, ScrewGeometry
 from feeddrive.parts.screw.slip_angle import groove_at
 

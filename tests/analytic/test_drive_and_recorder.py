@@ -25,7 +25,8 @@ from feeddrive.engine.lateness import LateChannels, late_mean
 from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.export.notes import included, left_out
 from feeddrive.files import find_scenario_file, plants_folder
-from feeddrive.plant.analysis.linear import linear_matrices, steady_motion
+from feeddrive.plant.analysis.linear import linear_matrices
+from feeddrive.plant.analysis.steady import steady_motion
 from feeddrive.plant.chain.chain import CHAINS
 from feeddrive.plant.file.lumped_text import plant_text_with_effects
 from feeddrive.plant.file.plant_file import read_plant

@@ -16,11 +16,12 @@ from feeddrive.effects.base import Effect, Kind, Motion, Parameter, Port, Source
 from feeddrive.effects.catalogue import EFFECTS, find_effect
 from feeddrive.errors import InputError
 from feeddrive.files import plants_folder
-from feeddrive.plant.analysis.linear import ode, ode_parameters, state_names
+from feeddrive.plant.analysis.ode import ode, ode_parameters, state_names
 from feeddrive.plant.analysis.stiffness_budget import stiffness_budget
-from feeddrive.plant.equations import friction_force, parameter_symbols, parameter_values
 from feeddrive.plant.file.plant_file import read_plant
+from feeddrive.plant.friction_law import friction_force
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.structure import parameter_symbols, parameter_values
 
 BENCH = read_plant(plants_folder() / "bench_axis.toml")
 DECLARED = ("guide_friction", "nut_drag", "bearing_drag", "nut_friction")

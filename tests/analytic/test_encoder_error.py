@@ -51,7 +51,7 @@ def test_error_of_the_acceleration_falls() -> None:
 def test_drawn_error_is_of_the_size_of_what_is_left() -> None:
     measured = np.round(motion() / STEP) * STEP
     expected = expected_motion(measured, STEP, 1 / RATE)
-    left = drawn_error(expected, STEP, 1 / RATE)
+    left = drawn_error(expected, STEP, 1 / RATE, 0)
     true = acceleration(motion())
     # what is lost of the vibration below the steps is no part of the draw
     assert np.std(acceleration(left)) == pytest.approx(np.std(acceleration(expected) - true), rel=0.4)

@@ -22,7 +22,8 @@ from feeddrive.export.exported_plant import Form, write_export
 from feeddrive.export.nonlinear_model import Model, model_of
 from feeddrive.export.notes import changes_with_time, left_out
 from feeddrive.export.point import Point
-from feeddrive.plant.analysis.linear import ode_parameters, state_space, timed_ode
+from feeddrive.plant.analysis.linear import state_space
+from feeddrive.plant.analysis.ode import ode_parameters, timed_ode
 from feeddrive.plant.plant import Plant
 from tests.analytic.export_cases import BENCH, EMPS, LEAD_ERROR, MANY, PLANTS, TESTBED
 from tests.analytic.test_effects import NEUTRAL, PLACES

@@ -19,7 +19,8 @@ from feeddrive.export.fmu_description import exponents
 from feeddrive.export.kinks import kinks_of
 from feeddrive.export.nonlinear_model import model_of, nominals
 from feeddrive.export.point import Point
-from feeddrive.plant.analysis.linear import ode_parameters, state_names, state_space
+from feeddrive.plant.analysis.linear import state_space
+from feeddrive.plant.analysis.ode import ode_parameters, state_names
 from feeddrive.plant.plant import Plant
 from feeddrive.simulate.held_torque import initial_state, simulate_torque
 from tests.analytic.export_cases import BENCH, PLANTS, TESTBED

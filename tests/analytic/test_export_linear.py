@@ -13,13 +13,13 @@ import pytest
 from scipy.io import loadmat
 
 from feeddrive.errors import InputError
-from feeddrive.export.equation_quantities import parameters
 from feeddrive.export.exported_plant import Form, write_export
 from feeddrive.export.linear_model import linear_model_of
-from feeddrive.export.nonlinear_model import identifier_of
+from feeddrive.export.nonlinear_model import identifier_of, parameters
 from feeddrive.export.point import Point, export_point
-from feeddrive.plant.analysis.linear import INPUTS, OUTPUTS, ode_parameters, state_names, state_space
+from feeddrive.plant.analysis.linear import state_space
 from feeddrive.plant.analysis.modes import free_modes
+from feeddrive.plant.analysis.ode import INPUTS, OUTPUTS, ode_parameters, state_names
 from feeddrive.plant.chain.chain import CHAINS
 from feeddrive.plant.plant import Plant
 from tests.analytic.export_cases import BENCH, PLANTS, TESTBED

@@ -13,10 +13,9 @@ from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.effects.chain.stiffness_deviation import PARTS, parts_of
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant
-from feeddrive.plant.analysis.modes import screw_frequency
+from feeddrive.plant.analysis.modes import inertia_at_motor, lag_per_acceleration, screw_frequency
 from feeddrive.plant.analysis.steady import steady_motion
 from feeddrive.plant.analysis.stiffness_budget import participation, static_stiffness
-from feeddrive.plant.chain.moving_inertia import inertia_at_motor, lag_per_acceleration
 from feeddrive.plant.file.lumped_text import plant_text_with_effects
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant

@@ -41,8 +41,8 @@ def taken_apart(residual: FloatArray, terms: Sequence[Term] = TERMS) -> tuple[Fo
     """The decomposition of a residual."""
     blocks = (TIME / BLOCK).astype(np.int64)
     offsets = np.ones((len(TIME), 1))
-    columns = lambda found: np.hstack([term.columns(VALUES) for term in found])  # noqa: E731
-    return decompose(Sample(residual, blocks, offsets, columns, 1.0, 0.005), terms, lambda left: [], lambda term: [])
+    sample = Sample(residual, blocks, offsets, lambda term: term.columns(VALUES), 1.0, 0.005)
+    return decompose(sample, terms, lambda left: [], lambda term: [])
 
 
 @pytest.mark.parametrize("seed", range(6))

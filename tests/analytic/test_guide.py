@@ -13,10 +13,14 @@ from hypothesis import strategies as st
 from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.parts.guide.guide_carriage import carriage_friction, friction_map, mean_slip_radius, table_friction
 from feeddrive.parts.guide.guide_coefficients import SET_A, GuideCoefficients
-from feeddrive.parts.guide.guide_equilibrium import forces, guide_equilibrium
+from feeddrive.parts.guide.guide_equilibrium import (
+    forces,
+    guide_equilibrium,
+    preload_force,
+    unloading_force,
+)
 from feeddrive.parts.guide.guide_film import Oil, film_thickness
 from feeddrive.parts.guide.guide_geometry import HSR_20R, HSR_30R, BallGuide
-from feeddrive.parts.guide.guide_stiffness import lateral_stiffness, preload_force, unloading_force, vertical_stiffness
 
 GUIDES = st.builds(
     BallGuide,
@@ -100,7 +104,6 @@ def test_without_preload_nothing_is_unloaded() -> None:
     guide = replace(HSR_20R, preload_oversize=0.0)
     assert preload_force(guide) == 0.0
     assert unloading_force(guide) == pytest.approx(0.0, abs=1e-6)  # rounding of A0 - A0
-    assert vertical_stiffness(guide) == 0.0
     free = carriage_friction(guide, SET_A, SPEEDS)
     assert np.all(free.total == 0.0)
     assert np.all(np.array(free.shares()) == 0.0)
@@ -111,13 +114,6 @@ def test_no_load_and_little_load_are_near() -> None:
     here, near, opposite = (carriage_friction(HSR_20R, SET_A, SPEEDS, load).total for load in (0.0, 1e-3, -1e-3))
     assert near == pytest.approx(here, rel=1e-9)  # it goes with the square of the load: (1e-3 N / 700 N)^2
     assert near == pytest.approx(opposite, rel=1e-12)
-
-
-def test_stiffness_is_that_of_the_symmetric_guide() -> None:
-    assert vertical_stiffness(HSR_20R) == pytest.approx(lateral_stiffness(HSR_20R), rel=1e-12)  # 45 degrees
-    steep = replace(HSR_20R, contact_angle=math.radians(55))
-    assert vertical_stiffness(steep) > lateral_stiffness(steep)
-    assert vertical_stiffness(HSR_20R, 2500.0) < vertical_stiffness(HSR_20R)  # two rows are lost
 
 
 @given(st.floats(0.0, 2e4), st.floats(0.0, 3e3), st.floats(1e-4, 3.0))

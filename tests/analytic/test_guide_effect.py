@@ -19,9 +19,11 @@ from feeddrive.files import plants_folder
 from feeddrive.parts.guide.guide_carriage import table_friction
 from feeddrive.parts.guide.guide_coefficients import SET_A, SET_B
 from feeddrive.parts.guide.guide_geometry import HSR_20R, HSR_30R
-from feeddrive.plant.equations import friction_force, parameter_symbols, parameter_values
-from feeddrive.plant.file.plant_file import plant_text_with_effects, read_plant
+from feeddrive.plant.file.lumped_text import plant_text_with_effects
+from feeddrive.plant.file.plant_file import read_plant
+from feeddrive.plant.friction_law import friction_force
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.structure import parameter_symbols, parameter_values
 
 BENCH = plants_folder() / "bench_axis.toml"
 SPEEDS = (0.0, 0.01, 0.05, 0.1, 0.2)

@@ -279,6 +279,25 @@ def test_recording_of_a_staircase() -> None:
     assert found["R"] == pytest.approx(4e-6, rel=1e-6)
 
 
+@pytest.mark.parametrize("control", ["twincat.csv", "edge_hfdata.csv"])
+def test_trace_of_a_control_is_no_table(control: str, tmp_path: Path) -> None:
+    """A capture of set-point and position [mm], as the control writes it."""
+    recording = staircase(30e-6, 4e-6)
+    asked, there = (1e3 * recording[name] for name in ("setpoint", "table_position"))
+    if control == "edge_hfdata.csv":
+        rows = [f"{5000 + i},{a!r},{b!r}" for i, (a, b) in enumerate(zip(asked.tolist(), there.tolist(), strict=True))]
+        text = "\n".join(["CYCLE,DES_POS|1,ENC_POS|1", *rows, ""])
+    else:
+        head = ["Name\ttest", "Starttime of export\t132959733843760000\tMontag\t15:56", "", "Name\tSetPos\tActPos",
+                "Data-Type\tREAL64\tREAL64", "SymbolName\tAxes.A.SetPos\tAxes.A.ActPos",
+                "Unit\tmm (Length)\tmm (Length)", ""]  # fmt: skip
+        stamps = (1e3 * recording.time).tolist()
+        rows = [f"{t!r}\t{a!r}\t{b!r}" for t, a, b in zip(stamps, asked.tolist(), there.tolist(), strict=True)]
+        text = "\n".join([*head, *rows, ""])
+    found = fd.iso230(written(tmp_path, text, control)).figures_si()
+    assert found == pytest.approx(fd.iso230(recording).figures_si(), abs=1e-12)
+
+
 def test_only_stops_are_read() -> None:
     recording = staircase(0.0, 0.0)
     stops = stops_of(recording, believed(recording, None))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -95,3 +96,10 @@ def test_an_interval_is_there_however_poorly_values_are_told(seed: int) -> None:
     for place in range(8):
         low, high = found.interval(place)
         assert np.isfinite([low, high]).all() and low <= high
+
+
+def test_a_value_beyond_its_tolerance_holds_no_other() -> None:
+    """Where one spring is fitted beyond its tolerance, the other's interval does not lean on that tolerance."""
+    found = known(of(0.5, 1.0))
+    beyond = replace(found, at=np.array([2 * math.log(0.5) / math.log1p(SHARE), 0.0]))
+    assert found.interval(1)[0] > beyond.interval(1)[0] + 1.0

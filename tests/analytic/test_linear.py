@@ -14,16 +14,10 @@ from feeddrive.effects.base import Effect
 from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.errors import InputError
 from feeddrive.files import plants_folder
-from feeddrive.plant.analysis.linear import (
-    INPUTS,
-    OUTPUTS,
-    ode,
-    ode_parameters,
-    state_names,
-    state_space,
-    steady_motion,
-)
+from feeddrive.plant.analysis.linear import state_space
 from feeddrive.plant.analysis.modes import braked_modes, free_modes
+from feeddrive.plant.analysis.ode import INPUTS, OUTPUTS, ode, ode_parameters, state_names
+from feeddrive.plant.analysis.steady import steady_motion
 from feeddrive.plant.analysis.summary import summarise
 from feeddrive.plant.chain.chain import Rigid, ThreeInertias
 from feeddrive.plant.file.plant_file import read_plant

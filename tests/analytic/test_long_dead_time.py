@@ -11,7 +11,7 @@ from feeddrive.files import find_plant, scenarios_folder
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.servo.linear_loop import open_velocity_loop
 from feeddrive.servo.margins import frequency_response, margins
-from feeddrive.simulate.controlled.controller_file import read_controller
+from feeddrive.simulate.scenario.scenario_controller import read_controller
 
 PLANT = read_plant(find_plant("bench_axis"))
 CASCADE = read_controller(scenarios_folder() / "step_position.toml", PLANT)

@@ -11,6 +11,7 @@ import pytest
 
 import feeddrive as fd
 from feeddrive.diagnosis.likelihood.evidence import prepare
+from feeddrive.diagnosis.suspicion.quality import flawed
 from feeddrive.recording.checks.flaws import BAD, JOINED, flaw
 from feeddrive.recording.long import joined
 from feeddrive.recording.long.joined import informative_windows
@@ -91,6 +92,11 @@ def test_flaws_stay_at_their_samples(long_one: fd.Recording) -> None:
     found = joined.shortened(marked, RADIUS)
     (moved,) = (one for one in found.flaws if one.kind == BAD)
     assert found.time[moved.rows[0]] == long_one.time[row]
+
+
+def test_joints_are_no_fault_of_the_recorder(long_one: fd.Recording) -> None:
+    found = joined.shortened(long_one, RADIUS)
+    assert any(one.kind == JOINED for one in found.flaws) and flawed([found]) == ()
 
 
 def test_clock_goes_on_over_what_is_left_out(long_one: fd.Recording) -> None:

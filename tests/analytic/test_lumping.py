@@ -17,10 +17,9 @@ from feeddrive.effects.transmission.stiffness_vs_position import StiffnessVsPosi
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant
 from feeddrive.plant.analysis.lumping import Lumped, lump
-from feeddrive.plant.analysis.modes import braked_modes, free_modes
+from feeddrive.plant.analysis.modes import braked_modes, free_modes, inertia_at_motor
 from feeddrive.plant.analysis.steady import steady_motion
 from feeddrive.plant.chain.chain import ThreeInertias
-from feeddrive.plant.chain.moving_inertia import inertia_at_motor
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
 from feeddrive.units.quantity import format_quantity

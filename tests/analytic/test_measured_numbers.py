@@ -11,8 +11,7 @@ import pytest
 
 import feeddrive as fd
 from feeddrive.diagnosis.numbers.explanations import explanations, inclusion, numbers_problem
-from feeddrive.diagnosis.numbers.measurable import MEASURABLE, Setting
-from feeddrive.diagnosis.numbers.measured_file import read_measured_numbers
+from feeddrive.diagnosis.numbers.measured_file import MEASURABLE, Setting, read_measured_numbers
 from feeddrive.diagnosis.numbers.next_number import mixed, next_numbers
 from feeddrive.diagnosis.numbers.numbers_result import diagnose_numbers
 from feeddrive.diagnosis.plant_text import with_written_values

@@ -18,9 +18,10 @@ from feeddrive.effects.source.constant_force import ConstantForce
 from feeddrive.errors import InputError
 from feeddrive.files import plants_folder
 from feeddrive.parts.screw.screw_friction import ScrewFriction, ScrewGeometry
-from feeddrive.plant.equations import effect_forces, parameter_symbols, parameter_values
+from feeddrive.plant.equations import effect_forces
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.structure import parameter_symbols, parameter_values
 from feeddrive.simulate.held_torque import simulate_torque
 
 LEAD, DIAMETER = 0.02, 0.041

@@ -13,8 +13,7 @@ from feeddrive.files import find_plant
 from feeddrive.plant.analysis.lumping import lump
 from feeddrive.plant.analysis.plausibility import check_plant
 from feeddrive.plant.file.plant_file import read_plant
-from feeddrive.plant.structure import structure_key
-from feeddrive.plant.symbols import parameter_names
+from feeddrive.plant.structure import parameter_names, structure_key
 
 MOTION, HEAT, BOTH = (read_plant(find_plant(name)) for name in ("bench_axis", "thermal_bench", "warm_axis"))
 SINK = THERMAL_EFFECTS["heat_sink"].of(conductance=0.5, capacity=900.0)

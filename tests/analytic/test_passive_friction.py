@@ -21,7 +21,7 @@ from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.friction_law import friction_force, friction_level
 from feeddrive.plant.passive_friction import is_passive, least_friction, refuse_active_friction
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.symbols import parameter_symbols, parameter_values
+from feeddrive.plant.structure import parameter_symbols, parameter_values
 from feeddrive.simulate.scenario.scenario_file import read_scenario
 from feeddrive.typing import FloatArray
 from tests.analytic.test_energy import free_run, stored

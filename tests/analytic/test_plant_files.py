@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.files import plants_folder, shipped_plants
-from feeddrive.plant.file.plant_file import plant_text_with_effects, read_plant
+from feeddrive.plant.file.lumped_text import plant_text_with_effects
+from feeddrive.plant.file.plant_file import read_plant
 from tests.generator.axis import AXES, AxisParameters
 
 BENCH = plants_folder() / "bench_axis.toml"

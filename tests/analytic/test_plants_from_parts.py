@@ -17,9 +17,9 @@ from feeddrive.files import plants_folder
 from feeddrive.parts.combined_stiffness import combined_stiffness
 from feeddrive.parts.guide.guide_coefficients import SET_A
 from feeddrive.parts.guide.guide_geometry import HSR_30R
-from feeddrive.plant.analysis.linear import steady_motion
 from feeddrive.plant.analysis.modes import braked_modes, free_modes
 from feeddrive.plant.analysis.screw_limits import buckling_force, critical_speed
+from feeddrive.plant.analysis.steady import steady_motion
 from feeddrive.plant.analysis.stiffness_budget import stiffness_budget
 from feeddrive.plant.analysis.summary import summarise
 from feeddrive.plant.composition import refuse_what_cannot_compose

@@ -31,9 +31,9 @@ from feeddrive.errors import InputError
 from feeddrive.report.figures.drawing import dress, new_figure
 from feeddrive.report.figures.figures import curve_figures, render_figures, report_figures, save_figures
 from feeddrive.report.pages.html import STYLE, report_page, write_report
+from feeddrive.report.pages.section_records import Occasion, used_sentence
 from feeddrive.report.pages.sections import verdict_section
-from feeddrive.report.records import Occasion, used_sentence
-from feeddrive.report.words.people import share_text, times_text
+from feeddrive.report.words.number_text import share_text, times_text
 from feeddrive.report.words.verdict import is_noise, verdict_sentences
 from feeddrive.report.words.words import plain as words
 from tests.analytic import report_examples as examples

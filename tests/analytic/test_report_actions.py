@@ -8,13 +8,13 @@ from html import unescape
 import numpy as np
 
 import feeddrive as fd
+from feeddrive.bench_page.page import bench_of_diagnosis
 from feeddrive.compensation.actions import Actions, actions, values_to_set
 from feeddrive.compensation.compensate import Prediction, Wishes, plant_table
 from feeddrive.compensation.cures import CURES, ORDER, cure, in_order
 from feeddrive.compensation.predicted_accuracy import Figures
 from feeddrive.diagnosis.judging.result import Diagnosis, EffectResult, ParameterResult
 from feeddrive.effects.catalogue import EFFECTS, THERMAL_EFFECTS
-from feeddrive.interface.benching import bench_of_diagnosis
 from feeddrive.metrology.circular import circular
 from feeddrive.metrology.positioning import positioning
 from feeddrive.report.pages.html import report_page

@@ -9,9 +9,9 @@ import pytest
 
 from feeddrive.diagnosis.judging.result import EffectResult, JudgedRecording, ParameterResult
 from feeddrive.report.figures.figure_spectrum import density_spectrum, order_spectrum
-from feeddrive.report.parameters import effect_sentence, parameter_text
-from feeddrive.report.thinning import balanced, binned, envelope, left_out_stretches
-from feeddrive.report.words.people import fixed, scale_for_error, share_text, significant
+from feeddrive.report.figures.thinning import balanced, binned, envelope, left_out_stretches
+from feeddrive.report.words.number_text import fixed, scale_for_error, share_text, significant
+from feeddrive.report.words.parameters import effect_sentence, parameter_text
 
 
 def plain(text: str) -> str:

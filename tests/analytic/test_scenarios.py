@@ -25,9 +25,8 @@ from feeddrive.servo.margins import margins
 from feeddrive.servo.vendor_names import ALIASES
 from feeddrive.simulate.controlled.acting_torque import ActingTorque
 from feeddrive.simulate.controlled.controlled import TorqueLoop, resting_state, simulate_controlled
-from feeddrive.simulate.scenario.scenario import Scenario
+from feeddrive.simulate.scenario.scenario import Scenario, ScenarioResult
 from feeddrive.simulate.scenario.scenario_file import read_scenario
-from feeddrive.simulate.scenario.scenario_result import ScenarioResult
 from feeddrive.simulate.scenario.scenario_run import run_scenario
 from tests.claims.book import CLAIMS
 

@@ -15,17 +15,17 @@ from typing import Any
 import pytest
 
 import feeddrive as fd
-from feeddrive.diagnosis.numbers.measurable import MEASURABLE
-from feeddrive.diagnosis.numbers.measured_file import read_measured_numbers
+from feeddrive.diagnosis.numbers.measured_file import MEASURABLE, read_measured_numbers
 from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.files import find_scenario_file, plants_folder
 from feeddrive.interface.keys import ROOTS, every_section
-from feeddrive.plant.file.entries import Origins, Table, read_toml
 from feeddrive.plant.file.plant_file import plant_from_entries
 from feeddrive.plant.plant import DeclaredCascade
 from feeddrive.recording.files.channel_mapping import read_mapping
 from feeddrive.schema.key import Key, Kind
 from feeddrive.schema.section import Section, UndeclaredKeyError
+from feeddrive.schema.table import Origins, Table
+from feeddrive.schema.toml_text import read_toml
 from feeddrive.simulate.scenario.scenario_controller import read_cascade
 from feeddrive.simulate.scenario.scenario_file import read_scenario
 from feeddrive.units.quantity import unit_conversion

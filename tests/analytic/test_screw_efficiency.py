@@ -19,18 +19,16 @@ from feeddrive.parts.screw.contact_angle_optimum import (
     highest_efficiency,
     largest_lead_angle,
 )
-from feeddrive.parts.screw.preload_torque import (
-    friction_from_torque,
-    preload_torque,
-    relative_preload_torque,
-    relative_torque,
-)
 from feeddrive.parts.screw.screw_efficiency import (
     back_driving_efficiency,
     back_driving_loss,
     driving_efficiency,
     driving_loss,
+    friction_from_torque,
     jamming_friction,
+    preload_torque,
+    relative_preload_torque,
+    relative_torque,
     self_locking_friction,
 )
 from feeddrive.parts.screw.screw_friction import ScrewFriction, ScrewGeometry

@@ -26,7 +26,6 @@ from feeddrive.parts.life.stress_cycles import (
     effective_screw_groove,
     nut_cycles,
     screw_cycles,
-    screw_cycles_along,
     screw_groove_per_turn,
     stressed_screw_groove,
 )
@@ -150,15 +149,6 @@ def test_cycles_against_stroke(stroke: float) -> None:
     assert screw_cycles(TRACK, stroke) <= longest * (1 + 1e-12)
     if stroke >= TRACK.loaded_length:
         assert screw_cycles(TRACK, stroke) == pytest.approx(longest, rel=1e-12)
-
-
-@given(st.floats(1e-3, 0.5))
-def test_every_ball_passage_is_counted_along_the_screw(stroke: float) -> None:
-    """The area of the trapezoid is what z balls roll over: z (1 - K) l_s, whatever the stroke."""
-    place = np.linspace(-0.01, stroke + TRACK.loaded_length + 0.01, 20001)
-    counted = np.trapezoid(screw_cycles_along(TRACK, stroke, place), place)
-    expected = screw_cycles(TRACK, 10.0) * stroke
-    assert counted == pytest.approx(expected, rel=1e-3)  # the grid cuts the corners
 
 
 def test_effective_groove_lies_between_plateau_and_whole() -> None:

@@ -8,9 +8,11 @@ import numpy as np
 import pytest
 
 from feeddrive.diagnosis.likelihood.band import comparison_band
+from feeddrive.diagnosis.likelihood.evidence import prepare
 from feeddrive.diagnosis.likelihood.slow_rows import is_slow, known_motion, refuse_unknown_motion, sentence
+from feeddrive.diagnosis.suspicion.logged import declared_hold
 from feeddrive.errors import InputError
-from feeddrive.plant.plant import Plant
+from feeddrive.plant.plant import DeclaredCascade, Plant
 from feeddrive.recording import Recording
 from tests.convergence.test_simulate import BENCH
 
@@ -65,3 +67,43 @@ def test_recording_of_which_hardly_a_row_is_left_is_refused() -> None:
         refuse_unknown_motion(rows, np.ones(300, dtype=bool), made)
     refuse_unknown_motion(~rows, np.ones(300, dtype=bool), made)
     assert "87 % of the rows are left out" in sentence(rows, made)
+
+
+def test_torque_of_slow_rows_is_that_of_half_a_cycle_later() -> None:
+    """A torque that rises with time, held for 2 ms from the instant at which a row of 10 ms is written."""
+    time = STEP * np.arange(800)
+    made = recording(20.0 * time, time)
+    held, at_once = (prepare(made, PLANT, 1.0, hold).measured["motor_torque"] for hold in (2e-3, None))
+    inner = slice(100, -100)
+    assert np.mean(at_once[inner] - held[inner]) == pytest.approx(
+        1e-3, rel=0.03
+    )  # 1 N m/s for 1 ms; noise leaves 0.7 %
+
+
+def test_declared_cycle_is_taken_however_far_rows_are_apart() -> None:
+    gains = {"position_gain": "10 1/s", "velocity_gain": "1 N m s/rad", "reset_time": "20 ms", "torque_limit": "30 N m"}
+    loop = {"velocity_rate": "500 Hz", "position_rate": "500 Hz", **gains}
+    plant = replace(PLANT, controller=DeclaredCascade(loop, "plant.toml"))
+    slow = recording(np.zeros(1000), np.zeros(1000))
+    assert declared_hold(plant, [slow]) == pytest.approx(2e-3)
+    assert declared_hold(plant, [replace(slow, sample_time=2e-3)]) is None  # a row a cycle
+
+
+def test_steps_of_a_coarse_encoder_are_no_unknown_motion() -> None:
+    time = STEP * np.arange(2000)
+    made = recording(30.0 * time, np.ones(2000))
+    coarse = 2 * np.pi / 2**12
+    angle = coarse * np.round(30.0 * time / coarse)
+    rows = known(replace(made, channels={**made.channels, "motor_angle": angle}))
+    assert rows[20:-20].mean() > 0.98
+
+
+def test_rows_are_left_out_where_a_faster_loop_moves_between_them() -> None:
+    """Rows of 2 ms, the axis turning round within one: known of a drive of one cycle a row alone."""
+    time = 2e-3 * np.arange(4000)
+    angle = np.where(time < 4.0, 30.0 * time, 120.0 - 30.0 * (time - 4.0))
+    made = recording(angle, np.where(time < 4.0, 1.0, -1.0))
+    made = replace(made, time=time, sample_time=2e-3)
+    every, faster = (prepare(made, PLANT, 1.0, hold).counted for hold in (None, 5e-4))
+    assert every[2000] and not faster[1995:2005].any()
+    assert faster[600:1900].all()

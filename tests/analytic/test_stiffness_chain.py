@@ -8,10 +8,10 @@ import pytest
 
 from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.parts.bearings.supports import ScrewSupports, Support
+from feeddrive.parts.coupling import Transmission
 from feeddrive.parts.motor import HoldingBrake, Motor
 from feeddrive.parts.screw.screw_drive import BallScrewDrive
-from feeddrive.parts.screw.transmission import Transmission
-from feeddrive.plant.analysis.held_frequency import held_frequency
+from feeddrive.plant.analysis.modes import held_frequency
 from tests.analytic.rayleigh import rayleigh_frequency
 from tests.analytic.screw_fem import ScrewDrive, frequencies
 from tests.analytic.stiffness_cases import AT_NUT, paper_drive

@@ -20,10 +20,9 @@ from feeddrive.parts.combined_stiffness import (
     stiffness_along,
     torsional_from_axial,
 )
-from feeddrive.parts.coupling import Coupling
+from feeddrive.parts.coupling import Coupling, Transmission
 from feeddrive.parts.motor import HoldingBrake, Motor
 from feeddrive.parts.screw.screw_drive import BallScrewDrive
-from feeddrive.parts.screw.transmission import Transmission
 from tests.analytic.screw_fem import ScrewDrive, static_stiffness
 from tests.analytic.stiffness_cases import AT_NUT, drives, paper_drive
 

@@ -9,9 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from feeddrive.parts.combined_stiffness import combined_stiffness
+from feeddrive.parts.coupling import Transmission
 from feeddrive.parts.motor import HoldingBrake
 from feeddrive.parts.screw.screw_drive import BallScrewDrive
-from feeddrive.parts.screw.transmission import Transmission
 from tests.analytic.rayleigh import added_mass, rayleigh_frequency
 from tests.analytic.screw_fem import ScrewDrive, frequencies
 from tests.analytic.stiffness_cases import AT_NUT, drives, paper_drive

@@ -9,12 +9,10 @@ import pytest
 
 from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.parts.bearings.supports import SupportBearing
-from feeddrive.parts.coupling import Coupling
-from feeddrive.parts.material import STEEL, ShaftMaterial
+from feeddrive.parts.coupling import Coupling, Transmission
 from feeddrive.parts.motor import HoldingBrake, Motor
-from feeddrive.parts.screw.ball_screw import ScrewShaft
+from feeddrive.parts.screw.ball_screw import STEEL, ScrewShaft, ShaftMaterial
 from feeddrive.parts.screw.nut import Nut, stiffness_at_preload
-from feeddrive.parts.screw.transmission import Transmission
 from feeddrive.parts.screw.wedge import (
     self_locking,
     self_locking_lead,

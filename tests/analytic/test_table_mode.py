@@ -12,8 +12,10 @@ from feeddrive.effects.chain.payload import Payload
 from feeddrive.effects.chain.structural_mode import StructuralMode
 from feeddrive.errors import InputError
 from feeddrive.files import plants_folder
-from feeddrive.plant.analysis.linear import linear_matrices, state_names, steady_motion
+from feeddrive.plant.analysis.linear import linear_matrices
 from feeddrive.plant.analysis.modes import braked_modes, free_modes
+from feeddrive.plant.analysis.ode import state_names
+from feeddrive.plant.analysis.steady import steady_motion
 from feeddrive.plant.analysis.summary import summarise
 from feeddrive.plant.chain.chain import Rigid, ThreeInertias
 from feeddrive.plant.file.lumped_text import plant_text_with_effects

@@ -12,7 +12,7 @@ from feeddrive.effects.base import Motion, Port
 from feeddrive.effects.tabulated import TabulatedForce, TabulatedFriction, TabulatedTorque, TabulatedTravel
 from feeddrive.errors import InputError
 from feeddrive.files import plants_folder
-from feeddrive.plant.analysis.linear import ode, ode_parameters, state_names
+from feeddrive.plant.analysis.ode import ode, ode_parameters, state_names
 from feeddrive.plant.file.lumped_text import plant_text_with_effects
 from feeddrive.plant.file.plant_file import read_plant
 

@@ -16,7 +16,8 @@ from feeddrive.effects.heat.bearing_heat import reference_torque
 from feeddrive.effects.heat.thermal_effect import Operation, ThermalEffect
 from feeddrive.errors import InputError
 from feeddrive.files import plants_folder
-from feeddrive.plant.file.plant_file import plant_text_with_effects, read_plant
+from feeddrive.plant.file.lumped_text import plant_text_with_effects
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.thermal.laws.friction import Friction
 from feeddrive.thermal.reduced.parametric_model import HeatModel
 from feeddrive.thermal.reduced.reduction import reduce_model

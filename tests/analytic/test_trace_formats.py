@@ -376,7 +376,9 @@ def test_the_edge_capture_of_a_real_machine(shared_data: Path) -> None:
     # Regressions over either stretch and over both are 1.43754 to 1.43760.
     assert constant.value == pytest.approx(1.4376, abs=1e-4)
     assert "motor_current" not in found.channels  # the torque is computed from it
-    with pytest.raises(InputError, match="it holds the axes C1, B1, SP1, X1, Y1, Z1; say which by --axis"):
+    with pytest.raises(
+        InputError, match="it holds the axes C1, B1, SP1, X1, Y1, Z1; say which by --axis C1 of feeddrive read"
+    ):
         read_recording(path)
 
 

@@ -12,8 +12,7 @@ from scipy.integrate import cumulative_simpson
 
 from feeddrive.errors import InputError
 from feeddrive.simulate.setpoints.cutting_force import Milling, RecordedForce, TriangleForce
-from feeddrive.simulate.setpoints.jerk_limited import Limits, move, phases
-from feeddrive.simulate.setpoints.setpoint_motion import Pieces, Trajectory
+from feeddrive.simulate.setpoints.setpoint_motion import Limits, Pieces, Trajectory, move, phases
 from feeddrive.simulate.setpoints.trajectories import (
     Circle,
     Sine,

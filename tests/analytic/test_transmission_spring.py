@@ -15,12 +15,13 @@ from feeddrive.effects.transmission.preload_loss import PreloadLoss
 from feeddrive.effects.transmission.stiffness_vs_position import LEAST_FACTOR, StiffnessVsPosition
 from feeddrive.errors import InputError
 from feeddrive.files import plants_folder
-from feeddrive.plant.analysis.linear import linear_matrices, steady_motion
+from feeddrive.plant.analysis.linear import linear_matrices
+from feeddrive.plant.analysis.steady import steady_motion
 from feeddrive.plant.chain.chain import Rigid, ThreeInertias
 from feeddrive.plant.file.lumped_text import plant_text_with_effects
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.symbols import chain_symbols, parameter_symbols, parameter_values
+from feeddrive.plant.structure import chain_symbols, parameter_symbols, parameter_values
 from feeddrive.plant.transmission_law import spring_law
 from feeddrive.simulate.driven import motor_motion, simulate_driven
 from tests.analytic.test_energy import free_run

@@ -10,11 +10,13 @@ import zipfile
 from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import feeddrive as fd
+from feeddrive.trend import change_searches
 from feeddrive.trend.checkpoint import load_checkpoint, save_checkpoint
 from feeddrive.trend.folder import stamp_of
 from feeddrive.trend.watch import Trend
@@ -179,7 +181,7 @@ def test_a_distance_in_place_of_dates(tmp_path: Path, axis: fd.Axis) -> None:
     ("options", "said"),
     [
         ({"absolute": "motor_torque"}, "has no zero to keep"),
-        ({"every": "0 s"}, "no distance"),
+        ({"every": "0 s"}, "not above zero"),
         ({"every": "1 day", "first": "31 January"}, "is no date"),
         ({"limits": {"backlash": "10 µm"}}, 'no quantity "backlash"'),
         ({"limits": {"play": "-1 µm"}}, "allows nothing"),
@@ -201,3 +203,34 @@ def test_nothing_to_follow(tmp_path: Path, axis: fd.Axis) -> None:
     (tmp_path / "empty").mkdir()
     with pytest.raises(fd.InputError, match="no recording can be used"):
         fd.watch(tmp_path / "empty", axis)
+
+
+@pytest.mark.parametrize(
+    ("effect", "said"),
+    [
+        ("backlash", "Full search: play is larger."),
+        ("payload", "are too little to tell backlash; they would say payload is larger, which all recordings"),
+        ("", "(4 s and 4 s) are too little to tell backlash; what is said above rests on all recordings."),
+    ],
+)
+def test_search_of_two_recordings_does_not_contradict_all_of_them(
+    effect: str, said: str, tmp_path: Path, axis: fd.Axis, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The full search sees the two beside the change; it is asked once."""
+    asked = []
+
+    def found(plant: object, recordings: list[fd.Recording]) -> tuple[object, tuple[()]]:
+        asked.append([one.name for one in recordings])
+        words = "play is larger" if effect == "backlash" else f"{effect} is larger"
+        changes = [SimpleNamespace(effect=effect, statement=words)] if effect else []
+        return SimpleNamespace(changes=SimpleNamespace(changes=changes), effects=()), ()
+
+    monkeypatch.setattr(change_searches, "diagnose", found)
+    folder = tmp_path / "days"
+    folder.mkdir()
+    for number in range(1, 13):
+        write_recording(folder / f"x_2026-01-{number:02d}.csv", day(number, play=1e-6 + 4e-6 * (number > 7)))
+    watched = fd.watch(folder, axis, search=True)
+    assert "play jumps by +4" in watched.verdict and said in watched.verdict
+    assert fd.watch(folder, axis, search=True).verdict == watched.verdict
+    assert asked == [["x_2026-01-07.csv", "x_2026-01-09.csv"]]

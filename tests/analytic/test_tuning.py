@@ -22,7 +22,7 @@ from feeddrive.servo.cascade import Cascade, Feedback
 from feeddrive.servo.linear_loop import open_position_loop, open_velocity_loop, worst_eigenvalue
 from feeddrive.servo.margins import margins
 from feeddrive.servo.mechanics_response import Case, Friction
-from feeddrive.simulate.controlled.controller_file import read_controller
+from feeddrive.simulate.scenario.scenario_controller import read_controller
 from feeddrive.tuning.demand import Demand, cases_of, operating_points
 from feeddrive.tuning.largest_gain import Limit, largest_gain
 from feeddrive.tuning.reasons import controller_text, settings

@@ -10,7 +10,7 @@ import pytest
 
 from feeddrive.cli.main import main
 from feeddrive.files import find_plant, scenarios_folder
-from feeddrive.plant.analysis.linear import steady_motion
+from feeddrive.plant.analysis.steady import steady_motion
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.simulate.held_torque import simulate_torque
 

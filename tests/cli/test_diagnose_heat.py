@@ -13,7 +13,7 @@ import pytest
 from feeddrive.cli.main import main
 from feeddrive.diagnosis.heat.heat_evidence import prepare_heat
 from feeddrive.diagnosis.heat.heat_prediction import heat_predictor
-from feeddrive.diagnosis.ledger.continued import earlier_run
+from feeddrive.diagnosis.ledger.ledger import earlier_run
 from feeddrive.files import plants_folder
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.recording import read_recording

@@ -20,11 +20,11 @@ from feeddrive.export.linear_model import linear_model_of, python_text
 from feeddrive.export.nonlinear_model import model_of
 from feeddrive.export.point import Point
 from feeddrive.files import plants_folder
-from feeddrive.plant.file.entries import read_toml
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.report.pages.html import report_page
+from feeddrive.schema.toml_text import read_toml
 from feeddrive.servo.mechanics_response import Case
-from feeddrive.simulate.controlled.controller_file import read_controller
+from feeddrive.simulate.scenario.scenario_controller import read_controller
 from feeddrive.tuning.demand import Demand
 from feeddrive.tuning.reasons import controller_text
 from feeddrive.tuning.recommendation import Recommendation, recommend

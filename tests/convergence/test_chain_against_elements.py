@@ -11,11 +11,14 @@ import pytest
 from feeddrive.effects.base import Effect
 from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.errors import InputError
-from feeddrive.plant.analysis.linear import ode, ode_parameters, state_space, steady_motion
+from feeddrive.plant.analysis.linear import state_space
 from feeddrive.plant.analysis.modes import braked_modes, free_modes
+from feeddrive.plant.analysis.ode import ode, ode_parameters
+from feeddrive.plant.analysis.steady import steady_motion
 from feeddrive.plant.chain.chain import DistributedScrew
-from feeddrive.plant.equations import effect_forces, parameter_symbols, parameter_values
+from feeddrive.plant.equations import effect_forces
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.structure import parameter_symbols, parameter_values
 from tests.analytic.screw_fem import ScrewDrive, frequencies, static_stiffness
 from tests.claims.book import CLAIMS
 

@@ -20,8 +20,9 @@ from feeddrive.effects.timing.drive_delay import DriveDelay
 from feeddrive.effects.travel.lead_error_periodic import LeadErrorPeriodic
 from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.plant.chain.chain import Rigid, ThreeInertias, symbolic
-from feeddrive.plant.equations import chain_symbols, effect_forces, parameter_symbols, parameter_values
+from feeddrive.plant.equations import effect_forces
 from feeddrive.plant.plant import Plant, PositionVelocityController
+from feeddrive.plant.structure import chain_symbols, parameter_symbols, parameter_values
 from feeddrive.simulate.driven import motor_motion, simulate_driven
 from feeddrive.simulate.held_torque import initial_state, simulate_torque
 from feeddrive.typing import FloatArray

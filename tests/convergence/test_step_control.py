@@ -19,7 +19,7 @@ from feeddrive.effects.timing.drive_delay import DriveDelay
 from feeddrive.effects.transmission.backlash import Backlash
 from feeddrive.effects.transmission.preload_loss import PreloadLoss
 from feeddrive.effects.transmission.stiffness_vs_position import StiffnessVsPosition
-from feeddrive.engine.step.step_constants import SimulationError
+from feeddrive.engine.step.linear_part import SimulationError
 from feeddrive.plant.plant import Plant
 from feeddrive.simulate.driven import motor_motion, simulate_driven
 from feeddrive.simulate.held_torque import simulate_torque

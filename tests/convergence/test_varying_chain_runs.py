@@ -8,10 +8,10 @@ import pytest
 
 from feeddrive.effects.friction.guide_friction import GuideFriction
 from feeddrive.engine import compiled, engine, interpreted
-from feeddrive.engine.step.step_constants import SimulationError
-from feeddrive.plant.analysis.linear import ode
-from feeddrive.plant.equations import parameter_values
+from feeddrive.engine.step.linear_part import SimulationError
+from feeddrive.plant.analysis.ode import ode
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.structure import parameter_values
 from feeddrive.simulate.controlled.controlled import simulate_controlled
 from feeddrive.simulate.driven import motor_motion, simulate_driven
 from feeddrive.simulate.held_torque import initial_state, simulate_torque

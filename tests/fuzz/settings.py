@@ -8,7 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from feeddrive.files import find_plant, scenarios_folder
-from feeddrive.plant.analysis.linear import INPUTS, OUTPUTS
+from feeddrive.plant.analysis.ode import INPUTS, OUTPUTS
 from tests.fuzz.commands import command
 from tests.fuzz.harness import Attempt
 from tests.fuzz.scenarios import KEYS

@@ -15,13 +15,14 @@ from feeddrive.parts.screw.contact_angle_optimum import (
     largest_lead_angle,
 )
 from feeddrive.parts.screw.double_nut import OPENING, rigid_sharing
-from feeddrive.parts.screw.preload_torque import preload_torque, relative_preload_torque
 from feeddrive.parts.screw.screw_efficiency import (
     back_driving_efficiency,
     back_driving_loss,
     driving_efficiency,
     driving_loss,
     jamming_friction,
+    preload_torque,
+    relative_preload_torque,
     self_locking_friction,
 )
 from feeddrive.parts.screw.screw_friction import ScrewFriction, ScrewGeometry

@@ -15,7 +15,7 @@ from feeddrive.files import find_plant
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.friction_law import friction_level
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.symbols import parameter_symbols, parameter_values
+from feeddrive.plant.structure import parameter_symbols, parameter_values
 from feeddrive.recording import Recording
 from tests.generator.profile import setpoint_and_chirp, train_profile, validate_profile
 from tests.generator.screw_elements import Drive, Friction, Planted, Recorder, drive_of, record

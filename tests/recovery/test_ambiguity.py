@@ -19,7 +19,7 @@ from feeddrive.diagnosis.likelihood.fit import Problem, fit
 from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
 from feeddrive.effects.base import Effect, Port
 from feeddrive.effects.catalogue import EFFECTS
-from feeddrive.plant.chain.moving_inertia import inertia_at_motor
+from feeddrive.plant.analysis.modes import inertia_at_motor
 from tests.recovery.drawn import drawn, settled
 from tests.recovery.planted import axis_plant, pair
 

@@ -11,7 +11,7 @@ import pytest
 from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.preparation import prepared
 from feeddrive.diagnosis.simulated.loop_evidence import loop_evidence
-from feeddrive.diagnosis.simulated.simulation import loop_errors
+from feeddrive.diagnosis.simulated.refinement import loop_errors
 from feeddrive.files import plants_folder
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.recording import Recording

@@ -15,8 +15,7 @@ from feeddrive.diagnosis.calibration.calibrate import calibrated, calibrated_lis
 from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
 from feeddrive.diagnosis.likelihood.folds import FOLDS, block_numbers, blocks_in_time
-from feeddrive.diagnosis.numbers.measurable import MEASURABLE, Setting
-from feeddrive.diagnosis.numbers.measured_file import MeasuredNumber
+from feeddrive.diagnosis.numbers.measured_file import MEASURABLE, MeasuredNumber, Setting
 from feeddrive.diagnosis.numbers.number_rows import MeasuredRows
 from feeddrive.diagnosis.preparation import prepared
 from feeddrive.effects.chain.payload import Payload

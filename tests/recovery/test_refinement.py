@@ -16,9 +16,7 @@ from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.preparation import prepared
 from feeddrive.diagnosis.simulated.loop_evidence import loop_evidence
 from feeddrive.diagnosis.simulated.loop_fit import LoopProblem, alike, foretold, loop_problem
-from feeddrive.diagnosis.simulated.refinement import DELAYED, Outcome, Refinement, refined, why_not_kept
-from feeddrive.diagnosis.simulated.simulation import before_and_after
-from feeddrive.diagnosis.simulated.simulation_record import simulation_record
+from feeddrive.diagnosis.simulated.refinement import DELAYED, Outcome, Refinement, errors_after, refined, why_not_kept
 from feeddrive.diagnosis.simulated.simulation_result import ErrorFigure
 from feeddrive.effects.base import Effect
 from feeddrive.effects.chain.payload import Payload
@@ -80,7 +78,7 @@ def test_a_value_that_the_attribution_missed_is_found_in_simulation(start: float
 def test_the_record_grows_the_keys_that_were_there(tmp_path: Path) -> None:
     told = case(controlled_plant(tmp_path, "bench"), Payload.of(mass=22.2)).refined().simulation
     assert told is not None
-    record = simulation_record(told)
+    record = told.record()
     assert {"channel", "before", "after"} < set(record)
     assert record["after_refinement"] == record["channels"][0]["after_refinement"]["relative"]
     assert [one["name"] for one in record["channels"]] == ["motor_torque", "table_position"]
@@ -105,7 +103,7 @@ def test_refined_values_that_predict_worse_are_not_kept(tmp_path: Path) -> None:
     plant = controlled_plant(tmp_path, "bench")
     right, wrong = case(plant, Payload.of(mass=22.0)), case(plant, Payload.of(mass=24.0))
     loops = [loop_evidence(plant, one.evidence) for one in judged(right)]
-    _, errors = before_and_after(right.found.problem, judged(right), loops)
+    errors = errors_after(right.found.problem, judged(right), loops)
     better = {name: ErrorFigure(0.9 * e.rms, 0.9 * e.relative) for name, e in errors.items()}
     worse = {name: ErrorFigure(1.1 * e.rms, 1.1 * e.relative) for name, e in errors.items()}
     mixed = better | {"motor_torque": ErrorFigure(1.02 * errors["motor_torque"].rms, 0.02)}

@@ -13,7 +13,7 @@ from feeddrive.compensation.forms.linuxcnc_table import LINUXCNC
 from feeddrive.compensation.forms.sinumerik import SINUMERIK_CEC, SINUMERIK_ENC
 from feeddrive.compensation.table import CompensationTable
 from feeddrive.errors import InputError
-from feeddrive.plant.file.entries import nearest
+from feeddrive.schema.toml_text import nearest
 from feeddrive.units.quantity import format_quantity
 
 HEAT = "sinumerik-temp"

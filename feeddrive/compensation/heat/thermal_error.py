@@ -22,8 +22,7 @@ from feeddrive.errors import InputError
 from feeddrive.thermal.laws.expansion import growths
 from feeddrive.thermal.machine_heat import Heat
 from feeddrive.thermal.reduced.parametric_model import HeatModel, Path
-from feeddrive.thermal.reduced.reduction import Sizes, reduce_model
-from feeddrive.thermal.rig import refuse_unless
+from feeddrive.thermal.reduced.reduction import reduce_model
 from feeddrive.thermal.run.warm_up import declared_rows, run
 from feeddrive.typing import FloatArray
 
@@ -48,19 +47,14 @@ class TableError:
         return np.asarray(states @ self.rows.T)
 
 
-def table_error(heat: Heat, model: HeatModel, count: int = POSITIONS) -> TableError:
+def table_error(heat: Heat, model: HeatModel) -> TableError:
     """The error along the plant's travel.
 
     Args:
         heat: the machine.
         model: its full or a reduced model.
-        count: of places, evenly from end to end of the travel.
-
-    Raises:
-        InputError: fewer than two places.
     """
-    refuse_unless(count >= 2, f"{count} places make no line", "count", "write at least 2")
-    positions = np.linspace(heat.rig.travel.low, heat.rig.travel.high, count)
+    positions = np.linspace(heat.rig.travel.low, heat.rig.travel.high, POSITIONS)
     profile = model.profile.toarray() if sparse.issparse(model.profile) else model.profile
     return TableError(positions, growths(heat.rig, profile.T, model.edges, positions).T)
 
@@ -115,13 +109,12 @@ _FILMS = 1.25
 """Range of the films beyond that from rest to the highest speed: the tolerance twice, and some."""
 
 
-def compensation_model(heat: Heat, order: int = ORDER, sizes: Sizes | None = None) -> HeatModel:
+def compensation_model(heat: Heat, order: int = ORDER) -> HeatModel:
     """The reduced model that a compensation runs: its films may vary with speed, its contact is the declared one.
 
     Args:
         heat: the machine.
         order: number of states.
-        sizes: working sizes; None for those of a small axis.
 
     Raises:
         InputError: an order that is not possible.
@@ -129,7 +122,7 @@ def compensation_model(heat: Heat, order: int = ORDER, sizes: Sizes | None = Non
     limits = dict(heat.limits(_FILMS))
     limits[Path.CONTACT] = (heat.contact, heat.contact)
     limits[Path.COOLING] = (0.0, 0.0)
-    return reduce_model([heat.full_model()], limits, order, sizes)[0]
+    return reduce_model([heat.full_model()], limits, order)[0]
 
 
 def model_alone(

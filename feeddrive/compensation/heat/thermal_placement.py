@@ -48,7 +48,6 @@ def placements(
     count: int,
     speeds: Sequence[float],
     unknowns: Unknowns | None = None,
-    kind: Sensor | None = None,
 ) -> tuple[Placement, ...]:
     """All sets of `count` mountable places, the best first.
 
@@ -59,18 +58,17 @@ def placements(
         count: of sensors; 0 for the model alone.
         speeds: of the screw, at each of which the axis has settled [rad/s].
         unknowns: as of the observer.
-        kind: noise and lag of the sensors; its place is not looked at.
 
     Raises:
         InputError: more sensors than places, or no speeds.
     """
-    places, kind = mountable_places(heat), kind or Sensor("nut")
+    places = mountable_places(heat)
     if not 0 <= count <= len(places) or not len(speeds):
         what = f"{count} sensors at {len(speeds)} speeds"
         raise InputError(what, "placement", f"give at least one speed, and sensors up to the {len(places)} places")
     found = []
     for chosen in combinations(places, count):
-        sensors = [Sensor(place, kind.noise, kind.lag) for place in chosen]
+        sensors = [Sensor(place) for place in chosen]
         observer = thermal_observer(heat, model, error, sensors, unknowns)
         spread = np.array([expected_deviation(observer, speed) for speed in speeds])
         found.append(Placement(chosen, float(np.sqrt(np.mean(spread**2))), float(spread.max())))

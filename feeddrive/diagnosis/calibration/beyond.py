@@ -89,6 +89,29 @@ def given_back(problem: Problem, effect: Effect) -> Problem:
     return replace(problem, calibration=given)
 
 
+def without_effects(problem: Problem, gone: Sequence[Effect], rest: Sequence[Effect]) -> Problem:
+    """The problem once some effects are out of a set: declared values that they stated are fitted within tolerance.
+
+    Left as declared they would be exact, and what they are off by would go into whatever is in their place.
+
+    Args:
+        problem: with the values that were fitted beside all effects.
+        gone: effects that are out.
+        rest: those that remain.
+    """
+    known = problem.calibration
+    for effect in gone:
+        if not any(_is_same(effect, other) for other in rest):
+            problem = given_back(problem, effect)
+    if known is None or problem.calibration is None or len(problem.calibration.values) == len(known.values):
+        return problem
+    return recalibrated(problem, rest)
+
+
+def _is_same(one: Effect, other: Effect) -> bool:
+    return (one.name, one.port, one.place) == (other.name, other.port, other.place)
+
+
 def said_by_effects(problem: Problem, effects: Sequence[Effect]) -> tuple[Problem, tuple[Effect, ...]]:
     """Every declared value that an effect of a set says to be other is stated by it alone.
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -71,7 +72,37 @@ def recalibrated(problem: Problem, effects: Sequence[Effect], rough: bool = Fals
     variance = _variance(sloped, left)
     numbers = problem.numbers.with_variance(variance)
     sloped = replace(problem, calibration=replace(sloped.calibration, variance=variance), numbers=numbers)
-    return _stepped(sloped, effects, sloped.unwhitened(effects) if len(numbers) else residual)
+    return sloped.stepped(effects, sloped.unwhitened(effects) if len(numbers) else residual)
+
+
+def weighed_by_rest(problem: Problem, effects: Sequence[Effect]) -> Problem:
+    """The problem with no channel weighed by more than what is left of it, its declared values fitted anew from there.
+
+    A channel of which much is left has an error of the model, not of its sensor. Its variance is not known; the most
+    likely one is its mean square, n/2 log r'r in place of r'r / 2 σ², which is met by weighing in turn: begun at the
+    declared values, so that none of two channels is given up for the other.
+
+    Args:
+        problem: with declared values that are fitted.
+        effects: beside them.
+    """
+    known = problem.calibration
+    if known is None or not known.values:
+        return problem
+    there = replace(problem, calibration=replace(known, coordinates=np.zeros(len(known.values))))
+    for _ in range(PASSES):
+        before = there
+        residual, first, evidence = replace(there, evidence=problem.evidence).unwhitened(effects), 0, []
+        for e in problem.evidence:
+            count, noise = int(e.thinned(e.fit_rows).sum()), dict(e.noise)
+            for name in e.channels:
+                noise[name] *= math.sqrt(max(float(np.mean(residual[first : first + count] ** 2)), 1.0))
+                first += count
+            evidence.append(replace(e, noise=noise))
+        there = recalibrated(replace(there, evidence=tuple(evidence)), effects)
+        if np.max(np.abs(moved(before, there)), initial=0.0) < ENOUGH:
+            break
+    return there
 
 
 def with_new_slopes(problem: Problem, effects: Sequence[Effect], rough: bool = False) -> Problem:
@@ -136,21 +167,6 @@ def with_recordings(problem: Problem, effects: Sequence[Effect], more: Sequence[
         return joined
     slopes: dict[Recording, dict[str, FloatArray]] = {e.recording: slopes_of(problem, effects, e) for e in more}
     return replace(joined, calibration=replace(known, slopes={**slopes, **known.slopes}))
-
-
-def _stepped(problem: Problem, effects: Sequence[Effect], residual: FloatArray) -> Problem:
-    """The problem at the most likely values, or as far towards them as the error falls."""
-    known = problem.calibration
-    assert known is not None and problem.whitener is not None
-    wanted = problem.whitener.most_likely(residual)
-    before = float(residual @ residual) + known.variance * float(known.coordinates @ known.coordinates)
-    for share in (1.0, 0.5, 0.1):
-        coordinates = known.coordinates + share * (wanted - known.coordinates)
-        there = replace(problem, calibration=replace(known, coordinates=coordinates))
-        left = there.unwhitened(effects)
-        if np.all(np.isfinite(left)) and left @ left + known.variance * float(coordinates @ coordinates) < before:
-            return there
-    return problem
 
 
 def _variance(problem: Problem, residual: FloatArray) -> float:
@@ -223,14 +239,13 @@ class Calibrated:
 
 def calibrated_list(problem: Problem, found: Fit) -> tuple[Calibrated, ...]:
     """What is known of the declared values beside a fitted set."""
-    known, calibration, whitened = known_values(problem, found), problem.calibration, problem.whitener
-    if known is None or calibration is None or whitened is None:
+    known, settled = known_values(problem, found), problem.settled(found.effects).calibration
+    if known is None or settled is None:
         return ()
-    settled = whitened.most_likely(problem.unwhitened(found.effects))
     deviations = np.sqrt(np.diag(known.covariance))
     result = []
     for i, value in enumerate(known.values):
-        coordinate, (low, high) = float(settled[i]), known.interval(i)
+        coordinate, (low, high) = float(settled.coordinates[i]), known.interval(i)
         ends = min(low, coordinate), max(high, coordinate)
         result.append(Calibrated(value, coordinate, float(deviations[i]), ends))
     return tuple(result)

@@ -8,7 +8,7 @@
 |---|---|---|
 | u | values, in the coordinates of their own effect, over their deviation | 1 |
 | K, r | slopes with u less what the effects' own slopes explain, and the residual at u = 0, over the noise | 1 |
-| H, S | K'K, and the covariance of K' r by the colour of the residual | 1 |
+| H, S | K'K, and the covariance of K' r by the colour of the residual and by the encoder (`encoder_scores`) | 1 |
 
 What a stiffness does is in proportion to its compliance, what a mass or a friction does to itself: f^p is linear in u,
 p = -1 or 1, f the value over the declared one. Tolerances are ends here, not deviations: values alike to the recordings
@@ -30,6 +30,7 @@ import numpy as np
 from scipy.optimize import brentq, lsq_linear
 
 from feeddrive.diagnosis.calibration.declared import FARTHEST, CalibratedValue
+from feeddrive.diagnosis.calibration.encoder_scores import encoder_scores
 from feeddrive.diagnosis.certainty.noise_colour import score_covariance
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, linear_step
 from feeddrive.typing import FloatArray
@@ -67,7 +68,9 @@ class Known:
     def read_ends(self) -> FloatArray:
         """Both ends of every tolerance as people read it, as u, (2, k)."""
         low = [self.u(i, math.log(_least_share(one.tolerance)) / one.deviation) for i, one in enumerate(self.values)]
-        return np.array([low, self.ends[1]])
+        ends = np.array([low, self.ends[1]])
+        beyond = (self.at < ends[0]) | (self.at > ends[1])  # a value that is not held by its tolerance holds no other
+        return np.where(beyond, [[-np.inf], [np.inf]], ends)
 
     def u(self, place: int, coordinate: float) -> float:
         """The coordinate in which the effect of a value is linear, at c."""
@@ -160,7 +163,7 @@ def known_values(problem: Problem, found: Fit) -> Known | None:
     own = _own_slopes(problem, found)
     if own.size:
         columns = columns - own @ np.column_stack([linear_step(own, column) for column in columns.T])
-    score = score_covariance(problem.evidence, rows, left, columns)
+    score = score_covariance(problem.evidence, rows, left, columns) + encoder_scores(problem)
     scale = np.sqrt(np.maximum(np.diag(score), np.finfo(float).tiny))
     sizes, directions = np.linalg.eigh(score / np.outer(scale, scale))
     usable = sizes > 1e-10

@@ -23,7 +23,7 @@ from feeddrive.diagnosis.finding.attempt import Attempt
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging.judge import Judged
 from feeddrive.diagnosis.likelihood.coordinates import LOGARITHMIC
-from feeddrive.diagnosis.likelihood.fit import Fit, fit
+from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
 from feeddrive.effects.base import Effect, number
 from feeddrive.effects.chain.stiffness_deviation import PARTS, StiffnessDeviation, parts_of
 from feeddrive.errors import InputError
@@ -65,6 +65,7 @@ class Rival:
         odds: Lambda of the module's docstring.
         distance: between the two predictions, in standard deviations of the noise.
         error_ratio: of the validation errors (rms), the rival's over that of what was taken.
+        problem: with the declared values that are fitted beside it.
     """
 
     place: int
@@ -72,6 +73,7 @@ class Rival:
     odds: float
     distance: float
     error_ratio: float
+    problem: Problem
 
     @property
     def effect(self) -> Effect:
@@ -216,15 +218,16 @@ def _is_free(found: Search, effect: Effect) -> bool:
 def _in_place(found: Search, judged: Sequence[Judged], place: int, rival: Effect, mine: Residuals) -> Rival | None:
     """A rival in the place of an effect, all refitted; None where the plant cannot hold or follow it.
 
-    A stiffness elsewhere is another machine for the declared values as well. What was named is one of them again, and
-    what the rival is about none: beside each, all others are free within their tolerances.
+    Where one of them says that a declared value is other, what was named is one of the fitted values again, and what
+    the rival is about none: beside each, all others are free within their tolerances.
     """
     effects, problem, named = [*found.fit.effects], found.problem, found.fit.effects[place]
     effects[place] = rival
     try:
-        if isinstance(rival, StiffnessDeviation):
-            problem, said = said_by_effects(problem, effects)
-            problem, effects = fitted_together(given_back(problem, named), said)
+        freed, said = said_by_effects(problem, effects)
+        freed = given_back(freed, named)
+        if _keys(freed) != _keys(problem):
+            problem, effects = fitted_together(freed, said)
         swapped = fit(problem, effects, iterations=ITERATIONS)
         its = Residuals.of(problem, swapped, [(j.with_effects(problem, swapped.effects), j) for j in judged])
     except InputError:
@@ -232,7 +235,13 @@ def _in_place(found: Search, judged: Sequence[Judged], place: int, rival: Effect
     if not np.all(np.isfinite(its.fitted)):
         return None
     odds, distance = odds_and_distance(found.problem, judged, mine, its)
-    return Rival(place, swapped, odds, distance, float(np.linalg.norm(its.judged) / np.linalg.norm(mine.judged)))
+    ratio = float(np.linalg.norm(its.judged) / np.linalg.norm(mine.judged))
+    return Rival(place, swapped, odds, distance, ratio, problem)
+
+
+def _keys(problem: Problem) -> tuple[str, ...]:
+    """Declared values that are fitted."""
+    return tuple(one.key for one in problem.calibration.values) if problem.calibration is not None else ()
 
 
 def _reason(effect: Effect, alike: Sequence[Rival]) -> str:

@@ -30,11 +30,11 @@ def with_the_preferred(found: Search, rivals: Sequence[list[Rival]]) -> tuple[Se
     for place, alike in enumerate(rivals):
         taken = _preferred(found.problem, found.fit.effects[place], alike)
         if taken is not None:
-            ousted = Rival(place, found.fit, -taken.odds, taken.distance, 1 / taken.error_ratio)
+            ousted = Rival(place, found.fit, -taken.odds, taken.distance, 1 / taken.error_ratio, found.problem)
             others = [replace(rival, odds=rival.odds - taken.odds) for rival in alike if rival is not taken]
             rest = [rival for rival in (ousted, *others) if rival.as_good and not at_its_limit(rival.effect)]
-            refitted = fit(found.problem, taken.fit.effects)
-            return replace(found, fit=refitted), [*rivals[:place], rest, *rivals[place + 1 :]]
+            refitted = fit(taken.problem, taken.fit.effects)
+            return replace(found, problem=taken.problem, fit=refitted), [*rivals[:place], rest, *rivals[place + 1 :]]
     return found, list(rivals)
 
 

@@ -17,12 +17,12 @@ from pathlib import Path
 import numpy as np
 
 from feeddrive.diagnosis.likelihood.evidence import SHORTEST, AxisEvidence, prepare
-from feeddrive.engine.step.step_constants import SimulationError
+from feeddrive.engine.step.linear_part import SimulationError
 from feeddrive.errors import InputError
 from feeddrive.files import shipped_scenarios
-from feeddrive.plant.chain.moving_inertia import inertia_at_motor
-from feeddrive.plant.file.entries import Origins, Table
+from feeddrive.plant.analysis.modes import inertia_at_motor
 from feeddrive.plant.plant import DeclaredCascade, Plant
+from feeddrive.schema.table import Origins, Table
 from feeddrive.servo.cascade import Cascade
 from feeddrive.servo.linear_loop import refuse_unstable
 from feeddrive.simulate.scenario.scenario import Recorder, Scenario

@@ -23,8 +23,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import chi2
-from scipy.stats import t as student
+from scipy.special import chdtri, stdtrit
 
 from feeddrive.diagnosis.certainty.information import inverse_information
 from feeddrive.diagnosis.certainty.noise_colour import fitted_away, score_covariance, spectral_freedom
@@ -79,10 +78,10 @@ def certainty(problem: Problem, fitted: Fit) -> Certainty:
     covariance = covariance * np.outer(widened, widened)
     blocks, freedom = _by_blocks(fitted.residual, influence, blocks_in_time(problem))
     spread = np.diag(covariance)
-    believed = blocks > spread * chi2.ppf(BEYOND_CHANCE, freedom) / freedom
+    believed = blocks > spread * chdtri(freedom, 1 - BEYOND_CHANCE) / freedom
     more = np.sqrt(np.where(believed & (spread > 0), blocks / np.where(spread > 0, spread, 1.0), 1.0))
     covariance = covariance * np.outer(more, more) + influence.T @ (model[:, None] * influence) / 1.96**2
-    reach = student.ppf(0.975, np.where(believed, freedom, max(spectral_freedom(problem.evidence, rows), 2.0)))
+    reach = stdtrit(np.where(believed, freedom, max(spectral_freedom(problem.evidence, rows), 2.0)), 0.975)
     return Certainty(covariance, reach)
 
 
@@ -100,7 +99,7 @@ def score_variances(problem: Problem, residual: FloatArray, columns: FloatArray)
     measured = columns[len(columns) - len(problem.numbers) :]  # known to their own deviations
     variance += problem.numbers.weight**2 * np.sum(measured**2, axis=0)
     blocks, freedom = _by_blocks(residual, columns, blocks_in_time(problem))
-    believed = blocks > variance * chi2.ppf(BEYOND_CHANCE, freedom) / freedom
+    believed = blocks > variance * chdtri(freedom, 1 - BEYOND_CHANCE) / freedom
     return np.where(believed, blocks, variance)
 
 

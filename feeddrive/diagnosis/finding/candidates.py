@@ -7,7 +7,7 @@ position, velocities and stiffnesses from a short scan. Each candidate then is r
 from __future__ import annotations
 
 from feeddrive.diagnosis.finding.scene import Candidate
-from feeddrive.diagnosis.starts import drift, drive, mode, needs, starts, transmission_starts
+from feeddrive.diagnosis.starts import drive, mode, needs, starts, transmission_starts
 from feeddrive.effects.chain.payload import Payload
 from feeddrive.effects.friction.coulomb_asymmetry import CoulombAsymmetry
 from feeddrive.effects.friction.load_dependent_friction import LoadDependentFriction
@@ -18,19 +18,19 @@ from feeddrive.effects.travel.lead_error_cumulative import LeadErrorCumulative
 CANDIDATES: tuple[Candidate, ...] = (
     Candidate("friction_deviation", starts.deviation, needs.force),
     Candidate("constant_force", starts.plain(ConstantForce.of(force=0.0)), needs.force),
-    Candidate("position_spring", drift.position_spring, needs.force_stroke),
+    Candidate("position_spring", starts.position_spring, needs.force_stroke),
     Candidate("coulomb_asymmetry", starts.plain(CoulombAsymmetry.of(delta_force=0.0)), needs.friction),
     Candidate("viscous_asymmetry", starts.plain(ViscousAsymmetry.of(delta_viscous=0.0)), needs.friction),
-    Candidate("viscous_warmup", drift.viscous_warmup, needs.force_duration),
+    Candidate("viscous_warmup", starts.viscous_warmup, needs.force_duration),
     Candidate("load_dependent_friction", starts.plain(LoadDependentFriction.of(coefficient=0.0)), needs.screw_drag),
     Candidate("stribeck", starts.stribeck, needs.friction),
     Candidate("presliding", starts.presliding, needs.friction_reversals, scanned=True),
     Candidate("friction_vs_position", starts.over_position, needs.friction),
     Candidate("torque_ripple", starts.ripple, needs.torque_turns),
-    Candidate("ball_pass_ripple", drift.ball_pass_ripple, needs.screw_drag_turns),
+    Candidate("ball_pass_ripple", starts.ball_pass_ripple, needs.screw_drag_turns),
     Candidate("lead_error_periodic", starts.lead_error, needs.lead),
     Candidate("lead_error_cumulative", starts.plain(LeadErrorCumulative.of(slope=0.0)), needs.scale),
-    Candidate("thermal_growth", drift.thermal_growth, needs.scale_duration),
+    Candidate("thermal_growth", starts.thermal_growth, needs.scale_duration),
     Candidate("stiffness_deviation", transmission_starts.stiffness, needs.elastic),
     Candidate("stiffness_vs_position", transmission_starts.stiffness_vs_position, needs.stiffness_along_stroke),
     Candidate("preload_loss", transmission_starts.preload_loss, needs.elastic, scanned=True),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from feeddrive.diagnosis.friction_at_port import declared_level
-from feeddrive.diagnosis.heat.heat_materiality import is_material_heat
+from feeddrive.diagnosis.heat.heat_candidates import is_material_heat
 from feeddrive.effects.base import Effect, Kind, Port
 from feeddrive.effects.chain.inertia_deviation import InertiaDeviation, declared_inertia
 from feeddrive.plant.plant import Plant

@@ -10,14 +10,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
-from feeddrive.diagnosis.calibration.beyond import beyond_tolerance
+from feeddrive.diagnosis.calibration.beyond import beyond_tolerance, without_effects
 from feeddrive.diagnosis.calibration.calibrate import calibrated, recalibrated
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, Attempt, compared, started
 from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.finding.round import Round, one_round
 from feeddrive.diagnosis.finding.scene import scene_of
 from feeddrive.diagnosis.finding.sets import Neighbour, neighbours
-from feeddrive.diagnosis.heat.heat_materiality import is_another
+from feeddrive.diagnosis.heat.heat_candidates import is_another
 from feeddrive.diagnosis.judging.result import Trial
 from feeddrive.diagnosis.likelihood.coordinates import write_coordinates
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
@@ -127,7 +127,8 @@ def search(
             problem, found = _refitted(problem, fit(problem, (*found.effects, effect)))
             trials.append(Trial(len(rounds), effect.name, 0.0, 0.0, True))
             continue
-        problem, found = _refitted(taken.problem, taken.fit)
+        problem = without_effects(taken.problem, found.effects, taken.fit.effects)
+        problem, found = _refitted(problem, taken.fit)
         progress(f"found so far: {', '.join(effect.name for effect in found.effects)}")
         members = tuple(sorted(effect.name for effect in found.effects))
         if members in met:  # they only take each other's place
@@ -136,7 +137,9 @@ def search(
     problem, found = _refitted(problem, fit(problem, found.effects))
     small = [one for one in found.effects if not is_material(one, problem.plant)]
     if small:
-        found = fit(problem, [one for one in found.effects if not any(one is other for other in small)])
+        rest = [one for one in found.effects if not any(one is other for other in small)]
+        problem = without_effects(problem, small, rest)
+        found = fit(problem, rest)
         impossible |= dict.fromkeys((one.name for one in small), SMALL)
     return Search(problem, found, tuple(trials), tuple(rounds), impossible, near, begun)
 
@@ -186,7 +189,7 @@ def _fitted(problem: Problem, found: Fit, one: Neighbour, attempts: Sequence[Att
     try:
         if len(added) == 2:
             starts += [_restarted(problem, kept, *order) for order in (added, added[::-1])]
-        nearest = min((start for start in starts if start), key=lambda start: _error(own, start))
+        nearest = min((start for start in starts if start), key=lambda start: _error(own, start), default=[])
         result = fit(own, nearest, iterations=JOINT_ITERATIONS)
         before = found if own is problem else fit(own, found.effects, iterations=0)
         odds = log_odds(own, before, result, count)

@@ -112,7 +112,7 @@ def prepare_heat(recording: Recording, heat: Heat, share: float) -> HeatEvidence
         {name: recording[name] for name in names},
         {name: float(np.hypot(noise.get(name) or smooth_noise(recording[name]), missed[name])) for name in names},
         np.arange(n) >= first,
-        _fitted(time, share),
+        fitted_rows(time, share),
         0.5 / step,
         max(HEAT_BLOCK, 10 * step),
         1,
@@ -177,7 +177,8 @@ def within_range(plant: Plant, evidence: Sequence[HeatEvidence]) -> tuple[Plant,
     )
 
 
-def _fitted(time: FloatArray, share: float) -> BoolArray:
+def fitted_rows(time: FloatArray, share: float) -> BoolArray:
+    """Rows that are fitted where the first `share` of a recording is, (n,)."""
     return time < share * time[-1] if share < 1 else np.ones(len(time), dtype=bool)
 
 
@@ -189,12 +190,15 @@ def _refuse_missing(recording: Recording) -> None:
         raise InputError(f"no channel {AMBIENT}", recording.name, "record the air's temperature at the machine")
 
 
+def _slow(recording: Recording) -> list[str]:
+    return [c for c in recording.channels if c.endswith("_temperature") or c.startswith("table_growth_")]
+
+
 def _predicted(recording: Recording, heat: Heat) -> list[str]:
     """Channels that are compared; a name that only nearly is a sensor's is refused."""
     known = predicted_channels(heat)
     names = [name for name in known if name in recording]
-    slow = [c for c in recording.channels if c.endswith("_temperature") or c.startswith("table_growth_")]
-    for channel in slow:
+    for channel in _slow(recording):
         if channel in known or channel == AMBIENT:
             continue
         near = difflib.get_close_matches(channel, [name for name in known if name not in recording], n=1, cutoff=0.8)
@@ -209,5 +213,4 @@ def _predicted(recording: Recording, heat: Heat) -> list[str]:
 def left_out_channels(recording: Recording, heat: Heat) -> tuple[str, ...]:
     """Temperatures and growths of a recording that the plant does not predict."""
     known = (*predicted_channels(heat), AMBIENT)
-    slow = [c for c in recording.channels if c.endswith("_temperature") or c.startswith("table_growth_")]
-    return tuple(channel for channel in slow if channel not in known)
+    return tuple(channel for channel in _slow(recording) if channel not in known)

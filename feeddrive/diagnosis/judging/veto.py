@@ -22,9 +22,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.special import chdtri
 
-from feeddrive.diagnosis.calibration.beyond import SURE
+from feeddrive.diagnosis.calibration.beyond import SURE, without_effects
+from feeddrive.diagnosis.calibration.calibrate import weighed_by_rest, with_kept
 from feeddrive.diagnosis.certainty.uncertainty import certainty
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging.judge import Judged, Share, error_series, judged_channels, share_beyond, share_of
@@ -76,8 +77,38 @@ def without_denied(
         rest = _without_lost_shifts([effect for i, effect in enumerate(effects) if i != denied.place])
         still_named = any(effect.name == gone.name for effect in rest)
         reasons = found.impossible if still_named else {**found.impossible, gone.name: denied.reason}
-        found = replace(found, fit=fit(found.problem, rest), impossible=reasons)
+        problem = without_effects(found.problem, [gone], rest)
+        found = replace(found, problem=problem, fit=fit(problem, rest), impossible=reasons)
         judged = judge(found)
+    return found, judged
+
+
+def not_worse_than_declared(
+    found: Search, judged: list[Judged], judge: Callable[[Search], list[Judged]]
+) -> tuple[Search, list[Judged]]:
+    """The search with declared values that leave no channel worse than declared, where names are not what does it.
+
+    What no name explains in one channel pulls the declared values, and another channel pays for it. They are fitted
+    anew with every channel weighed by what is left of it; where that is worse than declared still, they stay declared.
+
+    Args:
+        found: what was found.
+        judged: recordings with it in.
+        judge: judges another search.
+    """
+    known = found.problem.calibration
+    if known is None or not known.values or not _worst_channel(found.problem, judged):
+        return found, judged
+    if any(is_shift(effect) for effect in found.fit.effects):
+        return found, judged  # what one recording has otherwise is told of as a change
+    for problem in (
+        weighed_by_rest(found.problem, found.fit.effects),
+        with_kept(found.problem, [False] * len(known.values)),
+    ):
+        other = replace(found, problem=problem, fit=fit(problem, found.fit.effects))
+        again = judge(other)
+        if not _worst_channel(problem, again):
+            return other, again
     return found, judged
 
 
@@ -240,7 +271,7 @@ def _is_not_none(covariance: FloatArray, beyond: FloatArray, half: FloatArray, g
     part = covariance[np.ix_(group, group)]
     # half widths are 1.96 standard deviations
     square = float(beyond[group] @ np.linalg.pinv(part, hermitian=True) @ beyond[group]) * 1.96**2
-    return square > float(chi2.ppf(0.95, len(group)))
+    return square > float(chdtri(len(group), 0.05))
 
 
 def _worst_channel(problem: Problem, judged: Sequence[Judged]) -> str:

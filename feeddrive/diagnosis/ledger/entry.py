@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
 from feeddrive.diagnosis.certainty.correlation import value_labels
 from feeddrive.diagnosis.certainty.uncertainty import Certainty
 from feeddrive.diagnosis.finding.search import Search
-from feeddrive.diagnosis.ledger.ledger_result import Covariance, Kept, Tried
+from feeddrive.diagnosis.ledger.ledger_result import Kept
 from feeddrive.diagnosis.likelihood.coordinates import value_slopes
 from feeddrive.diagnosis.likelihood.cross_validation import SIGNIFICANCE, Comparison
 from feeddrive.diagnosis.recordings.recordings import RecordingShift, without_shifts
@@ -18,11 +19,7 @@ from feeddrive.effects.base import Effect
 
 def kept_of(found: Search, known: Certainty) -> Kept:
     """All trials of a search, and the covariance of the values that it ended with."""
-    return Kept(_tried(found), _covariance(found, known))
-
-
-def _tried(found: Search) -> tuple[Tried, ...]:
-    result = []
+    tried = []
     for number, attempts in enumerate(found.rounds, start=1):
         taken = next((trial.name for trial in found.trials if trial.round == number and trial.taken), "")
         for attempt in attempts:
@@ -31,13 +28,12 @@ def _tried(found: Search) -> tuple[Tried, ...]:
             reason = _reason(comparison, is_taken, taken)
             if is_taken and attempt.name in found.impossible:
                 reason = f"taken, and refused in the end: {found.impossible[attempt.name]}"
-            result.append(
-                Tried(
-                    number, attempt.name, str(effect.port), effect.place, dict(effect.values), comparison.gain,
-                    comparison.standard_error, comparison.least, is_taken, reason,
-                )
-            )  # fmt: skip
-    return tuple(result)
+            tried.append({
+                "round": number, "effect": attempt.name, "port": str(effect.port), "place": effect.place,
+                "values": dict(effect.values), "gain": comparison.gain, "standard_error": comparison.standard_error,
+                "least": comparison.least, "taken": is_taken, "reason": reason,
+            })  # fmt: skip
+    return Kept(tuple(tried), _covariance(found, known))
 
 
 def _reason(comparison: Comparison, taken: bool, winner: str) -> str:
@@ -54,16 +50,15 @@ def _reason(comparison: Comparison, taken: bool, winner: str) -> str:
     return f"waits: {winner} does better in this round"
 
 
-def _covariance(found: Search, known: Certainty) -> Covariance:
+def _covariance(found: Search, known: Certainty) -> dict[str, Any]:
     effects = found.fit.effects
     if not effects:
-        return Covariance()
+        return {"values": [], "matrix": []}
     moves = value_slopes(effects, found.problem.plant, found.fit.coordinates)
     matrix = moves @ known.covariance @ moves.T
     kept = np.flatnonzero(np.diag(matrix) > 0)
     labels = _labels(effects)
-    rows = matrix[np.ix_(kept, kept)]
-    return Covariance(tuple(labels[i] for i in kept), tuple(map(tuple, rows.tolist())))
+    return {"values": [labels[i] for i in kept], "matrix": matrix[np.ix_(kept, kept)].tolist()}
 
 
 def _labels(effects: Sequence[Effect]) -> list[str]:

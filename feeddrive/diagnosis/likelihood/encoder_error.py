@@ -6,19 +6,21 @@ away, a soft spring, a resonance of strong damping) lowers the error by that alo
 motion that is expected given what was measured, window by window and frequency by frequency (Wiener, Extrapolation,
 Interpolation, and Smoothing (1949)):
 
-    E[A | A_m] = max(1 - N / P, 0) A_m,   N = step²/12 Σw² |2 sin(ω h / 2)|⁴
+    E[A | A_m] = max(1 - N / P, 0) A_m where there is motion, else 0,   N = step²/12 Σw² |2 sin(ω h / 2)|⁴
 
 | symbol | meaning |
 |---|---|
 | A_m | spectrum of the second difference of the angle in a window |
-| P | mean square of A_m over neighbouring frequencies and windows |
+| P | mean square of A_m over neighbouring windows; neighbouring frequencies tell besides where there is motion at all |
 | N | that of the steps' error, white, of variance step²/12 |
 | w, h | window, sample time |
 
-The error that is left is independent of the motion that is simulated, so that it draws no value towards none (Carroll
-et al., Measurement Error in Nonlinear Models (2006), chapter 4). It adds to the residual what the declared plant makes
-of it: an error that the same encoder would make is drawn and simulated, and each channel is weighed, frequency by
-frequency, by the sensor's noise over both,
+P is of one frequency, as the spectrum of a stroke falls fifty times from one to the next, and what is taken away is
+then N in the mean however steep it is (Stein, Ann. Statist. 9 (1981) 1135). The error that is left is nearly
+independent of the motion that is simulated, so that it draws values little towards none (Carroll et al., Measurement
+Error in Nonlinear Models (2006), chapter 4); what it does draw them by is `Calibration`'s to widen (`encoder_scores`).
+It adds to the residual what the declared plant makes of it: errors that the same encoder would make are drawn and
+simulated, and each channel is weighed, frequency by frequency, by the sensor's noise over both,
 
     gain(f) = 1 / √(1 + S_encoder(f) / S_sensor(f))
 """
@@ -26,15 +28,16 @@ frequency, by the sensor's noise over both,
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.fft import irfft, next_fast_len, rfft
 from scipy.ndimage import uniform_filter
-from scipy.signal import welch
 from scipy.signal.windows import hann
 
 from feeddrive.diagnosis.likelihood.band import END_CUT, Band
-from feeddrive.engine.step.step_constants import SimulationError
+from feeddrive.engine.step.linear_part import SimulationError
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 from feeddrive.recording.checks.flaws import quantisation_step
@@ -45,8 +48,8 @@ WINDOW = 0.128
 """Length of a window [s]: motion keeps its spectrum that long, and 8 Hz are distinguished from the next."""
 
 ALONG_FREQUENCY, ALONG_TIME = 5, 3
-"""Neighbours over which P is averaged: 15 values, of which those of overlapping windows are half independent, are
-within a third of the mean square of noise."""
+"""Neighbours that tell where there is motion: 15 values, of which those of overlapping windows are half independent,
+are within a third of the mean square of noise."""
 
 SHOWN = 1 + 2 / math.sqrt(10)
 """P over N from which there is motion: two standard deviations of the mean of ten independent squares of noise."""
@@ -56,10 +59,15 @@ SURE_MOTION = 8.0
 
 
 MATERIAL = 0.1
-"""Variance that the encoder adds to a channel, over its sensor's, from which it is carried: errors grow by 5 %."""
+"""Power that the encoder adds to a channel at any frequency of the band, over its sensor's, from which it is carried:
+errors of what shows there alone, such as a damping at its resonance, grow by 5 %."""
 
-SEED = 12
-"""Seed of the places of the drawn encoder's steps; all of them are passed, so that any will do."""
+DRAWS = 4
+"""Errors that are drawn: with `SMOOTHED` neighbours on either side, a spectrum is known to a fifth."""
+
+SMOOTHED = 3, 0.1
+"""Neighbouring frequencies on either side over which a spectrum is averaged: so many, and this share of the frequency.
+Rest and slow motion make an error of less than a hertz, which a window of fixed length would spread."""
 
 
 @dataclass(frozen=True)
@@ -68,13 +76,50 @@ class EncoderError:
 
     Attributes:
         motion: of the motor, as expected.
+        drawn: motions that would be expected if that were the true one, measured by the same encoder.
         gains: channel to the gain at each frequency of its whole series, (n // 2 + 1,).
         added: channel to the rms of what the encoder's error makes of it, in the band [SI].
     """
 
     motion: MotorMotion
+    drawn: tuple[MotorMotion, ...]
     gains: dict[str, FloatArray]
     added: dict[str, float]
+
+
+@dataclass(frozen=True)
+class Weighing:
+    """Gains on the frequencies of a series, for many series of one length.
+
+    A length with large prime factors takes several times longer to transform. The gains are a circular convolution
+    then, and are done as one of twice the length or more, folded back.
+
+    Attributes:
+        spectrum: gains at the frequencies of `size` samples.
+        count: samples of a series.
+        size: samples that are transformed.
+    """
+
+    spectrum: ComplexArray | FloatArray
+    count: int
+    size: int
+
+    @classmethod
+    def of(cls, gains: FloatArray, count: int) -> Weighing:
+        """Ready a gain at each frequency of a series of so many samples, (count // 2 + 1,)."""
+        if next_fast_len(count, real=True) == count:
+            return cls(gains, count, count)
+        size = next_fast_len(2 * count, real=True)
+        return cls(rfft(irfft(gains, count), size), count, size)
+
+    def __call__(self, series: FloatArray) -> FloatArray:
+        """The series, (count,), with its frequencies weighed."""
+        found: FloatArray = irfft(rfft(series, self.size) * self.spectrum, self.size)
+        if self.size == self.count:
+            return found
+        folded = found[: self.count]
+        folded[:-1] += found[self.count : 2 * self.count - 1]
+        return folded
 
 
 def encoder_error(plant: Plant, recording: Recording, band: Band, noise: dict[str, float]) -> EncoderError | None:
@@ -92,33 +137,47 @@ def encoder_error(plant: Plant, recording: Recording, band: Band, noise: dict[st
         return None
     time: FloatArray = np.arange(len(angle), dtype=np.float64) * sample_time
     expected = expected_motion(angle, step, sample_time)
-    left = drawn_error(expected, step, sample_time)
-    motion = motor_motion(time, expected)
+    errors = [drawn_error(expected, step, sample_time, draw) for draw in range(DRAWS)]
+    motion, *drawn = (motor_motion(time, expected + left) for left in (np.zeros(len(angle)), *errors))
     try:
-        runs = [simulate_driven(plant, one) for one in (motion, motor_motion(time, expected + left))]
+        runs = [simulate_driven(plant, one) for one in (motion, *drawn)]
     except SimulationError:
         return None
     inner = slice(round(END_CUT / sample_time), -round(END_CUT / sample_time))
-    gains, added = {}, {}
+    frequencies = np.fft.rfftfreq(len(angle), sample_time)
+    gains, added, material = {}, {}, False
     for name in noise:
-        series = [run.torque if name == "motor_torque" else run.table_position for run in runs]
-        error = series[1] - series[0]
-        added[name] = float(np.std(band.filter(error)[inner]))
-        frequency, density = welch(error[inner], 1 / sample_time, nperseg=2 * round(WINDOW / sample_time))
-        white = 2 * sample_time * (noise[name] / band.noise_gain) ** 2
-        all_frequencies = np.fft.rfftfreq(len(angle), sample_time)
-        gains[name] = 1 / np.sqrt(1 + np.interp(all_frequencies, frequency, density) / white)
-    if all(added[name] ** 2 < MATERIAL * noise[name] ** 2 for name in noise):
-        return None
-    return EncoderError(motion, gains, added)
+        true, *others = (run.torque if name == "motor_torque" else run.table_position for run in runs)
+        made = [other - true for other in others]
+        added[name] = float(np.sqrt(np.mean([np.var(band.filter(error)[inner]) for error in made])))
+        frequency, density = _density([error[inner] for error in made], sample_time)
+        over = density / (2 * sample_time * (noise[name] / band.noise_gain) ** 2)
+        material = material or bool(np.any(over[frequency <= band.edge] > MATERIAL))
+        gains[name] = 1 / np.sqrt(1 + np.interp(frequencies, frequency, over))
+    return EncoderError(motion, tuple(drawn), gains, added) if material else None
 
 
-def drawn_error(expected: FloatArray, step: float, sample_time: float) -> FloatArray:
+def _density(series: Sequence[FloatArray], sample_time: float) -> tuple[FloatArray, FloatArray]:
+    """Frequencies [Hz] and the power density of several series at them, averaged over them and neighbours."""
+    window = hann(len(series[0]), sym=False)
+    spectra = [np.abs(np.fft.rfft((one - np.mean(one)) * window)) ** 2 for one in series]
+    power = 2 * sample_time * np.mean(spectra, axis=0) / float(window @ window)
+    total = np.concatenate([[0.0], np.cumsum(power)])
+    at = np.arange(len(power))
+    reach = np.maximum(SMOOTHED[0], (SMOOTHED[1] * at).astype(int))
+    first, last = np.maximum(at - reach, 0), np.minimum(at + reach + 1, len(power))
+    density: FloatArray = (total[last] - total[first]) / (last - first)
+    frequency: FloatArray = np.asarray(np.fft.rfftfreq(len(series[0]), sample_time), dtype=float)
+    return frequency, density
+
+
+def drawn_error(expected: FloatArray, step: float, sample_time: float, draw: int) -> FloatArray:
     """The error that the expected motion would have if it were the true one, measured by the same encoder, (n,) [rad].
 
-    Slow motion and rest make an error that is slow: it is drawn by measuring, not as white noise.
+    Slow motion and rest make an error that is slow: it is drawn by measuring, not as white noise. Draws differ in where
+    the steps lie: `draw` is the seed of that.
     """
-    true = expected + step * np.random.default_rng(SEED).uniform()
+    true = expected + step * np.random.default_rng(draw).uniform()
     measured = step * np.round(true / step)
     drawn: FloatArray = expected_motion(measured, step, sample_time) - true
     return drawn
@@ -141,8 +200,9 @@ def expected_motion(angle: FloatArray, step: float, sample_time: float) -> Float
     omega = 2 * np.pi * np.arange(spectra.shape[1]) / length
     difference = (2 * np.sin(0.5 * omega)) ** 2
     noise = step**2 / 12 * float(window @ window) * difference**2
-    power = uniform_filter(np.abs(spectra) ** 2 / np.where(noise > 0, noise, 1.0), (ALONG_TIME, ALONG_FREQUENCY))
-    error = np.where(power > SHOWN, 1 / np.maximum(power, SHOWN), 1.0)  # share of the steps
+    over_noise = np.abs(spectra) ** 2 / np.where(noise > 0, noise, 1.0)
+    moving = uniform_filter(over_noise, (ALONG_TIME, ALONG_FREQUENCY)) > SHOWN
+    error = np.where(moving, 1 / np.maximum(uniform_filter(over_noise, (ALONG_TIME, 1)), 1.0), 1.0)  # share of steps
     error[:, omega < 2 * math.pi * SURE_MOTION * sample_time] = 0.0
     # minus the second difference, summed twice, is the angle
     taken = _added(-error * spectra / np.where(difference > 0, difference, 1.0), window, len(angle))

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Self
 
 import numpy as np
 
 from feeddrive.diagnosis.likelihood.band import END_CUT, Band, comparison_band, held, sensor_noise
-from feeddrive.diagnosis.likelihood.encoder_error import encoder_error
+from feeddrive.diagnosis.likelihood.encoder_error import Weighing, encoder_error
 from feeddrive.diagnosis.likelihood.slow_rows import is_slow, known_motion, refuse_unknown_motion, sentence
 from feeddrive.diagnosis.suspicion.channel_timing import lagging
 from feeddrive.diagnosis.suspicion.flawed_rows import refuse_little_left, sound_rows, without_copied_position
@@ -137,6 +138,7 @@ class AxisEvidence(Evidence):
         zero: table position where the motor angle is zero [m], for a chain that depends on it; 0 where it is not known.
         gains: channel to the gain of each frequency of its whole series, where the encoder's error shows in it.
         added: channel to the rms in the band that the encoder's error adds to its noise; as `gains`.
+        drawn: motions with the encoder's error once more; as `gains`.
         torque_rows: rows that the recorder writes a torque for, and the first row of one (`suspicion.logged_rows`);
             None where the torque is what the drive holds.
     """
@@ -147,6 +149,7 @@ class AxisEvidence(Evidence):
     zero: float = 0.0
     gains: dict[str, FloatArray] = field(default_factory=dict)
     added: dict[str, float] = field(default_factory=dict)
+    drawn: tuple[MotorMotion, ...] = ()
     torque_rows: tuple[int, int] | None = None
 
     def in_band(self, series: FloatArray) -> FloatArray:
@@ -164,8 +167,12 @@ class AxisEvidence(Evidence):
         known = np.isfinite(series)
         mean = float(np.mean(series[known])) if known.any() else 0.0  # apart, so that gaps do not make steps
         filled = np.where(known, series - mean, 0.0)
-        evened: FloatArray = np.fft.irfft(np.fft.rfft(filled) * self.gains[name], len(series))
-        return np.where(known, evened + self.gains[name][0] * mean, series)
+        weighed = self._weighing[name](filled)
+        return np.where(known, weighed + self.gains[name][0] * mean, series)
+
+    @cached_property
+    def _weighing(self) -> dict[str, Weighing]:
+        return {name: Weighing.of(gains, len(self.counted)) for name, gains in self.gains.items()}
 
     def placed(self, plant: Plant) -> Plant:
         """The plant with its nut where it stood: simulated positions count from the zero of the motor angle."""
@@ -194,7 +201,7 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
         recording: with a torque, a current or the table position beside the motor angle.
         plant: whose lead and band apply.
         share: 1 to fit on all of it, 0 to judge on all of it.
-        hold: how long the drive holds a torque [s]; None for a whole row.
+        hold: how long the drive holds a torque [s]; None for a whole row, and for no time where rows are slow.
 
     Raises:
         InputError: too short, or channels that are needed are missing.
@@ -214,16 +221,18 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
     raw = {name: recording[name] for name in measured_names}
     slow = is_slow(recording)
     acting = dict(raw)
-    if "motor_torque" in raw and not slow:
-        acting["motor_torque"] = (
-            held(raw["motor_torque"]) if hold is None else lagging(raw["motor_torque"], hold / 2, recording.sample_time)
-        )
+    if "motor_torque" in raw and hold is not None:
+        acting["motor_torque"] = lagging(raw["motor_torque"], hold / 2, recording.sample_time)
+    elif "motor_torque" in raw and not slow:
+        acting["motor_torque"] = held(raw["motor_torque"])
     counted = (time >= END_CUT) & (time <= time[-1] - END_CUT)
     if slow:
         known = known_motion(recording, plant, band)
         refuse_unknown_motion(known, counted, recording)
         recording = replace(recording, notes=(*recording.notes, sentence(known, recording)))
         counted &= known
+    elif hold is not None:  # the loop is faster than the rows: what it does between them is not known either
+        counted &= known_motion(recording, plant, band)
     counted &= sound_rows(recording, plant.torque_limit, band)
     refuse_little_left(counted, recording)
     sensed = dict(raw)
@@ -233,7 +242,7 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
     own = recorded(recording)
     noise = {name: sensor_noise(series[own], band) for name, series in sensed.items()}
     zero = _zero_of_angle(recording, plant)
-    encoder = None if slow else encoder_error(_placed(plant, zero), recording, band, noise)
+    encoder = encoder_error(_placed(plant, zero), recording, band, noise)
     motion = encoder.motion if encoder is not None else motor_motion(time, recording["motor_angle"])
     return AxisEvidence(
         recording,
@@ -252,6 +261,7 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
         zero,
         encoder.gains if encoder is not None else {},
         encoder.added if encoder is not None else {},
+        encoder.drawn if encoder is not None else (),
     )
 
 

@@ -188,6 +188,7 @@ class Problem:
         plant = self.machine(effects)
         return not self.predictor.of_motion or is_passive(plant)
 
+    @cached_property
     def measured(self) -> FloatArray:
         """Weighted measurement at the fitted samples of all recordings, whitened."""
         rows = np.concatenate(
@@ -198,17 +199,31 @@ class Problem:
 
     def residual(self, effects: Sequence[Effect]) -> FloatArray:
         """Weighted residual at the fitted samples of all recordings, whitened."""
-        return self.measured() - self.predicted(effects)
+        return self.measured - self.predicted(effects)
 
     def settled(self, effects: Sequence[Effect]) -> Problem:
         """The problem with its declared values as they are most likely with these effects."""
-        if self.whitener is None or self.calibration is None:
+        return self if self.whitener is None else self.stepped(effects, self.unwhitened(effects))
+
+    def stepped(self, effects: Sequence[Effect], residual: FloatArray) -> Problem:
+        """The problem at the most likely declared values, or as far towards them as the error falls.
+
+        Args:
+            effects: beside them.
+            residual: not whitened, with the values as they are, (m,).
+        """
+        known = self.calibration
+        if known is None or self.whitener is None or not np.all(np.isfinite(residual)):
             return self
-        residual = self.unwhitened(effects)
-        if not np.all(np.isfinite(residual)):
-            return self
-        coordinates = self.whitener.most_likely(residual)
-        return replace(self, calibration=replace(self.calibration, coordinates=coordinates))
+        wanted = self.whitener.most_likely(residual)
+        before = float(residual @ residual) + known.variance * float(known.coordinates @ known.coordinates)
+        for share in (1.0, 0.5, 0.1):
+            coordinates = known.coordinates + share * (wanted - known.coordinates)
+            there = replace(self, calibration=replace(known, coordinates=coordinates))
+            left = there.unwhitened(effects)
+            if np.all(np.isfinite(left)) and left @ left + known.variance * float(coordinates @ coordinates) < before:
+                return there
+        return self
 
     @property
     def difference(self) -> float:
@@ -279,7 +294,7 @@ def fit(
         The fit, its Jacobian taken at the end.
     """
     chosen = [True] * len(effects) if free is None else list(free)
-    measured, predicted = problem.measured(), problem.predicted(effects)
+    measured, predicted = problem.measured, problem.predicted(effects)
     at = _State(list(effects), predicted, measured - predicted)
     if error_only:
         return Fit(tuple(effects), at.residual, np.zeros((len(predicted), 0)), np.zeros(0), len(effects))

@@ -14,9 +14,7 @@ import numpy as np
 from feeddrive import __version__
 from feeddrive.diagnosis.calibration.calibrated_result import calibrated_record
 from feeddrive.diagnosis.judging.result import ChannelResult, Diagnosis, EffectResult, ErrorFigures, ParameterResult
-from feeddrive.diagnosis.numbers.number_rows import numbers_beside
 from feeddrive.diagnosis.plant_text import with_calibrated_values
-from feeddrive.diagnosis.simulated.simulation_record import simulation_record
 from feeddrive.diagnosis.suspicion.quality import is_recorders, quality_record
 from feeddrive.effects.base import Effect
 from feeddrive.files import write_text_atomically
@@ -68,7 +66,7 @@ def diagnosis_record(diagnosis: Diagnosis) -> dict[str, Any]:
             {"name": one.name, "odds": one.odds, "instead_of": one.instead_of, "settles": one.settles}
             for one in diagnosis.possible
         ],
-        "measured": numbers_beside(diagnosis.measured),
+        "measured": [one.record() for one in diagnosis.measured],
         "quality": quality_record(diagnosis.quality),
         "refused": [{"name": refused.name, "reason": refused.reason} for refused in diagnosis.refused],
         "ambiguous": [list(names) for names in diagnosis.ambiguous],
@@ -95,7 +93,7 @@ def diagnosis_record(diagnosis: Diagnosis) -> dict[str, Any]:
         "plant_after": "plant_after.toml",
     }
     if diagnosis.simulation is not None:
-        record["simulation"] = simulation_record(diagnosis.simulation)
+        record["simulation"] = diagnosis.simulation.record()
     if diagnosis.correlation is not None:
         known = diagnosis.correlation
         condition = known.condition if math.isfinite(known.condition) else None
@@ -154,6 +152,7 @@ def prediction_table(diagnosis: Diagnosis) -> str:
     for recording in diagnosis.recordings:
         columns = [column for s in recording.channels for column in (s.measured, s.before, s.after)]
         tail = f",{recording.name}" if several else ""
-        for time, row in zip(recording.time, np.column_stack(columns).tolist(), strict=True):
-            text.write(f"{time:.6f}," + ",".join("" if v != v else f"{v:.10g}" for v in row) + tail + "\n")
+        line = "%.6f" + ",%.10g" * len(columns)
+        rows = [line % tuple(row) for row in np.column_stack([recording.time, *columns]).tolist()]
+        text.write("".join(f"{row.replace('nan', '')}{tail}\n" for row in rows))
     return text.getvalue()

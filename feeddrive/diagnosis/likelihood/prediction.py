@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 
@@ -15,11 +16,14 @@ from feeddrive.diagnosis.likelihood.predictor import Predictor
 from feeddrive.diagnosis.suspicion.channel_timing import lag_of, lagging, repeated
 from feeddrive.diagnosis.suspicion.torque_channel import scale_of, scale_sentence
 from feeddrive.effects.base import ChainEffect, DriveEffect, Effect, Kind, Motion, Port, SourceEffect
-from feeddrive.engine.step.step_constants import SimulationError
+from feeddrive.engine.step.linear_part import SimulationError
 from feeddrive.plant.motor_torque import asked_torques
 from feeddrive.plant.plant import Plant
-from feeddrive.simulate.driven import LoadMotion, simulate_driven, unfollowed
+from feeddrive.simulate.driven import LoadMotion, MotorMotion, simulate_driven, unfollowed
 from feeddrive.typing import BoolArray, FloatArray
+
+MOTOR_ROOM = 32_000_000
+"""Bytes of motor torques kept: those of thirty effects over a minute at 2 kHz, while the values of others are moved."""
 
 
 @dataclass
@@ -37,6 +41,7 @@ class AxisPredictor(Predictor[AxisEvidence]):
     declared_scale: float = 1.0
     _scales: dict[object, float] = field(default_factory=dict)
     _runs: Remembered[LoadMotion] = field(default_factory=lambda: Remembered(lambda run: run.size))
+    _asked: Remembered[FloatArray] = field(default_factory=lambda: Remembered(lambda torque: torque.nbytes, MOTOR_ROOM))
 
     def load_motion(self, plant: Plant, evidence: AxisEvidence) -> LoadMotion:
         """Motion of the load side, without what acts at the motor alone."""
@@ -46,7 +51,7 @@ class AxisPredictor(Predictor[AxisEvidence]):
     def predict(self, plant: Plant, evidence: AxisEvidence) -> dict[str, FloatArray]:
         """Channel to predicted series in the band, shape (n,), SI."""
         run = self.load_motion(plant, evidence)
-        torque = asked_torques(plant, run.torque + motor_sources(plant, run))
+        torque = asked_torques(plant, run.torque + self._motor_sources(plant, evidence.motion))
         step = evidence.recording.sample_time
         if evidence.torque_rows is not None:  # the drive's own row begins half a row before what it acts about
             torque = repeated(lagging(torque, -0.5 * step, step), evidence.torque_rows)
@@ -55,6 +60,15 @@ class AxisPredictor(Predictor[AxisEvidence]):
         if evidence.scaled_from:
             series["motor_torque"] *= self.scale(plant)
         return {name: lagging(one, lag_of(plant, name), step) for name, one in series.items()}
+
+    def _motor_sources(self, plant: Plant, motion: MotorMotion) -> FloatArray:
+        """Torque that the sources at the motor ask for [N m], shape (n,)."""
+        at = motion.samples
+        total = np.zeros(len(motion.time[at]))
+        for effect in plant.effects:
+            if isinstance(effect, SourceEffect) and effect.port == Port.MOTOR:
+                total += self._asked.found(motion, effects_key([effect]), partial(_asked_for, effect, motion))
+        return total
 
     def scale(self, plant: Plant) -> float:
         """Factor on the predicted torque that fits the recordings in `scaled` best."""
@@ -120,14 +134,10 @@ class AxisPredictor(Predictor[AxisEvidence]):
         return about_mean
 
 
-def motor_sources(plant: Plant, run: LoadMotion) -> FloatArray:
-    """Torque that the sources at the motor ask for [N m], shape (n,)."""
-    motion = Motion(run.motor_angle, run.motor_speed, run.time)
-    total = np.zeros(len(run.time))
-    for effect in plant.effects:
-        if isinstance(effect, SourceEffect) and effect.port == Port.MOTOR:
-            total += np.asarray(effect.force(motion, effect.values), dtype=float).ravel()
-    return total
+def _asked_for(effect: SourceEffect, motion: MotorMotion) -> FloatArray:
+    at = motion.samples
+    seen = Motion(motion.angle[at], motion.speed[at], motion.time[at])
+    return np.asarray(effect.force(seen, effect.values), dtype=float).ravel()
 
 
 def _simulated(plant: Plant, evidence: AxisEvidence) -> LoadMotion:

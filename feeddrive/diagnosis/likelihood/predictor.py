@@ -1,7 +1,7 @@
 """What the search needs to know of a kind of recording: how it is predicted, and which effects are tried.
 
 Three kinds are known: motion and torque (`prediction`), temperatures and growth (`heat_prediction`), and logs of hours
-with both (`warm_prediction`). Search, fit, cross-validation and judging are the same for all of them.
+with both (`heat.warm`). Search, fit, cross-validation and judging are the same for all of them.
 """
 
 from __future__ import annotations

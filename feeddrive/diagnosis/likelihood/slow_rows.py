@@ -1,8 +1,8 @@
 """Recordings with fewer rows than the drive has cycles: what their torque is, and where the motion is known.
 
 A drive holds its torque for one cycle, so that a recording with one row a cycle tells all of it. Where rows are further
-apart, a row is the torque of that instant, and between two rows the motor may have done anything. Where it was smooth,
-the fourth difference of its angle is small:
+apart, a row is the torque of that instant, held for the cycle that begins there (`suspicion.logged.declared_hold`), and
+between two rows the motor may have done anything. Where it was smooth, the fourth difference of its angle is small:
 
     delta a = |D4 theta| / (12 h^2),    delta T = J delta a,    delta x = s delta a
 
@@ -13,22 +13,27 @@ the fourth difference of its angle is small:
 | delta a | error of the acceleration, that of the second difference | rad/s^2 |
 | delta T, delta x | what it misses of the torque, of the table position | N m, m |
 | J | inertia of all that moves, at the motor | kg m^2 |
-| s | how far the table stays behind per acceleration (`feeddrive.plant.chain.moving_inertia`) | m s^2/rad |
+| s | how far the table stays behind per acceleration (`feeddrive.plant.analysis.modes`) | m s^2/rad |
 
-Rows at which either is more than the noise of its sensor are left out, and those at which the torque jumps from row to
-row. Valid where what the drive does between rows shows at the rows; a vibration at a multiple of their rate does not.
+Rows at which either is more than the noise of its sensor are left out, unless the encoder's steps make as much of them,
+and those at which the torque jumps from row to row. So are those of faster rows whose drive is declared to have several
+cycles in each. Valid where what the drive does between rows shows at the rows; a vibration at a multiple of their rate
+does not.
 """
 
 from __future__ import annotations
+
+import math
 
 import numpy as np
 from scipy.ndimage import binary_dilation, uniform_filter1d
 
 from feeddrive.diagnosis.likelihood.band import Band, white_noise
 from feeddrive.errors import InputError
-from feeddrive.plant.chain.moving_inertia import inertia_at_motor, lag_per_acceleration
+from feeddrive.plant.analysis.modes import inertia_at_motor, lag_per_acceleration
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
+from feeddrive.recording.checks.flaws import quantisation_step
 from feeddrive.typing import BoolArray, FloatArray
 
 SLOWEST_CYCLE = 2e-3
@@ -60,7 +65,9 @@ def known_motion(recording: Recording, plant: Plant, band: Band) -> BoolArray:
     """
     missed = np.zeros(len(recording))
     missed[2:-2] = np.abs(np.diff(recording["motor_angle"], 4)) / (12 * recording.sample_time**2)
-    unknown: BoolArray = missed > _least_acceleration(recording, plant)
+    steps = ROUGH * math.sqrt(70 / 12) * quantisation_step(recording["motor_angle"])  # fourth differences of its steps
+    least = max(_least_acceleration(recording, plant), steps / (12 * recording.sample_time**2))
+    unknown: BoolArray = missed > least
     reach = int(np.ceil(band.sample_rate / band.edge))
     if "motor_torque" in recording:
         unknown |= _vibrating(recording["motor_torque"], band.sample_rate, reach)

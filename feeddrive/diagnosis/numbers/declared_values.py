@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from feeddrive.diagnosis.likelihood.tolerances import (
@@ -22,6 +23,12 @@ from feeddrive.diagnosis.likelihood.tolerances import (
     deviation_of,
     written_share,
 )
+from feeddrive.errors import InputError
+from feeddrive.plant.analysis.stiffness_budget import stiffness_budget
+from feeddrive.plant.file.plant_file import plant_from_entries
+from feeddrive.plant.plant import Plant
+from feeddrive.simulate.scenario.scenario_overrides import with_overrides
+from feeddrive.typing import FloatArray
 from feeddrive.units.quantity import parse
 
 _LEAST_SHARE = 1e-4  # of the compliance; a stiffer part than that counts as rigid
@@ -194,3 +201,38 @@ def _frictions(entries: Mapping[str, Any]) -> list[DeclaredValue]:
                 value = _value(effect[key], place, source)
                 found += [value] if value is not None else []
     return found
+
+
+@dataclass(frozen=True, eq=False)
+class DeclaredPlant:
+    """A plant file, and which of its values may be other than declared.
+
+    Attributes:
+        entries: of the file.
+        path: of it.
+        plant: read from it.
+        values: that may be other.
+    """
+
+    entries: Mapping[str, Any]
+    path: Path
+    plant: Plant
+    values: tuple[DeclaredValue, ...]
+
+    def plant_with(self, coordinates: FloatArray) -> Plant:
+        """The plant with other values, (k,) coordinates."""
+        texts = {one.key: one.at(float(c)) for one, c in zip(self.values, coordinates, strict=True) if c != 0.0}
+        written = {key: text for key, text in texts.items() if text is not None}
+        return plant_from_entries(with_overrides(self.entries, written), self.path)
+
+
+def values_of(entries: Mapping[str, Any], path: Path, plant: Plant, position: float) -> tuple[DeclaredValue, ...]:
+    """What may be other than declared in a plant file; a missing part is measured by the stiffness at a position [m].
+
+    Raises:
+        InputError: nothing may.
+    """
+    values = declared_values(entries, stiffness_budget(plant, position).total if plant.chain.elastic else None)
+    if not values:
+        raise InputError("declares nothing that could be other", str(path), "declare its parts")
+    return values

@@ -37,17 +37,14 @@ from typing import Any
 
 import numpy as np
 from scipy.optimize import minimize_scalar
-from scipy.stats import chi2
+from scipy.special import chdtri
 
 from feeddrive.diagnosis.likelihood.set_evidence import log_prior_of_size
 from feeddrive.diagnosis.likelihood.tolerances import BEYOND, WIDEST
-from feeddrive.diagnosis.numbers.declared_values import DeclaredValue, declared_values
+from feeddrive.diagnosis.numbers.declared_values import DeclaredPlant, DeclaredValue, values_of
 from feeddrive.diagnosis.numbers.measured_file import MeasuredNumber
 from feeddrive.errors import InputError, ValidityWarning
-from feeddrive.plant.analysis.stiffness_budget import stiffness_budget
-from feeddrive.plant.file.plant_file import plant_from_entries
 from feeddrive.plant.plant import Plant
-from feeddrive.simulate.scenario.scenario_overrides import with_overrides
 from feeddrive.typing import FloatArray
 
 MOST = 2
@@ -64,41 +61,24 @@ STEP = 1e-3
 """Step of the differences, in coordinates whose tolerances are some hundredths."""
 
 
-@dataclass(frozen=True)
-class NumbersProblem:
+@dataclass(frozen=True, eq=False)
+class NumbersProblem(DeclaredPlant):
     """A plant file and the numbers measured on the machine.
 
     Attributes:
-        entries: of the plant file.
-        path: of it.
-        plant: as declared.
         measured: the numbers.
-        values: what may be other than declared.
         seen: places in `values` of those that a measured number depends on.
     """
 
-    entries: Mapping[str, Any]
-    path: Path
-    plant: Plant
     measured: tuple[MeasuredNumber, ...]
-    values: tuple[DeclaredValue, ...]
     seen: tuple[int, ...] = ()
-
-    def plant_at(self, coordinates: FloatArray) -> Plant:
-        """The plant with other values, (k,) coordinates."""
-        return plant_from_entries(with_overrides(self.entries, self.overrides(coordinates)), self.path)
-
-    def overrides(self, coordinates: FloatArray) -> dict[str, str]:
-        """Key to text of the values that are not as declared."""
-        texts = {one.key: one.at(float(c)) for one, c in zip(self.values, coordinates, strict=True) if c != 0.0}
-        return {key: text for key, text in texts.items() if text is not None}
 
     def predicted(self, coordinates: FloatArray, numbers: Sequence[MeasuredNumber] | None = None) -> FloatArray:
         """What the plant gives for the numbers, (n,) SI."""
         with warnings.catch_warnings():
             # values that no part has are tried on the way; what is kept is checked when the plant is read with it
             warnings.simplefilter("ignore", ValidityWarning)
-            plant = self.plant_at(coordinates)
+            plant = self.plant_with(coordinates)
             return np.array([one.kind.of(plant, one.setting) for one in numbers or self.measured])
 
     def slopes(
@@ -128,11 +108,8 @@ def numbers_problem(
     Raises:
         InputError: nothing in the file may be other than declared.
     """
-    whole = stiffness_budget(plant, plant.middle).total if plant.chain.elastic else None
-    values = declared_values(entries, whole)
-    if not values:
-        raise InputError("declares nothing that could be other", str(path), "declare its parts")
-    problem = NumbersProblem(entries, path, plant, tuple(measured), values)
+    values = values_of(entries, path, plant, plant.middle)
+    problem = NumbersProblem(entries, path, plant, values, tuple(measured))
     moved = np.abs(problem.slopes(np.zeros(len(values)))) * np.array([one.deviation for one in values])
     noise = np.array([one.deviation for one in measured])
     seen = np.flatnonzero(np.max(moved / noise[:, None], axis=0) > UNSEEN)
@@ -228,7 +205,7 @@ def single_causes(problem: NumbersProblem) -> tuple[SingleCause, ...]:
         if misfit < before * (1 - 1e-3):
             at = zero.copy()
             at[place] = float(solved.x)
-            meets = misfit <= float(chi2.ppf(0.95, len(problem.measured)))
+            meets = misfit <= float(chdtri(len(problem.measured), 0.05))
             found.append(SingleCause(value, float(solved.x), problem.predicted(at), misfit, meets))
     return tuple(sorted(found, key=lambda one: one.misfit))
 

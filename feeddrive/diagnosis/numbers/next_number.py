@@ -21,8 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from feeddrive.diagnosis.numbers.explanations import Explanation, NumbersProblem
-from feeddrive.diagnosis.numbers.measurable import FREE, HELD, MEASURABLE, Setting
-from feeddrive.diagnosis.numbers.measured_file import MeasuredNumber
+from feeddrive.diagnosis.numbers.measured_file import FREE, HELD, MEASURABLE, MeasuredNumber, Setting
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray

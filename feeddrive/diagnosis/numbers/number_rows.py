@@ -15,7 +15,6 @@ s_j by itself, weighs as λ of them.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -118,26 +117,17 @@ class NumberResult:
         """Whether the plant after gives it within the number's tolerance, which is two of its standard deviations."""
         return abs(self.after - self.number.value) <= 2 * self.number.deviation
 
+    def record(self) -> dict[str, Any]:
+        """Its keys in `diagnosis.json`."""
+        one = self.number
+        return {
+            "name": one.name, "unit": one.kind.unit, "value": one.value, "tolerance": 2 * one.deviation,
+            "before": self.before, "after": self.after, "met": self.met, "fitted": self.fitted,
+        }  # fmt: skip
+
 
 def number_results(rows: MeasuredRows, before: Plant, after: Plant, wrong: int = 0) -> tuple[NumberResult, ...]:
     """Every number with what the two plants give for it; so many at the end were wrong and not fitted."""
     fitted = len(rows) - wrong
     pairs = zip(rows.numbers, rows.given(before), rows.given(after), strict=True)
     return tuple(NumberResult(one, float(was), float(now), i < fitted) for i, (one, was, now) in enumerate(pairs))
-
-
-def numbers_beside(results: Sequence[NumberResult]) -> list[Mapping[str, Any]]:
-    """The list `measured` of `diagnosis.json`."""
-    return [
-        {
-            "name": one.number.name,
-            "unit": one.number.kind.unit,
-            "value": one.number.value,
-            "tolerance": 2 * one.number.deviation,
-            "before": one.before,
-            "after": one.after,
-            "met": one.met,
-            "fitted": one.fitted,
-        }
-        for one in results
-    ]

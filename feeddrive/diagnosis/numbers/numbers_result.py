@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.special import chdtri
 
 from feeddrive import __version__
 from feeddrive.diagnosis.likelihood.tolerances import ASSERTED
@@ -62,14 +62,13 @@ class Calibrated:
         value: as declared.
         factor: on the declared value [1].
         interval: of the factor, 95 %.
-        spread_before, spread_after: standard deviations of its logarithm.
+        spread_before: standard deviation of its logarithm as declared.
     """
 
     value: DeclaredValue
     factor: float
     interval: tuple[float, float]
     spread_before: float
-    spread_after: float
 
 
 @dataclass(frozen=True)
@@ -141,7 +140,7 @@ def diagnose_numbers(
         problem,
         problem.predicted(np.zeros(len(problem.values))),
         best.predicted,
-        left <= float(chi2.ppf(0.95, len(problem.measured))),
+        left <= float(chdtri(len(problem.measured), 0.05)),
         within,
         asserted,
         suspects,
@@ -176,7 +175,7 @@ def _calibrated(problem: NumbersProblem, sets: Sequence[Explanation], asserted: 
         if value.key in asserted or value.missing:
             continue
         ends = (math.exp(mean[place] - 1.96 * spread), math.exp(mean[place] + 1.96 * spread))
-        found.append(Calibrated(value, math.exp(mean[place]), ends, value.deviation, spread))
+        found.append(Calibrated(value, math.exp(mean[place]), ends, value.deviation))
     return tuple(sorted(found, key=lambda one: -abs(math.log(one.factor)) / one.spread_before))
 
 

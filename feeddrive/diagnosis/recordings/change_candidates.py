@@ -2,6 +2,9 @@
 
 Levels are tried whether an effect was found there or not: friction at each port (wear, lubricant, temperature), a force
 (another load or balance), a mass (another workpiece), the screw's lead (its temperature) and its stiffness (preload).
+
+A shift is a column of the Jacobian cut to the rows of its recording, so that all are ranked by one linear step at no
+further simulation.
 """
 
 from __future__ import annotations

@@ -50,7 +50,7 @@ def parameter_changes(problem: Problem, changes: Changes, questions: Sequence[Qu
         found = [
             (target, moved)
             for target in changes.targets
-            for moved in compared_values(problem, changes.fit, target, q.here, q.there)
+            for moved in _compared_values(problem, changes.fit, target, q.here, q.there)
         ]
         together = [moved for _, moved in found]
         for target, one in found:
@@ -65,15 +65,10 @@ def parameter_changes(problem: Problem, changes: Changes, questions: Sequence[Qu
     return tuple(result)
 
 
-def compared_values(problem: Problem, fitted: Fit, target: Target, here: int, there: int | None) -> list[Moved]:
+def _compared_values(problem: Problem, fitted: Fit, target: Target, here: int, there: int | None) -> list[Moved]:
     """The parameters of a target in one recording and in another, with intervals.
 
-    Args:
-        problem: that was fitted.
-        fitted: effects with shifts.
-        target: what differs.
-        here: number of the recording.
-        there: number of the other one; None for those without shifts.
+    `here`, `there` are numbers of recordings; None for those without shifts.
     """
     covariance = certainty(problem, fitted).half_covariance
     found = []
@@ -101,7 +96,7 @@ def per_recording(problem: Problem, changes: Changes, names: Sequence[str]) -> t
     """Values of what differs, in every fitted recording."""
     result = []
     for target in changes.targets:
-        rows = [compared_values(problem, changes.fit, target, number, None) for number in range(len(names))]
+        rows = [_compared_values(problem, changes.fit, target, number, None) for number in range(len(names))]
         for same in zip(*rows, strict=True):
             values = {name: one.here for name, one in zip(names, same, strict=True)}
             result.append(PerRecording(target.name, same[0].key, str(target.port), same[0].unit, values))

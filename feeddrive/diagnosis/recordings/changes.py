@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from scipy.stats import norm
+from scipy.special import ndtri
 
 from feeddrive.diagnosis.calibration.beyond import said_by_effects
 from feeddrive.diagnosis.likelihood.cross_validation import (
@@ -31,9 +31,12 @@ from feeddrive.diagnosis.recordings.change_candidates import (
     offers,
 )
 from feeddrive.diagnosis.recordings.change_result import CommonTrial
-from feeddrive.diagnosis.recordings.recordings import RecordingShift, Target, is_shift
+from feeddrive.diagnosis.recordings.recordings import RecordingShift, Target, is_shift, without_shifts
 from feeddrive.effects.base import Effect
 from feeddrive.effects.friction.friction_deviation import FrictionDeviation
+
+REFERENCE_STEPS, JOINT_STEPS = 8, 10
+"""Steps of the fit with everything in common, and of the fit with what differs."""
 
 FALSE_ALARMS = 0.05
 """Chance of one false change in a whole diagnosis, shared out among all parameters that are tried."""
@@ -81,9 +84,11 @@ def find_changes(problem: Problem, effects: Sequence[Effect], recordings: Sequen
     while kept:
         worst = _worst(wide, current, kept, recordings, len(ranked))
         if not worst:
-            return Changes(wide, machine_first(wide, current), tuple(kept), _trials(ranked, kept))
+            shifts = [effect for effect in current.effects if is_shift(effect)]
+            ordered = fit(wide, [*without_shifts(current.effects), *shifts], iterations=REFERENCE_STEPS)
+            return Changes(wide, ordered, tuple(kept), _trials(ranked, kept))
         kept = [target for target in kept if target not in worst]
-        wide, current = in_common(problem, common, current, worst, recordings)
+        wide, current = _in_common(problem, common, current, worst, recordings)
     return Changes(problem, common, (), _trials(ranked, ()))
 
 
@@ -106,7 +111,7 @@ def _forward(
         likely = [one for one, c in offered if c.gain > c.least]
         for one in likely[:OFFERS]:
             group = [other for other in free if other is one or _partners(one.target, other.target)]
-            own, wider, comparison = set_free(problem, current, effects[one.effect], group, recordings)
+            own, wider, comparison = _set_free(problem, current, effects[one.effect], group, recordings)
             ranked[one.target] = one, comparison
             if _pays(comparison, len(free) + len(taken)) and _material(own, wider, one.target, recordings):
                 taken += [other.target for other in group]
@@ -128,7 +133,7 @@ def _material(problem: Problem, shifted: Fit, target: Target, recordings: Sequen
 
 def _pays(comparison: Comparison, tried: int) -> bool:
     """The rule of the search, its scatter as many times as so many tries ask for."""
-    times = float(norm.ppf(1 - FALSE_ALARMS / max(tried, 1)))
+    times = float(ndtri(1 - FALSE_ALARMS / max(tried, 1)))
     return comparison.pays and comparison.gain > times * comparison.standard_error
 
 
@@ -145,8 +150,8 @@ def _worst(
     compared = []
     for group in groups:
         # what is left out keeps its level in common, so that only the difference is judged
-        removed = [effect for effect in shifted.effects if not belongs(effect, group, recordings)]
-        compared.append((compared_fits(problem, fit(problem, removed, iterations=JOINT_STEPS), shifted), group))
+        removed = [effect for effect in shifted.effects if not _belongs(effect, group, recordings)]
+        compared.append((_compared_fits(problem, fit(problem, removed, iterations=JOINT_STEPS), shifted), group))
     comparison, group = min(compared, key=lambda pair: pair[0].gain)
     return [] if _pays(comparison, tried) else group
 
@@ -154,43 +159,30 @@ def _worst(
 def _trials(ranked: dict[Target, Offer], kept: Sequence[Target]) -> tuple[CommonTrial, ...]:
     result = []
     for target, (one, comparison) in sorted(ranked.items(), key=lambda item: -item[1][1].gain):
-        taken = target in kept
-        reason = "it must differ for blocks left out to be met" if taken else _why_common(comparison)
-        gain, error = comparison.gain, comparison.standard_error
+        taken, gain, error = target in kept, comparison.gain, comparison.standard_error
+        reason = (
+            f"a value of its own lowers the squared error by {gain:.2%} ({error:.2%} scatter), or others say it better"
+        )
+        if taken:
+            reason = "it must differ for blocks left out to be met"
+        elif gain <= 0:
+            reason = "a value of its own in every recording does not lower the error on blocks left out"
         result.append(CommonTrial(target.name, one.parameter, str(target.port), gain, error, taken, reason))
     return tuple(result)
 
 
-def _why_common(comparison: Comparison) -> str:
-    if comparison.gain <= 0:
-        return "a value of its own in every recording does not lower the error on blocks left out"
-    scatter = f"{comparison.standard_error:.2%} scatter"
-    return f"a value of its own lowers the squared error by {comparison.gain:.2%} ({scatter}), or others say it better"
-
-
-REFERENCE_STEPS, JOINT_STEPS = 8, 10
-"""Steps of the fit with everything in common, and of the fit with what differs."""
-
-
-def belongs(effect: Effect, targets: Sequence[Target], recordings: Sequence[int]) -> bool:
+def _belongs(effect: Effect, targets: Sequence[Target], recordings: Sequence[int]) -> bool:
     """Whether this is the shift of one of the targets in one of the recordings."""
     return isinstance(effect, RecordingShift) and effect.target in targets and effect.recording in recordings
 
 
-def set_free(
+def _set_free(
     problem: Problem, current: Fit, effect: Effect, group: Sequence[Movable], recordings: Sequence[int]
 ) -> tuple[Problem, Fit, Comparison]:
     """The fit with parameters of one effect free by recording, beside the one that has them in common.
 
-    Args:
-        problem: of the fit that there is.
-        current: that fit.
-        effect: one of its effects, or a level at which nothing is other than declared.
-        group: parameters of the effect.
-        recordings: numbers of those that may differ.
-
-    Returns:
-        The problem in which no declared value is fitted that the effect stands for, the fit, and what it brings.
+    `group` are parameters of the effect, or of a level at which nothing is other than declared. Gives the problem in
+    which no declared value is fitted that the effect stands for, the fit, and what it brings.
     """
     shared = current
     if effect not in current.effects:
@@ -198,38 +190,26 @@ def set_free(
         shared = fit(problem, effects, iterations=JOINT_STEPS)
     shifts = [shift for one in group for shift in one.shifts(recordings)]
     wider = fit(problem, [*shared.effects, *shifts], iterations=JOINT_STEPS)
-    return problem, wider, compared_fits(problem, shared, wider)
+    return problem, wider, _compared_fits(problem, shared, wider)
 
 
-def machine_first(problem: Problem, fitted: Fit) -> Fit:
-    """A copy of a fit with the shifts at the end."""
-    machine = [effect for effect in fitted.effects if not is_shift(effect)]
-    shifts = [effect for effect in fitted.effects if is_shift(effect)]
-    return fit(problem, [*machine, *shifts], iterations=REFERENCE_STEPS)
-
-
-def in_common(
+def _in_common(
     problem: Problem, common: Fit, current: Fit, targets: Sequence[Target], recordings: Sequence[int]
 ) -> tuple[Problem, Fit]:
     """The fit with some parameters in common again; a level that was not there before goes with its shifts.
 
-    Args:
-        problem: in which no level was free.
-        common: the fit of it.
-        current: the fit with what differs.
-        targets: what is to be in common again.
-        recordings: numbers of those that may differ.
+    `problem` is that in which no level was free, `common` its fit, `current` the fit with what differs.
     """
-    kept = [effect for effect in current.effects if not belongs(effect, targets, recordings)]
+    kept = [effect for effect in current.effects if not _belongs(effect, targets, recordings)]
     moved = [effect.target for effect in kept if isinstance(effect, RecordingShift)]
-    before = [one for one in common.effects if not is_shift(one)]
+    before = without_shifts(common.effects)
     places = {(one.name, one.port, one.place) for one in before} | {(t.name, t.port, t.place) for t in moved}
     kept = [effect for effect in kept if is_shift(effect) or (effect.name, effect.port, effect.place) in places]
     problem, _ = said_by_effects(problem, kept)
     return problem, fit(problem, kept, iterations=JOINT_STEPS)
 
 
-def compared_fits(problem: Problem, without: Fit, having: Fit) -> Comparison:
+def _compared_fits(problem: Problem, without: Fit, having: Fit) -> Comparison:
     """What one fit brings over another on blocks left out."""
     blocks = block_numbers(problem)
     before = left_out_residual(problem, without, blocks)

@@ -1,4 +1,10 @@
-"""All that a diagnosis says about differences between its recordings, fitted and judged."""
+"""All that a diagnosis says about differences between its recordings, fitted and judged.
+
+What is other in a recording that was not fitted is stated beside the errors, which it never lowers. The fitted
+recordings are taken together with the judged ones, which may differ in one parameter after the other. What is found
+says why an error stays, and whether the effects carry once the levels of that recording are allowed for: an effect
+does not fail because the lubricant was warmer. The errors themselves are those of the plant as it was fitted.
+"""
 
 from __future__ import annotations
 
@@ -127,10 +133,6 @@ def _why_not(result: EffectResult, compared: Compared) -> str:
     return ""
 
 
-FITTED = "the fitted recordings"
-"""What judged recordings are compared with where there are several."""
-
-
 @dataclass(frozen=True)
 class JudgedChanges:
     """Differences of the judged recordings.
@@ -162,7 +164,9 @@ def judged_changes(found: Search, judged: Sequence[Judged]) -> JudgedChanges | N
     apart = [one for one in judged if not one.evidence.fitted.any()]
     if not apart:
         return None
-    problem = _together(found.problem, found.fit.effects, apart)
+    # fitted and judged recordings in one problem, all of them fitted
+    more = [replace(one.evidence, fitted=np.ones(len(one.evidence.fitted), dtype=bool)) for one in apart]
+    problem = with_recordings(numbered(found.problem, more), found.fit.effects, more)
     first = len(found.problem.evidence)
     changes = find_changes(problem, found.fit.effects, range(first, first + len(apart)))
     if not changes.targets:
@@ -183,12 +187,6 @@ def judged_changes(found: Search, judged: Sequence[Judged]) -> JudgedChanges | N
     numbers = [question.here for question in questions]
     carries = tuple(_carries(carrying, judged, changes.fit.effects, i, numbers) for i in range(count))
     return JudgedChanges(changes, stated, carries, _explained(carrying, judged, allowed), carrying, tuple(allowed))
-
-
-def _together(problem: Problem, effects: Sequence[Effect], apart: Sequence[Judged]) -> Problem:
-    """Fitted and judged recordings in one problem, all of them fitted."""
-    more = [replace(j.evidence, fitted=np.ones(len(j.evidence.fitted), dtype=bool)) for j in apart]
-    return with_recordings(numbered(problem, more), effects, more)
 
 
 def _carries(

@@ -24,7 +24,6 @@ from feeddrive.diagnosis.recordings.changes import Changes, find_changes
 from feeddrive.diagnosis.recordings.recordings import (
     RecordingPredictor,
     RecordingShift,
-    Target,
     is_shift,
     without_shifts,
 )
@@ -90,14 +89,11 @@ def _followed(problem: Problem, held: Changes, earlier: Sequence[int], progress:
     progress("comparing the recordings with the effects found")
     changes = find_changes(found.problem, found.fit.effects, earlier)
     if changes.targets:
-        changes = _settled(replace(changes, fit=_still_needed(changes.problem, changes.fit)))
+        # the other declared values as they are most likely beside what differs
+        effects = _still_needed(changes.problem, changes.fit).effects
+        recalibrated_problem = recalibrated(changes.problem, effects)
+        changes = replace(changes, problem=recalibrated_problem, fit=fit(recalibrated_problem, effects))
     return Searched(replace(found, problem=changes.problem, fit=changes.fit), changes)
-
-
-def _settled(changes: Changes) -> Changes:
-    """The other declared values as they are most likely beside what differs."""
-    problem = recalibrated(changes.problem, changes.fit.effects)
-    return replace(changes, problem=problem, fit=fit(problem, changes.fit.effects))
 
 
 def _continued(problem: Problem, start: Sequence[Effect], progress: Callable[[str], None]) -> Searched:
@@ -176,15 +172,12 @@ def _levels_alone(problem: Problem, changes: Changes, earlier: Sequence[int]) ->
     wanted = [target for target in changes.targets if _levels_of(problem, replace(changes, targets=(target,)))]
     if not wanted:
         return _nothing(problem)
-    kept = [effect for effect in changes.fit.effects if _belongs(effect, wanted)]
+    kept = [
+        effect
+        for effect in changes.fit.effects
+        if (effect.target in wanted if isinstance(effect, RecordingShift) else any(t.meets(effect) for t in wanted))
+    ]
     return Changes(problem, fit(problem, kept), tuple(wanted), ())
-
-
-def _belongs(effect: Effect, targets: Sequence[Target]) -> bool:
-    if is_shift(effect):
-        assert isinstance(effect, RecordingShift)
-        return effect.target in targets
-    return any(target.meets(effect) for target in targets)
 
 
 def normalised(found: Search) -> Search:

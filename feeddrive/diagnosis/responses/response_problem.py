@@ -20,28 +20,27 @@ import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import control
 import numpy as np
 
-from feeddrive.diagnosis.numbers.declared_values import DeclaredValue, declared_values
+from feeddrive.diagnosis.numbers.declared_values import DeclaredPlant, values_of
 from feeddrive.effects.base import Effect
 from feeddrive.effects.chain.structural_mode import StructuralMode
 from feeddrive.effects.timing.drive_delay import DriveDelay
 from feeddrive.errors import InputError, ValidityWarning
-from feeddrive.plant.analysis.linear import INPUTS, OUTPUTS
-from feeddrive.plant.analysis.stiffness_budget import stiffness_budget
+from feeddrive.plant.analysis.ode import INPUTS, OUTPUTS
 from feeddrive.plant.chain.resolution import resolved
-from feeddrive.plant.file.plant_file import plant_from_entries
 from feeddrive.plant.plant import Plant
 from feeddrive.recording.frequency_response import FrequencyResponse
 from feeddrive.servo.cascade import Cascade
 from feeddrive.servo.linear_loop import closed_velocity_loop, open_velocity_loop
 from feeddrive.servo.margins import frequency_response
 from feeddrive.servo.mechanics_response import Case, delay_of, transfer
-from feeddrive.simulate.scenario.scenario_overrides import with_overrides
 from feeddrive.typing import ComplexArray, FloatArray
+
+if TYPE_CHECKING:
+    import control
 
 FEWEST_LINES = 20
 """Lines that a fit of some ten values needs."""
@@ -81,42 +80,28 @@ class Lines:
 
 
 @dataclass(frozen=True, eq=False)
-class ResponseProblem:
+class ResponseProblem(DeclaredPlant):
     """A plant file and a frequency response measured on the machine.
 
     Attributes:
-        entries: of the plant file.
-        path: of it.
-        plant: as declared.
         response: as measured, frequencies above zero.
         case: operating point.
-        values: what may be other than declared.
         cascade: the controller, where the response is one of its speed loop.
     """
 
-    entries: Mapping[str, Any]
-    path: Path
-    plant: Plant
     response: FrequencyResponse
     case: Case
-    values: tuple[DeclaredValue, ...]
     cascade: Cascade | None = None
     _known: dict[bytes, ComplexArray] = field(default_factory=dict, init=False)
-
-    @property
-    def log_range(self) -> float:
-        """Natural logarithm of the highest over the lowest frequency."""
-        return math.log(float(self.response.frequency[-1] / self.response.frequency[0]))
 
     def spreads(self, beyond: Sequence[int], lines: Lines, wide: float) -> FloatArray:
         """Standard deviations of the coordinates before anything is measured, (k,)."""
         own = np.array([one.deviation for one in self.values])
         own[list(beyond)] = wide
-        more = [1.0] * int(lines.delay)
-        for _ in lines.modes:
-            # an even density over the logarithm of the frequency has this standard deviation
-            more += [MODE_SHARE_SPREAD, self.log_range / math.sqrt(12), MODE_DAMPING_SPREAD]
-        return np.concatenate([own, more])
+        # an even density over the logarithm of the frequency has this standard deviation
+        even = math.log(float(self.response.frequency[-1] / self.response.frequency[0])) / math.sqrt(12)
+        modes = [MODE_SHARE_SPREAD, even, MODE_DAMPING_SPREAD] * len(lines.modes)
+        return np.concatenate([own, [1.0] * int(lines.delay), modes])
 
     def effects(self, extra: FloatArray, lines: Lines) -> tuple[Effect, ...]:
         """The additions at their coordinates."""
@@ -133,15 +118,6 @@ class ResponseProblem:
             found.append(StructuralMode.of(mass=mass, frequency=start * math.exp(_bounded(place, 5.0)), damping=ratio))
         return tuple(found)
 
-    def plant_at(self, coordinates: FloatArray, lines: Lines) -> Plant:
-        """The plant at coordinates, (k,)."""
-        count = len(self.values)
-        pairs = zip(self.values, coordinates[:count], strict=True)
-        texts = {one.key: one.at(_bounded(float(c), 5.0)) for one, c in pairs if c != 0.0}
-        written = {key: text for key, text in texts.items() if text is not None}
-        plant = plant_from_entries(with_overrides(self.entries, written), self.path)
-        return plant.with_effects(*self.effects(coordinates[count:], lines))
-
     def predicted(self, coordinates: FloatArray, lines: Lines) -> ComplexArray:
         """Response at the measured frequencies, (n,) SI; each is computed once."""
         key = coordinates.tobytes() + repr(lines).encode()
@@ -154,7 +130,9 @@ class ResponseProblem:
     def _computed(self, coordinates: FloatArray, lines: Lines) -> ComplexArray:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", ValidityWarning)  # values that no part has are tried on the way
-            plant = self.plant_at(coordinates, lines)
+            count = len(self.values)
+            plant = self.plant_with(np.clip(coordinates[:count], -5.0, 5.0))
+            plant = plant.with_effects(*self.effects(coordinates[count:], lines))
             frequency = self.response.frequency
             fine = resolved(self.case.on(plant), float(frequency[-1]), [self.case.position])
             if self.cascade is not None:
@@ -205,11 +183,8 @@ def response_problem(
         raise InputError(f"{len(used.frequency)} lines above 0 Hz", where, f"measure at least {FEWEST_LINES}")
     if np.any(used.values == 0):
         raise InputError("a value of the response is zero", where, "leave that line out")
-    whole = stiffness_budget(plant, case.position).total if plant.chain.elastic else None
-    values = declared_values(entries, whole)
-    if not values:
-        raise InputError("declares nothing that could be other", str(path), "declare its parts")
-    return ResponseProblem(entries, path, plant, used, case, values, cascade)
+    values = values_of(entries, path, plant, case.position)
+    return ResponseProblem(entries, path, plant, values, used, case, cascade)
 
 
 def _of_the_loop(response: FrequencyResponse, cascade: Cascade | None, where: str) -> FrequencyResponse:

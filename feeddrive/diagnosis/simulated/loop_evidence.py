@@ -18,7 +18,7 @@ from feeddrive.diagnosis.likelihood.evidence import AxisEvidence, Evidence
 from feeddrive.diagnosis.suspicion.channel_timing import lagging
 from feeddrive.effects.timing.channel_delay import lateness
 from feeddrive.engine.lateness import late_mean
-from feeddrive.engine.step.step_constants import SimulationError
+from feeddrive.engine.step.linear_part import SimulationError
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording

@@ -25,7 +25,7 @@ import numpy as np
 from feeddrive.diagnosis.likelihood.coordinates import read_coordinates, write_coordinates
 from feeddrive.diagnosis.simulated.loop_evidence import LoopEvidence
 from feeddrive.effects.base import Effect, Kind
-from feeddrive.engine.step.step_constants import SimulationError
+from feeddrive.engine.step.linear_part import SimulationError
 from feeddrive.plant.plant import Plant
 from feeddrive.simulate.controlled.sensitivity import simulate_sensitivity
 from feeddrive.typing import BoolArray, FloatArray
@@ -109,18 +109,14 @@ def loop_problem(
     Raises:
         SimulationError: the loop cannot be simulated with these effects.
     """
-    weights = channel_weights(plant.with_effects(*effects), loops)
+    weights = _channel_weights(plant.with_effects(*effects), loops)
     free = np.concatenate([np.full(coordinate_count(e, plant), e.kind is not Kind.TIMING) for e in effects])
     start = read_coordinates(effects, plant)
     return LoopProblem(plant, tuple(effects), tuple(loops), start, _inverse(covariance), weights, free)
 
 
-def channel_weights(plant: Plant, loops: Sequence[LoopEvidence]) -> dict[str, float]:
-    """1 / (s_c^2 tau_c) of every channel, with the errors of this plant.
-
-    Raises:
-        SimulationError: the loop cannot be simulated with it.
-    """
+def _channel_weights(plant: Plant, loops: Sequence[LoopEvidence]) -> dict[str, float]:
+    """1 / (s_c^2 tau_c) of every channel, with the errors of this plant."""
     parts = [loop.missed(loop.simulated(plant), loop.fit_rows) for loop in loops]
     weights = {}
     for name in dict.fromkeys(name for part in parts for name in part):
@@ -177,7 +173,7 @@ def fit_loop(problem: LoopProblem) -> FloatArray:
         SimulationError: the loop cannot be simulated with the effects as they are.
     """
     first = _minimised(problem, problem.start)
-    again = replace(problem, weights=channel_weights(problem.with_values(first), problem.loops))
+    again = replace(problem, weights=_channel_weights(problem.with_values(first), problem.loops))
     return _minimised(again, first)
 
 

@@ -8,6 +8,10 @@ are fitted as before. Refined values are kept only where, on data not fitted,
 - no predicted channel's rms rises by more than two percent.
 
 Otherwise the values of the attribution stay, and the result says so.
+
+The error of a loop is that of what the plant does on its own, set-point given. Torque in shares of its rms; the table
+position in shares of the rms of the following error (recorded position less set-point, about its mean). Unfiltered,
+over the judged samples that the declared controller commanded.
 """
 
 from __future__ import annotations
@@ -21,16 +25,21 @@ from feeddrive.diagnosis.certainty.uncertainty import certainty
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging.judge import Judged, channel_results
 from feeddrive.diagnosis.likelihood.coordinates import write_coordinates
-from feeddrive.diagnosis.likelihood.fit import fit
-from feeddrive.diagnosis.recordings.recordings import is_shift
+from feeddrive.diagnosis.likelihood.fit import Problem, fit
+from feeddrive.diagnosis.recordings.recordings import RecordingPredictor, is_shift
 from feeddrive.diagnosis.simulated.loop_evidence import LoopEvidence, loop_evidence
 from feeddrive.diagnosis.simulated.loop_fit import LoopProblem, coordinate_count, fit_loop, foretold, loop_problem
-from feeddrive.diagnosis.simulated.simulation import LoopErrors, before_and_after, loop_errors, machine_in
-from feeddrive.diagnosis.simulated.simulation_result import RefinedValue, SimulatedChannel, SimulationResult
+from feeddrive.diagnosis.simulated.simulation_result import (
+    ErrorFigure,
+    RefinedValue,
+    SimulatedChannel,
+    SimulationResult,
+)
 from feeddrive.effects.base import Effect, Kind
 from feeddrive.errors import InputError
+from feeddrive.plant.plant import Plant
 from feeddrive.recording.channels import channel_unit
-from feeddrive.typing import BoolArray
+from feeddrive.typing import BoolArray, FloatArray
 
 CHANNEL_MARGIN = 0.01
 """Share by which the rms of one simulated channel may rise where the others gain."""
@@ -41,10 +50,17 @@ PREDICTION_MARGIN = 0.02
 DELAYED = "a delay moves the instants at which the torque switches, and has no derivative"
 CHAOTIC = "the simulated loop does not follow a small change of it in proportion: free play, or a jump"
 
+KEPT = "The values were refined in closed-loop simulation, which does better with them on data not fitted."
+NOT_KEPT = "Values refined in closed-loop simulation were not kept: {reason}. The values are those of the attribution."
+
 Outcome = tuple[list[Judged], tuple[str, ...]]
 """Judged recordings, and what was re-homed."""
 
 Judge = Callable[[Search], Outcome]
+
+
+LoopErrors = dict[str, ErrorFigure]
+"""Channel to its simulation error, all judged recordings together."""
 
 
 @dataclass(frozen=True)
@@ -76,7 +92,7 @@ class Refinement:
         simulation = self.simulation
         if simulation is None or all(new is old for new, old in zip(judged, self.outcome[0], strict=True)):
             return simulation
-        after = _errors(self.found, self.loops, judged)
+        after = errors_after(self.found.problem, judged, self.loops)
         if not _finite(after):
             return simulation
         channels = tuple(replace(channel, after=after[channel.name]) for channel in simulation.channels)
@@ -96,7 +112,7 @@ def refined(found: Search, outcome: Outcome, judge: Judge) -> Refinement:
         loops = tuple(loop_evidence(plant, j.evidence) for j in judged)
     except InputError as refusal:
         return Refinement(found, outcome, notes=(f"no closed-loop simulation: {refusal.what} ({refusal.mend})",))
-    before, attributed = before_and_after(found.problem, judged, loops)
+    before, attributed = loop_errors(loops, [j.before for j in judged]), errors_after(found.problem, judged, loops)
     if not before or not _finite(before, attributed):
         return Refinement(found, outcome, notes=("no closed-loop simulation: the loop cannot be followed",))
     plain = Refinement(found, outcome, _result(before, attributed, None, False), loops=loops)
@@ -114,20 +130,15 @@ def refined(found: Search, outcome: Outcome, judge: Judge) -> Refinement:
         return plain.saying("Refinement in simulation left every value where it was.", kept_back)
     other = replace(found, fit=fit(found.problem, effects, iterations=0))
     judged_other = judge(other)
-    after = _errors(other, loops, judged_other[0])
+    after = errors_after(other.problem, judged_other[0], loops)
     reason = why_not_kept(found, attributed, after, judged, judged_other[0])
     result = replace(
         _result(before, attributed, after, not reason),
-        statement=_statement(reason),
+        statement=KEPT if not reason else NOT_KEPT.format(reason=reason),
         refined=_values(found.fit.effects, effects),
         not_refined=kept_back,
     )
     return replace(plain, simulation=result) if reason else Refinement(other, judged_other, result, loops=loops)
-
-
-def _errors(found: Search, loops: Sequence[LoopEvidence], judged: Sequence[Judged]) -> LoopErrors:
-    """Simulation errors of the plants after, on the samples of the loops."""
-    return loop_errors(loops, [machine_in(found.problem, j.after, j.evidence) for j in judged])
 
 
 def _problem(found: Search) -> LoopProblem:
@@ -167,12 +178,6 @@ def why_not_kept(
     return ""
 
 
-def _statement(reason: str) -> str:
-    if not reason:
-        return "The values were refined in closed-loop simulation, which does better with them on data not fitted."
-    return f"Values refined in closed-loop simulation were not kept: {reason}. The values are those of the attribution."
-
-
 def _kept_back(problem: LoopProblem) -> dict[str, str]:
     """Effects some of whose values the refinement could not move, with the reason."""
     reasons, first = {}, 0
@@ -209,3 +214,47 @@ def _result(before: LoopErrors, attributed: LoopErrors, after: LoopErrors | None
 
 def _finite(*errors: LoopErrors) -> bool:
     return all(np.isfinite(error.rms) for each in errors for error in each.values())
+
+
+def loop_errors(loops: Sequence[LoopEvidence], plants: Sequence[Plant]) -> LoopErrors:
+    """Channel to its simulation error over the judged samples.
+
+    Args:
+        loops: judged recordings.
+        plants: one for each of them.
+
+    Returns:
+        Empty where nothing is left to judge; not a number where a plant could not be followed.
+    """
+    missed: dict[str, list[FloatArray]] = {}
+    shown: dict[str, list[FloatArray]] = {}
+    for loop, plant in zip(loops, plants, strict=True):
+        rows = loop.judged_rows
+        if not rows.any():
+            continue
+        for name, error in loop.missed(loop.simulated(plant), rows).items():
+            missed.setdefault(name, []).append(error)
+            shown.setdefault(name, []).append(_scale(loop, name)[rows])
+    return {name: _error(np.concatenate(missed[name]), np.concatenate(shown[name])) for name in missed}
+
+
+def errors_after(problem: Problem, judged: Sequence[Judged], loops: Sequence[LoopEvidence]) -> LoopErrors:
+    """Errors of the plants after, each as it is in its recording, on the samples of the loops."""
+    plants, predictor = [j.after for j in judged], problem.predictor
+    if isinstance(predictor, RecordingPredictor):
+        plants = [predictor.machine(j.after, j.evidence) for j in judged]
+    return loop_errors(loops, plants)
+
+
+def _scale(loop: LoopEvidence, name: str) -> FloatArray:
+    series = loop.recording[name]
+    if name != "table_position":
+        return series
+    behind = series - loop.recording["setpoint"]
+    following: FloatArray = behind - behind.mean()
+    return following
+
+
+def _error(error: FloatArray, scale: FloatArray) -> ErrorFigure:
+    rms = float(np.sqrt(np.mean(error**2)))
+    return ErrorFigure(rms, rms / float(np.sqrt(np.mean(scale**2))))

@@ -1,9 +1,10 @@
-"""What closed-loop simulation says of a diagnosis: errors of the loop, and what was refined in it."""
+"""What closed-loop simulation says of a diagnosis: errors of the loop, what was refined in it; keys of the record."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 from feeddrive.effects.base import Value
 
@@ -14,6 +15,10 @@ class ErrorFigure:
 
     rms: float
     relative: float
+
+    def record(self) -> dict[str, float]:
+        """Its keys in `diagnosis.json`."""
+        return {"rms": self.rms, "relative": self.relative}
 
 
 @dataclass(frozen=True)
@@ -35,6 +40,14 @@ class SimulatedChannel:
     after: ErrorFigure
     after_attribution: ErrorFigure
     after_refinement: ErrorFigure | None = None
+
+    def record(self) -> dict[str, Any]:
+        """Its keys in `diagnosis.json`."""
+        refined = {"after_refinement": self.after_refinement.record()} if self.after_refinement else {}
+        return {
+            "name": self.name, "unit": self.unit, "before": self.before.record(), "after": self.after.record(),
+            "after_attribution": self.after_attribution.record(), **refined,
+        }  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -75,3 +88,18 @@ class SimulationResult:
     channels: tuple[SimulatedChannel, ...] = ()
     refined: tuple[RefinedValue, ...] = ()
     not_refined: Mapping[str, str] = field(default_factory=dict)
+
+    def record(self) -> dict[str, Any]:
+        """The entry `simulation` of `diagnosis.json`; keys without value are left out.
+
+        `before` and `after` are of the channel named first, `after` as it is reported.
+        """
+        record: dict[str, Any] = {
+            "channel": self.channel, "before": self.before, "after": self.after,
+            "after_attribution": self.after_attribution, "after_refinement": self.after_refinement,
+            "refinement_kept": self.kept, "statement": self.statement,
+            "channels": [channel.record() for channel in self.channels],
+            "refined": [dict(vars(value)) for value in self.refined],
+            "not_refined": [{"name": name, "reason": reason} for name, reason in self.not_refined.items()],
+        }  # fmt: skip
+        return {key: value for key, value in record.items() if value is not None}

@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import numpy as np
 from scipy.optimize import minimize
-from scipy.signal.windows import hann
 
 from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.finding.scene import Scene
@@ -116,7 +115,7 @@ class _Spectra:
 
 def _faded(rows: BoolArray, sample_time: float) -> FloatArray:
     """Weights of the samples: the fitted ones, faded in and out, so that no edge smears the spectrum."""
-    fade = hann(max(3, int(FADE / sample_time)))
+    fade = np.hanning(max(3, int(FADE / sample_time)))
     faded: FloatArray = np.convolve(rows.astype(float), fade / fade.sum(), mode="same")
     return faded
 

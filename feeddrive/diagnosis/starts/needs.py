@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from feeddrive.diagnosis.finding.scene import Scene
@@ -9,6 +11,8 @@ from feeddrive.diagnosis.friction_at_port import declared_level
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.effects.base import Port
 from feeddrive.simulate.driven import LoadMotion
+
+Need = Callable[[Scene], str]
 
 LEAST_TURNS = 2.0
 """Revolutions that must be travelled before a periodic effect can be distinguished from a trend."""
@@ -58,11 +62,14 @@ def turns(scene: Scene) -> str:
     return "" if count >= LEAST_TURNS else f"the recording covers {count:.2g} revolutions; it needs {LEAST_TURNS:g}"
 
 
+def _position(scene: Scene) -> str:
+    seen = any("table_position" in evidence.channels for evidence in scene.problem.evidence)
+    return "" if seen else "it needs a table position beside the motor angle"
+
+
 def lead(scene: Scene) -> str:
     """Travel errors need a table position and some revolutions."""
-    if not any("table_position" in evidence.channels for evidence in scene.problem.evidence):
-        return "it needs a table position beside the motor angle"
-    return turns(scene)
+    return _position(scene) or turns(scene)
 
 
 def gap(scene: Scene) -> str:
@@ -83,16 +90,6 @@ def torque(scene: Scene) -> str:
     """What acts at the motor shows in its torque alone, as the motor's motion is given."""
     seen = any("motor_torque" in evidence.channels for evidence in scene.problem.evidence)
     return "" if seen else WITHOUT_TORQUE
-
-
-def torque_turns(scene: Scene) -> str:
-    """A ripple of the motor needs its torque and some revolutions."""
-    return torque(scene) or turns(scene)
-
-
-def torque_inertia(scene: Scene) -> str:
-    """Inertias need the torque, and something between them and the table."""
-    return torque(scene) or inertia(scene)
 
 
 def force(scene: Scene) -> str:
@@ -117,9 +114,7 @@ def inertia(scene: Scene) -> str:
 
 def scale(scene: Scene) -> str:
     """Travel along the stroke needs a table position and a stroke."""
-    if not any("table_position" in evidence.channels for evidence in scene.problem.evidence):
-        return "it needs a table position beside the motor angle"
-    return stroke(scene)
+    return _position(scene) or stroke(scene)
 
 
 def stroke(scene: Scene) -> str:
@@ -130,16 +125,11 @@ def stroke(scene: Scene) -> str:
     return "" if longest >= least else f"the stroke is {longest * 1e3:.2g} mm; it needs {least * 1e3:.3g} mm"
 
 
-def elastic_stroke(scene: Scene) -> str:
-    """A stiffness along the stroke needs an elastic chain and a stroke."""
-    return elastic(scene) or stroke(scene)
-
-
 def stiffness_along_stroke(scene: Scene) -> str:
     """A stiffness along the stroke that is no part of the chain itself."""
     if scene.plant.chain.varies:
         return "the chain has its stiffness along the stroke from its parts; ask for that of a part"
-    return elastic_stroke(scene)
+    return elastic(scene) or stroke(scene)
 
 
 def duration(scene: Scene) -> str:
@@ -147,21 +137,6 @@ def duration(scene: Scene) -> str:
     evidence = scene.problem.evidence[scene.longest]
     seconds = float(evidence.fit_rows.sum()) * evidence.recording.sample_time
     return "" if seconds >= LEAST_SECONDS else f"the recording lasts {seconds:.2g} s; it needs {LEAST_SECONDS:g} s"
-
-
-def force_stroke(scene: Scene) -> str:
-    """A force over the position needs forces and a stroke."""
-    return force(scene) or stroke(scene)
-
-
-def force_duration(scene: Scene) -> str:
-    """Friction that changes needs forces and time."""
-    return force(scene) or duration(scene)
-
-
-def scale_duration(scene: Scene) -> str:
-    """Growth needs a table position and time."""
-    return scale(scene) or duration(scene)
 
 
 def screw_drag(scene: Scene) -> str:
@@ -173,11 +148,13 @@ def screw_drag(scene: Scene) -> str:
     return elastic(scene) or both_directions(scene)
 
 
-def screw_drag_turns(scene: Scene) -> str:
-    """A ripple of the drag needs a declared one and some revolutions."""
-    return screw_drag(scene) or turns(scene)
+def both(first: Need, second: Need) -> Need:
+    """What needs two things: the first that is lacking."""
+    return lambda scene: first(scene) or second(scene)
 
 
-def friction_reversals(scene: Scene) -> str:
-    """Presliding needs declared friction and reversals."""
-    return friction(scene) or reversals(scene)
+torque_turns, torque_inertia = both(torque, turns), both(torque, inertia)
+force_stroke, force_duration = both(force, stroke), both(force, duration)
+scale_duration, screw_drag_turns = both(scale, duration), both(screw_drag, turns)
+friction_reversals = both(friction, reversals)
+"""Ripples, inertias, springs, warming friction, growth, ball passing, presliding."""

@@ -8,18 +8,26 @@ import numpy as np
 
 from feeddrive.diagnosis.finding.scene import Scene
 from feeddrive.diagnosis.friction_at_port import declared_level, declared_viscous
-from feeddrive.diagnosis.starts.periodogram import sine_at, strongest_orders
-from feeddrive.diagnosis.starts.position_curve import bump_of, friction_over_position
-from feeddrive.diagnosis.starts.residual_force import residual_forces
+from feeddrive.diagnosis.starts.residual_readings import (
+    Sine,
+    bump_of,
+    friction_over_position,
+    residual_force,
+    residual_forces,
+    strongest_sines,
+)
 from feeddrive.effects.base import Effect, Port
 from feeddrive.effects.friction.friction_deviation import FrictionDeviation
 from feeddrive.effects.friction.friction_vs_position import FrictionVsPosition
 from feeddrive.effects.friction.presliding import Presliding
 from feeddrive.effects.friction.stribeck import Stribeck
+from feeddrive.effects.friction.viscous_warmup import ViscousWarmup
+from feeddrive.effects.source.ball_pass_ripple import BallPassRipple
+from feeddrive.effects.source.position_spring import PositionSpring
 from feeddrive.effects.source.torque_ripple import TorqueRipple
 from feeddrive.effects.transmission.backlash import Backlash
 from feeddrive.effects.travel.lead_error_periodic import LeadErrorPeriodic
-from feeddrive.typing import FloatArray
+from feeddrive.effects.travel.thermal_growth import ThermalGrowth
 
 TABLE_NODES = 12
 """Nodes of a tabulated friction curve over the stroke."""
@@ -30,6 +38,10 @@ since a sine of the whole recording misses what the band takes off it in fast st
 
 LEAST_CURVE = 0.01
 """Share of the residual force's square that must follow the position before a table is tried."""
+
+
+SHARES_OF_DURATION = (0.15, 0.6)
+"""Time constants that are tried first, over the duration; a longer one looks like a straight line."""
 
 
 def plain(effect: Effect) -> Callable[[Scene], list[list[Effect]]]:
@@ -73,43 +85,31 @@ def backlash(scene: Scene) -> list[list[Effect]]:
 
 
 def ripple(scene: Scene) -> list[list[Effect]]:
-    """The strongest orders of the residual torque."""
+    """The sines that take most of the residual torque."""
     at = scene.longest
-    rows = scene.problem.evidence[at].fit_rows
-    angle, residual = scene.runs[at].motor_angle[rows], scene.residuals[at]["motor_torque"][rows]
-    orders = strongest_orders(angle, residual, highest_order(scene, at))
-    return [[sine(TorqueRipple, angle, residual, order) for order in orders]] if orders else []
+    evidence, run = scene.problem.evidence[at], scene.runs[at]
+    rows = evidence.fit_rows
+    residual = scene.residuals[at]["motor_torque"][rows]
+    sines = strongest_sines(run.motor_angle[rows], residual, run.motor_speed[rows], evidence.edge)
+    return [[sine(TorqueRipple, one) for one in sines]] if sines else []
 
 
 def lead_error(scene: Scene) -> list[list[Effect]]:
-    """The strongest orders of the residual position."""
+    """The sines that take most of the residual position."""
     at = scene.longest
-    rows = scene.problem.evidence[at].fit_rows
+    evidence, run = scene.problem.evidence[at], scene.runs[at]
     if "table_position" not in scene.residuals[at]:
         return []
-    angle, residual = scene.runs[at].screw_angle[rows], scene.residuals[at]["table_position"][rows]
-    orders = strongest_orders(angle, residual, highest_order(scene, at))
-    starts = [sine(LeadErrorPeriodic, angle, residual, order) for order in orders]
-    kept = [start for start in starts if explains(start, residual)]
+    rows = evidence.fit_rows
+    residual = scene.residuals[at]["table_position"][rows]
+    sines = strongest_sines(run.screw_angle[rows], residual - residual.mean(), run.screw_speed[rows], evidence.edge)
+    kept = [sine(LeadErrorPeriodic, one) for one in sines if one.share >= LEAST_SINE]
     return [kept] if kept else []
 
 
-def highest_order(scene: Scene, at: int) -> float:
-    """Order whose frequency meets half the sample rate at the highest speed; above it a sampled sine is another one."""
-    fastest = float(np.abs(scene.runs[at].motor_speed).max())
-    return float(np.pi / scene.problem.evidence[at].recording.sample_time / fastest)
-
-
-def sine(kind: type[Effect], angle: FloatArray, residual: FloatArray, order: float) -> Effect:
-    """A sine of this order as it fits the residual best."""
-    amplitude, phase = sine_at(angle, residual, order)
-    return kind.of(amplitude=amplitude, order=order, phase=phase)
-
-
-def explains(start: Effect, residual: FloatArray) -> bool:
-    """Whether a sine takes enough of its own channel away to be worth the simulations of a fit."""
-    amplitude = float(start.values["amplitude"])  # type: ignore[arg-type]
-    return 0.5 * amplitude**2 >= LEAST_SINE * float(np.mean(residual**2))
+def sine(kind: type[Effect], one: Sine) -> Effect:
+    """An effect that is this sine."""
+    return kind.of(amplitude=one.amplitude, order=one.order, phase=one.phase)
 
 
 def over_position(scene: Scene) -> list[list[Effect]]:
@@ -132,3 +132,49 @@ def over_position(scene: Scene) -> list[list[Effect]]:
             levels = tuple([0.0] * TABLE_NODES)
             tables.append(FrictionVsPosition.of(position=tuple(nodes.tolist()), delta_force=levels))
     return [form for form in (bumps, tables) if form]
+
+
+def position_spring(scene: Scene) -> list[list[Effect]]:
+    """The straight line of the residual force over the position."""
+    at = scene.longest
+    rows, run = scene.problem.evidence[at].fit_rows, scene.runs[at]
+    force = residual_force(scene, at)[rows]
+    position = run.table_position[rows]
+    slope, offset = np.polyfit(position, force, 1)
+    zero = -offset / slope if slope else float(np.mean(position))
+    # far off the stroke a spring is a constant force; it starts where its force still changes
+    reach = 2 * float(np.ptp(position))
+    middle = float(np.mean(position))
+    return [[PositionSpring.of(stiffness=float(slope), zero=float(np.clip(zero, middle - reach, middle + reach)))]]
+
+
+def thermal_growth(scene: Scene) -> list[list[Effect]]:
+    """A strain of its usual size, settling within the recording."""
+    size = ThermalGrowth.parameter("strain").size
+    return [[ThermalGrowth.of(strain=size, time_constant=seconds) for seconds in _time_constants(scene)]]
+
+
+def viscous_warmup(scene: Scene) -> list[list[Effect]]:
+    """A tenth of the viscous drag lost within the recording, at every port that declares one."""
+    ports = [port for port in ViscousWarmup.ports if declared_viscous(scene.plant, port)]
+    return [[ViscousWarmup.of(port, share=0.1, time_constant=t) for t in _time_constants(scene)] for port in ports]
+
+
+def ball_pass_ripple(scene: Scene) -> list[list[Effect]]:
+    """Orders of the residual torque that changes sign with the direction."""
+    at = scene.longest
+    rows, run = scene.problem.evidence[at].fit_rows, scene.runs[at]
+    speed = run.screw_speed[rows]
+    moving = np.abs(speed) > 0.01 * np.abs(speed).max()
+    angle = run.screw_angle[rows][moving]
+    torque = scene.plant.chain.radius * residual_force(scene, at)[rows]
+    resisting = (torque * np.sign(speed))[moving]
+    edge = scene.problem.evidence[at].edge
+    sines = strongest_sines(angle, resisting - resisting.mean(), speed[moving], edge, count=1)
+    return [[sine(BallPassRipple, one)] for one in sines if one.share >= LEAST_SINE]
+
+
+def _time_constants(scene: Scene) -> list[float]:
+    evidence = scene.problem.evidence[scene.longest]
+    duration = float(evidence.fit_rows.sum()) * evidence.recording.sample_time
+    return [share * duration for share in SHARES_OF_DURATION]

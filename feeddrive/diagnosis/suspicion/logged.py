@@ -18,9 +18,9 @@ from feeddrive.diagnosis.certainty.uncertainty import Interval
 from feeddrive.diagnosis.likelihood.slow_rows import is_slow
 from feeddrive.effects.base import Effect
 from feeddrive.effects.timing.channel_delay import ChannelDelay
-from feeddrive.plant.file.entries import Origins, Table
 from feeddrive.plant.plant import DeclaredCascade, Plant
 from feeddrive.recording import Recording
+from feeddrive.schema.table import Origins, Table
 from feeddrive.simulate.scenario.scenario_controller import read_cascade
 
 FASTEST_LOG = 0.9e-3
@@ -34,9 +34,13 @@ NEAR = 0.02
 
 
 def may_be_logged(recordings: Sequence[Recording]) -> bool:
-    """Whether recordings are all written at one rate, at which loops are mostly faster."""
+    """Whether recordings are all written at one rate, at which loops are mostly faster, if not all of them."""
+    return _is_of_one_rate(recordings) and not any(map(is_slow, recordings))
+
+
+def _is_of_one_rate(recordings: Sequence[Recording]) -> bool:
     steps = [recording.sample_time for recording in recordings]
-    return min(steps) >= FASTEST_LOG and max(steps) <= 1.001 * min(steps) and not any(map(is_slow, recordings))
+    return min(steps) >= FASTEST_LOG and max(steps) <= 1.001 * min(steps)
 
 
 def hold_of(
@@ -66,12 +70,15 @@ def _nearest(share: float, half: float, step: float) -> float | None:
 def declared_hold(plant: Plant, recordings: Sequence[Recording]) -> float | None:
     """Cycle of the declared controller [s], which holds the torque; None where a row is no longer, or none is declared.
 
+    However far the rows are apart: a torque of the instant at which it is written acts for a cycle from then on, and
+    is that of the motion half a cycle later.
+
     Raises:
         InputError: a declared cascade that cannot be read.
     """
     if not isinstance(plant.controller, DeclaredCascade):
         return None
-    if not may_be_logged(recordings):
+    if not _is_of_one_rate(recordings):
         return None
     cascade, _ = read_cascade(Table(plant.controller.entries, plant.controller.where, Origins()), plant)
     cycle = cascade.sample_time

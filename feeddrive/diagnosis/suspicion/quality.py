@@ -24,7 +24,7 @@ from feeddrive.effects.base import Effect, number
 from feeddrive.effects.source.constant_force import ConstantForce
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
-from feeddrive.recording.checks.flaws import sentence
+from feeddrive.recording.checks.flaws import JOINED, sentence
 from feeddrive.units.quantity import format_quantity
 
 WORST_SCREW = 210e-6 / 0.3
@@ -94,6 +94,8 @@ def flawed(recordings: Sequence[Recording]) -> tuple[Quality, ...]:
     result = []
     for recording in dict.fromkeys(recordings):
         for flaw in recording.flaws:
+            if flaw.kind == JOINED:  # our own doing, told in the notes
+                continue
             what = f"{recording.name}: {sentence(flaw, 0)}"
             mend = "record again without them where they matter"
             result.append(Quality(flaw.kind, flaw.channel, math.nan, "1", what, mend, mended=True))

@@ -21,6 +21,32 @@ FEWEST = 60
 """Samples below which a residual is not taken apart."""
 
 
+UNITS = {
+    "time": "s",
+    "table_position": "m",
+    "table_velocity": "m/s",
+    "table_acceleration": "m/s^2",
+    "predicted_torque": "N m",
+    "motor_angle": "rad",
+    "travel_since_reversal": "m",
+    "screw_speed": "rad/s",
+    "nut_rise": "K",
+}
+"""SI unit of a variable."""
+
+PERIOD_NODES = 24
+"""Breakpoints of one period; a sine between them is off by 0.9 % of its amplitude."""
+
+POWER_NODES = (0.05, 0.2, 0.4, 0.6, 0.8, 1.0)
+"""Breakpoints of a law of powers, as shares of the largest value."""
+
+WHOLE = 0.01
+"""Distance from a whole number of periods a revolution within which a term is locked to the shaft."""
+
+BINS = 40
+"""Bins of the figure."""
+
+
 @dataclass(frozen=True)
 class Analysis:
     """What one channel's residual follows.
@@ -68,7 +94,7 @@ def _sample_of(views: Sequence[View], least: float) -> Sample:
         residual,
         np.concatenate(blocks),
         (owner[:, None] == np.arange(len(views))).astype(float),
-        lambda terms: np.vstack([columns_in(view, terms) for view in views]),
+        lambda term: np.vstack([columns_in(view, term) for view in views]),
         float(np.average(floors, weights=counts)),
         least,
     )
@@ -83,7 +109,7 @@ def _least(views: Sequence[View]) -> float:
 
 
 def _dependences(found: Sequence[Found], judged: Sequence[View], unit: str, radius: float) -> list[Dependence]:
-    components = {one.term: [columns_in(view, [one.term]) @ one.values for view in judged] for one in found}
+    components = {one.term: [columns_in(view, one.term) @ one.values for view in judged] for one in found}
 
     def left(leaving: Term | None = None) -> FloatArray:
         """What the terms, but for one, leave of all recordings, each about its mean."""
@@ -110,21 +136,25 @@ def _dependence(
 ) -> Dependence:
     term, table = one.term, table_of(one, unit)
     order = 2 * np.pi / term.nodes[0] if term.form is Form.SINE else 0.0
-    variable, seen = term.variable, seen_on(judged, one, left)
-    if order and radius and not is_locked(order):
-        variable, table = "table_position", in_travel(table, radius)
+    variable, seen = term.variable, _seen_on(judged, one, left)
+    # locked to the shaft is what goes whole times into a revolution of the motor; else it is one of the travel
+    locked = round(order) >= 1 and abs(order - round(order)) < WHOLE * max(1.0, 0.2 * order)
+    if order and radius and not locked:
+        breakpoints = tuple(radius * at for at in table.breakpoints)
+        table = replace(table, breakpoints=breakpoints, breakpoint_unit="m", period=radius * table.period)
+        variable = "table_position"
         seen = replace(seen, centre=tuple(radius * number for number in seen.centre))
     return Dependence(
         variable=variable,
         share=one.share,
-        period=period_words(order, radius) if order and radius else None,
+        period=_period_words(order, radius) if order and radius else None,
         times=term.times,
         form=str(Form.CURVE if term.form is Form.POWERS else term.form),
         judged_share=share,
         confirmed=confirmed,
         order=order,
         amplitude=0.5 * float(np.ptp(table.values)) if len(table.values) > 1 else abs(table.values[0]),
-        statement=statement_of(term, table),
+        statement=_statement_of(term, table),
         table=table,
         seen=seen,
         alike=tuple(f"{t.variable} x {t.times}" if t.times else t.variable for t in one.alike),
@@ -137,32 +167,6 @@ def _counted_on(views: Sequence[View]) -> IntegerArray:
         blocks.append(first + view.blocks)
         first += int(view.blocks.max(initial=0)) + 1
     return np.concatenate(blocks)
-
-
-UNITS = {
-    "time": "s",
-    "table_position": "m",
-    "table_velocity": "m/s",
-    "table_acceleration": "m/s^2",
-    "predicted_torque": "N m",
-    "motor_angle": "rad",
-    "travel_since_reversal": "m",
-    "screw_speed": "rad/s",
-    "nut_rise": "K",
-}
-"""SI unit of a variable."""
-
-PERIOD_NODES = 24
-"""Breakpoints of one period; a sine between them is off by 0.9 % of its amplitude."""
-
-POWER_NODES = (0.05, 0.2, 0.4, 0.6, 0.8, 1.0)
-"""Breakpoints of a law of powers, as shares of the largest value."""
-
-WHOLE = 0.01
-"""Distance from a whole number of periods a revolution within which a term is locked to the shaft."""
-
-BINS = 40
-"""Bins of the figure."""
 
 
 def table_of(found: Found, unit: str) -> Table:
@@ -195,7 +199,7 @@ def _breakpoints(term: Term) -> FloatArray:
     return np.array([np.nextafter(term.nodes[0], -np.inf), term.nodes[0]]) if term.form is Form.STEP else np.ones(1)
 
 
-def statement_of(term: Term, table: Table) -> str:
+def _statement_of(term: Term, table: Table) -> str:
     """The shape in words: extremes and where they are, how odd it is in velocity, when a step is."""
     values = np.array(table.values)
     by = {"direction": ", against the motion", "table_velocity": ", times the velocity"}.get(term.times, "")
@@ -240,30 +244,13 @@ def _shown(value: float, unit: str) -> str:
     return format_quantity(float(value), unit)
 
 
-def period_words(order: float, radius: float) -> str:
+def _period_words(order: float, radius: float) -> str:
     """A period in revolutions and in travel; `radius` is the travel per motor angle [m/rad]."""
     return f"{_shown(2 * np.pi * radius / order, 'm')} of travel ({order:.4g} per revolution of the motor)"
 
 
-def is_locked(order: float) -> bool:
-    """Whether a period goes whole times into a revolution of the motor."""
-    return round(order) >= 1 and abs(order - round(order)) < WHOLE * max(1.0, 0.2 * order)
-
-
-def in_travel(table: Table, radius: float) -> Table:
-    """A table over the motor angle as one over the table position; `radius` is the travel per motor angle [m/rad]."""
-    breakpoints = tuple(radius * at for at in table.breakpoints)
-    return replace(table, breakpoints=breakpoints, breakpoint_unit="m", period=radius * table.period)
-
-
-def seen_on(views: Sequence[View], found: Found, left: FloatArray) -> Seen:
-    """Means of what is left, the term itself put back, over the variable of a term.
-
-    Args:
-        views: judged recordings.
-        found: the term.
-        left: residual less all terms, at the rows of all views, (m,).
-    """
+def _seen_on(views: Sequence[View], found: Found, left: FloatArray) -> Seen:
+    """Means of what the terms leave, (m,) at the rows of all views, one put back, over its variable."""
     term = found.term
     at = np.concatenate([view.values[term.variable][view.rows] for view in views])
     if term.form is Form.SINE:
@@ -271,7 +258,7 @@ def seen_on(views: Sequence[View], found: Found, left: FloatArray) -> Seen:
     factor = np.ones(len(at))
     if term.times:
         factor = np.concatenate([view.values[term.times][view.rows] for view in views])
-    own = np.vstack([columns_in(view, [term]) for view in views]) @ found.values
+    own = np.vstack([columns_in(view, term) for view in views]) @ found.values
     low, high = (float(end) for end in np.quantile(at, [0.002, 0.998]))
     edges = np.linspace(low, high, BINS + 1)
     if term.variable == "travel_since_reversal":

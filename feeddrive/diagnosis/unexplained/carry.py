@@ -46,15 +46,15 @@ SHAFT = {"table_position": "angle", "table_velocity": "speed", "time": "time", "
 NO_EFFECT = "not carried, since no tabulated effect stands for it"
 
 
-def analysis_of(
-    problem: Problem, effects: Sequence[Effect], judged: Sequence[Judged], channel: ChannelResult
-) -> Analysis:
-    """What is left of a channel with these effects in the plant, taken apart; `judged` have them in the plant after."""
-    plant = problem.machine(effects)
-    fitted = views_of(problem, [(plant, evidence) for evidence in problem.evidence], channel.name, False)
-    seen = views_of(problem, [(j.after, j.evidence) for j in judged], channel.name, True)
+def analyses_of(
+    problem: Problem, effects: Sequence[Effect], judged: Sequence[Judged], channels: Sequence[ChannelResult]
+) -> dict[str, Analysis]:
+    """What is left of channels with these effects in the plant, taken apart; `judged` have them in the plant after."""
+    plant, names = problem.machine(effects), [channel.name for channel in channels]
+    fitted = views_of(problem, [(plant, evidence) for evidence in problem.evidence], names, False)
+    seen = views_of(problem, [(j.after, j.evidence) for j in judged], names, True)
     radius = plant.chain.motor_radius if plant.has_motion else 0.0
-    return analyse(fitted, seen, channel.unit, radius)
+    return {one.name: analyse(fitted[one.name], seen[one.name], one.unit, radius) for one in channels}
 
 
 def tried(
@@ -95,35 +95,26 @@ def forms_of(found: Found, analyses: Iterable[Analysis]) -> list[Found]:
 def effects_of(found: Found, channel: str, unit: str, plant: Plant) -> list[Tabulated]:
     """The effects that a term may stand for, with the values of the residual; none where there is no such effect."""
     table, term, radius = table_of(found, unit), found.term, plant.chain.motor_radius
-    values = np.array(table.values)
+    values, word = np.array(table.values), MOTION.get(term.variable, "")
     if channel == "table_position":
-        return _travel(table, found, values, radius)
-    if term.variable not in MOTION and not (term.form is Form.LEVEL and term.variable == "direction"):
+        if term.times or word not in ("position", "time"):
+            return []
+        return [_made(TabulatedTravel, Port.TRANSMISSION, word, table, values - values.mean(), radius)]
+    if term.form is Form.LEVEL:  # friction whose level turns with the direction
+        if not word and term.variable != "direction":
+            return []
+        return [TabulatedFriction.of(Port.TABLE, "position", position=(0.0,), force=(float(values[0] / radius),))]
+    if term.times:  # a level of friction, or its viscous coefficient
+        if word in ("", "velocity"):
+            return []
+        key = "viscous" if term.times == "table_velocity" else "force"
+        return [_made(TabulatedFriction, Port.TABLE, word, table, values / radius, radius, key)]
+    if not word:
         return []
-    if term.form is Form.LEVEL or term.times:
-        return _friction(table, found, values / radius, radius)
-    made: list[Tabulated] = [_made(TabulatedForce, Port.TABLE, MOTION[term.variable], table, values / radius, radius)]
-    made.append(_made(TabulatedTorque, Port.MOTOR, SHAFT[term.variable], table, values, radius))
-    return made
-
-
-def _travel(table: Table, found: Found, values: FloatArray, radius: float) -> list[Tabulated]:
-    term = found.term
-    if term.times or MOTION.get(term.variable) not in ("position", "time"):
-        return []
-    return [_made(TabulatedTravel, Port.TRANSMISSION, MOTION[term.variable], table, values - values.mean(), radius)]
-
-
-def _friction(table: Table, found: Found, values: FloatArray, radius: float) -> list[Tabulated]:
-    """Friction at the table: its level where the term turns with the direction, or its viscous coefficient."""
-    term = found.term
-    if term.form is Form.LEVEL:
-        return [TabulatedFriction.of(Port.TABLE, "position", position=(0.0,), force=(float(values[0]),))]
-    word = MOTION[term.variable]
-    if word == "velocity":
-        return []
-    key = "viscous" if term.times == "table_velocity" else "force"
-    return [_made(TabulatedFriction, Port.TABLE, word, table, values, radius, key)]
+    return [
+        _made(TabulatedForce, Port.TABLE, word, table, values / radius, radius),
+        _made(TabulatedTorque, Port.MOTOR, SHAFT[term.variable], table, values, radius),
+    ]
 
 
 def _made(
@@ -151,7 +142,7 @@ def joint_step(
     """
     free = [*[False] * len(before), *[True] * len(tables)]
     residual = problem.residual((*before, *tables))
-    base = problem.measured() - residual
+    base = problem.measured - residual
     jacobian = problem.jacobian((*before, *tables), free, base)
     here = float(residual @ residual)
     if not (np.isfinite(here) and np.all(np.isfinite(jacobian))):

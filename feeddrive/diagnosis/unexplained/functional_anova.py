@@ -7,6 +7,10 @@ at a time while they lower the error on blocks of time that were not fitted (fol
 that cannot be distinguished the simplest is taken, a function of one variable before a product.
 Sources: Hoeffding, Ann. Math. Stat. 19 (1948) 293; Hooker, J. Comput. Graph. Stat. 16 (2007) 709 (dependent variables);
 Roberts et al., Ecography 40 (2017) 913 (blocks).
+
+What a fold's own blocks alone tell of a term is drawn to the prior as in `cross_validation`: the term is
+absent, give or take its size. For linear columns both are one: with y = r + J c the fit without the fold is
+(H - H_k + P)^-1 (J'y - J_k'y_k).
 """
 
 from __future__ import annotations
@@ -14,6 +18,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -33,6 +38,10 @@ TIE = 0.05
 
 COUNT = 2.0
 """Factor in columns by which a term is simpler."""
+
+
+RIDGE = 1e-8
+"""Ridge for columns of length one: settles tables whose hats add up to another column, and moves no value."""
 
 
 @dataclass(frozen=True)
@@ -140,10 +149,6 @@ def _needed(sums: Sums, chosen: list[Term], new: Term) -> list[Term]:
     return kept
 
 
-RIDGE = 1e-8
-"""Ridge for columns of length one: settles tables whose hats add up to another column, and moves no value."""
-
-
 @dataclass(frozen=True)
 class Sample:
     """A residual, as it is taken apart.
@@ -152,7 +157,7 @@ class Sample:
         residual: (n,), unit of its channel.
         blocks: block of time of every value, (n,).
         offsets: columns that are always there, (n, m); m may be 0.
-        columns: terms to their columns at the same values, one after the other, (n, sum of k).
+        columns: a term to its columns at the same values, (n, k).
         noise_square: mean square of the noise.
         least: least share of the squared error that a term must take away.
     """
@@ -160,74 +165,89 @@ class Sample:
     residual: FloatArray
     blocks: IntegerArray
     offsets: FloatArray
-    columns: Callable[[Sequence[Term]], FloatArray]
+    columns: Callable[[Term], FloatArray]
     noise_square: float
     least: float
 
 
 class Sums:
-    """Normal equations of all columns, per fold. Not a record: it grows by the terms that are added."""
+    """Normal equations of the columns, per fold: products are taken when a sum asks for them, and kept.
+
+    Not a record: it grows by the terms that are added.
+    """
 
     def __init__(self, sample: Sample) -> None:
         self._sample = sample
-        self._folds = [sample.blocks % FOLDS == fold for fold in range(FOLDS)]
-        self._matrix = np.zeros((len(sample.residual), 0))
-        self._scale = np.zeros(0)
-        self._gram = np.zeros((FOLDS, 0, 0))
-        self._moment = np.zeros((FOLDS, 0))
-        self._at: dict[Term, IntegerArray] = {}
+        folds = sample.blocks % FOLDS
+        self._order = np.argsort(folds, kind="stable")
+        ends = np.searchsorted(folds[self._order], np.arange(FOLDS + 1))
+        self._folds = [slice(first, last) for first, last in pairwise(ends)]
+        self._residual = sample.residual[self._order]
+        self._raw: dict[Term | None, FloatArray] = {}
+        self._scale: dict[Term | None, FloatArray] = {}
+        self._moments: dict[Term | None, FloatArray] = {}
+        self._products: dict[tuple[Term | None, Term | None], FloatArray] = {}
         self._left: dict[tuple[Term, ...], FloatArray] = {}
-        self._append(sample.offsets)
-        self._fixed = np.arange(sample.offsets.shape[1])
-        self._squares = np.array([float(np.sum(sample.residual[fold] ** 2)) for fold in self._folds])
+        self._take(None, sample.offsets)
+        self._squares = np.array([float(np.sum(self._residual[fold] ** 2)) for fold in self._folds])
 
     def add(self, terms: Sequence[Term]) -> None:
         """Take further terms in."""
-        new = [term for term in dict.fromkeys(terms) if term not in self._at]
-        if not new:
-            return
-        start = self._matrix.shape[1]
-        for term in new:
-            self._at[term] = np.arange(start, start + term.size)
-            start += term.size
-        self._append(self._sample.columns(new))
+        for term in terms:
+            if term not in self._raw:
+                self._take(term, self._sample.columns(term))
 
-    def _append(self, columns: FloatArray) -> None:
+    def _take(self, term: Term | None, columns: FloatArray) -> None:
+        """Take columns of a term in, or those of the offsets."""
         length: FloatArray = np.sqrt(np.sum(columns**2, axis=0))
-        scale = np.where(length > 0, length, 1.0)
-        before, columns = self._matrix.shape[1], columns / scale
-        self._scale = np.concatenate([self._scale, scale])
-        self._matrix = np.column_stack([self._matrix, columns])
-        size = self._matrix.shape[1]
-        gram, moment = np.zeros((FOLDS, size, size)), np.zeros((FOLDS, size))
-        for k, fold in enumerate(self._folds):
-            part, new = self._matrix[fold], columns[fold]
-            cross = part.T @ new
-            gram[k, :before, :before] = self._gram[k]
-            gram[k, :, before:], gram[k, before:, :] = cross, cross.T
-            moment[k] = part.T @ self._sample.residual[fold]
-        self._gram, self._moment = gram, moment
+        self._raw[term], self._scale[term] = columns, np.where(length > 0, length, 1.0)
+        ordered = self._ordered(term)
+        self._moments[term] = np.stack([ordered[fold].T @ self._residual[fold] for fold in self._folds])
+        self._products[term, term] = np.stack([ordered[fold].T @ ordered[fold] for fold in self._folds])
 
-    def _columns(self, terms: Sequence[Term]) -> IntegerArray:
-        return np.concatenate([self._fixed, *(self._at[term] for term in terms)]).astype(np.int64)
+    def _ordered(self, term: Term | None) -> FloatArray:
+        """Columns of length one, fold after fold."""
+        ordered: FloatArray = self._raw[term][self._order] / self._scale[term]
+        return ordered
+
+    def _product(self, one: Term | None, other: Term | None) -> FloatArray:
+        """Columns of one term times those of another, (folds, k, l)."""
+        if (one, other) not in self._products:
+            a, b = self._ordered(one), self._ordered(other)
+            found = np.stack([a[fold].T @ b[fold] for fold in self._folds])
+            self._products[one, other], self._products[other, one] = found, found.transpose(0, 2, 1)
+        return self._products[one, other]
+
+    def _normal(self, terms: Sequence[Term]) -> tuple[FloatArray, FloatArray]:
+        """Products of all columns of a set, offsets first, and those with the residual: (folds, k, k), (folds, k)."""
+        every: list[Term | None] = [None, *terms]
+        gram = np.concatenate([np.concatenate([self._product(a, b) for b in every], axis=2) for a in every], axis=1)
+        return gram, np.concatenate([self._moments[term] for term in every], axis=1)
+
+    def _columns(self, terms: Sequence[Term]) -> FloatArray:
+        """Columns of length one of a set, offsets first, (n, k)."""
+        return np.hstack([self._raw[term] / self._scale[term] for term in (None, *terms)])
+
+    @property
+    def _fixed(self) -> int:
+        return int(self._sample.offsets.shape[1])
 
     def _solved(self, gram: FloatArray, moment: FloatArray) -> FloatArray:
         return np.asarray(np.linalg.solve(gram + RIDGE * np.eye(len(moment)), moment), dtype=np.float64)
 
     def _fold_values(self, terms: Sequence[Term]) -> list[FloatArray]:
         """Values fitted without each fold."""
-        at = self._columns(terms)
-        pick = np.ix_(at, at)
-        gram, moment = np.sum(self._gram, axis=0)[pick], np.sum(self._moment, axis=0)[at]
+        grams, moments = self._normal(terms)
+        gram, moment = grams.sum(axis=0), moments.sum(axis=0)
         known = np.diag(self._known(terms, gram, moment))
-        return [self._solved(gram - self._gram[k][pick] + known, moment - self._moment[k][at]) for k in range(FOLDS)]
+        return [self._solved(gram - g + known, moment - m) for g, m in zip(grams, moments, strict=True)]
 
     def _known(self, terms: Sequence[Term], gram: FloatArray, moment: FloatArray) -> FloatArray:
         """Information of the prior on each column: a term has one width, the offsets are not known beforehand."""
         values = self._solved(gram, moment)
         square = float(self._squares.sum() - moment @ values) / max(len(self._sample.residual), 1)
-        count = len(self._fixed)
-        groups = np.repeat(np.arange(len(terms)), [len(self._at[term]) for term in terms])
+        count = self._fixed
+        groups = np.repeat(np.arange(len(terms)), [term.size for term in terms])
         squares = np.bincount(groups, weights=values[count:] ** 2) / np.maximum(np.bincount(groups), 1)
         known = np.zeros(len(values))
         known[count:] = prior_information(np.sqrt(squares)[groups], max(square, 0.0))
@@ -235,20 +255,19 @@ class Sums:
 
     def squared_error(self, terms: Sequence[Term]) -> float:
         """Squared error on blocks not fitted."""
-        at = self._columns(terms)
         total = float(self._squares.sum())
-        for k, values in enumerate(self._fold_values(terms)):
-            total += float(values @ self._gram[k][np.ix_(at, at)] @ values - 2 * values @ self._moment[k][at])
+        for values, gram, moment in zip(self._fold_values(terms), *self._normal(terms), strict=True):
+            total += float(values @ gram @ values - 2 * values @ moment)
         return total
 
     def left_out(self, terms: Sequence[Term]) -> FloatArray:
         """Residual on blocks not fitted, (n,)."""
         key = tuple(terms)
         if key not in self._left:
-            at = self._columns(terms)
-            left = self._sample.residual.copy()
+            columns, left = self._columns(terms), self._sample.residual.copy()
             for fold, values in zip(self._folds, self._fold_values(terms), strict=True):
-                left[fold] -= self._matrix[np.ix_(fold, at)] @ values
+                rows = self._order[fold]
+                left[rows] -= columns[rows] @ values
             self._left[key] = left
         return self._left[key]
 
@@ -263,9 +282,8 @@ class Sums:
 
     def fit_residual(self, terms: Sequence[Term]) -> FloatArray:
         """Residual of the fit to all, (n,)."""
-        at = self._columns(terms)
-        values = self._solved(self._gram.sum(axis=0)[np.ix_(at, at)], self._moment.sum(axis=0)[at])
-        left: FloatArray = self._sample.residual - self._matrix[:, at] @ values
+        gram, moment = (parts.sum(axis=0) for parts in self._normal(terms))
+        left: FloatArray = self._sample.residual - self._columns(terms) @ self._solved(gram, moment)
         return left
 
     def coefficients(self, terms: Sequence[Term]) -> tuple[dict[Term, FloatArray], dict[Term, FloatArray]]:
@@ -273,14 +291,14 @@ class Sums:
 
         The middle of the sandwich sums over blocks of time, which counts correlation inside them.
         """
-        at = self._columns(terms)
-        inverse = np.linalg.inv(self._gram.sum(axis=0)[np.ix_(at, at)] + RIDGE * np.eye(len(at)))
-        values = inverse @ self._moment.sum(axis=0)[at]
-        scores = self._matrix[:, at] * self.fit_residual(terms)[:, None]
-        sums = np.zeros((int(self._sample.blocks.max(initial=0)) + 1, len(at)))
+        gram, moment = (parts.sum(axis=0) for parts in self._normal(terms))
+        inverse = np.linalg.inv(gram + RIDGE * np.eye(len(gram)))
+        scale = np.concatenate([self._scale[term] for term in (None, *terms)])
+        values = inverse @ moment / scale
+        scores = self._columns(terms) * self.fit_residual(terms)[:, None]
+        sums = np.zeros((int(self._sample.blocks.max(initial=0)) + 1, len(gram)))
         np.add.at(sums, self._sample.blocks, scores)
-        errors = np.linalg.norm(sums @ inverse, axis=0) / self._scale[at]
-        values = values / self._scale[at]
-        cuts = np.cumsum([len(self._fixed), *(len(self._at[term]) for term in terms)])[:-1]
+        errors = np.linalg.norm(sums @ inverse, axis=0) / scale
+        cuts = np.cumsum([self._fixed, *(term.size for term in terms)])[:-1]
         parts, spreads = np.split(values, cuts), np.split(errors, cuts)
         return dict(zip(terms, parts[1:], strict=True)), dict(zip(terms, spreads[1:], strict=True))

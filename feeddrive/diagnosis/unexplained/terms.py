@@ -9,15 +9,36 @@ from enum import StrEnum
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from feeddrive.diagnosis.starts.periodogram import strongest_orders
+from feeddrive.diagnosis.starts.residual_readings import strongest_orders
 from feeddrive.diagnosis.unexplained.view import View
 from feeddrive.typing import FloatArray
 
-MOST_COLUMNS = 16
-"""Columns that are filtered at a time, which bounds the memory of long recordings."""
-
 HARMONICS = 3
 """Sines of a periodic term: the order itself, twice and three times it."""
+
+
+NODES = (8, 16, 32, 64)
+"""Breakpoints tried over the stroke."""
+
+SPEEDS = ((0.05, 0.2, 0.5, 1.0), (0.01, 0.03, 0.1, 0.2, 0.35, 0.5, 0.75, 1.0))
+"""Breakpoints over the velocity, either side of rest, as shares of the highest."""
+
+SECONDS_A_NODE = 2.0
+"""Time between breakpoints of a trend [s], four blocks, so that a block left out is spanned by its neighbours."""
+
+STEPS = 32
+"""Moments at which a step is tried."""
+
+LEAST_TURNS = 2.0
+"""Revolutions below which position and angle are one."""
+
+SINES = 3
+"""Peaks of the periodogram that are tried."""
+
+FEW = 20
+"""Samples that a breakpoint must see."""
+
+Values = dict[str, FloatArray]
 
 
 class Form(StrEnum):
@@ -74,16 +95,14 @@ class Term:
         return shape * values[self.times][:, None] if self.times else shape
 
 
-def columns_in(view: View, terms: Sequence[Term]) -> FloatArray:
-    """Columns of terms as the recording would show them: in the band, at the rows that count, (m, sum of k)."""
-    parts: list[FloatArray] = []
-    waiting: list[FloatArray] = []
-    for term in terms:
-        waiting.append(term.columns(view.values))
-        if sum(part.shape[1] for part in waiting) >= MOST_COLUMNS or term is terms[-1]:
-            parts.append(view.evidence.in_band(np.hstack(waiting))[view.rows])
-            waiting = []
-    return np.hstack(parts)
+def columns_in(view: View, term: Term) -> FloatArray:
+    """Columns of a term as the recording would show them: in the band, at the rows that count, (m, k)."""
+    evidence = view.evidence
+    if term not in view.shown:
+        # one by one, and thinned at once, which bounds the memory of long recordings
+        columns = [evidence.in_band(column)[:: evidence.thinning] for column in term.columns(view.values).T]
+        view.shown[term] = np.column_stack(columns)
+    return view.shown[term][view.rows[:: evidence.thinning]]
 
 
 def hats(at: FloatArray, nodes: tuple[float, ...]) -> FloatArray:
@@ -99,30 +118,6 @@ def hats(at: FloatArray, nodes: tuple[float, ...]) -> FloatArray:
     result[rows, left] = 1 - share
     result[rows, left + 1] += share
     return result
-
-
-NODES = (8, 16, 32, 64)
-"""Breakpoints tried over the stroke."""
-
-SPEEDS = ((0.05, 0.2, 0.5, 1.0), (0.01, 0.03, 0.1, 0.2, 0.35, 0.5, 0.75, 1.0))
-"""Breakpoints over the velocity, either side of rest, as shares of the highest."""
-
-SECONDS_A_NODE = 2.0
-"""Time between breakpoints of a trend [s], four blocks, so that a block left out is spanned by its neighbours."""
-
-STEPS = 32
-"""Moments at which a step is tried."""
-
-LEAST_TURNS = 2.0
-"""Revolutions below which position and angle are one."""
-
-SINES = 3
-"""Peaks of the periodogram that are tried."""
-
-FEW = 20
-"""Samples that a breakpoint must see."""
-
-Values = dict[str, FloatArray]
 
 
 def terms_of(views: Sequence[View]) -> list[Term]:

@@ -24,7 +24,7 @@ from feeddrive.diagnosis.likelihood.cross_validation import (
 from feeddrive.diagnosis.likelihood.fit import Problem, fit
 from feeddrive.diagnosis.likelihood.folds import block_numbers
 from feeddrive.diagnosis.unexplained.analysis import Analysis
-from feeddrive.diagnosis.unexplained.carry import analysis_of, forms_of, joint_step, judged_with, tried, with_carried
+from feeddrive.diagnosis.unexplained.carry import analyses_of, forms_of, joint_step, judged_with, tried, with_carried
 from feeddrive.diagnosis.unexplained.unexplained_result import Carried, Instead, Unexplained, rest_in_words
 from feeddrive.diagnosis.unexplained.view import above_noise, views_of
 from feeddrive.effects.base import Effect
@@ -67,14 +67,15 @@ def explain_rest(
         judged: recordings that were not fitted.
         channels: errors with the named effects.
     """
-    first = {channel.name: analysis_of(problem, effects, judged, channel) for channel in channels}
+    first = analyses_of(problem, effects, judged, channels)
     carried: list[Carried] = []
     reasons: dict[str, list[str]] = {channel.name: [] for channel in channels}
     for channel in _torque_first(channels):
         analysis = first[channel.name]
         if carried:
             own = [one.effect for one in carried]
-            analysis = analysis_of(problem, (*effects, *own), with_carried(judged, *own), channel)
+            again = analyses_of(problem, (*effects, *own), with_carried(judged, *own), [channel])
+            analysis = again[channel.name]
         for found, seen in zip(analysis.found, analysis.dependences, strict=True):
             table = tried(problem, effects, judged, carried, forms_of(found, first.values()), channel)
             if isinstance(table, Carried):
@@ -172,7 +173,7 @@ def table_against(
     if not problem.predictor.of_motion or any(effect.name not in EFFECTS for effect in effects):
         return None
     bare = [replace(j, after=j.before) for j in judged]
-    analyses = {channel.name: analysis_of(problem, (), bare, channel) for channel in channels}
+    analyses = analyses_of(problem, (), bare, channels)
     for channel in _torque_first(channels):
         for found in analyses[channel.name].found[:1]:
             table = tried(problem, (), bare, (), forms_of(found, analyses.values()), channel)
@@ -191,10 +192,8 @@ def table_against(
 def _is_left(problem: Problem, judged: Sequence[Judged]) -> bool:
     """Whether any channel stands above the noise with what was found."""
     plants = [(j.after, j.evidence) for j in judged]
-    for name in dict.fromkeys(name for j in judged for name in j.evidence.channels):
-        if above_noise(views_of(problem, plants, name, True)).is_left:
-            return True
-    return False
+    names = list(dict.fromkeys(name for j in judged for name in j.evidence.channels))
+    return any(above_noise(views).is_left for views in views_of(problem, plants, names, True).values())
 
 
 def _needed_beside(problem: Problem, effects: Sequence[Effect], table: Tabulated) -> tuple[Effect, ...]:

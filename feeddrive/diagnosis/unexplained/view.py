@@ -2,12 +2,24 @@
 
 No variable holds what is being explained: motion and load are those of the plant driven by the measured motor, not the
 recorded torque nor the recorded table position.
+
+Whether anything is left above the noise, and how sure that is, says `excess`:
+
+    excess = (rms^2 - floor^2) / rms^2
+
+The floor is the sensor noise in the band as `band.white_noise` reads it: the tenth part of the quietest blocks. That
+quantile lies below the mean by z_0.1 times the scatter of a block's level, which for fourth differences of white noise
+is 5.25 / m of the square (m samples a block, 5.25 = 2 sum R_k^2 / R_0^2); here it is put right, and its own scatter is
+counted. A quantised motor angle moves the predicted table by up to r q / sqrt(12), more or less of which is in the band
+with the speed: half of its square is taken for noise, and half for doubt. Where the steps matter (`encoder_error`) what
+they add is drawn, and counted as noise and as doubt. The rms scatters with the blocks of time,
+which counts correlation inside them.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,6 +36,13 @@ SLOW = 1e-3
 """Share of the highest speed at which a direction turns, where the plant declares no guide friction that says."""
 
 
+SCATTER = 5.25
+"""Variance of a block's mean square of fourth differences of white noise, over its square, times the samples."""
+
+QUANTILE, LOWER, DENSITY = 0.1, 1.2816, 0.1755
+"""Quantile that is read, its distance from the mean in standard deviations, and the normal density there."""
+
+
 @dataclass(frozen=True)
 class View:
     """What is left of one channel of one recording.
@@ -35,6 +54,7 @@ class View:
         rows: samples that count, thinned to those that carry what is in the band, (n,).
         values: variable to its series, (n,), SI.
         floor: of the noise.
+        shown: terms to their columns in the band, thinned; the channels of a recording share them.
     """
 
     evidence: Evidence
@@ -43,6 +63,7 @@ class View:
     rows: BoolArray
     values: Mapping[str, FloatArray]
     floor: Floor
+    shown: dict[Hashable, FloatArray]
 
     @property
     def left(self) -> FloatArray:
@@ -62,27 +83,31 @@ class View:
 
 
 def views_of(
-    problem: Problem, plants: Sequence[tuple[Plant, Evidence]], channel: str, judged: bool
-) -> tuple[View, ...]:
-    """Views of one channel of those recordings that have it, at the fitted or at the judged samples.
+    problem: Problem, plants: Sequence[tuple[Plant, Evidence]], channels: Sequence[str], judged: bool
+) -> dict[str, tuple[View, ...]]:
+    """Views of channels, of those recordings that have them, at the fitted or at the judged samples.
 
     Args:
         problem: whose predictor is used.
         plants: for each recording the plant that predicts it, and the recording.
-        channel: name.
+        channels: names.
         judged: whether the judged samples count, or else the fitted ones.
     """
-    views = []
+    views: dict[str, list[View]] = {channel: [] for channel in channels}
     for plant, evidence in plants:
-        if channel not in evidence.channels:
-            continue
         predicted = problem.predictor.predict(plant, evidence)
-        residual = evidence.measured[channel] - predicted[channel]
-        rows = evidence.thinned(evidence.judged_rows if judged else evidence.fit_rows) & np.isfinite(residual)
-        radius = plant.chain.motor_radius if channel == "table_position" else 0.0
         values = variables_of(problem, plant, evidence, predicted)
-        views.append(View(evidence, channel, residual, rows, values, noise_floor(evidence, channel, radius)))
-    return tuple(views)
+        thinned = evidence.thinned(evidence.judged_rows if judged else evidence.fit_rows)
+        shown: dict[Hashable, FloatArray] = {}
+        for channel in channels:
+            if channel not in evidence.channels:
+                continue
+            residual = evidence.measured[channel] - predicted[channel]
+            rows = thinned & np.isfinite(residual)
+            radius = plant.chain.motor_radius if channel == "table_position" else 0.0
+            floor = noise_floor(evidence, channel, radius)
+            views[channel].append(View(evidence, channel, residual, rows, values, floor, shown))
+    return {channel: tuple(own) for channel, own in views.items()}
 
 
 def variables_of(
@@ -127,13 +152,6 @@ def travel_since_reversal(position: FloatArray, direction: FloatArray) -> FloatA
     origin = np.maximum.accumulate(np.where(turned, np.arange(len(way)), 0))
     distance: FloatArray = np.abs(position - position[origin])
     return distance
-
-
-SCATTER = 5.25
-"""Variance of a block's mean square of fourth differences of white noise, over its square, times the samples."""
-
-QUANTILE, LOWER, DENSITY = 0.1, 1.2816, 0.1755
-"""Quantile that is read, its distance from the mean in standard deviations, and the normal density there."""
 
 
 @dataclass(frozen=True)

@@ -31,6 +31,7 @@ class InertiaDeviation(ChainEffect):
     """Inertia added to a shaft."""
 
     name = "inertia_deviation"
+    words = "inertia other than declared"
     ports = (Port.MOTOR, Port.SCREW)
     parameters = (Parameter("inertia", "kg m^2", size=1e-4),)
     signature = Signature(

@@ -19,6 +19,7 @@ class Payload(ChainEffect):
     """Mass added to the table."""
 
     name = "payload"
+    words = "moving mass other than declared"
     ports = (Port.TABLE,)
     parameters = (Parameter("mass", "kg", size=10.0),)
     signature = Signature(

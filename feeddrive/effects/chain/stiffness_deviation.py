@@ -42,6 +42,7 @@ class StiffnessDeviation(ChainEffect):
     """Factor on the stiffness of a part, or on the axial stiffness."""
 
     name = "stiffness_deviation"
+    words = "axial stiffness other than declared"
     ports = (Port.TRANSMISSION,)
     parameters = (Parameter("factor", "1", 0.05, 20.0, size=0.05),)
     signature = Signature(("table_position", "motor_torque"), "transmitted force", ("stiffness_vs_position",))

@@ -28,6 +28,8 @@ class StructuralMode(ChainEffect):
     """A mass on a spring on the table."""
 
     name = "structural_mode"
+    words = "structural resonance on the table"
+    headline = ("mass", "frequency")
     ports = (Port.TABLE,)
     parameters = (
         Parameter("mass", "kg", 1e-6, 1e6, size=10.0),

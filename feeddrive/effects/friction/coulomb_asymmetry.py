@@ -23,6 +23,7 @@ class CoulombAsymmetry(FrictionEffect):
     """Direction-dependent Coulomb level."""
 
     name = "coulomb_asymmetry"
+    words = "Coulomb friction different in the two directions"
     ports = (Port.TABLE,)
     parameters = (Parameter("delta_force", "N", size=10.0),)
     signature = Signature(

@@ -22,6 +22,8 @@ class FrictionDeviation(FrictionEffect):
     """Factors on the declared friction of a port."""
 
     name = "friction_deviation"
+    words = "friction level other than declared"
+    headline = ("coulomb_factor", "viscous_factor")
     ports = (Port.TABLE, Port.SCREW)
     parameters = (
         Parameter("coulomb_factor", "1", 0.0, 100.0, size=1.0, default=1.0),

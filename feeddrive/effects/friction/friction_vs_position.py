@@ -27,6 +27,8 @@ class FrictionVsPosition(FrictionEffect):
     """Coulomb level over the stroke, as a bump, a table, or both."""
 
     name = "friction_vs_position"
+    words = "friction that changes along the stroke"
+    headline = ("peak", "centre")
     ports = (Port.TABLE,)
     parameters = (
         Parameter("peak", "N", size=10.0, default=0.0),

@@ -29,6 +29,7 @@ class LoadDependentFriction(FrictionEffect):
     """Coulomb torque proportional to the transmitted force."""
 
     name = "load_dependent_friction"
+    words = "friction rising with the transmitted force"
     ports = (Port.SCREW,)
     parameters = (Parameter("coefficient", "1", 0.0, 10.0, size=0.02),)
     signature = Signature(

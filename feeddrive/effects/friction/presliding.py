@@ -32,6 +32,7 @@ class Presliding(BristleEffect):
     """Elasto-plastic bristle."""
 
     name = "presliding"
+    words = "presliding (elastic bristles before break-away)"
     ports = (Port.TABLE,)
     parameters = (
         Parameter("stiffness", "N/m", 1e2, 1e12, size=1e7),

@@ -25,6 +25,8 @@ class Stribeck(FrictionEffect):
     """Low-speed rise or drop of the Coulomb level."""
 
     name = "stribeck"
+    words = "Stribeck friction at low speed"
+    headline = ("delta_force", "velocity")
     ports = (Port.TABLE,)
     parameters = (
         Parameter("delta_force", "N", size=10.0),

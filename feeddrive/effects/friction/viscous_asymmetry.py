@@ -22,6 +22,7 @@ class ViscousAsymmetry(FrictionEffect):
     """Direction-dependent viscous coefficient."""
 
     name = "viscous_asymmetry"
+    words = "viscous friction different in the two directions"
     ports = (Port.TABLE,)
     parameters = (Parameter("delta_viscous", "N s/m", size=50.0),)
     signature = Signature(

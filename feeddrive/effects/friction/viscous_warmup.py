@@ -24,6 +24,8 @@ class ViscousWarmup(FrictionEffect):
     """Factor on the viscous drag that falls with time."""
 
     name = "viscous_warmup"
+    words = "viscous drag falling as the lubricant warms"
+    headline = ("share", "time_constant")
     ports = (Port.TABLE, Port.SCREW)
     parameters = (
         Parameter("share", "1", -2.0, 1.0, size=0.1),

@@ -26,6 +26,8 @@ class AmbientDrift(ThermalEffect):
     """Drift of the surroundings."""
 
     name = "ambient_drift"
+    words = "surroundings other than recorded"
+    headline = ("amplitude",)
     parameters = (
         Parameter("amplitude", "K", -50.0, 50.0, size=1.0),
         Parameter("period", "s", 60.0, 1e7, size=2e4, default=86400.0),

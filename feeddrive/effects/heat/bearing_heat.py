@@ -34,6 +34,8 @@ class BearingHeat(ThermalEffect):
     """Heat of the bearings at both ends."""
 
     name = "bearing_heat"
+    words = "heat from the bearings"
+    headline = ("factor", "rear_share")
     parameters = (
         Parameter("factor", "1", 0.0, 1e3, size=1.0),
         Parameter("rear_share", "1", 0.0, 10.0, size=0.5, default=1.0),

@@ -22,6 +22,7 @@ class ContactConductanceDeviation(ThermalEffect):
     """Factor on the contact conductance."""
 
     name = "contact_conductance_deviation"
+    words = "nut to screw contact other than declared"
     parameters = (Parameter("factor", "1", 0.02, 50.0, size=0.2),)
     signature = Signature(
         ("nut_temperature", "table_growth"), "difference of nut and screw", ("convection_deviation", "heat_sink")

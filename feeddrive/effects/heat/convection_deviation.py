@@ -23,6 +23,7 @@ class ConvectionDeviation(ThermalEffect):
     """Factor on film coefficients."""
 
     name = "convection_deviation"
+    words = "convection other than declared"
     parameters = (Parameter("factor", "1", 0.02, 50.0, size=0.2),)
     signature = Signature(
         ("nut_temperature", "table_growth"),

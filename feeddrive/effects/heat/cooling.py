@@ -26,6 +26,8 @@ class Cooling(ThermalEffect):
     """Heat taken from the nut by a coolant."""
 
     name = "cooling"
+    words = "cooling of the nut"
+    headline = ("conductance", "start")
     parameters = (
         Parameter("conductance", "W/K", 0.0, 100.0, size=0.1),
         Parameter("start", "s", 0.0, 1e6, size=1000.0, default=0.0),

@@ -22,6 +22,8 @@ class HeatSink(ThermalEffect):
     """A body on the nut."""
 
     name = "heat_sink"
+    words = "attached mass taking heat from the nut"
+    headline = ("conductance", "capacity")
     parameters = (
         Parameter("conductance", "W/K", 0.0, 1e3, size=0.1),
         Parameter("capacity", "J/K", 1e-3, 1e7, size=300.0),

@@ -28,6 +28,8 @@ class MotorHeat(ThermalEffect):
     """Heat into the motor-side end of the shaft."""
 
     name = "motor_heat"
+    words = "heat from the motor"
+    headline = ("power", "share_at_rest")
     parameters = (
         Parameter("power", "W", 0.0, 1e4, size=1.0),
         Parameter("at_speed", "rad/s", 1e-3, 1e4, size=75.0),

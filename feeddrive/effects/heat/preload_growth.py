@@ -26,6 +26,7 @@ class PreloadGrowth(ThermalEffect):
     """Load torque that follows the nut's temperature."""
 
     name = "preload_growth"
+    words = "preload torque growing as the nut warms"
     parameters = (Parameter("coefficient", "1/K", -1.0, 1.0, size=0.01),)
     signature = Signature(
         ("nut_temperature", "table_growth"),

@@ -22,6 +22,7 @@ class SensorLag(ThermalEffect):
     """First-order lag of one channel."""
 
     name = "sensor_lag"
+    words = "lag of a sensor"
     parameters = (Parameter("time_constant", "s", 0.0, 1e6, size=60.0),)
     signature = Signature(("nut_temperature", "front_bearing_temperature"), "rate of one channel", ("heat_sink",))
     place_key = "channel"

@@ -27,6 +27,7 @@ class StructureGrowth(ThermalEffect):
     """Growth that the screw does not show."""
 
     name = "structure_growth"
+    words = "growth of the machine frame under the scale"
     parameters = (
         Parameter("growth", "m", -0.01, 0.01, size=1e-6, default=0.0),
         Parameter("slope", "m/m", -0.01, 0.01, size=1e-5, default=0.0),

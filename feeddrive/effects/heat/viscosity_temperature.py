@@ -26,6 +26,7 @@ class ViscosityTemperature(ThermalEffect):
     """Viscous torque that follows the nut's temperature."""
 
     name = "viscosity_temperature"
+    words = "viscous torque falling with the nut temperature"
     parameters = (Parameter("coefficient", "1/K", 0.0, 1.0, size=0.02),)
     signature = Signature(
         ("nut_temperature", "table_growth"), "speed and rise of the nut", ("preload_growth", "convection_deviation")

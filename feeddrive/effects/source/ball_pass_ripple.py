@@ -25,6 +25,8 @@ class BallPassRipple(FrictionEffect):
     """Sinusoidal drag over the screw angle."""
 
     name = "ball_pass_ripple"
+    words = "drag ripple from the balls passing"
+    headline = ("amplitude", "order")
     ports = (Port.SCREW,)
     parameters = (
         Parameter("amplitude", "N m", 0.0, size=0.05),

@@ -21,6 +21,7 @@ class ConstantForce(SourceEffect):
     """Constant force on the table."""
 
     name = "constant_force"
+    words = "constant force (gravity, counterbalance)"
     ports = (Port.TABLE,)
     parameters = (Parameter("force", "N", size=10.0),)
     signature = Signature(("motor_torque", "table_position"), "nothing: it is there always", ("coulomb_asymmetry",))

@@ -22,6 +22,7 @@ class PositionSpring(SourceEffect):
     """Force on the table that grows with its position."""
 
     name = "position_spring"
+    words = "spring force on the table (cable chain, bellows)"
     ports = (Port.TABLE,)
     parameters = (Parameter("stiffness", "N/m", size=50.0), Parameter("zero", "m", size=0.1))
     signature = Signature(("motor_torque", "table_position"), "table position", ("constant_force",))

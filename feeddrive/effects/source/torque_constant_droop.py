@@ -32,6 +32,7 @@ class TorqueConstantDroop(DriveEffect):
     """Loss of torque with the cube of the torque asked for."""
 
     name = "torque_constant_droop"
+    words = "torque per ampere falling at high current"
     parameters = (
         Parameter("share", "1", 0.0, 1 / 3, size=0.05),
         Parameter("at_torque", "N m", 1e-6, 1e7, size=10.0),

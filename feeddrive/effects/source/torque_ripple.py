@@ -26,6 +26,8 @@ class TorqueRipple(SourceEffect):
     """Sinusoidal torque over the motor angle."""
 
     name = "torque_ripple"
+    words = "torque ripple of the motor"
+    headline = ("amplitude", "order")
     ports = (Port.MOTOR,)
     parameters = (
         Parameter("amplitude", "N m", 0.0, size=0.05),

@@ -37,6 +37,7 @@ class ChannelDelay(Effect):
     """Delay of one recorded channel."""
 
     name = "channel_delay"
+    words = "delay of a recorded channel"
     kind = Kind.TIMING
     ports = (Port.SENSOR,)
     parameters = (Parameter("delay", "s", 0.0, 0.1, size=1e-4),)

@@ -25,6 +25,7 @@ class DriveDelay(TimingEffect):
     """Delay between recorded and acting torque."""
 
     name = "drive_delay"
+    words = "delay of the drive's torque"
     ports = (Port.MOTOR,)
     parameters = (Parameter("delay", "s", -0.1, 0.1, size=1e-4),)
     signature = Signature(("motor_torque",), "rate of the torque", ("channel_delay", "payload"))

@@ -42,6 +42,7 @@ class StiffnessVsPosition(TransmissionEffect):
     """Straight line, or parabola, of the compliance over the stroke."""
 
     name = "stiffness_vs_position"
+    words = "axial stiffness falling along the stroke"
     additive = True
     parameters = (
         Parameter("share_over_stroke", "1", -5.0, 0.95, size=0.1),

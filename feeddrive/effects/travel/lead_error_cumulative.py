@@ -21,6 +21,7 @@ class LeadErrorCumulative(TravelEffect):
     """Travel deviation proportional to position."""
 
     name = "lead_error_cumulative"
+    words = "cumulative lead error"
     parameters = (Parameter("slope", "m/m", -0.01, 0.01, size=1e-5),)
     signature = Signature(("table_position",), "table position", ("thermal_growth",))
 

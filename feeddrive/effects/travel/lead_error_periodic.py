@@ -26,6 +26,8 @@ class LeadErrorPeriodic(TravelEffect):
     """Periodic travel deviation."""
 
     name = "lead_error_periodic"
+    words = "periodic lead error"
+    headline = ("amplitude", "order")
     parameters = (
         Parameter("amplitude", "m", 0.0, 1e-3, size=1e-6),
         Parameter("order", "1", 1e-3, 1e4, size=1.0),

@@ -24,6 +24,8 @@ class ThermalGrowth(TravelEffect):
     """Travel deviation proportional to position that settles with time."""
 
     name = "thermal_growth"
+    words = "thermal growth of the screw"
+    headline = ("strain", "time_constant")
     parameters = (
         Parameter("strain", "m/m", -0.01, 0.01, size=1e-5),
         Parameter("time_constant", "s", 0.1, 1e6, size=100.0),

@@ -19,8 +19,9 @@ from dataclasses import dataclass, replace
 import casadi as ca
 
 from feeddrive.plant.chain.chain import symbolic
-from feeddrive.plant.equations import Forces, Symbols, chain_symbols, effect_forces
+from feeddrive.plant.equations import Forces, effect_forces
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.structure import Symbols, chain_symbols
 from feeddrive.typing import Expression
 
 

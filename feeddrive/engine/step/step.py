@@ -20,14 +20,14 @@ from dataclasses import dataclass
 
 import casadi as ca
 
+from feeddrive.engine.step.linear_part import Layout
 from feeddrive.engine.step.node_forces import Pull, node_forces
 from feeddrive.engine.step.propagators import NODES, part
-from feeddrive.engine.step.step_constants import Layout
 from feeddrive.engine.step.step_nodes import NodeEquations
 from feeddrive.engine.step.step_symbols import StepSymbols, torque_beyond
-from feeddrive.plant.equations import Symbols, bristle_count, parameter_symbols
+from feeddrive.plant.equations import bristle_count
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.structure import without_left_out
+from feeddrive.plant.structure import Symbols, parameter_symbols, without_left_out
 from feeddrive.typing import Expression
 
 

@@ -16,23 +16,9 @@ from __future__ import annotations
 import casadi as ca
 import numpy as np
 
-from feeddrive.engine.step.linear_part import Layout, Linear, SimulationError, linear_part, state_matrices
+from feeddrive.engine.step.linear_part import Layout, Linear
 from feeddrive.engine.step.propagators import HERMITE_BASIS, NODE_BASIS, basis_propagators, monomial_propagators
 from feeddrive.typing import Expression, FloatArray
-
-__all__ = [
-    "Layout",
-    "Linear",
-    "SimulationError",
-    "constant_shapes",
-    "flattened",
-    "linear_part",
-    "propagator_blocks",
-    "propagator_shapes",
-    "state_matrices",
-    "step_constants",
-    "unflatten",
-]
 
 FULL_SCALE = 10.0
 """Acceleration of the full scale of effect forces [m/s^2]."""

@@ -13,12 +13,14 @@ from __future__ import annotations
 import casadi as ca
 
 from feeddrive.effects.base import DriveEffect
+from feeddrive.engine.step.linear_part import Layout
 from feeddrive.engine.step.node_forces import Pull, node_forces
 from feeddrive.engine.step.propagators import NODES, cubic, part
-from feeddrive.engine.step.step_constants import Layout, constant_shapes, unflatten
-from feeddrive.plant.equations import Forces, Symbols, chain_symbols
+from feeddrive.engine.step.step_constants import constant_shapes, unflatten
+from feeddrive.plant.equations import Forces
 from feeddrive.plant.motor_torque import acting_torque
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.structure import Symbols, chain_symbols
 from feeddrive.typing import Expression
 
 

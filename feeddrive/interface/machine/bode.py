@@ -13,19 +13,19 @@ import numpy as np
 from feeddrive import __version__
 from feeddrive.errors import InputError
 from feeddrive.export.point import export_point
-from feeddrive.interface.quantities import Quantity, quantities
+from feeddrive.interface.quantities import Quantities, Quantity, quantities
 from feeddrive.interface.servo import Servo, cascade_for
 from feeddrive.interface.shown import Listing, Shown, finite, write_figures, write_json
 from feeddrive.metrology.response import Response as Measured
 from feeddrive.metrology.response import recorded_response
-from feeddrive.plant.analysis.linear import INPUTS, OUTPUTS
+from feeddrive.plant.analysis.ode import INPUTS, OUTPUTS
 from feeddrive.plant.chain.resolution import resolved, resolved_modes
-from feeddrive.plant.file.entries import nearest
 from feeddrive.plant.plant import Plant
 from feeddrive.recording.frequency_response import FrequencyResponse
 from feeddrive.recording.recording import Recording
 from feeddrive.report.figures.figure_bode import magnitude_unit
 from feeddrive.report.words.words import chain_remark
+from feeddrive.schema.toml_text import nearest
 from feeddrive.servo.loop_response import loops_of, refuse_unstable_case
 from feeddrive.servo.mechanics_response import UNITS, Case, refuse_no_range
 from feeddrive.servo.resonances import on_curve
@@ -144,55 +144,69 @@ class Bode(Shown):
         return [bode_figure(family, self.measured) for family in self.families]
 
 
-def bode(
+def operating_cases(
     plant: Plant,
-    given: str = "",
-    output: str = "",
-    *,
-    at: str = "",
-    positions: Quantity | Sequence[Quantity] | None = None,
-    payload: Quantity | Sequence[Quantity] | None = None,
-    controller: Servo | str | Path | None = None,
-    loop: str = "",
-    frequencies: Sequence[Quantity] = ("1 Hz", "2 kHz"),
-    measured: Recording | FrequencyResponse | None = None,
-) -> Bode:
-    """Frequency responses, see `Axis.bode`."""
+    at: str,
+    positions: Quantities,
+    payload: Quantities,
+) -> tuple[Case, ...]:
+    """Every position with every payload, at the velocity of an operating point.
+
+    Raises:
+        InputError: a point off the stroke, positions that are given twice, or a value that cannot be used.
+    """
     point = export_point(plant, at, "at")
     if positions and "x" in [part.split("=")[0].strip() for part in at.split(",")]:
         raise InputError("positions are given twice", "--positions, --at x", "keep one of them")
     places = quantities(positions, "m", "positions") or (point.position,)
-    cases = cases_of(plant, places, quantities(payload, "kg", "payload"), point.linearised_at)
+    return cases_of(plant, places, quantities(payload, "kg", "payload"), point.linearised_at)
+
+
+def frequency_range(frequencies: Sequence[Quantity]) -> tuple[float, float]:
+    """Lowest and highest frequency [Hz].
+
+    Raises:
+        InputError: not two frequencies, or no range.
+    """
     ends = quantities(frequencies, "Hz", "frequencies")
     if len(ends) != 2:
         raise InputError(
             f'"{", ".join(map(str, frequencies))}" is not two frequencies', "frequencies", 'write e.g. "1 Hz,2 kHz"'
         )
-    low, high = ends
-    refuse_no_range(low, high)
-    valid_to = min(resolved_modes(plant, case.position).chain_valid_to for case in cases)
-    fine = resolved(plant, high, [case.position for case in cases])
-    if loop or controller is not None:
-        if measured is not None:
-            raise InputError("a recording is laid over the mechanics, not loops", "recording", "leave out the loop")
-        families = _loops(fine, given, output, controller, loop, cases, low, high)
-        return Bode(plant, families, valid_to, high)
+    refuse_no_range(*ends)
+    return ends[0], ends[1]
+
+
+def mechanics_bode(
+    plant: Plant, given: str, output: str, cases: tuple[Case, ...], ends: tuple[float, float],
+    measured: Recording | FrequencyResponse | None,
+) -> Bode:  # fmt: skip
+    """Responses of the mechanics from an input to an output, and a measured one laid over them."""
+    fine, valid_to = _resolved(plant, cases, ends[1])
     given, output = given or INPUTS[0], output or OUTPUTS[1]
-    families = (mechanics_family(fine, given, output, cases, low, high),)
     laid = None if measured is None else _laid_over(measured, given, output)
-    return Bode(plant, families, valid_to, high, laid)
+    return Bode(plant, (mechanics_family(fine, given, output, cases, *ends),), valid_to, ends[1], laid)
+
+
+def _resolved(plant: Plant, cases: tuple[Case, ...], highest: float) -> tuple[Plant, float]:
+    """The machine with a chain that holds up to a frequency, and up to which the declared chain does [Hz]."""
+    valid_to = min(resolved_modes(plant, case.position).chain_valid_to for case in cases)
+    return resolved(plant, highest, [case.position for case in cases]), valid_to
+
+
+def loops_bode(
+    plant: Plant, given: str, output: str, cases: tuple[Case, ...], ends: tuple[float, float],
+    controller: Servo | str | Path | None, loop: str,
+) -> Bode:  # fmt: skip
+    """Responses of the loops that a controller closes."""
+    fine, valid_to = _resolved(plant, cases, ends[1])
+    return Bode(plant, _loops(fine, given, output, controller, loop, cases, *ends), valid_to, ends[1])
 
 
 def _loops(
-    plant: Plant,
-    given: str,
-    output: str,
-    controller: Servo | str | Path | None,
-    wanted: str,
-    cases: tuple[Case, ...],
-    low: float,
-    high: float,
-) -> tuple[Family, ...]:
+    plant: Plant, given: str, output: str, controller: Servo | str | Path | None, wanted: str,
+    cases: tuple[Case, ...], low: float, high: float,
+) -> tuple[Family, ...]:  # fmt: skip
     """Every loop, open or closed; one of them open; or the controlled axis between two signals."""
     kind = wanted or "open"
     if kind not in (known := ("open", "closed", "velocity", "position")):

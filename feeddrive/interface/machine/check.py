@@ -12,7 +12,7 @@ from feeddrive.parts.life.consumed_life import ConsumedLife
 from feeddrive.plant.analysis.plausibility import Finding, Verdict
 from feeddrive.plant.analysis.rated_life import LifeRow, datum
 from feeddrive.plant.plant import Plant
-from feeddrive.report.words.people import scale_for_share_of_life
+from feeddrive.report.words.number_text import scale_for_share_of_life
 from feeddrive.typing import FloatArray
 from feeddrive.units.quantity import format_quantity
 

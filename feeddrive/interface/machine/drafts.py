@@ -16,7 +16,7 @@ from feeddrive.interface.shown import Listing, Shown
 from feeddrive.parts.catalogue.part_files import KINDS, CataloguePart, catalogue
 from feeddrive.plant.file.draft_text import draft_text
 from feeddrive.plant.file.drafting import Wishes, drafted
-from feeddrive.plant.file.entries import nearest_choice
+from feeddrive.schema.toml_text import nearest_choice
 from feeddrive.units.quantity import parse
 
 _WANTED: dict[str, dict[str, tuple[str, str]]] = {
@@ -166,7 +166,7 @@ def draft(
     structure: str = "distributed_screw",
     name: str = "my axis",
 ) -> Draft:
-    """A plant file of parts of the catalogue, with a guess wherever nothing is said.
+    """A plant file of parts of the catalogue, with a guess wherever nothing is given.
 
     Args:
         screw: name of a screw, or its size, "32 x 10 mm".

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
+from feeddrive.bench_page.page import bench_of_diagnosis
 from feeddrive.compensation.actions import Actions, actions
 from feeddrive.diagnosis.diagnose import diagnose as find_what_lacks
 from feeddrive.diagnosis.judging.result import Diagnosis
@@ -21,11 +22,11 @@ from feeddrive.interface.measured.reading import as_recording
 from feeddrive.interface.shown import Listing, Shown
 from feeddrive.plant.file.lumped_text import plant_text_with_effects
 from feeddrive.recording.recording import Recording
-from feeddrive.report.certainty import experiment_sentences, simulation_lines
+from feeddrive.report.pages.section_certainty import experiment_sentences, simulation_lines
+from feeddrive.report.pages.section_records import used_sentence
 from feeddrive.report.pages.sections import calibrated_lines, measured_lines
-from feeddrive.report.parameters import parameter_text
-from feeddrive.report.records import used_sentence
-from feeddrive.report.words.people import error_text, share_text
+from feeddrive.report.words.number_text import error_text, share_text
+from feeddrive.report.words.parameters import parameter_text
 from feeddrive.report.words.verdict import verdict_sentences
 
 if TYPE_CHECKING:
@@ -223,8 +224,6 @@ class Diagnosed(Shown):
 
     def _bench(self) -> str:
         """The page for the tab of the report."""
-        from feeddrive.interface.benching import bench_of_diagnosis  # which takes a diagnosis
-
         return bench_of_diagnosis(self.plant.plant, self.diagnosis)
 
     def listing(self) -> Listing:
@@ -265,8 +264,8 @@ def diagnose(
     if not fitted:
         raise InputError("no recording is given", "recording", "give fd.read(...), or the path of a file")
     numbers = read_measured_numbers(Path(measured), axis.plant) if measured is not None else ()
-    said = progress or (lambda _: None)
-    result, effects = find_what_lacks(axis.plant, fitted, judged, split, simulate, said, (), numbers)
+    report = progress or (lambda _: None)
+    result, effects = find_what_lacks(axis.plant, fitted, judged, split, simulate, report, (), numbers)
     return Diagnosed(axis, result, tuple(effects))
 
 

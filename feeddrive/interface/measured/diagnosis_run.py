@@ -10,10 +10,20 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from feeddrive.bench_page.page import bench_of_diagnosis
 from feeddrive.compensation.actions import actions
 from feeddrive.diagnosis.diagnose import diagnose
-from feeddrive.diagnosis.ledger.continued import Earlier, changed_since, earlier_run
-from feeddrive.diagnosis.ledger.ledger import FileUse, RunFiles, checksum, runs_of, write_ledger, written_earlier
+from feeddrive.diagnosis.ledger.ledger import (
+    Earlier,
+    FileUse,
+    RunFiles,
+    changed_since,
+    checksum,
+    earlier_run,
+    runs_of,
+    write_ledger,
+    written_earlier,
+)
 from feeddrive.diagnosis.likelihood.outputs import write_outputs
 from feeddrive.diagnosis.numbers.measured_file import read_measured_numbers
 from feeddrive.diagnosis.preparation import informative
@@ -22,18 +32,17 @@ from feeddrive.effects.tabulated import Tabulated
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant, shipped_plants
 from feeddrive.interface.axis import load
-from feeddrive.interface.benching import bench_of_diagnosis
 from feeddrive.interface.measured.diagnosed import Diagnosed
 from feeddrive.output_folder import finish_interrupted, output_folder, refuse_unusable, take_away
 from feeddrive.recording import Recording, read_recording
 from feeddrive.report.figures.figures import render_figures, save_figures
 from feeddrive.report.pages.html import write_report
-from feeddrive.report.records import Occasion
+from feeddrive.report.pages.section_records import Occasion
 
 DECIMAL_SIGNS = (None, ".", ",")
 
 SPLIT = 0.75
-"""Share that is fitted where nothing else is said."""
+"""Share that is fitted where nothing else is given."""
 
 
 @dataclass(frozen=True)
@@ -171,7 +180,7 @@ def diagnose_files(job: Job, progress: Callable[[str], None] = lambda _: None) -
 
 
 def _command(job: Job) -> str:
-    """The line that makes a diagnosis again; none for one that takes up an earlier one, whose ledger tells its runs."""
+    """The line that makes a diagnosis again; none for one that takes up an earlier one, whose ledger lists its runs."""
     if job.earlier is not None:
         return ""
     words = ["feeddrive", "diagnose", job.plant.stem if job.plant in shipped_plants() else str(job.plant)]
@@ -193,7 +202,7 @@ def _today() -> str:
 
 
 def _bytes(plant: Path) -> bytes:
-    """The plant file as it is now; what is said and written of it at the end is of these bytes."""
+    """The plant file as it is now; what is reported and written of it at the end is of these bytes."""
     try:
         return plant.read_bytes()
     except OSError as error:

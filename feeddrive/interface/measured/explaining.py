@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,7 +21,7 @@ from feeddrive.files import write_bytes_atomically, write_text_atomically
 from feeddrive.interface.axis import Axis, axis_of_text
 from feeddrive.interface.measured.reading import read_response_file
 from feeddrive.interface.servo import Servo, cascade_for
-from feeddrive.interface.shown import Listing, Shown
+from feeddrive.interface.shown import Listing, Shown, write_json
 from feeddrive.plant.file.named_parts import with_named_parts
 from feeddrive.recording.frequency_response import FrequencyResponse
 from feeddrive.report.words.explained_words import numbers_verdict, response_verdict, value_text
@@ -85,8 +84,7 @@ class Explained(Shown):
         write_text_atomically(place / "plant_after.toml", self._text_after())
         write_bytes_atomically(place / f"{picture.stem}.png", picture.png)
         write_text_atomically(place / "report.html", page)
-        record = json.dumps(self.record(), indent=1, ensure_ascii=False, allow_nan=False)
-        write_text_atomically(place / "diagnosis.json", record + "\n")
+        write_json(self.record(), place / "diagnosis.json", indent=1)
         return place
 
     def _text_after(self) -> str:
@@ -153,10 +151,10 @@ def explain(
     entries = with_named_parts(axis.entries, str(axis.path))
     if axis.values or axis.added:
         raise InputError("the axis was changed after it was loaded", axis.name, "save it, and load the file")
-    tell = progress or (lambda _: None)
+    report = progress or (lambda _: None)
     if not isinstance(measured, FrequencyResponse) and Path(measured).suffix.lower() == ".toml":
         numbers = read_measured_numbers(Path(measured), axis.plant)
-        return Explained(axis, diagnose_numbers(entries, axis.path, axis.plant, numbers, tell))
+        return Explained(axis, diagnose_numbers(entries, axis.path, axis.plant, numbers, report))
     response = measured if isinstance(measured, FrequencyResponse) else read_response_file(Path(measured))
     if response is None:
         what = "is neither measured numbers nor a frequency response"
@@ -164,5 +162,5 @@ def explain(
     point = export_point(axis.plant, at, "at")
     case = Case(point.position, point.linearised_at)
     cascade = None if controller is None else cascade_for(axis.plant, controller)
-    found = diagnose_response(entries, axis.path, axis.plant, response, case, tell, cascade)
+    found = diagnose_response(entries, axis.path, axis.plant, response, case, report, cascade)
     return Explained(axis, found)

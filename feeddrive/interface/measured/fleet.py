@@ -34,7 +34,7 @@ class AxisFound:
         axis: name of its folder.
         recordings, new: recordings that count, and how many of them were new.
         newest: date of the newest, ISO.
-        events: changes that are told.
+        events: changes that are reported.
         verdict: what changed, or why nothing is known.
         usable: whether the axis could be followed.
         out: folder of its results.
@@ -84,7 +84,7 @@ def watch_fleet(
     folder: str | Path, plant: str | Path, *, out: str | Path | None = None, scheduler: str = "",
     progress: Callable[[str], None] | None = None, **options: Any,
 ) -> Fleet:  # fmt: skip
-    """Follow every axis that has a folder in a folder; one that cannot be followed is told and does not stop the rest.
+    """Follow every axis that has a folder in a folder; one that cannot be is reported, and the rest goes on.
 
     Args:
         folder: with a folder of recordings for each axis; a `plant.toml` in one is the plant of that axis.
@@ -97,7 +97,7 @@ def watch_fleet(
     Raises:
         InputError: no folder in the folder, a plant that cannot be used, or a cluster that cannot.
     """
-    said = progress or (lambda _: None)
+    report = progress or (lambda _: None)
     top = Path(folder).resolve()
     target = Path(out).resolve() if out is not None else top.parent / f"{top.name}{PLACE}"
     load(plant)
@@ -116,7 +116,7 @@ def watch_fleet(
     found: list[AxisFound] = []
     for one in _on_cluster(tasks, scheduler) if scheduler else map(follow_axis, tasks):
         found.append(one)
-        said(f"{len(found)} of {len(tasks)} axes: {one.axis}")
+        report(f"{len(found)} of {len(tasks)} axes: {one.axis}")
     fleet = Fleet(tuple(sorted(found, key=lambda one: (one.usable, -one.events, one.axis))), target)
     overview = {"format": "feeddrive-fleet/1", "axes": [asdict(one) for one in fleet.axes]}
     write_text_atomically(target / OVERVIEW, json.dumps(overview, indent=2, ensure_ascii=False) + "\n")
@@ -137,7 +137,7 @@ def follow_axis(task: _Task) -> AxisFound:
 
 
 def _on_cluster(tasks: Sequence[_Task], address: str) -> Iterator[AxisFound]:
-    """The axes as they are finished; one whose worker was lost is told."""
+    """The axes as they are finished; one whose worker was lost is reported."""
     client = client_of(address)
     try:
         refuse_unfit(client, address)

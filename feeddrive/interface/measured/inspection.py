@@ -11,8 +11,8 @@ import numpy as np
 
 from feeddrive import __version__
 from feeddrive.errors import InputError
-from feeddrive.files import write_bytes_atomically, write_text_atomically
-from feeddrive.interface.quantities import Quantity, si
+from feeddrive.files import write_text_atomically
+from feeddrive.interface.quantities import Quantity, positive
 from feeddrive.interface.shown import Listing, Shown, finite
 from feeddrive.recording.channels import channel_unit
 from feeddrive.recording.files.channel_mapping import read_mapping
@@ -126,10 +126,7 @@ class Inspected(Shown):
             raise InputError("a picture is drawn of frequency responses alone", "figure", "leave it out")
         if target.suffix != ".png":
             raise InputError("pictures are written as .png", str(target), "correct the ending of --figure")
-        from feeddrive.report.figures.drawing import render
-
-        write_bytes_atomically(target, render(self._figures()[0]).png)
-        return target
+        return super().save_figure(target)
 
     def _figures(self) -> Sequence[ReportFigure]:
         if self.response is None:
@@ -236,7 +233,7 @@ def inspect(
 
     Args:
         path: trace of a drive, control or logger, recording, or frequency response.
-        map: mapping file, in place of what names tell.
+        map: mapping file, in place of the names.
         axis: of a file that holds several, such as "X1".
         lead: makes angles of motor encoders in mm.
         channels: channel to the signal that it is, and its unit, {"motor_torque": "NAME [N m]"}.
@@ -244,7 +241,7 @@ def inspect(
         part: stretch between gaps, 1 for the first; the longest if left out.
         sample_time: distance of samples where the file has no time.
         columns: names of columns without any.
-        decimal: "." or "," of a CSV file, where it cannot be told.
+        decimal: "." or "," of a CSV file, where the file leaves it open.
 
     Raises:
         InputError: a file or a wish that cannot be used.
@@ -257,11 +254,11 @@ def inspect(
     where = str(path)
     wishes = Wishes(
         axis or None,
-        _positive(lead, "m", "lead", "10 mm"),
+        None if lead is None else positive(lead, "m", "lead", "10 mm"),
         _chosen(channels or {}),
-        _positive(rate, "Hz", "rate", "1 kHz"),
+        None if rate is None else positive(rate, "Hz", "rate", "1 kHz"),
         _part(part),
-        _positive(sample_time, "s", "sample_time", "1 ms"),
+        None if sample_time is None else positive(sample_time, "s", "sample_time", "1 ms"),
         tuple(columns),
     )
     content = open_file(Path(path))
@@ -314,13 +311,6 @@ def _chosen(channels: Mapping[str, str]) -> dict[str, tuple[str, str]]:
             if "," not in unit:  # else the name itself ends so
                 found[channel] = name.strip(), unit.strip()
     return found
-
-
-def _positive(value: Quantity | None, unit: str, where: str, example: str) -> float | None:
-    number = None if value is None else si(value, unit, where)
-    if number is not None and not number > 0.0:
-        raise InputError(f"{value} is not above zero", where, f'write e.g. "{example}"')
-    return number
 
 
 def _part(part: int | None) -> int | None:

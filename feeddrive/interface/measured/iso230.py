@@ -8,13 +8,11 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
-import numpy as np
-
 from feeddrive.errors import InputError
 from feeddrive.interface.axis import Axis
 from feeddrive.interface.measured.reading import read
 from feeddrive.interface.quantities import Quantity, si
-from feeddrive.interface.shown import Listing, Shown
+from feeddrive.interface.shown import Listing, Shown, finite
 from feeddrive.metrology.circular import Circular, circular
 from feeddrive.metrology.measured.forms import circle_test, drift_test, linear_test, part_of
 from feeddrive.metrology.measured.measurements import CircleTest, DriftTest, LinearTest, refuse_radius
@@ -32,6 +30,7 @@ from feeddrive.metrology.positioning import EDITION
 from feeddrive.recording import Recording
 from feeddrive.recording.channels import CHANNEL_UNITS
 from feeddrive.recording.files.opening import first_bytes, head_of
+from feeddrive.recording.traces.opened import could_be_trace
 from feeddrive.units.quantity import format_quantity
 
 if TYPE_CHECKING:
@@ -95,7 +94,7 @@ class Iso230(Shown):
             "format": "feeddrive-iso230/1",
             "name": self.name,
             "standard": STANDARDS[self.part],
-            "figures": {key: {"value": _finite(v), "unit": unit_of(key)} for key, v in self.figures_si().items()},
+            "figures": {key: {"value": finite(v), "unit": unit_of(key)} for key, v in self.figures_si().items()},
         }
         if isinstance(self.test, LinearTest):
             content["targets"] = _target_records(self.test)
@@ -138,11 +137,11 @@ def iso230(
     Args:
         measured: a table of readings, or a recording with `table_position`; for a circle of two axes two recordings.
         plant: an axis; says what of E, M and B it explains, and knows the lead where a recording has no set-point.
-        part: 2 positioning, 3 drift of an axis that warms itself, 4 circle; told by what is measured if left out.
+        part: 2 positioning, 3 drift of an axis that warms itself, 4 circle; identified from the columns if left out.
         radius: nominal, of a circle.
         stop: when the axis stops, of a test of drift.
         map: mapping file of a recording in a foreign format.
-        decimal: "." or ",", where it cannot be told.
+        decimal: "." or ",", where the file leaves it open.
 
     Raises:
         InputError: what is given makes no such test; one line with the remedy.
@@ -175,10 +174,11 @@ class _Wishes:
 
 def _table(path: Path, decimal: str | None) -> Readings | None:
     """The table of a file; None where it holds channels over time, or is no table of numbers at all."""
-    if path.is_file() and is_laser_file(head_of(first_bytes(path))):
+    start = first_bytes(path) if path.is_file() else b""
+    if is_laser_file(head_of(start)):
         return read_readings(path, decimal)
-    if path.suffix.lower() not in (".csv", ".gz", ".txt", ""):
-        return None
+    if could_be_trace(start) or path.suffix.lower() not in (".csv", ".gz", ".txt", ""):
+        return None  # its own reader knows it
     try:
         readings = read_readings(path, decimal)
     except InputError:
@@ -314,7 +314,3 @@ def _target_records(test: LinearTest) -> list[dict[str, Any]]:
         for record, reversal in zip(records, both.reversal, strict=True):
             record["B [m]"] = float(reversal)
     return records
-
-
-def _finite(value: float) -> float | None:
-    return value if np.isfinite(value) else None

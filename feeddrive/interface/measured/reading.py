@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
+from typing import Any
 
 from feeddrive.errors import InputError
 from feeddrive.recording import Recording, read_recording
@@ -18,7 +20,7 @@ def read(path: str | Path, map: str | Path | None = None, decimal: str | None = 
     Args:
         path: CSV or CSV.gz with a header `name [unit]`, or with a mapping a `.mat` or foreign text file.
         map: mapping file, channel to column, factor and unit.
-        decimal: "." or ","; the file tells if left out.
+        decimal: "." or ","; found in the file if left out.
 
     Raises:
         InputError: the file cannot be used; one line with file, row, column, reason and the remedy.
@@ -46,6 +48,10 @@ MOST_BYTES = 20_000_000
 """A larger file is no frequency response: a million lines of them are half of that."""
 
 
+LARGEST_DIAGNOSIS = 200_000_000
+"""Bytes; the numbers of a diagnosis take some hundred thousand."""
+
+
 def read_response_file(path: Path) -> FrequencyResponse | None:
     """The frequency response of a file; None where it is something else.
 
@@ -56,3 +62,24 @@ def read_response_file(path: Path) -> FrequencyResponse | None:
         return None
     found = read_trace(open_file(path), Wishes())
     return found if isinstance(found, FrequencyResponse) else None
+
+
+def diagnosis_content(folder: Path) -> dict[str, Any]:
+    """The content of `diagnosis.json` in the folder of a diagnosis.
+
+    Raises:
+        InputError: no folder that `feeddrive diagnose` has written.
+    """
+    where, mend = folder / "diagnosis.json", "name the folder that `feeddrive diagnose --out` has written"
+    try:
+        if where.stat().st_size > LARGEST_DIAGNOSIS:
+            raise InputError("is too large for a diagnosis", str(where), mend)
+        content = json.loads(where.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError("is no diagnosis", str(folder), mend) from None
+    if not isinstance(content, dict) or not isinstance(content.get("effects", []), list):
+        raise InputError("is no diagnosis", str(where), mend)
+    found: dict[str, Any] = content
+    return found

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from datetime import timedelta
@@ -13,8 +12,8 @@ import numpy as np
 
 from feeddrive.errors import InputError
 from feeddrive.interface.axis import Axis
-from feeddrive.interface.quantities import Quantity, si
-from feeddrive.interface.shown import Listing, Shown
+from feeddrive.interface.quantities import Quantity, positive
+from feeddrive.interface.shown import Listing, Shown, finite
 from feeddrive.output_folder import output_folder
 from feeddrive.trend.change_searches import searched_events
 from feeddrive.trend.checkpoint import USED, save_checkpoint
@@ -155,9 +154,9 @@ def watch(
         plant: the axis as declared.
         out: folder of the results and the checkpoint; beside `folder`, with "_watch" behind its name, if left out.
         map: mapping file for recordings in a foreign format.
-        decimal: "." or ",", where files do not tell.
+        decimal: "." or ",", where files leave it open.
         stamp: pattern of `strptime` that a part of each name meets, such as "%Y%m%d_%H%M".
-        every: distance of the recordings, "1 day", where nothing tells their dates; they stand in the order of names.
+        every: distance of the recordings in the order of names, "1 day", where neither name nor content holds a date.
         first: date of the first one, then.
         absolute: channels whose zero is kept from recording to recording, such as "table_position": an offset of the
             table against the motor that moves is growth then. A plant's `[[sensor]]` may say `absolute = true` instead.
@@ -168,7 +167,7 @@ def watch(
     Raises:
         InputError: no folder, no recording that can be used, or an option that is none.
     """
-    tell = progress or (lambda _: None)
+    report = progress or (lambda _: None)
     place = Path(folder)
     if plant.values or plant.added:
         raise InputError("the axis was changed after it was loaded", plant.name, "save it, and load the file")
@@ -180,27 +179,20 @@ def watch(
         decimal,
         stamp,
         read_moment(first, "first") if first else None,
-        None if every is None else _distance(every),
+        None if every is None else timedelta(seconds=positive(every, "s", "every", "1 day")),
         _absolute(absolute, plant),
         dict(limits or {}),
     )
-    trend, kept = follow(plant.plant, plant.text, plant.entries, place, target, options, tell)
+    trend, kept = follow(plant.plant, plant.text, plant.entries, place, target, options, report)
     unknown = set(options.limits or {}) - {one.name for one in trend.quantities if one.watched}
     if unknown:
         held = ", ".join(one.name for one in trend.quantities if one.watched)
         raise InputError(f'no quantity "{sorted(unknown)[0]}" is watched', "limits", f"it has {held}")
     if not search:
         return Watched(plant, trend, target)
-    found, kept = searched_events(plant.plant, trend, kept, place, target, options, tell)
+    found, kept = searched_events(plant.plant, trend, kept, place, target, options, report)
     save_checkpoint(target, kept)
     return Watched(plant, trend, target, found)
-
-
-def _distance(every: Quantity) -> timedelta:
-    seconds = si(every, "s", "every")
-    if not seconds > 0:
-        raise InputError(f"{every} is no distance in time", "every", 'write it as "1 day" or "2 h"')
-    return timedelta(seconds=seconds)
 
 
 def _absolute(channels: str | tuple[str, ...] | list[str], plant: Axis) -> bool:
@@ -221,7 +213,7 @@ def _record(trend: Trend, name: str) -> dict[str, Any]:
         "name": name,
         "words": quantity.words,
         "unit": quantity.unit,
-        "values": [_finite(value) for value in quantity.values],
+        "values": [finite(value) for value in quantity.values],
     }
     if course is not None:
         here = np.isfinite(quantity.values)
@@ -253,8 +245,8 @@ def _record(trend: Trend, name: str) -> dict[str, Any]:
 
 def _limit(trend: Trend, limit: Limit) -> dict[str, Any]:
     return {
-        "low": _finite(limit.low),
-        "high": _finite(limit.high),
+        "low": finite(limit.low),
+        "high": finite(limit.high),
         "origin": limit.origin,
         "left_at": None if limit.left is None else trend.used[limit.left].key,
         "reached": None if limit.reached is None else trend.when(limit.reached).isoformat(),
@@ -290,7 +282,3 @@ def _growth(trend: Trend) -> dict[str, Any] | None:
     if growth.fixed_point is not None:
         content["fixed_point"] = {"value": growth.fixed_point[0], "sd": growth.fixed_point[1], "unit": "m"}
     return content
-
-
-def _finite(value: float) -> float | None:
-    return float(value) if math.isfinite(value) else None

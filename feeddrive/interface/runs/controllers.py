@@ -13,7 +13,7 @@ from feeddrive.errors import InputError
 from feeddrive.export.point import export_point
 from feeddrive.interface.quantities import Quantity, quantities, si
 from feeddrive.interface.servo import Servo, cascade_for
-from feeddrive.plant.analysis.linear import INPUTS, OUTPUTS
+from feeddrive.plant.analysis.ode import INPUTS, OUTPUTS
 from feeddrive.plant.plant import Plant
 from feeddrive.servo import state_feedback as observed
 from feeddrive.servo.cascade import Cascade, Feedback, FeedForward
@@ -149,7 +149,7 @@ def schedule(axis: Axis, servo: Servo, positions: Sequence[Quantity]) -> tuple[C
     The velocity loop is that of the servo at all positions; feed-forward is left out.
 
     Args:
-        axis: the machine, with a scale, which tells where the table is.
+        axis: the machine, with a scale, which measures where the table is.
         servo: of `tune`; gives the velocity loop and the margins asked for.
         positions: of the table, ascending, two or more.
 

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from feeddrive.errors import InputError
 from feeddrive.files import find_scenario
-from feeddrive.interface.quantities import Quantity, si
+from feeddrive.interface.quantities import Quantity, positive
 from feeddrive.interface.shown import Listing, Shown, write_figures
 from feeddrive.simulate.scenario.scenario_file import read_scenario
 from feeddrive.simulate.warm.warm_up_result import WarmUpPoint, WarmUpRun
@@ -118,9 +117,7 @@ def repeat(
     >>> abs(warm.imbalance) < 1e-3
     True
     """
-    lasting = si(duration, "s", "duration")
-    if not lasting > 0:
-        raise InputError(f"{duration} is not above zero", "duration", 'write a time such as "4 h"')
+    lasting = positive(duration, "s", "duration", "4 h")
     read = read_scenario(find_scenario(str(scenario)), dict(set or {}))
     return Repeated(run_warm_up(read, lasting, MacroSteps(tolerance), progress))
 

@@ -161,45 +161,43 @@ def move(
     if (controller is None) == (torque is None):
         raise InputError("a controller or a torque is needed, not both", "move", "give fd.cascade(...), or torque=...")
     place, speed = si(start, "m", "start"), si(moving, "m/s", "moving")
-    if controller is None:
-        tick = 1 / si(rate, "Hz", "rate")
-        time = _ticks(duration, tick)
-        assert torque is not None
-        given = steady_motion(axis.plant, speed, place).torque + _course(torque, time, "N m", "torque")
-        driven = simulate_torque(axis.plant, time, given, place, speed)
-        named = {
-            "motor_torque": driven.torque,
-            "motor_angle": driven.motor_angle,
-            "table_position": driven.position,
-            "table_velocity": driven.velocity,
-        }
-        return Motion(axis.name, time, named, tick)
+    if torque is not None:
+        return _under_torque(axis, torque, duration, 1 / si(rate, "Hz", "rate"), place, speed)
+    assert controller is not None
+    return _under_control(axis, controller, references, force, duration, place, speed)
+
+
+def _under_torque(axis: Axis, torque: Course, duration: Quantity, tick: float, place: float, speed: float) -> Motion:
+    """From a steady motion on, driven by a torque beyond what holds it."""
+    time = _ticks(duration, tick)
+    given = steady_motion(axis.plant, speed, place).torque + _course(torque, time, "N m", "torque")
+    run = simulate_torque(axis.plant, time, given, place, speed)
+    named = {
+        "motor_torque": run.torque,
+        "motor_angle": run.motor_angle,
+        "table_position": run.position,
+        "table_velocity": run.velocity,
+    }
+    return Motion(axis.name, time, named, tick)
+
+
+def _under_control(
+    axis: Axis, controller: Controller, references: dict[str, Course], force: Course, duration: Quantity,
+    place: float, speed: float,
+) -> Motion:  # fmt: skip
+    """From a motion at constant speed on, under a controller that is fed the references."""
     fed, tick = controller.sampled.references, controller.sampled.sample_time
     unknown = [name for name in references if name not in fed]
     if unknown:
         raise InputError(f"the controller is not fed with {', '.join(unknown)}", "move", f"give {', '.join(fed)}")
-    time = _ticks(duration, tick)
-    if "position" in fed:
-        references.setdefault("position", place)
-    columns = [_course(references.get(name, 0.0), time, UNITS.get(name, "1"), name) for name in fed]
-    sampled = controller.starting_at(place)
-    begin = resting_state(axis.plant, sampled, controller.torque_loop, place, speed)
-    run = simulate_controlled(
-        axis.plant,
-        sampled,
-        np.column_stack(columns),
-        _course(force, time, "N", "force"),
-        controller.torque_loop,
-        begin,
-    )
-    shown = {
-        "command": run.command,
-        "motor_torque": run.torque,
-        "motor_angle": run.motor_angle,
-        "motor_speed": run.motor_speed,
-        "table_position": run.table_position,
-        "table_velocity": run.table_velocity,
-    }
+    time, given = _ticks(duration, tick), {"position": place, **references}
+    columns = [_course(given.get(name, 0.0), time, UNITS.get(name, "1"), name) for name in fed]
+    sampled, loop = controller.starting_at(place), controller.torque_loop
+    begin = resting_state(axis.plant, sampled, loop, place, speed)
+    load = _course(force, time, "N", "force")
+    run = simulate_controlled(axis.plant, sampled, np.column_stack(columns), load, loop, begin)
+    names = ("command", "torque", "motor_angle", "motor_speed", "table_position", "table_velocity")
+    shown = {"motor_torque" if name == "torque" else name: getattr(run, name) for name in names}
     return Motion(axis.name, run.time, {**shown, **run.signals}, tick)
 
 

@@ -25,8 +25,8 @@ from feeddrive.recording.recording import Recording
 from feeddrive.servo.cascade import KV_UNIT
 from feeddrive.servo.linear_loop import worst_eigenvalue
 from feeddrive.simulate.driven import used_life
+from feeddrive.simulate.scenario.scenario import SERIES, ScenarioResult
 from feeddrive.simulate.scenario.scenario_file import GivenPlant, read_scenario
-from feeddrive.simulate.scenario.scenario_result import SERIES, ScenarioResult
 from feeddrive.simulate.scenario.scenario_run import run_scenario
 from feeddrive.units.quantity import format_quantity
 

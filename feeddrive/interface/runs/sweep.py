@@ -14,7 +14,7 @@ from feeddrive.interface.axis import Axis
 from feeddrive.interface.shown import Listing, Shown, write_figures
 from feeddrive.metrology.run_metrics import run_metrics
 from feeddrive.output_folder import output_folder
-from feeddrive.plant.file.entries import nearest
+from feeddrive.schema.toml_text import nearest
 from feeddrive.simulate.sweep.sweep import Sweep as FinishedSweep
 from feeddrive.simulate.sweep.sweep import run_sweep
 from feeddrive.simulate.sweep.sweep_dask import on_cluster
@@ -134,7 +134,7 @@ def sweep(
         workers: processes of this computer, all processors for None; a script that asks for more than one needs
             `if __name__ == "__main__":`.
         scheduler: address of a Dask scheduler, "tcp://host:8786", in place of workers.
-        metrics: shown in the table and the figure, up to four; those that tell most if left out.
+        metrics: shown in the table and the figure, up to four; those that vary most if left out.
         folder: where finished runs are kept, so that a stopped sweep goes on.
         progress: called with the number of runs that are done, and of all.
 

@@ -135,7 +135,7 @@ class ThermalCompensation(Shown):
             resting: how long it rests after.
             heat, film: factors on all heats and films [1].
             undeclared: name of a body, "front" or "rear" to a heat that it gets while the axis moves.
-            air: by how much the surroundings warm until the end; no compensation but the model alone is told.
+            air: by how much the surroundings warm until the end; only the model alone takes it as recorded.
             seed: of the noise of the sensors.
 
         Raises:
@@ -158,8 +158,7 @@ class ThermalCompensation(Shown):
         return ThermalTrial(self, machine, times["moving"], seed)
 
     def observed(self, machine: TriedMachine, places: tuple[str, ...], seed: int) -> FloatArray:
-        """What the observer with sensors at some places makes of a machine; it is not told that the air warms, (k, p)
-        [m]."""
+        """Error by the observer with sensors at some places, which sees no warming of the air, (k, p) [m]."""
         sensors = [Sensor(place) for place in places]
         observer = thermal_observer(self.heat, self.model, self.error, sensors, self.unknowns, machine.step)
         readings = machine.readings(sensors, np.random.default_rng(seed))

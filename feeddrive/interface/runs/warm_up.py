@@ -15,7 +15,7 @@ import numpy as np
 from feeddrive import __version__
 from feeddrive.errors import InputError
 from feeddrive.interface.axis import Axis
-from feeddrive.interface.quantities import Quantity, quantities, si
+from feeddrive.interface.quantities import Quantities, Quantity, quantities, si
 from feeddrive.interface.shown import Listing, Shown, finite, write_figures, write_json
 from feeddrive.recording.files.writing import write_recording
 from feeddrive.recording.recording import Recording
@@ -173,7 +173,7 @@ def warm_up(
     duration: Quantity | None = None,
     within: Quantity = "1 µm",
     order: int = DEFAULT_ORDER,
-    stroke: Quantity | Sequence[Quantity] | None = None,
+    stroke: Quantities = None,
     segments: int = 10,
 ) -> WarmUp:
     """Let a machine warm up from rest and cold.

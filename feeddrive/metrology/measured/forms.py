@@ -45,7 +45,7 @@ def part_of(readings: Readings) -> int:
     if "target" in names:
         return 2
     held = ", ".join(sorted(names))
-    mend = "give target with up 1, down 1, ..., or time with at 0 mm, ..., or angle with radius; see docs/metrology.md"
+    mend = "give target with up 1, down 1, ..., or time with at 0 mm, ..., or angle with radius; see docs/iso230.md"
     raise InputError(f"columns {held} make no test of ISO 230", readings.where, mend)
 
 

@@ -15,7 +15,7 @@ from itertools import pairwise
 import numpy as np
 
 from feeddrive.effects.base import Effect
-from feeddrive.engine.step.step_constants import SimulationError
+from feeddrive.engine.step.linear_part import SimulationError
 from feeddrive.errors import InputError
 from feeddrive.metrology.measured.measurements import LinearTest
 from feeddrive.plant.plant import Plant

@@ -64,15 +64,14 @@ def believed(recording: Recording, motor_radius: float | None) -> FloatArray:
     return motor_radius * recording["motor_angle"]
 
 
-def stops_of(recording: Recording, target: FloatArray, position: FloatArray | None = None) -> tuple[Stop, ...]:
+def stops_of(recording: Recording, target: FloatArray) -> tuple[Stop, ...]:
     """The stops of a recording.
 
     Args:
         recording: whose scale is read.
         target: as `believed` gives it.
-        position: of the table, in place of the scale's, (n,) [m].
     """
-    scale = recording["table_position"] if position is None else position
+    scale = recording["table_position"]
     exact = "setpoint" in recording and target is recording["setpoint"]
     rate = np.abs(np.diff(target)) / recording.sample_time
     still = np.concatenate([[False], rate <= (0.0 if exact else SLOWEST), [False]])
@@ -98,7 +97,7 @@ def part_of_recording(recording: Recording, target: FloatArray) -> int:
     return 3 if recording.duration > HOUR else 2
 
 
-def linear_test_from(recording: Recording, target: FloatArray, position: FloatArray | None = None) -> LinearTest:
+def linear_test_from(recording: Recording, target: FloatArray) -> LinearTest:
     """A positioning test of the stops that were approached alike; ends from which the axis only turns are left out.
 
     Raises:
@@ -106,7 +105,7 @@ def linear_test_from(recording: Recording, target: FloatArray, position: FloatAr
     """
     found: dict[tuple[float, int], list[float]] = {}
     places: list[float] = []
-    for stop in stops_of(recording, target, position):
+    for stop in stops_of(recording, target):
         place = next((one for one in places if abs(one - stop.target) < same_place(recording, target)), stop.target)
         places += [] if place in places else [place]
         if stop.direction:

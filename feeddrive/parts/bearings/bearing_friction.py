@@ -97,7 +97,6 @@ THRUST = BallBearingType(
     {Lubrication.GREASE: 5.5, Lubrication.OIL_MIST: 0.8, Lubrication.OIL_BATH: 1.5},
     "Harris after Palmgren",
 )
-BALL_BEARING_TYPES = (DEEP_GROOVE, ANGULAR_CONTACT, THRUST)
 
 
 @dataclass(frozen=True)

@@ -35,7 +35,7 @@ from typing import ClassVar
 
 from feeddrive.errors import InputError
 from feeddrive.parts.screw.ball_screw import ScrewShaft
-from feeddrive.parts.values import PartValue, check_values
+from feeddrive.parts.values import PartValue, check_values, part_values
 
 
 @dataclass(frozen=True)
@@ -54,16 +54,9 @@ class SupportBearing:
 
     axial_stiffness: float
 
-    values: ClassVar[tuple[PartValue, ...]] = (
-        PartValue(
-            "axial_stiffness",
-            "N/m",
-            1e5,
-            1e11,
-            usual=(1e7, 1e10),
-            meaning="axial stiffness of the preloaded set, without its housing",
-        ),
-    )
+    values: ClassVar[tuple[PartValue, ...]] = part_values("""
+axial_stiffness | N/m | (100000, 1e11) usual 1e7 to 1e10 | | axial stiffness of the preloaded set, without its housing
+""")
 
     def __post_init__(self) -> None:
         check_values("bearing", self.values, vars(self))

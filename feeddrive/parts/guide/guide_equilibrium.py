@@ -15,10 +15,24 @@ The equations are the gradient of z sum (2/5) Q_j delta_j - F_x dx - F_y dy, whi
 whichever rows have lost contact. Valid without moments, for rigid rail and carriage and elastic balls.
 Source: paper 003, (1) to (5), table 1. Two corrections: (7) of the paper pairs the lateral line by part instead of by
 side and counts two of the four rows; V_y of table 1 is A0 cos a0 (equal at 45 degrees only).
+
+Stiffness of a ball guide with rigid rail and carriage, and the load at which its preload is lost.
+
+    K = z sum_j [ (dQ/ddelta) n n' + (Q/|V|) (1 - n n') ],     F_0 = 2 z Q(delta_A) sin a_A  where  delta_B = 0
+
+| symbol | meaning | unit |
+|---|---|---|
+| K | change of (F_x, F_y) with (dx, dy), tangent | N/m |
+| n | line of contact of a row | 1 |
+| F_0 | vertical load at which rows 1 and 2 lose contact | N |
+
+Rail, carriage and bolts of a real guide yield too, so that it is softer than this.
+Source: paper 003, (1) to (7), differentiated.
 """
 
 from __future__ import annotations
 
+import math
 import warnings
 from dataclasses import dataclass
 
@@ -153,3 +167,19 @@ def _checked(guide: BallGuide, state: GuideEquilibrium) -> GuideEquilibrium:
             f"guide: contact pressure of {shown} dents the races (above 4.2 GPa)", ValidityWarning, stacklevel=3
         )
     return state
+
+
+def preload_force(guide: BallGuide) -> float:
+    """Vertical force of a pair of rows without load [N]: 2 z Q sin a."""
+    load = float(guide_equilibrium(guide, 0.0).ball_load[0])
+    return 2.0 * guide.balls_per_row * load * math.sin(guide.contact_angle)
+
+
+def unloading_force(guide: BallGuide) -> float:
+    """F_0 [N] of one carriage without lateral load: 2 z Q sin a of the pair that stays. 0 without preload."""
+    rise, width = (guide.centre_distance * f(guide.contact_angle) for f in (math.sin, math.cos))
+    touching = guide.centre_distance - guide.preload_oversize
+    displacement = rise - math.sqrt(touching**2 - width**2)
+    length = math.hypot(rise + displacement, width)
+    load = float(((length - touching) / guide.hertz_constant) ** 1.5)
+    return 2.0 * guide.balls_per_row * load * (rise + displacement) / length

@@ -24,43 +24,20 @@ from dataclasses import dataclass, fields
 
 from feeddrive.errors import InputError
 from feeddrive.parts.contact import BEARING_STEEL, Material, PointContact, ball_in_groove
-from feeddrive.parts.values import PartValue, check_values
+from feeddrive.parts.values import check_values, part_values
 
 ROWS = 4
 """Rows of a carriage, as j = 1 to 4 in paper 003: 1 and 2 are unloaded by + vertical load, 3 and 4 loaded."""
 
-GUIDE_VALUES = (
-    PartValue("ball_diameter", "m", 0.0, 0.1, usual=(1e-3, 20e-3), meaning="diameter of a ball"),
-    PartValue(
-        "rail_conformity", "1", 0.5, 1.0, usual=(0.505, 0.6), meaning="groove radius of the rail over ball diameter"
-    ),
-    PartValue(
-        "carriage_conformity",
-        "1",
-        0.5,
-        1.0,
-        usual=(0.505, 0.6),
-        meaning="groove radius of the carriage over ball diameter",
-    ),
-    PartValue(
-        "contact_angle",
-        "rad",
-        0.0,
-        math.pi / 2,
-        usual=(math.radians(30), math.radians(60)),
-        meaning="contact angle without load, from the horizontal",
-    ),
-    PartValue(
-        "preload_oversize",
-        "m",
-        0.0,
-        1e-3,
-        usual=(0.0, 50e-6),
-        open_ends=False,
-        meaning="oversize of the balls that makes the preload; 0 for none",
-    ),
-    PartValue("balls_per_row", "1", 1, 1000, usual=(3, 100), open_ends=False, meaning="balls under load in one row"),
-)
+_USUAL_ANGLE = f"(0, {math.pi / 2}) usual {math.radians(30)} to {math.radians(60)}"
+GUIDE_VALUES = part_values(f"""
+ball_diameter | m | (0, 0.1) usual 0.001 to 0.02 | | diameter of a ball
+rail_conformity | 1 | (0.5, 1) usual 0.505 to 0.6 | | groove radius of the rail over ball diameter
+carriage_conformity | 1 | (0.5, 1) usual 0.505 to 0.6 | | groove radius of the carriage over ball diameter
+contact_angle | rad | {_USUAL_ANGLE} | | contact angle without load, from the horizontal
+preload_oversize | m | [0, 0.001] usual 0 to 5e-5 | | oversize of the balls that makes the preload; 0 for none
+balls_per_row | 1 | [1, 1000] usual 3 to 100 | | balls under load in one row
+""")
 
 
 @dataclass(frozen=True)

@@ -23,11 +23,8 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from feeddrive.errors import InputError
 from feeddrive.parts.screw.screw_contact import BallTrack
-from feeddrive.typing import FloatArray
 
 
 def screw_groove_per_turn(track: BallTrack) -> float:
@@ -49,7 +46,7 @@ def effective_screw_groove(track: BallTrack, stroke: float, slope: float) -> flo
     """Length of groove stressed as often as the most stressed points that fails as likely as all of the screw [m].
 
     g_B / l (|l_s - l zeta| + 2 min(l_s, l zeta) / (e + 1)): the product of the survivals along the trapezoid of
-    `screw_cycles_along`, to the Weibull slope e; derived here. Paper 001 counts all of l_0B as stressed most.
+    cycles along the screw, to the Weibull slope e; derived here. Paper 001 counts all of l_0B as stressed most.
     """
     if not (math.isfinite(slope) and slope > 0.0):
         raise InputError(f"a Weibull slope of {slope:g}", "stress cycles", "write a slope above 0")
@@ -83,22 +80,6 @@ def screw_cycles(track: BallTrack, stroke: float) -> float:
 def nut_cycles(track: BallTrack, stroke: float) -> float:
     """u_sM: cycles of every point of the nut in one stroke [m]."""
     return track.balls * stroke_ratio(track, stroke) * ball_travel_share(track)
-
-
-def screw_cycles_along(track: BallTrack, stroke: float, place: FloatArray) -> FloatArray:
-    """Cycles along the screw in one stroke, 0 beyond its stressed part.
-
-    A trapezoid: it rises over min(l_s, l zeta), stays at u_sB over |l_s - l zeta| and falls again; derived here.
-
-    Args:
-        track: balls and grooves.
-        stroke: l_s [m].
-        place: axial place from the beginning of the stressed part, any shape [m].
-    """
-    ramp = min(_checked(stroke), track.loaded_length)
-    end = stroke + track.loaded_length
-    inside = np.clip(np.minimum(place, end - place) / ramp, 0.0, 1.0)
-    return np.asarray(screw_cycles(track, stroke) * inside, dtype=float)
 
 
 def cycles_per_revolution(track: BallTrack, stroke: float) -> tuple[float, float]:

@@ -20,12 +20,10 @@ samples of that count gives an interval that covers what it says. Source of the 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from scipy.stats import CensoredData, beta, weibull_min
 
 from feeddrive.errors import InputError
 from feeddrive.parts.elementary import power
@@ -33,9 +31,6 @@ from feeddrive.typing import FloatArray
 
 RATED_FAILURE = 0.1
 """Share of specimens that have failed at the rated life L10."""
-
-
-_LARGEST = 1e300
 
 
 @dataclass(frozen=True)
@@ -82,77 +77,6 @@ class WeibullLaw:
         return power(life / self.scale, self.slope)
 
 
-@dataclass(frozen=True, eq=False)
-class LifeSample:
-    """Lives of a test, all in one unit.
-
-    Attributes:
-        failed: lives at failure, (k,).
-        suspended: lives reached without failure, (m,); empty where all failed.
-        found: inspections between which a failure came, (j, 2): last seen whole, found failed.
-
-    Raises:
-        InputError: a life that is not positive and finite, an inspection pair out of order, fewer than two failures.
-    """
-
-    failed: FloatArray
-    suspended: FloatArray
-    found: FloatArray
-
-    def __post_init__(self) -> None:
-        for name, lives in (("failed", self.failed), ("suspended", self.suspended), ("found", self.found[:, 1])):
-            if not np.all(np.isfinite(lives) & (lives > 0.0)):
-                raise InputError("a life is not positive and finite", f"life sample, {name}", "write lives above 0")
-        if np.any(self.found[:, 0] < 0.0) or np.any(self.found[:, 0] >= self.found[:, 1]):
-            raise InputError("an inspection pair is out of order", "life sample, found", "write (last whole, failed)")
-        if self.failures < 2:
-            raise InputError(f"{self.failures} failures", "life sample", "a slope needs two failures or more")
-
-    @property
-    def failures(self) -> int:
-        """Specimens that failed."""
-        return int(self.failed.size + self.found.shape[0])
-
-    @property
-    def size(self) -> int:
-        """Specimens in the test."""
-        return self.failures + int(self.suspended.size)
-
-
-def life_sample(
-    failed: Sequence[float] | FloatArray,
-    suspended: Sequence[float] | FloatArray = (),
-    found: Sequence[tuple[float, float]] | FloatArray = (),
-) -> LifeSample:
-    """A sample from plain lists; see `LifeSample`.
-
-    Raises:
-        InputError: as `LifeSample`.
-    """
-    pairs = np.asarray(found, dtype=float).reshape(-1, 2)
-    return LifeSample(np.asarray(failed, dtype=float), np.asarray(suspended, dtype=float), pairs)
-
-
-def median_ranks(sample: LifeSample) -> tuple[FloatArray, FloatArray]:
-    """Lives at failure in rising order and the median of F at each, (k,) both.
-
-    The median rank of the i-th of n is the median of the Beta law of i and n + 1 - i. Suspended specimens raise the
-    following ranks by Johnson's increment (n + 1 - i) / (n + 2 - j), j being the place among all specimens. A failure
-    between two inspections counts at the later one, when it was found.
-    """
-    failures = np.concatenate((sample.failed, sample.found[:, 1]))
-    lives = np.concatenate((failures, sample.suspended))
-    is_failure = np.arange(lives.size) < failures.size
-    # At equal lives the failure comes first: the suspended specimen was still whole.
-    order = np.lexsort((~is_failure, lives))
-    rank, ranks = 0.0, []
-    for place in np.flatnonzero(is_failure[order]):
-        rank += (lives.size + 1.0 - rank) / (1.0 + lives.size - place)
-        ranks.append(rank)
-    adjusted = np.array(ranks)
-    return np.sort(failures), np.asarray(beta.ppf(0.5, adjusted, lives.size + 1.0 - adjusted), dtype=float)
-
-
 def line_fit(lives: FloatArray, failed: FloatArray) -> WeibullLaw:
     """The straight line through points in Weibull paper by least squares in ln ln 1/(1 - F), as the paper draws it.
 
@@ -170,57 +94,10 @@ def line_fit(lives: FloatArray, failed: FloatArray) -> WeibullLaw:
     return WeibullLaw(math.exp(-offset / slope) if slope > 0.0 else math.nan, float(slope))
 
 
-def rank_fit(sample: LifeSample) -> WeibullLaw:
-    """Line through the median ranks. For ten specimens its slope spreads by a quarter; say so with an interval.
-
-    Raises:
-        InputError: all lives equal.
-    """
-    return line_fit(*median_ranks(sample))
-
-
-def likelihood_fit(sample: LifeSample) -> WeibullLaw:
-    """The law of maximum likelihood; takes suspended specimens and inspection intervals as what they are.
-
-    Its slope is too steep on average where failures are few: by a sixth for ten, a thirteenth for twenty.
-
-    Raises:
-        InputError: every failure may have come at one life, so that the slope would be infinite.
-    """
-    _require_spread(sample)
-    # Lives near 1: the search is scipy's, in the plain parameters.
-    unit = float(np.median(np.concatenate((sample.failed, sample.found[:, 1]))))
-    data = CensoredData(sample.failed / unit, right=sample.suspended / unit, interval=sample.found / unit)
-    slope, _, scale = weibull_min.fit(data, floc=0.0)
-    return WeibullLaw(float(scale) * unit, float(slope))
-
-
-def log_likelihood(law: WeibullLaw, sample: LifeSample) -> float:
-    """Log-likelihood of a sample under a law; minus infinity where it is below the range of numbers."""
-    slope, scale = law.slope, law.scale
-    with np.errstate(over="ignore", divide="ignore", under="ignore"):
-        exact = weibull_min.logpdf(sample.failed, slope, scale=scale).sum()
-        whole = -((sample.suspended / scale) ** slope).sum()
-        hazard = np.minimum((sample.found / scale) ** slope, _LARGEST)
-        # S(start) - S(end) = S(start) (1 - exp(-(difference of the hazards))), without the difference of two ones.
-        between = (-hazard[:, 0] + np.log(-np.expm1(hazard[:, 0] - hazard[:, 1]))).sum()
-    return float(exact + whole + between)
-
-
 def _check_share(failed: float) -> None:
     """Refuse a share of failures outside 0 to 1, ends excluded, or so small that no law of lives holds for it."""
     if not 1e-12 <= failed < 1.0:
         raise InputError(f"a share of failures of {failed:g}", "Weibull law", "write one between 0 and 1, such as 0.1")
-
-
-def _require_spread(sample: LifeSample) -> None:
-    """Refuse a sample in which one life can stand for all failures, and no suspended specimen outlived it."""
-    latest_start = max([*sample.failed, *sample.found[:, 0]])
-    earliest_end = min([*sample.failed, *sample.found[:, 1]])
-    outlived = sample.suspended.size > 0 and float(sample.suspended.max()) > earliest_end
-    if latest_start <= earliest_end and not outlived:
-        what = f"every failure may have come at the life {earliest_end:g}"
-        raise InputError(what, "Weibull fit", "a slope needs failures at lives that differ")
 
 
 _VALUES = 1_000_000

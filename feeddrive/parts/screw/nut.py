@@ -11,36 +11,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from feeddrive.parts.values import PartValue, check_values
+from feeddrive.parts.values import PartValue, check_values, part_values
 
-CATALOGUE_VALUES = (
-    PartValue(
-        "catalogue_stiffness",
-        "N/m",
-        1e5,
-        1e11,
-        usual=(1e7, 5e9),
-        meaning="nut stiffness as the catalogue states it, R_nu",
-    ),
-    PartValue(
-        "catalogue_preload",
-        "N",
-        0.0,
-        1e7,
-        usual=(10.0, 1e5),
-        meaning="preload or load at which the catalogue states it",
-    ),
-    PartValue("preload", "N", 0.0, 1e7, usual=(10.0, 1e5), meaning="preload of this nut"),
-    PartValue(
-        "accuracy_factor",
-        "1",
-        0.0,
-        1.0,
-        usual=(0.4, 1.0),
-        open_ends=False,
-        meaning="share of the stated stiffness that real balls and grooves reach, f_ar",
-    ),
-)
+CATALOGUE_VALUES = part_values("""
+catalogue_stiffness | N/m | (100000, 1e11) usual 1e7 to 5e9 | | nut stiffness as the catalogue states it, R_nu
+catalogue_preload | N | (0, 1e7) usual 10 to 100000 | | preload or load at which the catalogue states it
+preload | N | (0, 1e7) usual 10 to 100000 | | preload of this nut
+accuracy_factor | 1 | [0, 1] usual 0.4 to 1 | | share of the stated stiffness that real balls and grooves reach, f_ar
+""")
 """Values of a nut whose stiffness follows from a catalogue's value at another preload."""
 
 
@@ -60,16 +38,9 @@ class Nut:
 
     axial_stiffness: float
 
-    values: ClassVar[tuple[PartValue, ...]] = (
-        PartValue(
-            "axial_stiffness",
-            "N/m",
-            1e5,
-            1e11,
-            usual=(1e7, 5e9),
-            meaning="stiffness between screw and nut body at the preload, R_nu,ar",
-        ),
-    )
+    values: ClassVar[tuple[PartValue, ...]] = part_values("""
+axial_stiffness | N/m | (100000, 1e11) usual 1e7 to 5e9 | | stiffness between screw and nut body at the preload, R_nu,ar
+""")
 
     def __post_init__(self) -> None:
         check_values("nut", self.values, vars(self))

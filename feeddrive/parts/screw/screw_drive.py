@@ -12,11 +12,10 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from feeddrive.parts.bearings.supports import ScrewSupports, check_position
-from feeddrive.parts.coupling import Coupling
+from feeddrive.parts.coupling import Coupling, Transmission
 from feeddrive.parts.motor import Motor
 from feeddrive.parts.screw.ball_screw import ScrewShaft
 from feeddrive.parts.screw.nut import Nut
-from feeddrive.parts.screw.transmission import Transmission
 from feeddrive.parts.values import PartValue, check_values
 
 

@@ -21,13 +21,16 @@ from dataclasses import asdict, dataclass
 
 from feeddrive.errors import InputError
 from feeddrive.parts.screw.double_nut import friction_torque_backward, friction_torque_forward, rigid_sharing
-from feeddrive.parts.screw.preload_torque import friction_from_torque, ideal_torque, preload_torque, relative_torque
 from feeddrive.parts.screw.screw_efficiency import (
     back_driving_efficiency,
     back_driving_loss,
     driving_efficiency,
     driving_loss,
+    friction_from_torque,
+    ideal_torque,
     jamming_friction,
+    preload_torque,
+    relative_torque,
 )
 from feeddrive.parts.screw.slip_angle import Groove, groove_of_screw
 from feeddrive.parts.screw.torque_regression import TorqueSplit

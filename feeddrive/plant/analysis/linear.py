@@ -13,30 +13,14 @@ from typing import TYPE_CHECKING
 import casadi as ca
 import numpy as np
 
-from feeddrive.plant.analysis.ode import INPUTS, OUTPUTS, ode, ode_parameters, state_names, timed_ode
-from feeddrive.plant.analysis.steady import MOVING, SteadyMotion, steady_motion, steady_motions
-from feeddrive.plant.equations import parameter_values
+from feeddrive.plant.analysis.ode import INPUTS, OUTPUTS, ode, state_names
+from feeddrive.plant.analysis.steady import MOVING, steady_motion
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.structure import per_structure
+from feeddrive.plant.structure import parameter_values, per_structure
 from feeddrive.typing import FloatArray
 
 if TYPE_CHECKING:
     import control
-
-__all__ = [
-    "INPUTS",
-    "MOVING",
-    "OUTPUTS",
-    "SteadyMotion",
-    "linear_matrices",
-    "ode",
-    "ode_parameters",
-    "state_names",
-    "state_space",
-    "steady_motion",
-    "steady_motions",
-    "timed_ode",
-]
 
 
 def state_space(plant: Plant, velocity: float = MOVING, position: float = 0.0) -> control.StateSpace:

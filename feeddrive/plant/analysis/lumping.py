@@ -48,7 +48,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import casadi as ca
 import numpy as np
 from scipy.optimize import minimize_scalar
 
@@ -56,31 +55,27 @@ from feeddrive.effects.base import ChainEffect, Effect
 from feeddrive.effects.transmission.preload_loss import PreloadLoss
 from feeddrive.effects.transmission.stiffness_vs_position import StiffnessVsPosition
 from feeddrive.errors import InputError
-from feeddrive.plant.analysis.modes import braked_modes, free_modes
+from feeddrive.plant.analysis.lumped_figures import PLACES, Compared, compared_along, compared_figures, first_modes
 from feeddrive.plant.analysis.steady import steady_motions
-from feeddrive.plant.analysis.stiffness_budget import nut_stiffness, static_stiffness, stiffness_budget
+from feeddrive.plant.analysis.stiffness_budget import nut_stiffness, static_stiffness
 from feeddrive.plant.chain.chain import ThreeInertias
 from feeddrive.plant.chain.drive_values import without_brake
-from feeddrive.plant.chain.moving_inertia import inertia_at_motor
-from feeddrive.plant.chain.resolution import resolved_modes
-from feeddrive.plant.file.entries import parse_toml
 from feeddrive.plant.file.lumped_text import lumped_text
 from feeddrive.plant.file.plant_file import plant_from_entries
 from feeddrive.plant.passive_friction import top_speed
 from feeddrive.plant.plant import Plant
+from feeddrive.schema.toml_text import parse_toml
 from feeddrive.typing import FloatArray
 from feeddrive.units.quantity import format_quantity
 
 LEAST_SHARE = 1e-3
 """Least share of the turning inertia that motor and screw keep: none of the three may be without mass."""
 
-_PLACES = 21
-"""Table positions of the least squares along the stroke: a parabola needs three, the rest tells whether it is one."""
 
 _STRAIGHT = 1e-9
 """Rise of the parabola that is rounding: no machine is known to that."""
 
-_STEADY_PLACES = 5
+_STEADYPLACES = 5
 """Table positions of the steady motions: what is missed bends little along the stroke, as the torsion does."""
 
 UNDECLARED_SPEED = 0.25
@@ -88,21 +83,6 @@ UNDECLARED_SPEED = 0.25
 15 m/min. The error is told with it."""
 
 _TRIED = 60  # shares from which the best is refined; the sum is smooth, with one minimum on machines
-
-
-@dataclass(frozen=True)
-class Compared:
-    """A figure of the machine, and of the three inertias: name, unit, both values [unit]."""
-
-    name: str
-    unit: str
-    machine: float
-    lumped: float
-
-    @property
-    def error(self) -> float:
-        """Relative error of the three inertias."""
-        return self.lumped / self.machine - 1
 
 
 @dataclass(frozen=True)
@@ -143,7 +123,7 @@ def lump(plant: Plant, position: float | None = None, further: tuple[str, ...] =
     values = _chain_values(bare, position)
     model = replace(bare, mechanics=ThreeInertias(values), effects=(), drive=None)
     along = _along_stroke(plant, bare, values, position)
-    compared = (*_compared(bare, model, position), *_compared_along(bare, model, along))
+    compared = (*compared_figures(bare, model, position), *compared_along(bare, model, along))
     effects, remarks = _effects(plant, values, along)
     missed = _missed(plant, replace(model, effects=effects))
     left_out = (*_left_out(plant, missed), *further)
@@ -200,50 +180,16 @@ def _shared(values: Mapping[str, float], turning: float, ratio: float, share: fl
 
 def _screw_share(bare: Plant, values: Mapping[str, float], turning: float, ratio: float, position: float) -> float:
     """Share of the turning inertia that is the screw's."""
-    wanted = np.log(_first_modes(bare, position))
+    wanted = np.log(first_modes(bare, position))
 
     def missed(share: float) -> float:
         model = Plant("three inertias", ThreeInertias(_shared(values, turning, ratio, share)))
-        return float(np.sum((np.log(_first_modes(model, position)) - wanted) ** 2))
+        return float(np.sum((np.log(first_modes(model, position)) - wanted) ** 2))
 
     tried = np.linspace(LEAST_SHARE, 1 - LEAST_SHARE, _TRIED)
     best = int(np.argmin([missed(float(share)) for share in tried]))
     ends = float(tried[max(best - 1, 0)]), float(tried[min(best + 1, _TRIED - 1)])
     return float(minimize_scalar(missed, bounds=ends, method="bounded", options={"xatol": 1e-7}).x)
-
-
-def _first_modes(plant: Plant, position: float) -> FloatArray:
-    """First anti-resonance and first resonance [Hz], shape (2,)."""
-    if isinstance(plant.chain, ThreeInertias):
-        return np.array([braked_modes(plant).frequencies[0], free_modes(plant).frequencies[1]])
-    found = resolved_modes(plant, position, 1)
-    return np.array([found.braked.frequencies[0], found.free.frequencies[1]])
-
-
-def _compared(machine: Plant, model: Plant, position: float) -> tuple[Compared, ...]:
-    there, here = resolved_modes(machine, position, 2), resolved_modes(model, position, 2)
-    of, by = stiffness_budget(machine, position), stiffness_budget(model, position)
-    rows = [
-        Compared("static stiffness at the table, motor held", "N/m", of.total, by.total),
-        Compared("torsional stiffness, felt at the table", "N/m", of.torsional, by.torsional),
-        Compared("axial stiffness", "N/m", of.axial, by.axial),
-        Compared(
-            "inertia at the motor", "kg m^2", inertia_at_motor(machine, position), inertia_at_motor(model, position)
-        ),
-    ]
-    names = ("first", "second")
-    for i, name in enumerate(names):
-        pair = there.braked.frequencies[i], here.braked.frequencies[i]
-        rows.append(Compared(f"{name} anti-resonance, motor held", "Hz", *map(float, pair)))
-    for i, name in enumerate(names):
-        pair = there.free.frequencies[i + 1], here.free.frequencies[i + 1]
-        rows.append(Compared(f"{name} resonance, motor free", "Hz", *map(float, pair)))
-    for kind, a, b in (("held", there.braked, here.braked), ("free", there.free, here.free)):
-        i = 0 if kind == "held" else 1
-        if a.damping[i] > 0:
-            rows.append(Compared(f"damping ratio of the first mode, motor {kind}", "1", float(a.damping[i]),
-                                 float(b.damping[i])))  # fmt: skip
-    return tuple(rows)
 
 
 def _along_stroke(
@@ -253,7 +199,7 @@ def _along_stroke(
     if plant.stroke is None or not plant.chain.varies:
         return None
     far = max(reversed(plant.stroke), key=lambda end: abs(end - position))
-    places = np.linspace(*plant.stroke, _PLACES)
+    places = np.linspace(*plant.stroke, PLACES)
     torsional = (plant.chain.radius**2) / values["torsional_stiffness"]
     compliance = np.array([1 / static_stiffness(bare, float(x)) - torsional for x in places])
     along = (places - position) / (far - position)
@@ -267,33 +213,6 @@ def _along_stroke(
     )
 
 
-def _compared_along(machine: Plant, model: Plant, along: StiffnessVsPosition | None) -> tuple[Compared, ...]:
-    """Static stiffness and first modes at the ends of the stroke, and where the static stiffness is furthest off."""
-    if along is None or machine.stroke is None:
-        return ()
-    values = model.chain.values
-
-    def there(x: float) -> Plant:
-        factor = float(along.stiffness_factor(ca.DM(x), along.values))
-        return replace(
-            model, mechanics=ThreeInertias({**values, "axial_stiffness": factor * values["axial_stiffness"]})
-        )
-
-    def stiffnesses(x: float) -> tuple[float, float]:
-        return static_stiffness(machine, x), static_stiffness(there(x), x)
-
-    rows = []
-    for x in machine.stroke:
-        at = f"table at {format_quantity(x, 'm')}"
-        rows.append(Compared(f"static stiffness, {at}", "N/m", *stiffnesses(x)))
-        names = "first anti-resonance, motor held", "first resonance, motor free"
-        pairs = zip(names, _first_modes(machine, x), _first_modes(there(x), x), strict=True)
-        rows += [Compared(f"{name}, {at}", "Hz", float(one), float(other)) for name, one, other in pairs]
-    places = np.linspace(*machine.stroke, _PLACES)
-    worst = max(map(stiffnesses, map(float, places)), key=lambda pair: abs(pair[1] / pair[0] - 1))
-    return (*rows, Compared("static stiffness, where along the stroke it is furthest off", "N/m", *worst))
-
-
 def _missed(machine: Plant, model: Plant) -> dict[str, float]:
     """Rms [m] of what three inertias miss of the table behind the motor in steady motion along the stroke, both ways.
 
@@ -304,7 +223,7 @@ def _missed(machine: Plant, model: Plant) -> dict[str, float]:
         return {}
     speed = top_speed(machine, UNDECLARED_SPEED)
     behind = []
-    for x in np.linspace(*machine.stroke, _STEADY_PLACES):
+    for x in np.linspace(*machine.stroke, _STEADYPLACES):
         pairs = zip(*(steady_motions(one, (speed, -speed), float(x)) for one in (machine, model)), strict=True)
         behind.append([(one.state[0] - other.state[0]) * machine.chain.motor_radius for one, other in pairs])
     return {"table_position": float(np.std(behind))}

@@ -4,6 +4,17 @@
 
 All coordinates are counted in table travel (angles times r = lead / 2 pi), so that a shape compares motor, screw and
 table. Friction is not in it: at rest its slope would swamp everything.
+
+Everything that moves with the motor, seen there, and how far the table stays behind when it is accelerated.
+
+    J = r_m^2 G' M G,    q = G x where nothing is stretched
+    s = -[K_f^-1 (M G)_f r_m] at the table: x = r_m theta + s theta'' where the motor moves slowly
+
+| symbol | meaning | unit |
+|---|---|---|
+| M, K, G | mass and stiffness matrix; column of the rigid motion | |
+| f | all coordinates but the motor's | |
+| r_m | table travel per motor angle | m/rad |
 """
 
 from __future__ import annotations
@@ -14,6 +25,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import eigh, null_space
 
+from feeddrive.parts.screw.screw_drive import BallScrewDrive
+from feeddrive.plant.chain.distributed_screw import DistributedScrew
+from feeddrive.plant.chain.drive_values import distributed_values
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray
 
@@ -115,3 +129,64 @@ def _poles(M: FloatArray, C: FloatArray, K: FloatArray) -> tuple[complex, ...]:
     poles = np.linalg.eigvals(system)
     poles[np.abs(poles) <= 1e-6 * np.max(np.abs(poles))] = 0.0  # a free motion's double pole, as rounding leaves it
     return tuple(sorted((complex(pole) for pole in poles if pole.imag >= 0), key=abs))
+
+
+def inertia_at_motor(plant: Plant, position: float | None = None) -> float:
+    """Inertia of everything that moves with the motor, seen there [kg m^2].
+
+    Args:
+        plant: the machine, with what it carries.
+        position: of the table [m]; the middle of the stroke if not given.
+    """
+    values = plant.chain_values()
+    rigid = np.array(plant.chain.rigid_motion(values), dtype=float)
+    mass = np.array(plant.chain.mass(values, plant.middle if position is None else position), dtype=float)
+    return float(rigid @ mass @ rigid) * plant.chain.motor_radius**2
+
+
+def lag_per_acceleration(plant: Plant, position: float | None = None) -> float:
+    """How far the table stays behind, per acceleration of the motor [m s^2/rad]; 0 in a rigid structure.
+
+    Args:
+        plant: the machine, with what it carries.
+        position: of the table [m]; the middle of the stroke if not given.
+    """
+    chain, values = plant.chain, plant.chain_values()
+    if not chain.elastic:
+        return 0.0
+    at = plant.middle if position is None else position
+    rigid = np.array(chain.rigid_motion(values), dtype=float) * chain.motor_radius
+    M, K = (np.array(matrix(values, at), dtype=float) for matrix in (chain.mass, chain.stiffness))
+    size = 1 / np.sqrt(np.diag(K)[1:])  # of the coordinates: the matrix spans nine decades
+    load = size * (M @ rigid)[1:]
+    return float((size * np.linalg.solve(size[:, None] * K[1:, 1:] * size, load))[-1])
+
+
+# They do not move an undamped frequency, and the table is at 0 where the nut is at the near bearing.
+_WITHOUT = {"drive_damping": 0.0, "damping_time": 0.0, "nut_damping": 0.0, "first_nut_position": 0.0}
+
+
+def held_frequency(drive: BallScrewDrive, position: float) -> float:
+    """First natural frequency [Hz] with the motor held by its brake, or ideally where it has none.
+
+    Within 0.15 % of finite elements on the drive of paper 004 from 0.1 to 1.1 m of 1.2 m. A screw held by one bearing
+    at a time is taken in its softer direction.
+
+    Args:
+        drive: the parts.
+        position: nut from the near bearing, inside the screw [m].
+
+    Raises:
+        InputError: a nut off the screw or at its end, or nothing elastic between motor and screw.
+    """
+    computed = distributed_values(drive, position)
+    values = {key: entry.value for key, entry in computed.items()}
+    chain = DistributedScrew(_WITHOUT | {"lead": drive.screw.lead} | values)
+    chain.refuse_off_screw(position, "drive")
+    M, K = (np.array(matrix(chain.values, position), dtype=float) for matrix in (chain.mass, chain.stiffness))
+    if drive.motor.brake is not None:
+        K[0, 0] += drive.motor.brake.stiffness
+    else:
+        M, K = M[1:, 1:], K[1:, 1:]  # the motor angle is the first coordinate
+    squared = eigh(K, M, eigvals_only=True, subset_by_index=(0, 0))
+    return float(np.sqrt(squared[0])) / (2.0 * math.pi)

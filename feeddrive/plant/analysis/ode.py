@@ -14,19 +14,18 @@ import casadi as ca
 from feeddrive.effects.chain.structural_mode import StructuralMode
 from feeddrive.plant.chain.chain import symbolic
 from feeddrive.plant.chain.linear_chain import is_travel
-from feeddrive.plant.equations import (
-    bristle_count,
+from feeddrive.plant.equations import bristle_count, effect_forces
+from feeddrive.plant.motor_torque import acting_torque
+from feeddrive.plant.plant import Plant
+from feeddrive.plant.structure import (
+    Symbols,
     chain_symbols,
-    effect_forces,
     parameter_names,
     parameter_symbols,
     parameter_values,
-    travel_deviation,
+    per_structure,
 )
-from feeddrive.plant.motor_torque import acting_torque
-from feeddrive.plant.plant import Plant
-from feeddrive.plant.structure import per_structure
-from feeddrive.plant.symbols import Symbols
+from feeddrive.plant.transmission_law import travel_deviation
 from feeddrive.typing import Expression
 
 INPUTS = ("motor_torque", "cutting_force")

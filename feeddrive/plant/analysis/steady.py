@@ -13,8 +13,10 @@ from feeddrive.effects.base import BristleEffect, Effect, Motion, TransmissionEf
 from feeddrive.errors import InputError
 from feeddrive.plant.analysis.ode import ode
 from feeddrive.plant.chain.chain import symbolic
-from feeddrive.plant.equations import bristle_count, friction_level, parameter_symbols, parameter_values
+from feeddrive.plant.equations import bristle_count
+from feeddrive.plant.friction_law import friction_level
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.structure import parameter_symbols, parameter_values
 from feeddrive.symbolic_turn import SYMBOLS
 from feeddrive.typing import Expression, FloatArray
 

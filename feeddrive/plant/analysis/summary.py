@@ -10,9 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from feeddrive.plant.analysis.modes import inertia_at_motor
 from feeddrive.plant.analysis.steady import steady_motions
 from feeddrive.plant.analysis.stiffness_budget import StiffnessBudget, stiffness_budget
-from feeddrive.plant.chain.moving_inertia import inertia_at_motor
 from feeddrive.plant.chain.resolution import ResolvedModes, resolved_modes
 from feeddrive.plant.plant import Plant
 

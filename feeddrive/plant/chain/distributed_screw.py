@@ -67,11 +67,11 @@ from feeddrive.plant.chain.linear_chain import (
     RATIO,
     TABLE_MASS,
     Chain,
-    ChainValue,
     Matrix,
     Row,
     Spring,
     Values,
+    chain_values,
 )
 from feeddrive.typing import Expression
 from feeddrive.units.quantity import format_quantity
@@ -97,94 +97,32 @@ class DistributedScrew(Chain):
         LEAD,
         MOTOR_INERTIA,
         RATIO,
-        ChainValue(
-            "drive_stiffness",
-            "transmission",
-            "N m/rad",
-            usual=(1.0, 1e8),
-            meaning="torsional stiffness from the motor to the screw's end",
-        ),
-        ChainValue(
-            "drive_damping", "transmission", "N m s/rad", may_be_zero=True, meaning="damping beside the drive stiffness"
-        ),
-        ChainValue(
-            "shared_inertia",
-            "transmission",
-            "kg m^2",
-            may_be_zero=True,
-            meaning="inertia of hubs and wheels between motor and screw, sum of J a (1 - a)",
-        ),
-        ChainValue(
-            "drive_end_inertia",
-            "transmission",
-            "kg m^2",
-            may_be_zero=True,
-            meaning="inertia of hubs and wheels at the screw's end, sum of J a^2",
-        ),
-        ChainValue(
-            "drive_length",
-            "ball_screw",
-            "m",
-            may_be_zero=True,
-            written="stub",
-            meaning="from the near bearing back to the coupling, under torque alone",
-        ),
-        ChainValue("bearing_distance", "ball_screw", "m", meaning="between near and far bearing"),
-        ChainValue("screw_length", "ball_screw", "m", usual=(0.02, 20.0), meaning="of the elastic screw"),
-        ChainValue("axial_rigidity", "ball_screw", "N", usual=(1e5, 1e11), meaning="E A of the screw"),
-        ChainValue("torsional_rigidity", "ball_screw", "N m^2", usual=(1e-2, 1e8), meaning="G I_p of the screw"),
-        ChainValue("mass_per_length", "ball_screw", "kg/m", meaning="mass of the screw per length"),
-        ChainValue("inertia_per_length", "ball_screw", "kg m", meaning="inertia of the screw per length"),
-        ChainValue(
-            "damping_time",
-            "damping",
-            "s",
-            may_be_zero=True,
-            written="time",
-            meaning="damping over stiffness of every spring, C = time K",
-        ),
-        ChainValue(
-            "bearing_stiffness",
-            "support",
-            "N/m",
-            may_be_zero=True,
-            written="near_stiffness",
-            usual=(1e6, 1e11),
-            meaning="axial stiffness of the bearing at the motor's end",
-        ),
-        ChainValue(
-            "far_bearing_stiffness",
-            "support",
-            "N/m",
-            may_be_zero=True,
-            written="far_stiffness",
-            usual=(1e6, 1e11),
-            meaning="axial stiffness of the far bearing",
-        ),
-        ChainValue(
-            "nut_stiffness",
-            "nut",
-            "N/m",
-            written="combined_stiffness",
-            usual=(1e6, 1e11),
-            meaning="stiffness of nut and bracket together",
-        ),
-        ChainValue(
-            "nut_damping",
-            "nut",
-            "N s/m",
-            may_be_zero=True,
-            written="damping",
-            meaning="damping beside the nut stiffness",
-        ),
+        *chain_values("""
+drive_stiffness | transmission.drive_stiffness | N m/rad | > 0 usual 1 to 1e8 | torsional stiffness from the motor \
+to the screw's end
+drive_damping | transmission.drive_damping | N m s/rad | >= 0 | damping beside the drive stiffness
+shared_inertia | transmission.shared_inertia | kg m^2 | >= 0 | inertia of hubs and wheels between motor and screw, \
+sum of J a (1 - a)
+drive_end_inertia | transmission.drive_end_inertia | kg m^2 | >= 0 | inertia of hubs and wheels at the screw's end, \
+sum of J a^2
+drive_length | ball_screw.stub | m | >= 0 | from the near bearing back to the coupling, under torque alone
+bearing_distance | ball_screw.bearing_distance | m | > 0 | between near and far bearing
+screw_length | ball_screw.length | m | > 0 usual 0.02 to 20 | of the elastic screw
+axial_rigidity | ball_screw.axial_rigidity | N | > 0 usual 1e5 to 1e11 | E A of the screw
+torsional_rigidity | ball_screw.torsional_rigidity | N m^2 | > 0 usual 1e-2 to 1e8 | G I_p of the screw
+mass_per_length | ball_screw.mass_per_length | kg/m | > 0 | mass of the screw per length
+inertia_per_length | ball_screw.inertia_per_length | kg m | > 0 | inertia of the screw per length
+damping_time | damping.time | s | >= 0 | damping over stiffness of every spring, C = time K
+bearing_stiffness | support.near_stiffness | N/m | >= 0 usual 1e6 to 1e11 | axial stiffness of the bearing at the \
+motor's end
+far_bearing_stiffness | support.far_stiffness | N/m | >= 0 usual 1e6 to 1e11 | axial stiffness of the far bearing
+nut_stiffness | nut.combined_stiffness | N/m | > 0 usual 1e6 to 1e11 | stiffness of nut and bracket together
+nut_damping | nut.damping | N s/m | >= 0 | damping beside the nut stiffness
+"""),
         TABLE_MASS,
-        ChainValue(
-            "first_nut_position",
-            "table",
-            "m",
-            may_be_zero=True,
-            meaning="nut from the near bearing where the table is at 0",
-        ),
+        *chain_values("""
+first_nut_position | table.first_nut_position | m | >= 0 | nut from the near bearing where the table is at 0
+"""),
     )
 
     elements: int = 1

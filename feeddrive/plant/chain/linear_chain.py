@@ -23,11 +23,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import casadi as ca
 
+from feeddrive.schema.key import bounds, table_rows
 from feeddrive.typing import Expression
 
 Row = list[Expression]
@@ -77,17 +78,28 @@ class ChainValue:
         return self.written or self.key.removeprefix(_PREFIXES.get(self.section, ""))
 
 
-LEAD = ChainValue("lead", "ball_screw", "m", usual=(5e-4, 0.2), meaning="table travel per turn of the screw")
-MOTOR_INERTIA = ChainValue(
-    "motor_inertia", "motor", "kg m^2", usual=(1e-8, 10.0), meaning="inertia at the motor: rotor and coupling"
-)
-SCREW_INERTIA = ChainValue(
-    "screw_inertia", "ball_screw", "kg m^2", usual=(1e-8, 10.0), meaning="inertia that turns with the screw"
-)
-RATIO = ChainValue(
-    "ratio", "transmission", "1", meaning="turns of the motor per turn of the screw; 1 where it is direct"
-)
-TABLE_MASS = ChainValue("table_mass", "table", "kg", usual=(0.2, 1e5), meaning="mass that moves with the table")
+def chain_values(table: str) -> tuple[ChainValue, ...]:
+    """Values declared in a table, one a line: key | section.key in the plant file | SI unit | range | meaning.
+
+    The range is > 0, or >= 0 where the value may be zero, and what is usual (`feeddrive.schema.key`).
+    """
+    return tuple(_chain_value(*cells) for cells in table_rows(table))
+
+
+def _chain_value(key: str, place: str, unit: str, ends: str, meaning: str) -> ChainValue:
+    found, (section, written) = bounds(ends), place.split(".")
+    assert found is not None, ends
+    plain = ChainValue(key, section, unit, not found.open_ends, usual=found.usual, meaning=meaning)
+    return plain if plain.section_key == written else replace(plain, written=written)
+
+
+LEAD, MOTOR_INERTIA, SCREW_INERTIA, RATIO, TABLE_MASS = chain_values("""
+lead | ball_screw.lead | m | > 0 usual 5e-4 to 0.2 | table travel per turn of the screw
+motor_inertia | motor.inertia | kg m^2 | > 0 usual 1e-8 to 10 | inertia at the motor: rotor and coupling
+screw_inertia | ball_screw.inertia | kg m^2 | > 0 usual 1e-8 to 10 | inertia that turns with the screw
+ratio | transmission.ratio | 1 | > 0 | turns of the motor per turn of the screw; 1 where it is direct
+table_mass | table.mass | kg | > 0 usual 0.2 to 1e5 | mass that moves with the table
+""")
 """Values that several structures of a chain share."""
 
 

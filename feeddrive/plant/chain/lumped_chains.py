@@ -35,11 +35,11 @@ from feeddrive.plant.chain.linear_chain import (
     SCREW_INERTIA,
     TABLE_MASS,
     Chain,
-    ChainValue,
     Matrix,
     Row,
     Spring,
     Values,
+    chain_values,
 )
 from feeddrive.typing import Expression
 
@@ -86,30 +86,14 @@ class ThreeInertias(Chain):
         LEAD,
         MOTOR_INERTIA,
         SCREW_INERTIA,
-        ChainValue(
-            "torsional_stiffness",
-            "transmission",
-            "N m/rad",
-            usual=(1.0, 1e8),
-            meaning="torsional stiffness from motor to nut, at the screw",
-        ),
-        ChainValue(
-            "torsional_damping",
-            "transmission",
-            "N m s/rad",
-            may_be_zero=True,
-            meaning="damping beside the torsional stiffness",
-        ),
-        ChainValue(
-            "axial_stiffness",
-            "transmission",
-            "N/m",
-            usual=(1e5, 1e11),
-            meaning="axial stiffness of bearing, screw and nut in series",
-        ),
-        ChainValue(
-            "axial_damping", "transmission", "N s/m", may_be_zero=True, meaning="damping beside the axial stiffness"
-        ),
+        *chain_values("""
+torsional_stiffness | transmission.torsional_stiffness | N m/rad | > 0 usual 1 to 1e8 | torsional stiffness from \
+motor to nut, at the screw
+torsional_damping | transmission.torsional_damping | N m s/rad | >= 0 | damping beside the torsional stiffness
+axial_stiffness | transmission.axial_stiffness | N/m | > 0 usual 1e5 to 1e11 | axial stiffness of bearing, screw and \
+nut in series
+axial_damping | transmission.axial_damping | N s/m | >= 0 | damping beside the axial stiffness
+"""),
         TABLE_MASS,
     )
 

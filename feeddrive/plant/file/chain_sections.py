@@ -14,9 +14,9 @@ from feeddrive.plant.analysis.modes import free_modes
 from feeddrive.plant.chain.chain import CHAINS, Chain, ChainValue, DistributedScrew, Rigid
 from feeddrive.plant.chain.drive_values import Computed, distributed_values, lumped_values
 from feeddrive.plant.file.drive_sections import describes_parts, read_drive
-from feeddrive.plant.file.entries import Table
 from feeddrive.plant.file.ratings import first_nut_position, read_stroke
 from feeddrive.plant.plant import Plant
+from feeddrive.schema.table import Table
 from feeddrive.units.quantity import format_quantity
 
 _DAMPERS = {
@@ -45,19 +45,6 @@ def read_chain(top: Table) -> tuple[Chain, BallScrewDrive | None]:
             values[value.key] = _value(top, value, structure, computed)
     chain = _made(top, structure, values)
     return _damped(top, chain, computed), drive
-
-
-def positive(table: Table, key: str, unit: str, origin: str, usual: tuple[float, float] | None = None) -> float:
-    """A value above zero.
-
-    Raises:
-        InputError: as `Table.quantity`, or zero or negative.
-    """
-    number = table.quantity(key, unit, origin, usual)
-    if number <= 0:
-        sign = "negative" if number < 0 else "zero"
-        raise InputError(f"{format_quantity(number, unit)} is {sign}", table.place(key), "write a value above zero")
-    return number
 
 
 def _computed(top: Table, structure: type[Chain], drive: BallScrewDrive | None) -> dict[str, Computed]:
@@ -95,7 +82,7 @@ def _value(top: Table, value: ChainValue, structure: type[Chain], computed: dict
 
 def _written(table: Table, value: ChainValue) -> float:
     if not value.may_be_zero:
-        return positive(table, value.section_key, value.unit, value.key, value.usual)
+        return table.positive(value.section_key, value.unit, value.key, value.usual)
     number = table.quantity(value.section_key, value.unit, value.key, value.usual)
     if number < 0:
         shown = format_quantity(number, value.unit)
@@ -129,7 +116,7 @@ def _damped(top: Table, chain: Chain, computed: dict[str, Computed]) -> Chain:
     if not 0 <= ratio < 1:
         raise InputError(f"a damping ratio of {ratio:g}", table.place("ratio"), "write 0 to 1, 0.01 to 0.05 is usual")
     if "frequency" in table.entries:
-        frequency, at = positive(table, "frequency", "Hz", "damping.frequency"), ""
+        frequency, at = table.positive("frequency", "Hz", "damping.frequency"), ""
     else:
         stroke = read_stroke(top)
         bare = Plant(top.where, replace(chain, values={**chain.values, **dict.fromkeys(_DAMPERS, 0.0)}))

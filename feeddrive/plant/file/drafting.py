@@ -15,9 +15,9 @@ from feeddrive.errors import InputError
 from feeddrive.parts.bearings.supports import Support
 from feeddrive.parts.catalogue.part_choice import away, chosen_motor, chosen_screw, newton, of_kind
 from feeddrive.parts.catalogue.part_files import CataloguePart, catalogue, find_part
-from feeddrive.parts.screw.preload_torque import ideal_torque
-from feeddrive.plant.file.entries import nearest_choice
+from feeddrive.parts.screw.screw_efficiency import ideal_torque
 from feeddrive.plant.file.guide_section import CARRIAGES, TURNING
+from feeddrive.schema.toml_text import nearest_choice
 from feeddrive.units.quantity import format_quantity, parse
 
 STRUCTURES = ("distributed_screw", "three_inertias")

@@ -20,15 +20,13 @@ from typing import TypeVar
 
 from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.parts.bearings.supports import ScrewSupports, Support, SupportBearing
-from feeddrive.parts.coupling import Coupling
-from feeddrive.parts.material import STEEL, ShaftMaterial
+from feeddrive.parts.coupling import Coupling, Transmission
 from feeddrive.parts.motor import HoldingBrake, Motor
-from feeddrive.parts.screw.ball_screw import ScrewShaft
+from feeddrive.parts.screw.ball_screw import STEEL, ScrewShaft, ShaftMaterial
 from feeddrive.parts.screw.nut import CATALOGUE_VALUES, Nut, stiffness_at_preload
 from feeddrive.parts.screw.screw_drive import BallScrewDrive
-from feeddrive.parts.screw.transmission import Transmission
-from feeddrive.parts.values import PartValue
-from feeddrive.plant.file.entries import Table
+from feeddrive.parts.values import PartValue, part_values
+from feeddrive.schema.table import Table
 
 Made = TypeVar("Made")
 
@@ -41,9 +39,9 @@ _MEASURED = {
 
 _PRELOADED = ("catalogue_stiffness", "catalogue_preload", "preload", "accuracy_factor")
 _NUT_VALUES = (*Nut.values, *CATALOGUE_VALUES)
-BEARING_RATING = PartValue(
-    "static_rating", "N", 0.0, 1e8, usual=(500.0, 5e6), meaning="static load rating C0 of the bearing"
-)
+(BEARING_RATING,) = part_values("""
+static_rating | N | (0, 1e8) usual 500 to 5e6 | | static load rating C0 of the bearing
+""")
 """C0 of a bearing, for plausibility rules."""
 
 BEARING_VALUES = (*SupportBearing.values, BEARING_RATING)
@@ -56,11 +54,9 @@ PART_VALUES: dict[str, tuple[PartValue, ...]] = {
     "belt": Transmission.values,
     "gear": Transmission.values,
     "ball_screw": (*ScrewShaft.values, *ShaftMaterial.values),
-    "support": (
-        PartValue(
-            "housing_stiffness", "N/m", meaning="axial stiffness of bearing housing and nut bracket; rigid if left out"
-        ),
-    ),
+    "support": part_values("""
+housing_stiffness | N/m | | | axial stiffness of bearing housing and nut bracket; rigid if left out
+"""),
     "nut": _NUT_VALUES,
 }
 """Values of parts by section."""
@@ -88,7 +84,7 @@ def read_drive(top: Table) -> BallScrewDrive:
     transmission = _part(top, wheels[0], Transmission, Transmission.values) if wheels else None
     coupling = _part(top, "coupling", Coupling, Coupling.values) if "coupling" in top.entries else None
     support, mass = top.table("support"), top.table("table").quantity("mass", "kg", "table_mass")
-    housing = _given(support, "support", PART_VALUES["support"])
+    housing = given_values(support, "support", PART_VALUES["support"])
     screw, nut, supports, motor = _screw(top), _nut(top), _supports(top), _motor(top)
     return placed(
         f"{top.where}, table",
@@ -130,46 +126,36 @@ def placed(where: str, make: Callable[[], Made]) -> Made:
     return made
 
 
-def _given(table: Table, section: str, known: Iterable[PartValue]) -> dict[str, float]:
-    """Those of the known values that stand in the table, SI; values that must stand there are asked for by the part."""
+def given_values(
+    table: Table, section: str, known: Iterable[PartValue], needed: Iterable[str] = ()
+) -> dict[str, float]:
+    """Those of the known values that stand in the table, SI, and those that must: where they are missing, an error."""
     return {
         value.key: table.quantity(value.key, value.unit, f"{section}.{value.key}", value.usual)
         for value in known
-        if value.key in table.entries
+        if value.key in table.entries or value.key in needed
     }
 
 
 def _part(top: Table, section: str, make: Callable[..., Made], known: tuple[PartValue, ...], name: str = "") -> Made:
     """A part from all of its values; those with a default may be left out."""
-    table = top.table(section)
-    values = {
-        value.key: table.quantity(value.key, value.unit, f"{name or section}.{value.key}", value.usual)
-        for value in known
-        if value.key in table.entries or value.default is None
-    }
+    table, needed = top.table(section), [value.key for value in known if value.default is None]
+    values = given_values(table, name or section, known, needed)
     return placed(table.where, lambda: make(**values))
 
 
 def _motor(top: Table) -> Motor:
     brake = _part(top, "brake", HoldingBrake, HoldingBrake.values) if "brake" in top.entries else None
     table = top.table("motor")
-    values = {
-        value.key: table.quantity(value.key, value.unit, f"motor.{value.key}", value.usual)
-        for value in Motor.values
-        if value.key in table.entries or value.key != "shaft_stiffness"
-    }
+    values = given_values(table, "motor", Motor.values, ("rotor_inertia", "torque_limit"))
     return placed(table.where, lambda: Motor(**values, brake=brake))
 
 
 def _screw(top: Table) -> ScrewShaft:
     table = top.table("ball_screw")
-    material = {**asdict(STEEL), **_given(table, "ball_screw", ShaftMaterial.values)}
+    material = {**asdict(STEEL), **given_values(table, "ball_screw", ShaftMaterial.values)}
     steel = placed(table.where, lambda: ShaftMaterial(**material))
-    values = {
-        value.key: table.quantity(value.key, value.unit, f"ball_screw.{value.key}", value.usual)
-        for value in ScrewShaft.values
-        if value.key in table.entries or value.key not in ("stub", "root_diameter")
-    }
+    values = given_values(table, "ball_screw", ScrewShaft.values, ("lead", "diameter", "length"))
     return placed(table.where, lambda: ScrewShaft(**values, material=steel))
 
 

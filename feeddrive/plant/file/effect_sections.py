@@ -9,8 +9,9 @@ from itertools import pairwise
 from feeddrive.effects.base import Effect, Parameter, Port, TransmissionEffect, Value
 from feeddrive.effects.catalogue import EFFECTS, THERMAL_EFFECTS
 from feeddrive.errors import InputError
-from feeddrive.plant.file.entries import Table, declares_heat_alone, nearest
-from feeddrive.plant.file.ratings import read_stroke
+from feeddrive.plant.file.ratings import declares_heat_alone, read_stroke
+from feeddrive.schema.table import Table
+from feeddrive.schema.toml_text import nearest
 
 
 def read_effects(top: Table, known: Mapping[str, type[Effect]] | None = None) -> tuple[Effect, ...]:

@@ -3,23 +3,16 @@
 from __future__ import annotations
 
 from feeddrive.errors import InputError
-from feeddrive.plant.file.entries import Table, declares_heat_alone
+from feeddrive.plant.file.ratings import declares_heat_alone
 from feeddrive.plant.plant import DeclaredCascade, PositionVelocityController, Sensor
 from feeddrive.recording.channels import channel_unit
+from feeddrive.schema.table import Table
 from feeddrive.thermal.machine_heat import PLACES, SCALE, THERMOMETER, HeatSensor
 from feeddrive.units.quantity import parse
 
 SENSOR_KINDS = ("encoder", "scale", "tachometer", "current")
 SENSOR_PLACES = ("motor", "screw", "table")
 _SENSOR_KEYS = ("channel", "kind", "at", "resolution", "absolute", "model_error", "source")
-_CONTROLLER_UNITS = {
-    "position_gain": "1/s",
-    "velocity_gain": "V s/m",
-    "output_limit": "V",
-    "torque_per_output": "N m/V",
-}
-MOST_SAMPLES = 64
-"""Over which a controller may take the difference of positions for its velocity."""
 
 
 def read_sensors(top: Table) -> tuple[Sensor, ...]:
@@ -49,9 +42,7 @@ def _sensor(table: Table) -> Sensor:
             sizes[key] = table.quantity(key, unit, f"{channel}.{key}")
         if sizes[key] < 0:
             raise InputError(f"the {key} is negative", table.place(key), "write it positive")
-    absolute = table.entries.get("absolute", False)
-    if not isinstance(absolute, bool):
-        raise InputError(f"{absolute!r} is neither true nor false", table.place("absolute"), "write absolute = true")
+    absolute = table.switch("absolute")
     kind, at = table.choice("kind", SENSOR_KINDS), table.choice("at", SENSOR_PLACES)
     return Sensor(channel, kind, at, sizes["resolution"], absolute, sizes["model_error"])
 
@@ -65,15 +56,13 @@ def read_controller(top: Table) -> PositionVelocityController | DeclaredCascade 
     if "controller" not in top.entries:
         return None
     table = top.table("controller")
-    if table.choice("kind", ("position_velocity", "cascade")) == "cascade":
+    if table.choice("kind") == "cascade":
         return DeclaredCascade({key: value for key, value in table.entries.items() if key != "kind"}, table.where)
     table = table.of_kind("position_velocity")
     table.refuse_undeclared()
-    values = {key: table.quantity(key, unit, f"controller.{key}") for key, unit in _CONTROLLER_UNITS.items()}
-    for key, value in values.items():
-        if value <= 0:
-            raise InputError(f"{value:g} is not above zero", table.place(key), "write a positive value")
-    return PositionVelocityController(**values, velocity_samples=table.whole("velocity_samples", 0, MOST_SAMPLES, 0))
+    keys = ("position_gain", "velocity_gain", "output_limit", "torque_per_output")
+    values = {key: table.positive(key, origin=f"controller.{key}") for key in keys}
+    return PositionVelocityController(**values, velocity_samples=table.whole("velocity_samples"))
 
 
 _HEAT_SENSOR_KEYS = ("channel", "kind", "at", "noise", "source")

@@ -21,6 +21,11 @@ carriages = 4
 preload_class = "Z0"            # may be left out: the lightest
 preload = "420 N"               # in place of that of the class
 friction_coefficient = 0.004    # as seal_drag, load and smoothing_velocity: may be left out
+
+Effects that follow from what a plant file says of table and guide: weight, counterbalance, friction of carriages.
+
+F = m g sin(inclination) - counterbalance                 constant_force, positive resists + motion
+guide_friction of `carriages` ball carriages              see `feeddrive.plant.file.guide_section`
 """
 
 from __future__ import annotations
@@ -30,13 +35,15 @@ from collections.abc import Mapping, Sequence
 
 from feeddrive.effects.base import Effect
 from feeddrive.effects.friction.guide_friction import GuideFriction, guide_effect
+from feeddrive.effects.source.constant_force import ConstantForce
 from feeddrive.errors import InputError
 from feeddrive.parts.catalogue.part_files import CataloguePart, catalogue, nearest_names
 from feeddrive.parts.guide.guide_coefficients import SET_A, SET_B
 from feeddrive.parts.guide.guide_geometry import GUIDE_VALUES, HSR_20R, HSR_30R, BallGuide
 from feeddrive.parts.guide.guide_rating import Carriages, RatedCarriage, RollingCarriage, rated_friction
 from feeddrive.plant.file.drive_sections import placed
-from feeddrive.plant.file.entries import Table
+from feeddrive.plant.file.effect_sections import next_label
+from feeddrive.schema.table import Table
 from feeddrive.units.quantity import format_quantity, parse
 
 CARRIAGES = {"HSR-20R": HSR_20R, "HSR-30R": HSR_30R}
@@ -47,9 +54,6 @@ _GEOMETRY = tuple(value.key for value in GUIDE_VALUES)
 _SHARED = ("carriage", "carriages", "seal_drag", "smoothing_velocity", "load", "source")
 _OF_GEOMETRY = (*_SHARED, "coefficients", *_GEOMETRY)
 _OF_RATING = (*_SHARED, "preload_class", "preload", "friction_coefficient")
-
-MOST = 1000
-"""Most carriages, and most balls in a row, that a file may write."""
 
 TURNING = 5e-4
 """Where tanh of the guide friction turns unless it is stated [m/s]."""
@@ -101,15 +105,15 @@ def declared_carriages(top: Table, gravity: float) -> Carriages | None:
     if "carriage" in table.entries and table.text("carriage") in _rated():
         table.refuse_unknown(_OF_RATING)
         part = _rated()[table.text("carriage")]
-        count = table.whole("carriages", 1, MOST)
+        count = table.whole("carriages")
         drag = _or_printed(table, "seal_drag", part.sections["guide"]["seal_drag"])
         coefficient = _or_printed(table, "friction_coefficient", part.further["friction_coefficient"])
         load = _load(top, gravity, count)
         return Carriages(part.name, count, load, drag, RatedCarriage(_preload(table, part), coefficient))
     table.refuse_unknown(_OF_GEOMETRY)
     name, guide = _carriage(table)
-    coefficients = COEFFICIENTS[table.choice("coefficients", COEFFICIENTS, "A")]
-    count = table.whole("carriages", 1, MOST)
+    coefficients = COEFFICIENTS[table.choice("coefficients")]
+    count = table.whole("carriages")
     seal = table.quantity("seal_drag", "N", "guide.seal_drag") if "seal_drag" in table.entries else 0.0
     return Carriages(name, count, _load(top, gravity, count), seal, RollingCarriage(guide, coefficients))
 
@@ -125,7 +129,7 @@ def _carriage(table: Table) -> tuple[str, BallGuide]:
         if name not in CARRIAGES:
             raise InputError(f'no carriage "{name}"', table.place("carriage"), _known_carriages(name))
         return name, CARRIAGES[name]
-    balls = table.whole("balls_per_row", 1, MOST)
+    balls = table.whole("balls_per_row")
     size = {v.key: table.quantity(v.key, v.unit, f"guide.{v.key}") for v in GUIDE_VALUES if v.key != "balls_per_row"}
     return "as written", placed(
         table.where,
@@ -181,3 +185,57 @@ def _load(top: Table, gravity: float, count: int) -> float:
         return guide.quantity("load", "N", "guide.load")
     angle = table.quantity("inclination", "rad", "table.inclination") if "inclination" in table.entries else 0.0
     return table.quantity("mass", "kg", "table_mass") * gravity * math.cos(angle) / count
+
+
+GRAVITY = 9.80665
+"""Standard acceleration of fall [m/s^2]."""
+
+WEIGHT_KEYS = ("inclination", "counterbalance")
+
+
+def derived_effects(top: Table, before: Sequence[Effect]) -> tuple[Effect, ...]:
+    """Weight and guide friction of a plant file, with their origins noted.
+
+    Args:
+        top: the file.
+        before: effects that it declares itself.
+
+    Raises:
+        InputError: a value that is missing, without unit or not possible, or friction declared twice.
+    """
+    made: list[Effect] = []
+    for effect, origin in [*_weight(top), *_guide(top, before)]:
+        label = next_label(effect.name, [*before, *made])
+        for key in effect.values:
+            top.origins.found[f"{label}.{key}"] = origin
+        made.append(effect)
+    return tuple(made)
+
+
+def _weight(top: Table) -> list[tuple[Effect, str]]:
+    table = top.table("table")
+    if "inclination" not in table.entries:
+        if "counterbalance" in table.entries:
+            mend = 'write inclination = "90 deg" for a vertical axis whose + direction is up'
+            raise InputError("a counterbalance without inclination", table.place("counterbalance"), mend)
+        return []
+    angle = table.quantity("inclination", "rad", "table.inclination")
+    if abs(angle) > math.pi / 2 + 1e-9:
+        mend = "write -90 deg to 90 deg, positive where the + direction points up"
+        raise InputError(f"{math.degrees(angle):g} deg is not an inclination", table.place("inclination"), mend)
+    weight = table.quantity("mass", "kg", "table_mass") * GRAVITY * math.sin(angle)
+    held = 0.0
+    if "counterbalance" in table.entries:
+        held = math.copysign(table.quantity("counterbalance", "N", "table.counterbalance"), angle)
+    origin = "computed from mass and inclination"
+    if held:
+        origin += f", less the counterbalance of {format_quantity(abs(held), 'N')}"
+    return [(ConstantForce.of(force=weight - held), origin)]
+
+
+def _guide(top: Table, before: Sequence[Effect]) -> list[tuple[Effect, str]]:
+    if "guide" not in top.entries:
+        return []
+    from feeddrive.plant.file.guide_section import guide_friction_of  # Hertz's contacts take time to import
+
+    return guide_friction_of(top, GRAVITY, before)

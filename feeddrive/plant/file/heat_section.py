@@ -76,8 +76,9 @@ from typing import Any
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 from feeddrive.parts.lubricant import Lubricant
-from feeddrive.plant.file.entries import Table, declares_heat_alone
 from feeddrive.plant.file.equipment import read_heat_sensors
+from feeddrive.plant.file.ratings import declares_heat_alone
+from feeddrive.schema.table import Table
 from feeddrive.thermal.laws.films import Films
 from feeddrive.thermal.laws.friction import Friction, bearings_of, nut_of
 from feeddrive.thermal.machine_heat import Heat
@@ -86,14 +87,7 @@ from feeddrive.thermal.thermal_coupling import Coupling, Spacer
 
 SECTION = "thermal"
 _LENGTHS = ("shaft_radius", "shaft_length", "nut_outer_radius", "nut_length")
-_STEEL = {"conductivity": "W/(m K)", "heat_capacity": "J/(m^3 K)", "expansion": "1/K", "elasticity": "Pa"}
-_OTHER = (
-    "travel", "growth_positions", "contact_conductance", "preload", "lead", "ambient", "highest_speed",
-    "nut_heat_share", "nut_end_share", "film", "nut", "front_bearing", "rear_bearing", "body", "coupling", "source",
-)  # fmt: skip
-_FRICTION = {"load_torque": "N m", "viscous_factor": "1", "viscosity": "m^2/s", "mean_diameter": "m", "heat_share": "1"}
-_BODY = {"capacity": "J/K", "conductance": "W/K", "to_air": "W/K"}
-_SEAT = {"seat_length": "m", "film": "W/(m^2 K)", "end_share": "1"}
+_FRICTION = ("load_torque", "viscous_factor", "viscosity", "mean_diameter")
 
 
 def read_heat(top: Table, name: str, effects: Sequence[Effect], joint: Coupling | None) -> Heat | None:
@@ -111,22 +105,22 @@ def read_heat(top: Table, name: str, effects: Sequence[Effect], joint: Coupling 
     if SECTION not in top.entries:
         return None
     table = top.table(SECTION)
-    table.refuse_unknown((*_LENGTHS, *_STEEL, *_OTHER))
+    table.refuse_undeclared()
     sensors = read_heat_sensors(top)
     try:
         declared = _declared(top, table, effects, joint)
         return Heat(
             name=top.text("name", name),
             rig=_rig(table, tuple(sensor.at for sensor in sensors if isinstance(sensor.at, float))),
-            films=Films(*(_value(table.table("film"), f.name, "W/(m^2 K)") for f in fields(Films))),
-            contact=_value(table, "contact_conductance", "W/(m^2 K)"),
-            preload=_value(table, "preload", "N"),
+            films=Films(*(_value(table.table("film"), f.name) for f in fields(Films))),
+            contact=_value(table, "contact_conductance"),
+            preload=_value(table, "preload"),
             lead=_lead(top, table),
-            nut=_friction(table, "nut", ()) if "nut" in table.entries else declared[0] or _friction(table, "nut", ()),
+            nut=_friction(table, "nut") if "nut" in table.entries else declared[0] or _friction(table, "nut"),
             front=_bearing(table, "front_bearing") or declared[1],
             rear=_bearing(table, "rear_bearing") or declared[2],
-            ambient=_value(table, "ambient", "degC"),
-            highest_speed=_optional(table, "highest_speed", "rad/s", 1500 * math.pi / 30),
+            ambient=_value(table, "ambient"),
+            highest_speed=_optional(table, "highest_speed"),
             bodies=tuple(_body(inner) for inner in table.tables("body")),
             sensors=sensors,
             origins=top.origins.found,
@@ -143,27 +137,27 @@ def _declared(
     """Friction of nut, front and rear bearing that the file's own motion declares, where the two are coupled."""
     if joint is None or declares_heat_alone(top.entries):
         return None, None, None
-    ambient = _value(table, "ambient", "degC")
-    diameter = 2 * _value(table, "shaft_radius", "m")
+    ambient = _value(table, "ambient")
+    diameter = 2 * _value(table, "shaft_radius")
     nut = nut_of(effects, joint, ambient, diameter, _lead(top, table))
     return nut, *bearings_of(effects, joint, ambient, diameter)
 
 
 def _rig(table: Table, scales: tuple[float, ...]) -> Rig:
-    lengths = {key: _value(table, key, "m") for key in _LENGTHS}
-    steel = Steel(**{key: _optional(table, key, unit, getattr(Steel(), key)) for key, unit in _STEEL.items()})
+    lengths = {key: _value(table, key) for key in _LENGTHS}
+    steel = Steel(**{f.name: _optional(table, f.name) for f in fields(Steel)})
     travel = _pair(table, "travel")
     positions = table.quantities("growth_positions", "m", "thermal.growth_positions")
     listed = positions if isinstance(positions, tuple) else (positions,)
     return Rig(
         radius=lengths["shaft_radius"],
         length=lengths["shaft_length"],
-        nut=Nut(lengths["nut_outer_radius"], lengths["nut_length"], _optional(table, "nut_end_share", "1", 0.0)),
+        nut=Nut(lengths["nut_outer_radius"], lengths["nut_length"], _optional(table, "nut_end_share")),
         travel=Travel(*travel),
         front=_seat(table, "front_bearing"),
         rear=_seat(table, "rear_bearing"),
         steel=steel,
-        nut_heat_share=_optional(table, "nut_heat_share", "1", 1.0),
+        nut_heat_share=_optional(table, "nut_heat_share"),
         growth_positions=(*listed, *(x for x in scales if not any(math.isclose(x, other) for other in listed))),
     )
 
@@ -183,49 +177,41 @@ def _lead(top: Table, table: Table) -> float:
     return where.quantity("lead", "m", "thermal.lead") / (2 * math.pi)
 
 
-def _friction(table: Table, key: str, others: tuple[str, ...]) -> Friction:
+def _friction(table: Table, key: str) -> Friction:
     inner = table.table(key)
-    inner.refuse_unknown((*_FRICTION, *others, "source"))
-    share = _optional(inner, "heat_share", "1", 1.0)
-    wanted = {name: unit for name, unit in _FRICTION.items() if name != "heat_share"}
-    return Friction(**{name: _value(inner, name, unit) for name, unit in wanted.items()}, heat_share=share)
+    inner.refuse_undeclared()
+    return Friction(**{name: _value(inner, name) for name in _FRICTION}, heat_share=_optional(inner, "heat_share"))
 
 
 def _bearing(table: Table, key: str) -> Friction | None:
     """Friction of a bearing; None where the file declares none, or only its seat."""
     inner = table.table(key)
-    if not any(name in inner.entries for name in _FRICTION):
-        inner.refuse_unknown((*_SEAT, *_FRICTION, "source"))
-        return None
-    return _friction(table, key, tuple(_SEAT))
+    inner.refuse_undeclared()
+    declared = any(name in inner.entries for name in (*_FRICTION, "heat_share"))
+    return _friction(table, key) if declared else None
 
 
 def _seat(table: Table, key: str) -> Seat:
     inner = table.table(key)
-    film = _value(inner, "film", _SEAT["film"]) if "film" in inner.entries else None
-    length = _optional(inner, "seat_length", "m", Seat().length)
-    return Seat(length, film, _optional(inner, "end_share", "1", 0.0))
+    film = _value(inner, "film") if "film" in inner.entries else None
+    length = inner.optional("seat_length", Seat().length, f"{SECTION}.seat_length")
+    return Seat(length, film, _optional(inner, "end_share"))
 
 
 def _body(table: Table) -> Body:
-    table.refuse_unknown(("name", "port", "source", *_BODY))
-    port = table.choice("port", ("front", "rear", "nut"))
-    values = {key: _value(table, key, unit) for key, unit in _BODY.items() if key != "to_air" or key in table.entries}
-    return Body(table.text("name"), port, **values)
+    table.refuse_undeclared()
+    keys = ("capacity", "conductance", *(("to_air",) if "to_air" in table.entries else ()))
+    return Body(table.text("name"), table.choice("port"), **{key: _value(table, key) for key in keys})
 
 
-def _value(table: Table, key: str, unit: str) -> float:
-    return table.quantity(key, unit, f"{SECTION}.{key}")
+def _value(table: Table, key: str) -> float:
+    return table.quantity(key, origin=f"{SECTION}.{key}")
 
 
-def _optional(table: Table, key: str, unit: str, default: float) -> float:
-    return _value(table, key, unit) if key in table.entries else default
+def _optional(table: Table, key: str) -> float:
+    return table.optional(key, origin=f"{SECTION}.{key}")
 
 
-_KEYS = (
-    "nut_at_zero", "nut_stiffness", "group_distance", "contact_angle", "spacer", "rear_share", "motor_constant",
-    "guide_heat_to", "nut_oil", "bearing_oil", "source",
-)  # fmt: skip
 _SPACERS = {spacer.name.lower(): spacer for spacer in Spacer}
 
 
@@ -242,13 +228,13 @@ def read_coupling(top: Table) -> Coupling | None:
     if "coupling" not in thermal.entries:
         return None
     table = thermal.table("coupling")
-    table.refuse_unknown(_KEYS)
+    table.refuse_undeclared()
     oil = _oil(table, "nut_oil")
     try:
         return Coupling(
             nut_oil=oil,
             bearing_oil=_oil(table, "bearing_oil") if "bearing_oil" in table.entries else oil,
-            spacer=_SPACERS[table.choice("spacer", _SPACERS)],
+            spacer=_SPACERS[table.choice("spacer")],
             guide_heat_to=table.text("guide_heat_to", ""),
             **_numbers(table),
         )
@@ -258,14 +244,12 @@ def read_coupling(top: Table) -> Coupling | None:
 
 
 def _numbers(table: Table) -> dict[str, Any]:
-    needed = {"nut_at_zero": "m", "nut_stiffness": "N/m", "group_distance": "m", "contact_angle": "rad"}
-    optional = {"rear_share": "1", "motor_constant": "N m/W^0.5"}
-    kept = needed | {key: unit for key, unit in optional.items() if key in table.entries}
-    return {key: table.quantity(key, unit, f"thermal.coupling.{key}") for key, unit in kept.items()}
+    given = [key for key in ("rear_share", "motor_constant") if key in table.entries]
+    keys = ("nut_at_zero", "nut_stiffness", "group_distance", "contact_angle", *given)
+    return {key: table.quantity(key, origin=f"thermal.coupling.{key}") for key in keys}
 
 
 def _oil(table: Table, key: str) -> Lubricant:
     inner = table.table(key)
-    inner.refuse_unknown(("viscosity_40", "viscosity_100", "source"))
-    values = [inner.quantity(f"viscosity_{at}", "m^2/s", f"thermal.coupling.{key}.{at}") for at in (40, 100)]
-    return Lubricant(*values)
+    inner.refuse_undeclared()
+    return Lubricant(*(inner.quantity(f"viscosity_{at}", origin=f"thermal.coupling.{key}.{at}") for at in (40, 100)))

@@ -10,11 +10,11 @@ from typing import Any
 from feeddrive.effects.base import Effect, Value
 from feeddrive.errors import InputError
 from feeddrive.plant.chain.chain import ThreeInertias
-from feeddrive.plant.file.entries import parse_toml
 from feeddrive.plant.file.ratings import RATINGS
 from feeddrive.plant.motor_torque import declared_gain
 from feeddrive.plant.plant import DeclaredCascade, Plant, PositionVelocityController
 from feeddrive.recording.channels import channel_unit
+from feeddrive.schema.toml_text import parse_toml
 
 
 def plant_text_with_effects(original_text: str, effects: Sequence[Effect], remarks: Sequence[str] = ()) -> str:

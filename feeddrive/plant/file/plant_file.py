@@ -68,30 +68,22 @@ from pathlib import Path
 from typing import Any
 
 from feeddrive.errors import InputError, ValidityWarning
-from feeddrive.plant.chain.chain import CHAINS, Chain, ChainValue, DistributedScrew, Rigid, ThreeInertias
+from feeddrive.plant.chain.chain import CHAINS, Chain, DistributedScrew, Rigid, ThreeInertias
 from feeddrive.plant.composition import refuse_what_cannot_compose
-from feeddrive.plant.derived_effects import WEIGHT_KEYS, derived_effects
-from feeddrive.plant.file.chain_sections import positive, read_chain
+from feeddrive.plant.file.chain_sections import read_chain
 from feeddrive.plant.file.drive_sections import PART_VALUES, describes_parts
 from feeddrive.plant.file.effect_sections import read_effects
-from feeddrive.plant.file.entries import Table, declares_heat_alone, read_toml
 from feeddrive.plant.file.equipment import read_controller, read_sensors
+from feeddrive.plant.file.guide_section import WEIGHT_KEYS, derived_effects
 from feeddrive.plant.file.heat_section import read_coupling, read_heat
-from feeddrive.plant.file.lumped_text import plant_text_with_effects
 from feeddrive.plant.file.plant_schema import NAMED_PARTS, plant_table
-from feeddrive.plant.file.ratings import RATINGS, read_data, read_stroke
+from feeddrive.plant.file.ratings import RATINGS, declares_heat_alone, read_data, read_stroke
 from feeddrive.plant.motor_torque import TorqueGain
 from feeddrive.plant.passive_friction import refuse_active_friction
 from feeddrive.plant.plant import Plant
+from feeddrive.schema.table import Table
+from feeddrive.schema.toml_text import read_toml
 from feeddrive.units.quantity import format_quantity
-
-__all__ = [
-    "FORMAT",
-    "plant_from_entries",
-    "plant_text_with_effects",
-    "read_plant",
-    "section_key",
-]
 
 FORMAT = "feeddrive-plant/1"
 _TOP_OF_HEAT_ALONE = ("format", "name", "source", "description", "ball_screw", "effect", "sensor", "thermal")
@@ -151,11 +143,11 @@ def plant_from_entries(entries: Mapping[str, Any], path: Path) -> Plant:
         top.refuse_unknown(_TOP_OF_HEAT_ALONE)
     chain, drive = read_chain(top) if moving else (None, None)
     motor = top.table("motor")
-    limit = positive(motor, "torque_limit", "N m", "torque_limit") if "torque_limit" in motor.entries else float("inf")
+    limit = motor.positive("torque_limit", "N m", "torque_limit") if "torque_limit" in motor.entries else float("inf")
     constant = "torque_constant"
-    per_ampere = positive(motor, constant, "N m/A", constant) if constant in motor.entries else None
+    per_ampere = motor.positive(constant, "N m/A", constant) if constant in motor.entries else None
     declared = read_effects(top)
-    factor = positive(motor, "torque_factor", "1", "torque_factor") if "torque_factor" in motor.entries else 1.0
+    factor = motor.positive("torque_factor", "1", "torque_factor") if "torque_factor" in motor.entries else 1.0
     scaled = (TorqueGain.of(gain=1 / factor),) if factor != 1.0 else ()
     effects = (*declared, *derived_effects(top, declared), *scaled)
     if chain is not None:
@@ -182,11 +174,6 @@ def plant_from_entries(entries: Mapping[str, Any], path: Path) -> Plant:
         _refuse_stroke_off_screw(plant, where)
         _warn_of_unusual(chain, where)
     return plant
-
-
-def section_key(value: ChainValue) -> str:
-    """Key of a chain value inside its section: `motor_inertia` is `inertia` in [motor]."""
-    return value.section_key
 
 
 def _refuse_unknown_keys(top: Table) -> None:

@@ -15,17 +15,18 @@ from typing import Any
 from feeddrive.effects.base import Effect, Parameter
 from feeddrive.effects.catalogue import EFFECTS, THERMAL_EFFECTS
 from feeddrive.parts.guide.guide_geometry import GUIDE_VALUES
-from feeddrive.parts.material import STEEL
+from feeddrive.parts.screw.ball_screw import STEEL
 from feeddrive.parts.values import PartValue
 from feeddrive.plant.chain.chain import CHAINS
 from feeddrive.plant.file.drive_sections import BEARING_VALUES, PART_VALUES
-from feeddrive.plant.file.entries import Table, whole_file
 from feeddrive.plant.file.named_parts import with_named_parts
 from feeddrive.plant.file.ratings import RATINGS
 from feeddrive.schema.controller import DECLARED_CONTROLLER
-from feeddrive.schema.heat import SOURCE, THERMAL
-from feeddrive.schema.key import Key, Kind
-from feeddrive.schema.section import Section, keyed
+from feeddrive.schema.heat import THERMAL
+from feeddrive.schema.key import SOURCE, Key, Kind
+from feeddrive.schema.key import keys as keys_of
+from feeddrive.schema.section import Section, keyed, sections
+from feeddrive.schema.table import Table, whole_file
 from feeddrive.units.quantity import format_quantity
 
 OF_PARTS = "in a machine described by its parts, with [support], [bearing.near] and [nut]"
@@ -51,40 +52,34 @@ _MEANINGS = {
     "damping": "damping in place of single dampers",
 }
 
-_FURTHER: dict[str, tuple[Key, ...]] = {
-    "motor": (
-        Key("torque_limit", "peak torque of the motor", "N m", minimum=0.0, open_ends=True),
-        Key("torque_constant", "torque per current, where a recording holds the current", "N m/A", minimum=0.0,
-            open_ends=True),
-        Key("torque_factor", "torque that acts over torque that the drive records", "1", minimum=0.0, open_ends=True,
-            default="1"),
-    ),
-    "ball_screw": (
-        Key("elements", "of the main span: 1 or 2", "1", Kind.WHOLE, 1, 2, default="1",
-            when='with structure = "distributed_screw"'),
-    ),
-    "transmission": (
-        Key("nut_position", "from the near bearing, where stiffness is computed; mid-stroke if left out", "m",
-            when='with structure = "three_inertias" in a machine described by its parts'),
-    ),
-    "support": (
-        Key("kind", "near end and far end of the screw", kind=Kind.TEXT, required=True, when=OF_PARTS,
-            choices=("fixed-free", "fixed-supported", "supported-supported", "fixed-fixed")),
-    ),
-    "table": (
-        Key("stroke", "least and greatest table position", "m", Kind.QUANTITIES),
-        Key("inclination", "of the + direction above the horizontal", "rad", minimum=-math.pi / 2,
-            maximum=math.pi / 2),
-        Key("counterbalance", "force against the weight; with inclination", "N"),
-        Key("first_nut_position", "nut from the near bearing where the table is at 0", "m", default="0 m",
-            when=_PLACED),
-    ),
-    "damping": (
-        Key("ratio", "damping ratio", "1", minimum=0.0, maximum=1.0, usual=(0.01, 0.05)),
-        Key("frequency", "at which the ratio is meant; the first mode with the motor free if left out", "Hz",
-            minimum=0.0, open_ends=True),
-    ),
-}  # fmt: skip
+_FURTHER: dict[str, str] = {
+    "motor": """
+torque_limit | N m | > 0 | | peak torque of the motor
+torque_constant | N m/A | > 0 | | torque per current, where a recording holds the current
+torque_factor | 1 | > 0 | = 1 | torque that acts over torque that the drive records
+""",
+    "ball_screw": """
+elements | whole | [1, 2] | = 1 | of the main span: 1 or 2 | with structure = "distributed_screw"
+""",
+    "transmission": """
+nut_position | m | | | from the near bearing, where stiffness is computed; mid-stroke if left out | \
+with structure = "three_inertias" in a machine described by its parts
+""",
+    "support": f"""
+kind | text | fixed-free, fixed-supported, supported-supported, fixed-fixed | required | \
+near end and far end of the screw | {OF_PARTS}
+""",
+    "table": f"""
+stroke | m list | | | least and greatest table position
+inclination | rad | [{-math.pi / 2}, {math.pi / 2}] | | of the + direction above the horizontal
+counterbalance | N | | | force against the weight; with inclination
+first_nut_position | m | | = 0 m | nut from the near bearing where the table is at 0 | {_PLACED}
+""",
+    "damping": """
+ratio | 1 | [0, 1] usual 0.01 to 0.05 | | damping ratio
+frequency | Hz | > 0 | | at which the ratio is meant; the first mode with the motor free if left out
+""",
+}
 
 
 def _part_key(section: str, value: PartValue, when: str) -> Key:
@@ -124,28 +119,22 @@ def _section(name: str) -> Section:
     chain = _chain_keys(name)
     parts = [_part_key(name, value, OF_PARTS) for value in PART_VALUES.get(name, ())]
     ratings = [replace(_part_key(name, value, ""), required=False) for value in RATINGS.get(name, ())]
-    named = [_named_part(name)] if name in NAMED_PARTS else []
+    named = keys_of(_PART) if name in NAMED_PARTS else ()
     both = {key.name for key in chain} & {key.name for key in parts}
-    further = list(_FURTHER.get(name, ()))
+    further = keys_of(_FURTHER.get(name, ""))
     keys = [*further, *(key for key in chain if key.name not in both), *parts, *ratings]
     if name == "table":
         keys = [replace(key, required=key.name == "mass") if key.name == "mass" else key for key in keys]
     open_to_all = {key.name for key in ratings} | both - {key.name for key in chain if key.when}
     keys = [replace(key, when="") if key.name in open_to_all else key for key in keys]
-    return Section(f"plant.{name}", _MEANINGS[name], keyed(*named, *keys, SOURCE))
+    return Section(f"plant.{name}", _MEANINGS[name], keyed(*named, *keys, *keys_of(SOURCE)))
 
 
 NAMED_PARTS = ("motor", "coupling", "ball_screw", "nut", "bearing")
 """Sections that may name a part of the catalogue."""
 
 
-def _named_part(section: str) -> Key:
-    return Key(
-        "part",
-        "of the catalogue (`feeddrive parts`); gives the values that are left out here",
-        kind=Kind.TEXT,
-        when=OF_PARTS,
-    )
+_PART = f"part | text | | | of the catalogue (`feeddrive parts`); gives the values that are left out here | {OF_PARTS}"
 
 
 def _bearing() -> Section:
@@ -153,62 +142,43 @@ def _bearing() -> Section:
     for end, meaning in (("near", "bearing at the motor's end"), ("far", "bearing at the far end")):
         keys = [_part_key("bearing", value, "") for value in BEARING_VALUES]
         keys = [replace(key, required=key.name == "axial_stiffness") for key in keys]
-        named = replace(_named_part("bearing"), when="")
-        ends[end] = Section(f"plant.bearing.{end}", meaning, keyed(named, *keys, SOURCE))
-    return Section("plant.bearing", "the bearings of the screw", keyed(SOURCE), ends)
+        (named,) = keys_of(_PART)
+        ends[end] = Section(f"plant.bearing.{end}", meaning, keyed(replace(named, when=""), *keys, *keys_of(SOURCE)))
+    return Section("plant.bearing", "the bearings of the screw", keyed(*keys_of(SOURCE)), ends)
 
 
 def _guide() -> Section:
-    geometry = "where no carriage is named"
     catalogue = "with a carriage of the catalogue"
-    keys = [
-        replace(_part_key("guide", value, geometry), kind=Kind.WHOLE if value.key == "balls_per_row" else Kind.QUANTITY)
-        for value in GUIDE_VALUES
-    ]
-    return Section(
-        "plant.guide",
-        "carriages under the table, from which guide friction follows",
-        keyed(
-            Key("carriage", "a known one (`feeddrive parts guide`), or its geometry in place of the name",
-                kind=Kind.TEXT),
-            Key("carriages", "how many", "1", Kind.WHOLE, 1, 1000, required=True),
-            Key("seal_drag", "of the seals of one carriage; 0 or the catalogue's if left out", "N", minimum=0.0,
-                usual=(0.0, 100.0)),
-            Key("load", "vertical load of one carriage; the table's weight, shared evenly, if left out", "N"),
-            Key("coefficients", "of rolling and slip", kind=Kind.TEXT, choices=("A", "B"), default="A",
-                when="with a geometry"),
-            Key("smoothing_velocity", "where the friction turns", "m/s", minimum=0.0, default="0.5 mm/s"),
-            Key("preload_class", "as the catalogue calls it; its lightest if left out", kind=Kind.TEXT,
-                when=catalogue),
-            Key("preload", "of one carriage, in place of that of the class", "N", minimum=0.0, when=catalogue),
-            Key("friction_coefficient", "force over load; the catalogue's if left out", "1", minimum=0.0,
-                maximum=0.1, when=catalogue),
-            *keys,
-            SOURCE,
-        ),
-    )  # fmt: skip
+    guide = sections(f"""
+[plant.guide] carriages under the table, from which guide friction follows
+carriage | text | | | a known one (`feeddrive parts guide`), or its geometry in place of the name
+carriages | whole | [1, 1000] | required | how many
+seal_drag | N | >= 0 usual 0 to 100 | | of the seals of one carriage; 0 or the catalogue's if left out
+load | N | | | vertical load of one carriage; the table's weight, shared evenly, if left out
+coefficients | text | A, B | = A | of rolling and slip | with a geometry
+smoothing_velocity | m/s | >= 0 | = 0.5 mm/s | where the friction turns
+preload_class | text | | | as the catalogue calls it; its lightest if left out | {catalogue}
+preload | N | >= 0 | | of one carriage, in place of that of the class | {catalogue}
+friction_coefficient | 1 | [0, 0.1] | | force over load; the catalogue's if left out | {catalogue}
+""")
+    geometry = [_part_key("guide", value, "where no carriage is named") for value in GUIDE_VALUES]
+    counted = [replace(key, kind=Kind.WHOLE) if key.name == "balls_per_row" else key for key in geometry]
+    return replace(guide, keys={**guide.keys, **keyed(*counted, *keys_of(SOURCE))})
 
 
-def _sensor() -> Section:
-    return Section(
-        "plant.sensor",
-        "one sensor",
-        keyed(
-            Key("channel", "canonical name of what it reads", kind=Kind.TEXT, required=True),
-            Key("kind", "of sensor", kind=Kind.TEXT, required=True,
-                choices=("encoder", "scale", "tachometer", "current", "thermometer")),
-            Key("at", "motor, screw or table; of a thermometer front, rear, nut or shaft; of a growth scale the"
-                " nut's position", kind=Kind.TEXT, required=True),
-            Key("resolution", "smallest step, in the unit of the channel", minimum=0.0),
-            Key("noise", "rms of a thermometer or a growth scale; read off the recording if left out", minimum=0.0),
-            Key("absolute", "whether its zero is the same in every recording, so that an offset that moves is growth",
-                kind=Kind.SWITCH, default="false"),
-            Key("model_error", "rms of what this plant may miss of a channel of motion, in its unit; nothing within it"
-                " is a finding", minimum=0.0),
-            SOURCE,
-        ),
-        listed=True,
-    )  # fmt: skip
+SENSOR = sections(f"""
+[[plant.sensor]] one sensor
+channel | text | | required | canonical name of what it reads
+kind | text | encoder, scale, tachometer, current, thermometer | required | of sensor
+at | text | | required | motor, screw or table; of a thermometer front, rear, nut or shaft; of a growth scale \
+the nut's position
+resolution | | >= 0 | | smallest step, in the unit of the channel
+noise | | >= 0 | | rms of a thermometer or a growth scale; read off the recording if left out
+absolute | switch | | = false | whether its zero is the same in every recording, so that an offset that moves is growth
+model_error | | >= 0 | | rms of what this plant may miss of a channel of motion, in its unit; nothing within it is a \
+finding
+{SOURCE}
+""")
 
 
 def meaning_of(effect: type[Effect], key: str) -> str:
@@ -251,44 +221,34 @@ def _effect(known: Iterable[type[Effect]]) -> Section:
         keys = [_parameter_key(effect, parameter) for parameter in effect.parameters]
         meaning = (effect.__doc__ or "").strip().splitlines()[0].rstrip(".")
         kinds[effect.name] = Section(f"plant.effect.{effect.name}", meaning, keyed(*place, *keys))
-    return Section(
-        "plant.effect",
-        "one effect",
-        keyed(
-            Key("name", "of the effect (`feeddrive list`)", kind=Kind.TEXT, required=True),
-            Key(
-                "port",
-                "where it acts; its first possible one if left out",
-                kind=Kind.TEXT,
-                choices=("motor", "screw", "transmission", "table", "sensor", "thermal"),
-            ),
-            SOURCE,
-        ),
-        kinds=kinds,
-        kind_key="name",
-        listed=True,
-    )
+    declared = sections(f"""
+[[plant.effect]] one effect
+name | text | | required | of the effect (`feeddrive list`)
+port | text | motor, screw, transmission, table, sensor, thermal | | where it acts; its first possible one if left out
+{SOURCE}
+""")
+    return replace(declared, kinds=kinds, kind_key="name")
 
 
 EFFECT = _effect((*EFFECTS.values(), *THERMAL_EFFECTS.values()))
 """[[effect]] of plant and scenario files."""
 
-PLANT = Section(
-    "plant",
-    "a machine",
-    keyed(
-        Key("format", 'its first line, "feeddrive-plant/1"', kind=Kind.TEXT, required=True),
-        Key("name", "of the machine; that of the file if left out", kind=Kind.TEXT),
-        Key("structure", "of the chain; left out where heat alone is declared", kind=Kind.TEXT, choices=tuple(CHAINS)),
-        Key("description", "in a sentence", kind=Kind.TEXT),
-        SOURCE,
-    ),
-    {
+_PLANT = sections(f"""
+[plant] a machine
+format | text | | required | its first line, "feeddrive-plant/1"
+name | text | | | of the machine; that of the file if left out
+structure | text | {", ".join(CHAINS)} | | of the chain; left out where heat alone is declared
+description | text | | | in a sentence
+{SOURCE}
+""")
+PLANT = replace(
+    _PLANT,
+    sections={
         **{name: _section(name) for name in _MEANINGS},
         "bearing": _bearing(),
         "guide": _guide(),
         "effect": EFFECT,
-        "sensor": _sensor(),
+        "sensor": SENSOR,
         "controller": DECLARED_CONTROLLER,
         "thermal": THERMAL,
     },

@@ -2,29 +2,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 from feeddrive.errors import InputError
-from feeddrive.parts.values import PartValue, check_values
-from feeddrive.plant.file.drive_sections import BEARING_RATING, BEARING_VALUES, PART_VALUES
-from feeddrive.plant.file.entries import Table
+from feeddrive.parts.values import PartValue, check_values, part_values
+from feeddrive.plant.file.drive_sections import BEARING_RATING, BEARING_VALUES, PART_VALUES, given_values
 from feeddrive.plant.plant import Datum
+from feeddrive.schema.table import Table
 
 RATINGS: dict[str, tuple[PartValue, ...]] = {
-    "motor": (PartValue("max_speed", "rad/s", 0.0, 1e5, usual=(10.0, 3000.0), meaning="greatest speed of the motor"),),
-    "ball_screw": (
-        PartValue("static_rating", "N", 0.0, 1e8, usual=(500.0, 5e6), meaning="static load rating C0"),
-        PartValue("dynamic_rating", "N", 0.0, 1e8, usual=(200.0, 2e6), meaning="dynamic load rating C of one nut"),
-        PartValue("ball_circle", "m", 1e-3, 0.5, usual=(4e-3, 0.2), meaning="diameter of the circle of ball centres"),
-        PartValue(
-            "dn_limit", "m rad/s", 0.0, 1e3, usual=(1.0, 40.0), meaning="greatest product of ball circle and speed"
-        ),
-    ),
-    "table": (
-        PartValue("max_velocity", "m/s", 0.0, 50.0, usual=(0.01, 4.0), meaning="greatest velocity of the table"),
-        PartValue(
-            "max_acceleration", "m/s^2", 0.0, 1e4, usual=(0.1, 100.0), meaning="greatest acceleration of the table"
-        ),
-        PartValue("axial_load", "N", 0.0, 1e7, usual=(1.0, 1e6), meaning="process force along the axis"),
-    ),
+    "motor": part_values("""
+max_speed | rad/s | (0, 100000) usual 10 to 3000 | | greatest speed of the motor
+"""),
+    "ball_screw": part_values("""
+static_rating | N | (0, 1e8) usual 500 to 5e6 | | static load rating C0
+dynamic_rating | N | (0, 1e8) usual 200 to 2e6 | | dynamic load rating C of one nut
+ball_circle | m | (0.001, 0.5) usual 0.004 to 0.2 | | diameter of the circle of ball centres
+dn_limit | m rad/s | (0, 1000) usual 1 to 40 | | greatest product of ball circle and speed
+"""),
+    "table": part_values("""
+max_velocity | m/s | (0, 50) usual 0.01 to 4 | | greatest velocity of the table
+max_acceleration | m/s^2 | (0, 10000) usual 0.1 to 100 | | greatest acceleration of the table
+axial_load | N | (0, 1e7) usual 1 to 1e6 | | process force along the axis
+"""),
 }
 """Limits and ratings by section: greatest speeds and acceleration, C0 and C of the ball screw, process force."""
 
@@ -60,13 +61,9 @@ def _checked(
 
 
 def _given(table: Table, section: str, known: tuple[PartValue, ...]) -> dict[str, Datum]:
-    return {
-        f"{section}.{value.key}": Datum(
-            table.quantity(value.key, value.unit, f"{section}.{value.key}", value.usual), value.unit
-        )
-        for value in known
-        if value.key in table.entries
-    }
+    units = {value.key: value.unit for value in known}
+    values = given_values(table, section, known)
+    return {f"{section}.{key}": Datum(value, units[key]) for key, value in values.items()}
 
 
 def read_stroke(top: Table) -> tuple[float, float] | None:
@@ -91,3 +88,8 @@ def first_nut_position(top: Table) -> float:
     if "first_nut_position" not in table.entries:
         return 0.0
     return table.quantity("first_nut_position", "m", "first_nut_position")
+
+
+def declares_heat_alone(entries: Mapping[str, Any]) -> bool:
+    """Whether a plant file has a thermal section and no structure: no chain can be made of it."""
+    return "thermal" in entries and "structure" not in entries

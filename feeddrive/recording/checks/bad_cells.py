@@ -57,8 +57,8 @@ torque, whose peak is some ten times its usual size."""
 MOST_GIVE = 1e-4
 """Windup of a stiff axis under its peak thrust [m]: 10 kN over 100 N/µm."""
 
-IN_PARTS = 1_000_000
-"""Rows that are looked at together, so that long recordings do not take many times their memory."""
+IN_PARTS = 100_000
+"""Rows that are looked at together, each by itself: a recording does not take many times its memory."""
 
 SPIKY = ("motor_torque", "motor_current", "motor_torque_share", "cutting_force")
 """Channels that step with the motion, or make it."""

@@ -78,7 +78,7 @@ _SEPARATOR_NAMES = {"\t": "tab", ";": "semicolon", ",": "comma"}
 
 @dataclass(frozen=True)
 class Layout:
-    """Where a table stands in its file; None where the file itself tells.
+    """Where a table stands in its file; None where it is found in the file.
 
     Attributes:
         header_row: row of the column names, 1 for the first; 0 if there is none (columns are then named 1, 2, ...).
@@ -129,7 +129,7 @@ class TextTable:
     where: str
 
     def numbers(self, decimal: str | None) -> Table:
-        """Return the table with its numbers; decimal is `.` or `,`, None to let the file tell.
+        """Return the table with its numbers; decimal is `.` or `,`, None to find it in the file.
 
         Raises:
             InputError: no rows, undecidable decimal sign, blank row, row of another length, a cell that is no number.

@@ -85,9 +85,15 @@ _HEAD = 65_536  # bytes: the header of a hundred channels
 _ALLOWED_CONTROLS = b"\t\n\r\f\x1a"  # 0x1a ends some DOS files
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class FileContent:
-    """Bytes of a file after decompression, and the checksum of the file as it lies on the disk."""
+    """Bytes of a file after decompression, and the checksum of the file as it lies on the disk.
+
+    Attributes:
+        path: of the file.
+        data: all bytes; those of a text no longer once `decode` has made letters of them.
+        sha256: of the file.
+    """
 
     path: Path
     data: bytes
@@ -124,7 +130,7 @@ def opened(path: Path, kind_of_file: str = "recording") -> Iterator[BinaryIO]:
 
 
 def first_bytes(path: Path) -> bytes:
-    """Return the first bytes of a file after decompression, as many as tell its format.
+    """Return the first bytes of a file after decompression, as many as identify its format.
 
     Raises:
         InputError: as `opened`, or a damaged .gz.
@@ -142,10 +148,12 @@ def open_file(path: Path) -> FileContent:
     """
     with opened(path) as file:
         raw = file.read()
+        digest = hashlib.sha256(raw).hexdigest()
         data = unpacked(raw, str(path)) if raw.startswith(GZIP) else raw
-    if not data.strip():
+        del raw
+    if not data or data.isspace():
         raise InputError("the file is empty", str(path), "record again or name another file")
-    return FileContent(path, data, hashlib.sha256(raw).hexdigest())
+    return FileContent(path, data, digest)
 
 
 def head_of(data: bytes) -> str:
@@ -164,19 +172,23 @@ def is_hdf5(data: bytes) -> bool:
 
 
 def decode(content: FileContent) -> tuple[str, tuple[str, ...]]:
-    """Return the text of a file with line ends as \\n, and remarks about its encoding.
+    """Return the text of a file with line ends as \\n, and remarks about its encoding; its bytes are given up.
 
     Raises:
         InputError: the file is not text.
     """
-    data, where = content.data, str(content.path)
-    refuse_known_binary(data, where)
+    where = str(content.path)
+    refuse_known_binary(content.data, where)
+    data, content.data = content.data, b""
     encoding = next((name for mark, name in BYTE_ORDER_MARKS if data.startswith(mark)), "utf-8")
+    if encoding != "utf-16":  # one copy at a time: a recording may be half of what fits
+        data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
     notes: tuple[str, ...] = ()
     try:
         text = data.decode(encoding)
     except UnicodeDecodeError:
         text, notes = data.decode("latin-1"), ("not UTF-8; read as Latin-1",)
+    del data
     if any(ord(letter) < 32 and letter.encode() not in _ALLOWED_CONTROLS for letter in set(text)):
         raise InputError("is not a text file", where, "name a .csv or .csv.gz file, or a .mat file with its mapping")
     return text.replace("\r\n", "\n").replace("\r", "\n").rstrip("\x1a"), notes

@@ -31,6 +31,9 @@ from feeddrive.recording.traces.opened import Understood, columns_of, could_be_t
 from feeddrive.recording.traces.trace import Trace
 from feeddrive.typing import FloatArray
 
+OF_READ = " of feeddrive read, whose --out is a recording that every command takes"
+"""Other commands have no options for what a trace file leaves open; one of them even has another --axis."""
+
 
 def read_recording(path: Path, mapping: Path | None = None, *, decimal: str | None = None) -> Recording:
     """Read and check a recording.
@@ -39,7 +42,7 @@ def read_recording(path: Path, mapping: Path | None = None, *, decimal: str | No
         path: .csv or .csv.gz with headings `name [unit]`, a trace file of a drive or control, or with a mapping a .mat
             or foreign text file.
         mapping: mapping file; None for files with canonical headings.
-        decimal: "." or ","; None to let the file tell.
+        decimal: "." or ","; None to find it in the file.
 
     Raises:
         InputError: the file cannot be used; one line with file, row, column, reason and mend.
@@ -70,7 +73,7 @@ def _traced(
         mend = "lay it over the machine's by feeddrive bode PLANT --recording FILE"
         raise InputError("is a frequency response, not a recording over time", where, mend)
     understood = mapped(trace, mapping, where) if mapping is not None else understand(trace, Wishes(), where)
-    return columns_of(understood, where), 1, (trace.format, *understood.notes)
+    return columns_of(understood, where, OF_READ), 1, (trace.format, *understood.notes)
 
 
 def checked_trace(content: FileContent, understood: Understood) -> Recording:

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from feeddrive.errors import InputError
+from feeddrive.recording.traces.lines import Lines
 from feeddrive.recording.traces.naming import known_unit
 from feeddrive.recording.traces.trace import Signal, Trace, number_rows, unique_names
 from feeddrive.typing import FloatArray
@@ -53,7 +54,7 @@ def read(text: str, where: str, sample_time: float | None = None) -> Trace:
         InputError: not whole JSON, no rows, rows that do not fit the list of signals, a clock that runs back.
     """
     try:
-        tree = json.loads(text)
+        tree = _parsed(text)
     except (ValueError, RecursionError) as error:
         place = f"{where}, line {error.lineno}" if isinstance(error, json.JSONDecodeError) else where
         raise InputError("is not whole JSON", place, "copy or record it again") from None
@@ -69,8 +70,10 @@ def read(text: str, where: str, sample_time: float | None = None) -> Trace:
         )
     names = [str(signal.get("Name", "")) if isinstance(signal, Mapping) else "" for signal in listed]
     axes = [str(signal.get("Axis", "")) if isinstance(signal, Mapping) else "" for signal in listed]
-    rows = [row for item in payload if isinstance(item, Mapping) for row in _list(item.get("HFData"))]
-    values = _table(rows, len(names), where)
+    tables = [item["HFData"] for item in payload if isinstance(item, Mapping) and "HFData" in item]
+    values = _table(
+        [_numbers(_list(one)) if not isinstance(one, np.ndarray) else one for one in tables], len(names), where
+    )
     given = header.get("CycleTimeMs")
     cycle, remarks = _cycle(given / 1e3 if isinstance(given, int | float) else None, sample_time, where)
     trace = _trace(names, axes, values, cycle, remarks, where, "row of HFData")
@@ -86,7 +89,7 @@ def read_table(text: str, where: str, sample_time: float | None = None) -> Trace
     Raises:
         InputError: rows that do not fit the header, a clock that runs back.
     """
-    lines = text.lstrip("\ufeff").split("\n")
+    lines = Lines(text.lstrip("\ufeff"))
     separator = _separator(lines[0])
     names = _split(lines[0])
     while names and not names[-1]:
@@ -100,7 +103,7 @@ def read_table(text: str, where: str, sample_time: float | None = None) -> Trace
         name != _CLOCK or _is_word(cell) for name, cell in zip(names, below, strict=False)
     ):
         units, begin = below, 2
-    comma = separator == ";" and any("," in line for line in lines[begin:])
+    comma = separator == ";" and lines[begin:].first_with(",") is not None
 
     def split(line: str) -> list[str]:
         cells = [cell.strip().strip('"') for cell in (line.replace(",", ".") if comma else line).split(separator)]
@@ -150,18 +153,76 @@ def _list(value: Any) -> list[Any]:
     return value if isinstance(value, list) else []
 
 
-def _table(rows: Sequence[Any], width: int, where: str) -> FloatArray:
-    if not rows:
-        raise InputError("the capture holds no row of HFData", where, "record again")
-    for number, row in enumerate(rows, start=1):
-        if not isinstance(row, list) or len(row) != width:
-            count = len(row) if isinstance(row, list) else 0
-            what = f"the row has {count} values, the header names {width} signals"
-            raise InputError(what, f"{where}, row {number} of HFData", "record again")
+_PAYLOAD, _SPACE = re.compile(r'"Payload"\s*:\s*\['), re.compile(r"\s*")
+_Rows = FloatArray | list[Any]
+"""Numbers, (n, k), or what stands there in place of them."""
+
+
+def _parsed(text: str) -> Any:
+    """The tree of a capture, its rows as numbers: the payload is read item by item, since objects take five times that.
+
+    Raises:
+        ValueError, RecursionError: not whole JSON.
+    """
+    found = _PAYLOAD.search(text)
+    if found is None:
+        return json.loads(text)
+    items: list[Any] = []
+    begin, at = found.end(), _behind(text, found.end())
+    while text[at : at + 1] != "]" or items:
+        item, at = json.JSONDecoder().raw_decode(text, at)
+        if isinstance(item, dict):
+            item["HFData"] = _numbers(_list(item.get("HFData")))
+        items.append(item)
+        at = _behind(text, at)
+        if text[at : at + 1] == "]":
+            break
+        if text[at : at + 1] != ",":
+            raise json.JSONDecodeError("Expecting ',' delimiter", text, at)
+        at = _behind(text, at + 1)
+    try:
+        tree = json.loads(text[:begin] + text[at:])
+    except json.JSONDecodeError as error:
+        raise json.JSONDecodeError(error.msg, text, error.pos + (at - begin if error.pos >= begin else 0)) from None
+    top = tree[0] if isinstance(tree, list) and len(tree) == 1 else tree
+    if not isinstance(top, dict) or top.get("Payload") != []:  # the word stood elsewhere
+        return json.loads(text)
+    top["Payload"] = items
+    return tree
+
+
+def _behind(text: str, at: int) -> int:
+    """The place behind blanks."""
+    blanks = _SPACE.match(text, at)
+    return at if blanks is None else blanks.end()
+
+
+def _numbers(rows: list[Any]) -> _Rows:
+    """Rows as numbers, where they are rows of one length that are."""
+    if not rows or not all(isinstance(row, list) and len(row) == len(rows[0]) for row in rows):
+        return rows
     try:
         return np.array([[np.nan if cell is None else cell for cell in row] for row in rows], dtype=np.float64)
     except (TypeError, ValueError, OverflowError):
-        raise InputError("a value of HFData is not a number", where, "record again") from None
+        return rows
+
+
+def _table(tables: Sequence[_Rows], width: int, where: str) -> FloatArray:
+    number = 1
+    for rows in tables:
+        for row in rows if not isinstance(rows, np.ndarray) or rows.shape[1] != width else ():
+            if isinstance(rows, np.ndarray) or not isinstance(row, list) or len(row) != width:
+                count = len(row) if isinstance(row, list | np.ndarray) else 0
+                what = f"the row has {count} values, the header names {width} signals"
+                raise InputError(what, f"{where}, row {number} of HFData", "record again")
+            number += 1
+        if not isinstance(rows, np.ndarray) and rows:
+            raise InputError("a value of HFData is not a number", where, "record again")
+        number += len(rows) if isinstance(rows, np.ndarray) else 0
+    known = [rows for rows in tables if isinstance(rows, np.ndarray)]
+    if not known:
+        raise InputError("the capture holds no row of HFData", where, "record again")
+    return np.concatenate(known)
 
 
 def _cycle(in_file: float | None, wanted: float | None, where: str) -> tuple[float, tuple[str, ...]]:

@@ -14,12 +14,14 @@ import numpy as np
 from feeddrive.errors import InputError
 from feeddrive.recording.formats.twincat_header import Header, read_header
 from feeddrive.recording.formats.twincat_scaling import scaled
+from feeddrive.recording.traces.lines import Lines
 from feeddrive.recording.traces.naming import axis_in
 from feeddrive.recording.traces.trace import Signal, Trace, clean, unique_names, whole_rows
 from feeddrive.typing import BoolArray, FloatArray
 
 NAME = "TwinCAT 3 Scope export"
 _CHUNK = 20_000  # rows that are held as text at a time
+_MOST_HEADER = 1000  # lines among which the header ends; one has some thirty
 _FILETIME = 1e15  # no time in ms is as large; 100 ns since 1601 is 1.3e17
 _NO_NUMBERS = {"true": "1", "false": "0", "1.#qnan": "nan", "-1.#ind": "nan", "1.#inf": "inf", "-1.#inf": "-inf"}
 
@@ -41,10 +43,10 @@ def read(text: str, where: str) -> Trace:
     Raises:
         InputError: header and numbers that do not fit each other, or cannot be distinguished.
     """
-    lines = _without_quotes(text.split("\n"))
-    header = read_header(lines, where)
+    lines = _without_quotes(Lines(text))
+    header = read_header(list(lines[:_MOST_HEADER]), where)
     table = _Table(header, where)
-    table.fill([line.replace(_QUOTED, ".") for line in lines] if '"' in text else lines)  # "0,5" between commas
+    table.fill(Lines(lines.text.replace(_QUOTED, ".")))  # "0,5" between commas
     names = unique_names([name.replace(_QUOTED, header.separator) for name in header.attributes["Name"]])
     signals: list[Signal] = []
     for group, first in enumerate(_first_channels(header.groups)):
@@ -61,15 +63,13 @@ _QUOTED = "\ue000"
 """Letter of no language that stands for a separator between quotes."""
 
 
-def _without_quotes(lines: list[str]) -> list[str]:
+def _without_quotes(lines: Lines) -> Lines:
     """Return lines whose cells stand between quotes, as a table program writes them, as the Scope does."""
     separator = re.sub('"', "", lines[0])[4:5]
-    if separator == " " or not any('"' in line for line in lines):  # between blanks quotes hold words together
+    if separator == " " or '"' not in lines.text:  # between blanks quotes hold words together
         return lines
-    quoted = re.compile('"([^"]*)"')
-    return [
-        quoted.sub(lambda cell: cell[1].replace(separator, _QUOTED), line) if '"' in line else line for line in lines
-    ]
+    quoted = re.compile('"([^"\n]*)"')
+    return Lines(quoted.sub(lambda cell: cell[1].replace(separator, _QUOTED), lines.text))
 
 
 class _Table:
@@ -86,7 +86,7 @@ class _Table:
         self._decimal_comma = False
         self.notes: list[str] = []
 
-    def fill(self, lines: list[str]) -> None:
+    def fill(self, lines: Lines) -> None:
         """Read all rows."""
         body, first = self._body(lines)
         self._decimal_comma = self._decides(body)
@@ -97,27 +97,28 @@ class _Table:
                 raise InputError(f"a group of {name} channels has no numbers", self._where, "export it again")
 
     def column(self, group: int, index: int) -> FloatArray:
-        """Return the numbers of a column of a group, (n,); 0 is the time."""
-        return np.concatenate(self._parts[group][index])
+        """Return the numbers of a column of a group, (n,), and give them up; 0 is the time."""
+        parts, self._parts[group][index] = self._parts[group][index], []
+        return np.concatenate(parts)
 
-    def _body(self, lines: list[str]) -> tuple[list[str], int]:
+    def _body(self, lines: Lines) -> tuple[Lines, int]:
         """Return the rows of numbers and the row in the file of the first."""
         first = self._header.first_line
-        body = lines[first:]
-        while body and not body[-1].strip(self._header.separator + " "):
-            body.pop()
-        if body and body[-1].strip(self._header.separator + " ") == "EOF":
-            body.pop()
+        last, blank = len(lines), self._header.separator + " "
+        while last > first and not lines[last - 1].strip(blank):
+            last -= 1
+        if last > first and lines[last - 1].strip(blank) == "EOF":
+            last -= 1
+        body = lines[first:last]
         if not body:
             raise InputError("there is a header and no row of numbers", self._where, "export it again")
         return body, first + 1
 
-    def _decides(self, body: list[str]) -> bool:
+    def _decides(self, body: Lines) -> bool:
         """Tell whether the comma is the decimal sign."""
         if self._header.separator == ",":
             return False
-        comma = next((i for i, line in enumerate(body) if "," in line), None)
-        point = next((i for i, line in enumerate(body) if "." in line), None)
+        comma, point = body.first_with(","), body.first_with(".")
         if comma is not None and point is not None:
             row = self._header.first_line + 1 + max(comma, point)
             raise InputError("both comma and point stand in numbers", f"{self._where}, row {row}", "export it again")
@@ -125,7 +126,7 @@ class _Table:
             self.notes.append("the comma is read as the decimal sign")
         return comma is not None
 
-    def _take(self, lines: list[str], first_row: int, end: int) -> None:
+    def _take(self, lines: Lines, first_row: int, end: int) -> None:
         """Take rows of text; `end` is the row behind the last of the file, which may be cut short."""
         if self._take_whole(lines):
             return
@@ -149,10 +150,10 @@ class _Table:
                 for index in range(numbers.shape[1]):
                     self._parts[group][index].append(np.ascontiguousarray(numbers[:, index]))
 
-    def _take_whole(self, lines: list[str]) -> bool:
+    def _take_whole(self, lines: Lines) -> bool:
         """Take rows in one go where each group is whole or absent, as in any undamaged file; tell whether they were."""
         separator = self._header.separator
-        text = "\n".join(lines)
+        text = lines.block
         if "nan" in text.lower() or '"' in text or (separator == " " and "  " in text):
             return False
         text = text.replace(",", ".") if self._decimal_comma else text

@@ -122,7 +122,7 @@ def _greedy(gram: FloatArray, most: int) -> list[int]:
 LONGEST = 400_000
 """Rows up to which a recording is taken whole: seven minutes at 1 kHz."""
 
-KEPT_ROWS, KEPT = 150_000, 60.0
+KEPT_ROWS, KEPT = 100_000, 60.0
 """Rows that are kept of a longer one, and seconds [s] at least: of a search that runs the machine some thousand times,
 minutes."""
 

@@ -28,7 +28,7 @@ _STEPS = 5  # different sizes of change; an encoder that moves evenly steps by o
 
 
 def held_rows(signal: Signal) -> int:
-    """Return every how many rows a signal is updated; 1 where it is in every row or nothing tells."""
+    """Return every how many rows a signal is updated; 1 where it is in every row or unknown."""
     changes = np.flatnonzero(np.diff(signal.values) != 0.0) + 1
     if changes.size < _FEWEST:
         return 1
@@ -71,9 +71,9 @@ class Wishes:
     """What a person says about a trace file.
 
     Attributes:
-        axis: that is read, as the file names it; None to let the file tell.
+        axis: that is read, as the file names it; None to take the file's.
         lead: travel per motor revolution [m]; makes a motor angle of a motor encoder counted in the unit of the axis.
-        channels: canonical channel -> name of its signal and its unit; the unit is empty where the file tells it.
+        channels: canonical channel -> name of its signal and its unit; the unit is empty where the file holds it.
         rate: samples per second; None for that of the slowest channel.
         part: stretch between gaps, 1 for the first; None for the longest.
         sample_time: [s], where the file holds none.

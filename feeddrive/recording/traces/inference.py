@@ -1,6 +1,6 @@
 """What a trace file does not say, from what must hold between its signals: stated with factor and scatter.
 
-| relation | what it tells |
+| relation | what follows |
 |---|---|
 | integral of a speed against a position | the unit of the speed; whether a position counts mm or degrees |
 | torque against current | the torque constant, and whether the torque is a computed current |
@@ -68,7 +68,7 @@ def infer(taken: Taken, signals: Sequence[Signal], fixed: set[str]) -> tuple[tup
     """Find what holds between signals of an axis, and use it for what the file does not say.
 
     Args:
-        taken: channel -> signal and what its name tells.
+        taken: channel -> signal and what its name says.
         signals: all of the axis.
         fixed: channels that a person chose; they are judged and not changed.
 

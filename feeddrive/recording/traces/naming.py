@@ -1,6 +1,6 @@
 """Which canonical channel a signal of a trace file is, by its name: the words of vendors, and of English and German.
 
-A name tells a quantity and a role (`s soll`: position, set-point); the unit tells the rest: a position in mm is of the
+A name gives a quantity and a role (`s soll`: position, set-point); the unit gives the rest: a position in mm is of the
 table, one in degrees of the motor. Only measured values and the position set-point have a channel.
 """
 
@@ -53,7 +53,7 @@ class Candidate:
     Attributes:
         channel: canonical channel; `motor_side_position` for a motor encoder counted in the unit of the axis, which
             the lead makes a motor_angle.
-        unit: that its values are taken in; empty if nothing tells.
+        unit: that its values are taken in; empty if unknown.
         reason: why, for people.
         rank: among signals that may be the same channel the lowest is taken.
         stated: whether the file itself states the unit.
@@ -75,7 +75,7 @@ class _Rule:
     Attributes:
         pattern: found in the name, small letters, words divided by single blanks.
         channels: tried in this order against the unit.
-        unit: where the file says none; empty if nothing tells.
+        unit: where the file says none; empty if unknown.
         reason: what the name means.
         rank: see `Candidate`.
     """

@@ -175,8 +175,13 @@ def _on_grid(
     return time, channels, (*notes, *remarks)
 
 
-def columns_of(understood: Understood, where: str) -> dict[str, FloatArray]:
+def columns_of(understood: Understood, where: str, of_command: str = "") -> dict[str, FloatArray]:
     """Return the canonical columns, `time` first.
+
+    Args:
+        understood: a trace and what it was taken for.
+        where: file name.
+        of_command: which command has the options that settle a question, where it is not the one at hand.
 
     Raises:
         InputError: a question has to be answered first, or nothing was found that has a channel.
@@ -184,7 +189,7 @@ def columns_of(understood: Understood, where: str) -> dict[str, FloatArray]:
     if understood.choice.blocking:
         what = understood.choice.blocking
         problem, _, option = what.partition(": ")
-        raise InputError(problem, where, option)
+        raise InputError(problem, where, option + of_command)
     if not understood.channels:
         names = ", ".join(signal.name for signal in understood.trace.signals[:8])
         what = f"no signal of this {understood.trace.format} is known by its name (it holds {names})"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -25,7 +25,7 @@ class Signal:
         axis: machine axis that it belongs to, as the file names it; empty if the file names none.
         about: description in the file; empty if there is none.
         kind: class of the unit where the file gives no more than that (`position`, `velocity`, `current`, ...).
-        timed: whether the file tells its times; if not, `time` counts samples, or sample times once one is given.
+        timed: whether the file holds its times; if not, `time` counts samples, or sample times once one is given.
     """
 
     name: str
@@ -141,9 +141,11 @@ def whole_rows(lines: Sequence[str], separator: str | None, width: int) -> Float
     if not lines or not lines[0].strip():  # numpy warns where there is nothing but blank lines
         return None
     if separator is not None and lines[0].rstrip().endswith(separator):
-        lines = [line.rstrip().removesuffix(separator) for line in lines]
+        rows: Iterator[str] = (line.rstrip().removesuffix(separator) for line in lines)
+    else:
+        rows = iter(lines)
     try:
-        numbers = np.loadtxt(lines, delimiter=separator, comments=None, ndmin=2, dtype=np.float64)
+        numbers = np.loadtxt(rows, delimiter=separator, comments=None, ndmin=2, dtype=np.float64)
     except ValueError:
         return None
     return numbers if numbers.shape == (len(lines), width) else None  # it passes over blank lines

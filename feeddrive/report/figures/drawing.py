@@ -47,7 +47,7 @@ class RenderedFigure:
 
 def new_figure(height: float) -> Figure:
     """An empty white figure of the report's width; height in inch. It belongs to no window and is never shown."""
-    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # where a person has no home it tells of its own cache
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # where a person has no home it warns of its own cache
     from matplotlib.figure import Figure
 
     return Figure(figsize=(WIDTH, height), facecolor="white", layout="constrained")

@@ -172,7 +172,7 @@ def _colours(count: int) -> list[Any]:
 
 
 def _label(case: Case, family: Family) -> str:
-    """What tells a curve from the others."""
+    """What distinguishes a curve from the others."""
     cases = [curve.case for curve in family.curves]
     parts = []
     if len({one.position for one in cases}) > 1:
@@ -202,10 +202,12 @@ def _caption(family: Family, measured: Measured | None) -> str:
     moving = ", ".join(format_quantity(velocity, "m/s") for velocity in sorted(velocities) if velocity)
     about = [f"motion at {moving}"] if moving else []
     about += ["rest, where friction holds"] if 0.0 in velocities else []
-    said = [f"Linear about {' and '.join(about)}{'.' if 0.0 in velocities else '; friction at rest is not in it.'}"]
+    sentences = [
+        f"Linear about {' and '.join(about)}{'.' if 0.0 in velocities else '; friction at rest is not in it.'}"
+    ]
     if family.curves[0].margins is not None:
-        said.append("Marked are the least gain margin and the least phase margin of the curves.")
+        sentences.append("Marked are the least gain margin and the least phase margin of the curves.")
     if measured is not None:
         averages = f", {measured.averages} averages" if measured.averages else ""  # a file of a control does not say
-        said.append(f"Points are measured{averages}, faint below a coherence of {_COHERENT:g}.")
-    return " ".join(said)
+        sentences.append(f"Points are measured{averages}, faint below a coherence of {_COHERENT:g}.")
+    return " ".join(sentences)

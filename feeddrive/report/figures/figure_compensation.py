@@ -95,8 +95,8 @@ def circle_figure(done: Compensated) -> ReportFigure:
     right.set_xticks([0, 90, 180, 270, 360])
     dress(right, "angle [°], the axis reverses at 90° and 270°", "radial deviation [µm]")
     legend_above(right, 3)
-    told = ", ".join(f"{label} {micrometres(one.deviation)}" for label, one, _ in kinds)
-    text = f"{done.control.title}. Circular deviation G, simulated: {told}. The second axis is ideal."
+    listed = ", ".join(f"{label} {micrometres(one.deviation)}" for label, one, _ in kinds)
+    text = f"{done.control.title}. Circular deviation G, simulated: {listed}. The second axis is ideal."
     return ReportFigure("circle", "Circle before and after", text, figure)
 
 
@@ -270,5 +270,5 @@ def _mark_stop(axes: Axes, stop: float, text: str) -> None:
 def _refuse_misfit(times: FloatArray, positions: FloatArray, series: Mapping[str, FloatArray]) -> None:
     for name, values in series.items():
         if np.shape(values) != (len(times), len(positions)):
-            told = f"{name} of shape {np.shape(values)} at {len(times)} times and {len(positions)} positions"
-            raise InputError(told, "figure", "give a row a time and a column a position")
+            what = f"{name} of shape {np.shape(values)} at {len(times)} times and {len(positions)} positions"
+            raise InputError(what, "figure", "give a row a time and a column a position")

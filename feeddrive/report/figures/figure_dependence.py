@@ -9,9 +9,9 @@ import numpy as np
 
 from feeddrive.diagnosis.judging.result import ChannelResult, ChannelSeries, Diagnosis, JudgedRecording
 from feeddrive.report.figures.drawing import NOISE, ReportFigure, dress, legend_above, new_figure
-from feeddrive.report.selection import residuals, stem_of, with_variable
-from feeddrive.report.thinning import Bins, balanced, binned, thin
-from feeddrive.report.words.people import Scale, axis_label, fixed, scale_for_error, scale_for_signal
+from feeddrive.report.figures.selection import residuals, stem_of, with_variable
+from feeddrive.report.figures.thinning import Bins, balanced, binned, thin
+from feeddrive.report.words.number_text import Scale, axis_label, fixed, scale_for_error, scale_for_signal
 from feeddrive.report.words.words import joined, plain, variable_words
 from feeddrive.typing import BoolArray, FloatArray
 
@@ -90,7 +90,7 @@ def _row(diagnosis: Diagnosis, channel: ChannelResult, variable: str) -> _Row | 
 
 
 def _forward(found: list[tuple[JudgedRecording, ChannelSeries, FloatArray]]) -> BoolArray | None:
-    """Whether the table moves in + direction, pooled; None where a recording does not tell."""
+    """Whether the table moves in + direction, pooled; None where a recording has no position."""
     velocities = [recording.variables.get("table_velocity") for recording, _, _ in found]
     known = [velocity for velocity in velocities if velocity is not None]
     return np.concatenate(known) > 0.0 if len(known) == len(found) else None

@@ -161,12 +161,12 @@ def _circle(test: CircleTest) -> ReportFigure:
     circles = test.circles
     largest = max(max(float(np.max(np.abs(one.radial))) for one in circles), 1e-12)
     words = {1: ("counter-clockwise", AFTER), -1: ("clockwise", BEFORE)}
-    told = []
+    parts = []
     for one in circles:
         label, colour = words[one.direction]
         _magnified(left, one.angle, one.radial, largest, colour)
         _over_angle(right, one.angle, one.radial, colour, label)
-        told.append(
+        parts.append(
             f"{label}: G {micrometres(one.deviation)}, F {micrometres(one.radial_minimum)} to "
             f"{micrometres(one.radial_maximum)}"
         )
@@ -174,7 +174,7 @@ def _circle(test: CircleTest) -> ReportFigure:
     dress(right, "angle [°]", "radial deviation [µm]", "ISO 230-4:2022")
     legend_above(right, 2)
     both = test.bidirectional
-    text = "; ".join(told if both is None else [f"G(b) {micrometres(both)}", *told])
+    text = "; ".join(parts if both is None else [f"G(b) {micrometres(both)}", *parts])
     return ReportFigure("circle", "Circular test", text, figure)
 
 

@@ -24,9 +24,9 @@ from feeddrive.report.figures.drawing import (
     legend_above,
     new_figure,
 )
-from feeddrive.report.thinning import envelope
-from feeddrive.report.words.people import significant, with_unit
-from feeddrive.simulate.scenario.scenario_result import SERIES, ScenarioResult
+from feeddrive.report.figures.thinning import envelope
+from feeddrive.report.words.number_text import significant, with_unit
+from feeddrive.simulate.scenario.scenario import SERIES, ScenarioResult
 from feeddrive.typing import ComplexArray, FloatArray
 
 if TYPE_CHECKING:

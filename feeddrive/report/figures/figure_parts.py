@@ -25,7 +25,7 @@ from feeddrive.report.figures.drawing import (
     legend_above,
     new_figure,
 )
-from feeddrive.report.words.people import scale_for_share_of_life, significant
+from feeddrive.report.words.number_text import scale_for_share_of_life, significant
 from feeddrive.typing import FloatArray
 from feeddrive.units.quantity import format_quantity
 
@@ -157,7 +157,7 @@ def _friction_by_geometry(axes: Axes, carriages: Carriages) -> str:
 
 
 def _friction_by_rating(axes: Axes, carriages: Carriages) -> str:
-    """Seals and rows over the load of a carriage; its catalogue tells nothing of the speed."""
+    """Seals and rows over the load of a carriage; its catalogue says nothing of the speed."""
     one = carriages.one
     assert not isinstance(one, RollingCarriage)
     loads = np.linspace(0.0, _greatest(carriages), _POINTS)
@@ -170,7 +170,7 @@ def _friction_by_rating(axes: Axes, carriages: Carriages) -> str:
     axes.set_xlim(0.0, loads[-1] * _KILO)
     axes.set_ylim(0.0)
     legend_above(axes)
-    return "their friction by the catalogue, which tells nothing of the speed; it is the size, within a factor of two."
+    return "their friction by the catalogue, which says nothing of the speed; it is the size, within a factor of two."
 
 
 def _rows(axes: Axes, carriages: Carriages) -> float:
@@ -206,7 +206,7 @@ def _lost(carriages: Carriages) -> float:
     """Vertical load of one carriage at which its preload is lost [N]; 0 without preload."""
     one = carriages.one
     if isinstance(one, RollingCarriage):
-        from feeddrive.parts.guide.guide_stiffness import unloading_force
+        from feeddrive.parts.guide.guide_equilibrium import unloading_force
 
         return unloading_force(one.guide)
     return OPENING * one.preload
@@ -233,7 +233,7 @@ def life_figure(plant: Plant) -> ReportFigure:
     figure = new_figure(3.5)
     left, right = figure.subplots(1, 2, sharey=True)
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ValidityWarning)  # a declared load above half the rating was told of its table
+        warnings.simplefilter("ignore", ValidityWarning)  # above half the rating: warned of with its table
         forces = np.linspace(rating / 100 if preload == 0 else 0.0, max(rating / 2, 1.1 * max(loads)), _POINTS)
         left.semilogy(forces * _KILO, [_kilometres(plant, [(1.0, float(F))]) for F in forces], color=AFTER, lw=1.8)
         shares = np.linspace(0.01 if preload == 0 else 0.0, 1.0, _POINTS)

@@ -21,9 +21,9 @@ from feeddrive.report.figures.figure_metrology import (
     step_figure,
     torque_loop_figure,
 )
-from feeddrive.report.thinning import envelope
-from feeddrive.report.words.people import scale_for_signal
-from feeddrive.simulate.scenario.scenario_result import ScenarioResult
+from feeddrive.report.figures.thinning import envelope
+from feeddrive.report.words.number_text import scale_for_signal
+from feeddrive.simulate.scenario.scenario import ScenarioResult
 from feeddrive.typing import FloatArray
 
 if TYPE_CHECKING:

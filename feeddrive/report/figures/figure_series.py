@@ -16,9 +16,9 @@ from feeddrive.report.figures.drawing import (
     legend_above,
     new_figure,
 )
-from feeddrive.report.selection import residuals, stem_of
-from feeddrive.report.thinning import envelope, left_out_stretches
-from feeddrive.report.words.people import Scale, axis_label, scale_for_error, scale_for_signal, scale_for_time
+from feeddrive.report.figures.selection import residuals, stem_of
+from feeddrive.report.figures.thinning import envelope, left_out_stretches
+from feeddrive.report.words.number_text import Scale, axis_label, scale_for_error, scale_for_signal, scale_for_time
 from feeddrive.report.words.words import plain
 from feeddrive.typing import FloatArray
 
@@ -46,7 +46,7 @@ class _Picture:
 
     @property
     def overlay(self) -> bool:
-        """Whether measured and predicted can be told apart when drawn over each other."""
+        """Whether measured and predicted can be distinguished when drawn over each other."""
         spread = float(np.nanmax(self.series.measured) - np.nanmin(self.series.measured))
         return float(np.nanmax(np.abs(self.residuals[0][2]))) > _VISIBLE_SHARE * spread
 
@@ -57,7 +57,7 @@ def series_figure(
     """Signal, residual before and after, and a closer look at a short stretch, for one channel of one recording.
 
     Args:
-        diagnosis: tells whether there is an "after" to draw.
+        diagnosis: holds an "after" to draw where something was found.
         number: of the recording, from 1, for the file name.
         recording: gives the time, shape (n,) [s].
         channel: gives the noise.
@@ -143,7 +143,7 @@ def _residual_lines(axes: Axes, picture: _Picture, part: slice) -> None:
 
 
 def _closer_look(axes: Axes, picture: _Picture) -> None:
-    """A short stretch around the largest residual before: as signals where the eye can tell them apart."""
+    """A short stretch around the largest residual before: as signals where the eye can distinguish them."""
     part = _closer_part(picture)
     if picture.overlay:
         _signal_lines(axes, picture, part, with_predictions=True)

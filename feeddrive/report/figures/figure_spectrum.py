@@ -9,9 +9,9 @@ import numpy as np
 
 from feeddrive.diagnosis.judging.result import ChannelResult, Diagnosis, JudgedRecording
 from feeddrive.report.figures.drawing import NOISE, ReportFigure, dress, legend_above, new_figure
-from feeddrive.report.selection import residuals, series_of, stem_of, with_variable
-from feeddrive.report.thinning import runs
-from feeddrive.report.words.people import axis_label, scale_for_error, significant, with_unit
+from feeddrive.report.figures.selection import residuals, series_of, stem_of, with_variable
+from feeddrive.report.figures.thinning import runs
+from feeddrive.report.words.number_text import axis_label, scale_for_error, significant, with_unit
 from feeddrive.report.words.words import plain
 from feeddrive.typing import FloatArray
 

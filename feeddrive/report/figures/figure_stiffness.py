@@ -10,11 +10,11 @@ import numpy as np
 from feeddrive.errors import InputError
 from feeddrive.parts.combined_stiffness import CombinedStiffness, Deformation, combined_stiffness, stiffness_along
 from feeddrive.parts.screw.screw_drive import BallScrewDrive
-from feeddrive.plant.analysis.held_frequency import held_frequency
 from feeddrive.plant.analysis.mode_map import ModeMap, mode_map
+from feeddrive.plant.analysis.modes import held_frequency
 from feeddrive.plant.plant import Plant
 from feeddrive.report.figures.drawing import AFTER, BEFORE, ReportFigure, dress, legend_above, new_figure
-from feeddrive.report.words.people import fixed, significant, with_unit
+from feeddrive.report.words.number_text import fixed, significant, with_unit
 from feeddrive.typing import FloatArray
 
 if TYPE_CHECKING:
@@ -159,7 +159,7 @@ def stiffness_position_figure(drives: Mapping[str, BallScrewDrive], positions: F
     frequency.set_ylim(bottom=0.0)
     if len(drives) > 1:
         legend_above(stiffness, columns=2)
-    else:  # with several, the line's style tells the drive, and the caption the rest
+    else:  # with several, the line's style marks the drive, and the caption the rest
         legend_above(frequency, columns=2)
     return ReportFigure(
         "stiffness_position", "Stiffness along the stroke", _position_caption(drives, positions), figure

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from feeddrive.report.figures.drawing import AFTER, BEFORE, LEFT_OUT, MEASURED, NOISE, ReportFigure, dress, new_figure
-from feeddrive.report.words.people import scale_for_value
+from feeddrive.report.words.number_text import scale_for_value
 from feeddrive.trend.series_evidence import ODD
 from feeddrive.trend.watch import Trend
 from feeddrive.trend.watched_quantities import Quantity

@@ -26,8 +26,8 @@ from feeddrive.report.figures.drawing import (
 from feeddrive.report.figures.figure_dependence import dependence_figure
 from feeddrive.report.figures.figure_series import series_figure
 from feeddrive.report.figures.figure_spectrum import spectrum_figure
-from feeddrive.report.selection import detailed_channels, drawn_series, stem_of
-from feeddrive.report.words.people import axis_label, fixed, scale_for_signal, scale_for_value, share_text
+from feeddrive.report.figures.selection import detailed_channels, drawn_series, stem_of
+from feeddrive.report.words.number_text import axis_label, fixed, scale_for_signal, scale_for_value, share_text
 from feeddrive.report.words.words import effect_words, figure_text, plain, variable_words
 
 if TYPE_CHECKING:

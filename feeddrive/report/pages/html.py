@@ -8,12 +8,26 @@ from pathlib import Path
 from feeddrive.compensation.actions import Actions
 from feeddrive.diagnosis.judging.result import Diagnosis
 from feeddrive.files import write_text_atomically
-from feeddrive.report.certainty import ambiguous_section, correlation_section, experiments_section, simulation_section
 from feeddrive.report.figures.drawing import RenderedFigure
 from feeddrive.report.figures.figures import STEM, render_figures
+from feeddrive.report.figures.selection import MOST_CHANNELS_IN_DETAIL, drawn_series
 from feeddrive.report.pages.markup import figure, paragraph, section, text
 from feeddrive.report.pages.section_actions import actions_section
+from feeddrive.report.pages.section_certainty import (
+    ambiguous_section,
+    correlation_section,
+    experiments_section,
+    simulation_section,
+)
 from feeddrive.report.pages.section_changes import changes_section, since_section
+from feeddrive.report.pages.section_records import (
+    UNKNOWN,
+    Occasion,
+    form_section,
+    recordings_section,
+    stamp_section,
+    tried_section,
+)
 from feeddrive.report.pages.section_unexplained import unexplained_section
 from feeddrive.report.pages.sections import (
     calibrated_section,
@@ -22,9 +36,7 @@ from feeddrive.report.pages.sections import (
     measured_section,
     verdict_section,
 )
-from feeddrive.report.records import UNKNOWN, Occasion, form_section, recordings_section, stamp_section, tried_section
-from feeddrive.report.selection import MOST_CHANNELS_IN_DETAIL, drawn_series
-from feeddrive.report.words.people import share_text
+from feeddrive.report.words.number_text import share_text
 
 
 def write_report(
@@ -100,9 +112,9 @@ def _with_bench(report: str, bench: str) -> str:
 
 
 def _under_title(diagnosis: Diagnosis) -> str:
-    """Which files were fitted and judged."""
-    fitted = ", ".join(stamp.file for stamp in diagnosis.fit) or "no file"
-    judged = ", ".join(stamp.file for stamp in diagnosis.validate) or "the last part of each"
+    """Which files were fitted and judged; their folders stand with their checksums at the end."""
+    fitted = ", ".join(Path(stamp.file).name for stamp in diagnosis.fit) or "no file"
+    judged = ", ".join(Path(stamp.file).name for stamp in diagnosis.validate) or "the last part of each"
     return f"Fitted: {fitted}. Judged on: {judged}."
 
 
@@ -152,6 +164,7 @@ td { border-bottom: 1px solid #e6e6e6; padding: 5px 10px 5px 0; vertical-align: 
 td:not(.number) { min-width: 9ch; }
 th.number, td.number { text-align: right; padding-left: 8px; }
 td.number { white-space: nowrap; }
+th.number + th:not(.number), td.number + td:not(.number) { padding-left: 14px; }
 .pairs tbody tr:nth-child(odd) td { border-bottom-color: #f3f3f3; }
 .effects td:nth-child(2), .effects td:nth-child(5) { white-space: nowrap; }
 .dense { font-size: 13px; } .dense td { padding-top: 2px; padding-bottom: 2px; }
@@ -178,7 +191,8 @@ figcaption { margin-top: 6px; }
 @media (max-width: 600px) {
   thead { display: none; }
   tr { display: block; border-bottom: 1px solid #c8c8c8; padding: 4px 0; }
-  td, td.number { display: flex; gap: 1em; border: 0; padding: 2px 0; text-align: left; white-space: normal; }
+  td, td.number, td.number + td:not(.number) { display: flex; gap: 1em; border: 0; padding: 2px 0; text-align: left;
+    white-space: normal; }
   td::before { content: attr(data-label); flex: 0 0 38%; color: #6b6b6b; }
   td:not([data-label])::before, td:empty { display: none; }
   body { padding: 16px 12px 40px; } h1 { font-size: 21px; } .main { font-size: 16px; }

@@ -15,7 +15,7 @@ from feeddrive.metrology.measured.plant_share import PlantShare, Share
 from feeddrive.report.figures.drawing import RenderedFigure, render
 from feeddrive.report.figures.figure_iso230 import iso230_figures
 from feeddrive.report.pages.html import page
-from feeddrive.report.pages.markup import Cell, bullets, figure, number, paragraph, section, table, words
+from feeddrive.report.pages.markup import Cell, bullets, figure, paragraph, section, table
 from feeddrive.typing import FloatArray
 from feeddrive.units.quantity import format_quantity
 
@@ -60,30 +60,29 @@ def write_iso230(found: Evaluated230, folder: Path) -> Path:
 
 def iso230_page(found: Evaluated230, pictures: list[RenderedFigure]) -> str:
     """The page as text."""
-    heads = [words("figure"), number("value")]
-    figures = table(heads, ([words(one), number(value)] for one, value in found.rows))
+    figures = table(["figure", "#value"], found.rows)
     parts = [section("Graph", figure(pictures[0])), section("Figures", figures)]
     if isinstance(found.test, LinearTest):
         parts.append(section("Targets", _targets(found.test)))
     if found.share is not None:
-        told = paragraph(_share_words(found.share))
-        parts.append(section("What the plant explains", told, _shares(found.share), *map(figure, pictures[1:])))
+        explained = paragraph(_share_words(found.share))
+        parts.append(section("What the plant explains", explained, _shares(found.share), *map(figure, pictures[1:])))
     parts.append(section("How it was evaluated", bullets(_method(found))))
     return page(f"{found.name}: {_TITLES[found.part]}", found.title, "".join(parts))
 
 
 def _targets(test: LinearTest) -> str:
     """Target, mean and s of each direction, and B."""
-    heads, columns = [number("target")], [[f"{1e3 * place:.6g} mm" for place in test.target]]
+    heads, columns = ["#target"], [[f"{1e3 * place:.6g} mm" for place in test.target]]
     for name, side in test.sides.items():
         arrow = "↑" if name == "up" else "↓"
-        heads += [number(f"mean {arrow}"), number(f"s {arrow}"), number(f"R {arrow}")]
+        heads += [f"#mean {arrow}", f"#s {arrow}", f"#R {arrow}"]
         columns += [_column(side.mean), _column(side.deviation), _column(4 * side.deviation)]
     both = test.both
     if both is not None:
-        heads.append(number("B"))
+        heads.append("#B")
         columns.append(_column(both.reversal))
-    return table(heads, ([number(cell) for cell in row] for row in zip(*columns, strict=True)), "dense")
+    return table(heads, zip(*columns, strict=True), "dense")
 
 
 def _column(values: FloatArray) -> list[str]:
@@ -91,7 +90,7 @@ def _column(values: FloatArray) -> list[str]:
 
 
 def _shares(share: PlantShare) -> str:
-    heads = [words(""), *map(number, ("E", "M", "B", "explains"))]
+    heads = ["", "#E", "#M", "#B", "#explains"]
     rows = [
         _row("measured", share.measured, False),
         _row("the plant alone", share.predicted, False),
@@ -101,10 +100,10 @@ def _shares(share: PlantShare) -> str:
     return table(heads, rows)
 
 
-def _row(name: str, one: Share, explains: bool) -> list[Cell]:
+def _row(name: str, one: Share, explains: bool) -> list[str | Cell]:
     lengths = (one.systematic, one.mean_range, one.reversal)
     last = f"{100 * one.explains:.1f} %" if explains else ""
-    return [words(name), *(number(format_quantity(value, "m")) for value in lengths), number(last)]
+    return [name, *(format_quantity(value, "m") for value in lengths), last]
 
 
 def _share_words(share: PlantShare) -> str:

@@ -4,22 +4,20 @@ from __future__ import annotations
 
 import base64
 import html
-import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from feeddrive.report.figures.drawing import RenderedFigure
+from feeddrive.report.words.words import effect_words
 
-_TAG = re.compile(r"<[^>]*>")
 _KEPT = "\n\N{NO-BREAK SPACE}"
 
 
 @dataclass(frozen=True)
 class Cell:
-    """One table cell: inner HTML that is already escaped, and whether it is a number (set flush right)."""
+    """A table cell of HTML that is already escaped; plain text needs none."""
 
     inner: str
-    number: bool = False
 
 
 def text(words: str) -> str:
@@ -28,14 +26,11 @@ def text(words: str) -> str:
     return html.escape(clean.encode("utf-8", "replace").decode("utf-8"), quote=True)
 
 
-def words(content: str) -> Cell:
-    """A cell of plain text."""
-    return Cell(text(content))
-
-
-def number(content: str) -> Cell:
-    """A cell that holds a number and perhaps its unit."""
-    return Cell(text(content), number=True)
+def effect_name(name: str, bold: bool = False) -> Cell:
+    """What an effect is called, and below it its name in files where that is another."""
+    words = text(effect_words(name))
+    below = f"<br>{catalogue_name(name)}" if effect_words(name) != name else ""
+    return Cell(f"{f'<b>{words}</b>' if bold else words}{below}")
 
 
 def catalogue_name(name: str) -> str:
@@ -48,23 +43,31 @@ def paragraph(content: str, kind: str = "") -> str:
     return f"<p{_class(kind)}>{text(content)}</p>"
 
 
+def verdict(sentences: Sequence[str], calm: bool, note: str = "") -> str:
+    """A box with the main finding in bold and the other sentences below it; calm where nothing was found."""
+    first, *others = (paragraph(one, "" if i else "main") for i, one in enumerate(sentences))
+    return f'<div class="verdict{" clean" if calm else ""}">{first}{"".join(others)}{note}</div>'
+
+
 def bullets(lines: Iterable[str]) -> str:
     """A list of plain texts."""
     return f"<ul>{''.join(f'<li>{text(line)}</li>' for line in lines)}</ul>"
 
 
-def table(heads: list[Cell], rows: Iterable[list[Cell]], kind: str = "") -> str:
-    """A table with one line of heads; numbers and their heads stand flush right."""
-    head = "".join(f"<th{_class('number' if cell.number else '')}>{cell.inner}</th>" for cell in heads)
-    labels = [_TAG.sub(" ", cell.inner).strip() for cell in heads]  # beside each cell where a row is set as a list
-    cells = ("".join(_data_cell(cell, label) for cell, label in zip(row, labels, strict=False)) for row in rows)
+def table(heads: Sequence[str], rows: Iterable[Sequence[str | Cell]], kind: str = "") -> str:
+    """A table with one line of heads; a column whose head begins with "#" holds numbers and stands flush right."""
+    columns = [(_class("number" if head.startswith("#") else ""), text(head.removeprefix("#"))) for head in heads]
+    head = "".join(f"<th{side}>{label}</th>" for side, label in columns)
+    cells = ("".join(map(_data_cell, row, columns)) for row in rows)
     body = "".join(f"<tr>{row}</tr>\n" for row in cells)
     return f'<div class="wide"><table{_class(kind)}><thead><tr>{head}</tr></thead>\n<tbody>{body}</tbody></table></div>'
 
 
-def _data_cell(cell: Cell, label: str) -> str:
+def _data_cell(cell: str | Cell, column: tuple[str, str]) -> str:
+    """A cell under its column; its label stands beside it where a narrow page sets a row as a list."""
+    side, label = column
     named = f' data-label="{label}"' if label else ""
-    return f"<td{_class('number' if cell.number else '')}{named}>{cell.inner}</td>"
+    return f"<td{side}{named}>{cell.inner if isinstance(cell, Cell) else text(cell)}</td>"
 
 
 def section(title: str, *parts: str) -> str:

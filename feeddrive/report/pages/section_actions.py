@@ -6,10 +6,10 @@ from feeddrive.compensation.actions import Actions
 from feeddrive.compensation.cures import COMPENSATE, REPAIR, SET, cure
 from feeddrive.compensation.sheet import left, predicted_rows
 from feeddrive.diagnosis.judging.result import Diagnosis, EffectResult
-from feeddrive.report.certainty import experiment_sentences
-from feeddrive.report.pages.markup import bullets, number, paragraph, section, table, words
-from feeddrive.report.parameters import effect_sentence
-from feeddrive.report.words.people import DASH, error_text
+from feeddrive.report.pages.markup import bullets, paragraph, section, table
+from feeddrive.report.pages.section_certainty import experiment_sentences
+from feeddrive.report.words.number_text import DASH, error_text
+from feeddrive.report.words.parameters import effect_sentence
 
 _KINDS = {REPAIR: "Look at", SET: "Set", COMPENSATE: "Compensate", "watch": "Watch"}
 _FILES = {
@@ -31,10 +31,10 @@ def actions_section(diagnosis: Diagnosis, found: Actions | None) -> str:
     if found is None or (not found.effects and found.predicted is None):
         return ""
     by_name = {one.name: one for one in diagnosis.effects}
-    heads = [words("First to last"), words("What"), words("Found"), words("Value to set"), words("File")]
+    heads = ["First to last", "What", "Found", "Value to set", "File"]
     rows = [
-        [words(f"{i}. {_KINDS[cure(name).kind]}"), words(cure(name).look_at), words(_found(by_name[name])),
-         words(found.set_to.get(name, DASH)), words(_FILES.get(cure(name).form, DASH))]
+        [f"{i}. {_KINDS[cure(name).kind]}", cure(name).look_at, _found(by_name[name]),
+         found.set_to.get(name, DASH), _FILES.get(cure(name).form, DASH)]
         for i, name in enumerate(found.effects, 1)
     ]  # fmt: skip
     experiments = experiment_sentences(diagnosis)
@@ -46,16 +46,16 @@ def actions_section(diagnosis: Diagnosis, found: Actions | None) -> str:
 
 
 def _found(effect: EffectResult) -> str:
-    told = effect_sentence(effect)
-    return told if effect.carries else f"{told} (not confirmed on data not fitted)"
+    sentence = effect_sentence(effect)
+    return sentence if effect.carries else f"{sentence} (not confirmed on data not fitted)"
 
 
 def _predicted(found: Actions) -> str:
     if found.predicted is None:
         return paragraph(f"Not predicted: {found.why_not}.", "note") if found.why_not else ""
-    heads = [words("Predicted"), *map(number, ("before", "after repair", "after compensation"))]
+    heads = ["Predicted", "#before", "#after repair", "#after compensation"]
     rows = [
-        [words(name), *(number(DASH if one is None else error_text(one, "m")) for one in values)]
+        [name, *(DASH if one is None else error_text(one, "m") for one in values)]
         for name, values in predicted_rows(found.predicted)
     ]
     ends = [1e3 * one for one in found.predicted.wishes.stroke or found.predicted.table.positions[[0, -1]].tolist()]
@@ -63,5 +63,5 @@ def _predicted(found: Actions) -> str:
         f"Simulated from {ends[0]:.4g} mm to {ends[1]:.4g} mm with the position loop closed at the motor, in slow "
         "motion; one approach per direction, so that nothing scatters. Repair renews preload; compensation is a table."
     )
-    rest = [line.replace(" um", " \N{MICRO SIGN}m") for line in left(found.predicted)]
+    rest = [line.replace(" um", " \N{MICRO SIGN}m").replace("^2", "²") for line in left(found.predicted)]
     return table(heads, rows) + bullets(rest) + paragraph(note, "note")

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from feeddrive.diagnosis.judging.result import Diagnosis, ParameterResult
 from feeddrive.diagnosis.recordings.change_result import CommonTrial, Measure, ParameterChange, PerRecording
-from feeddrive.report.pages.markup import bullets, number, paragraph, section, table, words
-from feeddrive.report.parameters import parameter_text
-from feeddrive.report.words.people import fixed, share_text, with_unit
+from feeddrive.report.pages.markup import bullets, paragraph, section, table
+from feeddrive.report.words.number_text import fixed, share_text, with_unit
+from feeddrive.report.words.parameters import parameter_text
 from feeddrive.report.words.words import effect_words, joined, plain
 
 _MOST_TRIALS = 8
@@ -38,12 +38,6 @@ def since_section(diagnosis: Diagnosis) -> str:
     return section("Since the earlier diagnosis", bullets(diagnosis.kept.since), paragraph(note, "note"))
 
 
-def change_sentences(diagnosis: Diagnosis) -> list[str]:
-    """The changes as the verdict says them."""
-    stated = [one.statement for one in diagnosis.changes.changes]
-    return [f"Between the recordings changed: {'; '.join(stated)}."] if stated else []
-
-
 def _where(one: ParameterChange) -> str:
     return "" if one.fitted else " This recording was not fitted; its errors are taken without this change."
 
@@ -56,8 +50,8 @@ def _values(own: tuple[PerRecording, ...]) -> str:
         for position, (name, value) in enumerate(one.values.items()):
             shown = _text(one, value)
             label = f"{effect_words(one.effect)} ({one.port}): {plain(one.parameter)}" if position == 0 else ""
-            rows.append([words(label), words(name), number(shown[0]), number(shown[1])])
-    heads = [words("Parameter"), words("Recording"), number("value"), number("95 % interval")]
+            rows.append([label, name, shown[0], shown[1]])
+    heads = ["Parameter", "Recording", "#value", "#95 % interval"]
     return table(heads, rows)
 
 
@@ -76,14 +70,14 @@ def _explained(diagnosis: Diagnosis) -> str:
 
 def _tried(trials: tuple[CommonTrial, ...]) -> str:
     """Which parameters were asked for a value of their own, the best first."""
-    heads = [words("Asked for a value of its own"), words("in"), number("gain"), number("standard error"), words("")]
+    heads = ["Asked for a value of its own", "in", "#gain", "#standard error", "result"]
     rows = [
         [
-            words(f"{effect_words(one.effect)} ({one.port}): {plain(one.parameter)}"),
-            words("judged recordings" if one.judged else "fitted recordings"),
-            number(with_unit(fixed(100 * one.gain, 2), "%")),
-            number(with_unit(fixed(100 * one.standard_error, 2), "%")),
-            words("differs" if one.taken else "in common"),
+            f"{effect_words(one.effect)} ({one.port}): {plain(one.parameter)}",
+            "judged recordings" if one.judged else "fitted recordings",
+            with_unit(fixed(100 * one.gain, 2), "%"),
+            with_unit(fixed(100 * one.standard_error, 2), "%"),
+            "differs" if one.taken else "in common",
         ]
         for one in sorted(trials, key=lambda one: (not one.taken, -one.gain))[:_MOST_TRIALS]
     ]

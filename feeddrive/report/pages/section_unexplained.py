@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from feeddrive.diagnosis.judging.result import ChannelResult, Diagnosis
 from feeddrive.diagnosis.unexplained.unexplained_result import Carried, Dependence, Unexplained
-from feeddrive.report.pages.markup import Cell, bullets, catalogue_name, number, paragraph, section, table, words
-from feeddrive.report.words.people import DASH, error_text, fixed, share_text
+from feeddrive.report.pages.markup import Cell, bullets, catalogue_name, paragraph, section, table
+from feeddrive.report.words.number_text import DASH, error_text, fixed, share_text
 from feeddrive.report.words.words import joined, plain, variable_words
 
 
@@ -15,15 +15,15 @@ def unexplained_section(diagnosis: Diagnosis, pictures: str = "") -> str:
         return section("What is unexplained", paragraph("Nothing above the sensor noise."))
     channels = {channel.name: channel for channel in diagnosis.channels}
     heads = [
-        words("Channel"),
-        number("share of the signal's square"),
-        number("left"),
-        number("noise floor"),
-        number("of it above the noise"),
-        words("Depends on"),
+        "Channel",
+        "#share of the signal's square",
+        "#left",
+        "#noise floor",
+        "#of it above the noise",
+        "Depends on",
     ]
     rows = [_row(name, one, channels.get(name)) for name, one in diagnosis.unexplained.items()]
-    said = [f"{plain(name)}: {one.statement}" for name, one in diagnosis.unexplained.items() if one.statement]
+    statements = [f"{plain(name)}: {one.statement}" for name, one in diagnosis.unexplained.items() if one.statement]
     note = (
         "Taken on data that were not fitted, with the named effects and without the tables. The noise floor is "
         "estimated from the recording; ± is twice the standard error. The share in brackets is the part of the "
@@ -32,21 +32,21 @@ def unexplained_section(diagnosis: Diagnosis, pictures: str = "") -> str:
     return section(
         "What is unexplained",
         table(heads, rows),
-        bullets(said) if said else "",
+        bullets(statements) if statements else "",
         pictures,
         _carried(diagnosis),
         paragraph(note, "note"),
     )
 
 
-def _row(name: str, one: Unexplained, channel: ChannelResult | None) -> list[Cell]:
+def _row(name: str, one: Unexplained, channel: ChannelResult | None) -> list[str | Cell]:
     levels = [DASH, DASH, DASH]
     if one.above is not None and channel is not None:
         rms, floor = (error_text(level, channel.unit) for level in (one.above.rms, one.above.floor))
         percent, doubt = 100 * one.above.share, 200 * one.above.standard_error
         levels = [rms, floor, f"{fixed(percent, 0)} ± {fixed(doubt, 0)} %"]
-    depends = words(_dependences(one))
-    return [words(plain(name)), number(share_text(one.share)), *map(number, levels), depends]
+    depends = _dependences(one)
+    return [plain(name), share_text(one.share), *levels, depends]
 
 
 def _dependences(unexplained: Unexplained) -> str:
@@ -69,14 +69,7 @@ def _carried(diagnosis: Diagnosis) -> str:
     found = [one for left in diagnosis.unexplained.values() for one in left.carried]
     if not found:
         return ""
-    heads = [
-        words("Carried in plant_after.toml"),
-        words("Over"),
-        words("Channel"),
-        number("explains"),
-        number("rms without it"),
-        number("with it"),
-    ]
+    heads = ["Carried in plant_after.toml", "Over", "Channel", "#explains", "#rms without it", "#with it"]
     rows = [row for one in found for row in _carried_rows(one, units)]
     return table(heads, rows) + paragraph(
         "These are tables of what was seen, not laws: they hold over the range "
@@ -85,10 +78,10 @@ def _carried(diagnosis: Diagnosis) -> str:
     )
 
 
-def _carried_rows(one: Carried, units: dict[str, str]) -> list[list[Cell]]:
+def _carried_rows(one: Carried, units: dict[str, str]) -> list[list[str | Cell]]:
     rows = []
     for place, (name, share) in enumerate(one.explains.items()):
-        first = [Cell(catalogue_name(one.name)), words(plain(one.variable))] if place == 0 else [words(""), words("")]
+        first = [Cell(catalogue_name(one.name)), plain(one.variable)] if place == 0 else ["", ""]
         errors = [error_text(errors[name], units[name]) for errors in (one.before, one.after)]
-        rows.append([*first, words(plain(name)), number(share_text(share)), *map(number, errors)])
+        rows.append([*first, plain(name), share_text(share), *errors])
     return rows

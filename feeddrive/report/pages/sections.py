@@ -9,18 +9,17 @@ from feeddrive.diagnosis.judging.result import ChannelResult, Diagnosis, EffectR
 from feeddrive.diagnosis.numbers.number_rows import NumberResult
 from feeddrive.report.pages.markup import (
     Cell,
-    catalogue_name,
-    number,
+    effect_name,
     paragraph,
     section,
     table,
     text,
-    words,
+    verdict,
 )
-from feeddrive.report.parameters import parameter_text
-from feeddrive.report.records import used_sentence
-from feeddrive.report.words.people import (
+from feeddrive.report.pages.section_records import used_sentence
+from feeddrive.report.words.number_text import (
     DASH,
+    SPACE,
     Scale,
     band_text,
     scale_for_error,
@@ -29,6 +28,7 @@ from feeddrive.report.words.people import (
     times_text,
     with_unit,
 )
+from feeddrive.report.words.parameters import parameter_text
 from feeddrive.report.words.verdict import is_noise, verdict_sentences
 from feeddrive.report.words.words import effect_words, plain
 from feeddrive.units.quantity import format_quantity
@@ -36,19 +36,18 @@ from feeddrive.units.quantity import format_quantity
 
 def verdict_section(diagnosis: Diagnosis) -> str:
     """The verdict in a box, the main finding in bold; calm only where nothing was found and nothing is left."""
-    first, *others = verdict_sentences(diagnosis)
     noise = diagnosis.channels and all(is_noise(channel) for channel in diagnosis.channels)
     clean = noise and diagnosis.nothing_missing and not diagnosis.changes.changes
-    lines = "".join(paragraph(sentence) for sentence in others) + paragraph(used_sentence(diagnosis), "note")
-    return f'<div class="verdict{" clean" if clean else ""}">{paragraph(first, "main")}{lines}</div>\n'
+    note = paragraph(used_sentence(diagnosis), "note")
+    return f"{verdict(verdict_sentences(diagnosis), bool(clean), note)}\n"
 
 
 def error_section(diagnosis: Diagnosis) -> str:
     """Error before and after for each channel."""
     if not diagnosis.channels:
         return ""
-    heads = [words("Channel"), words("Band"), words("")]
-    heads += [number(one) for one in ("rms", "largest", "relative", "sensor noise", "rms / noise")]
+    heads = ["Channel", "Band", "Prediction"]
+    heads += [f"#{one}" for one in ("rms", "largest", "relative", "sensor noise", "rms / noise")]
     rows = [row for channel in diagnosis.channels for row in _error_rows(channel, diagnosis.nothing_missing)]
     note = (
         "Taken on data that were not fitted, inside the band. Relative: rms error over rms of the measured signal; for "
@@ -58,31 +57,31 @@ def error_section(diagnosis: Diagnosis) -> str:
     return section("Error before and after", table(heads, rows, "pairs"), paragraph(note, "note"))
 
 
-def _error_rows(channel: ChannelResult, nothing_missing: bool) -> list[list[Cell]]:
+def _error_rows(channel: ChannelResult, nothing_missing: bool) -> list[list[str | Cell]]:
     """One row before and one after, only one where both are the same plant."""
     scale = scale_for_error(channel.unit)
-    band = band_text(channel.band_hz)
+    band = band_text(channel.band_hz).replace(" ", SPACE)
     name = Cell(f"<b>{text(plain(channel.name))}</b>")
     if nothing_missing:
-        return [[name, words(band), words("declared plant"), *_errors(channel, channel.before, scale)]]
+        return [[name, band, "declared plant", *_errors(channel, channel.before, scale)]]
     gain = channel.before.rms / channel.after.rms if channel.after.rms > 0.0 else math.nan
-    better = words(f"rms {significant(gain, 2)} times smaller") if gain >= 1.05 else words("")
+    better = f", {significant(gain, 2)} times smaller" if gain >= 1.05 else ""
     return [
-        [name, words(band), words("before"), *_errors(channel, channel.before, scale)],
-        [better, words(""), words("after"), *_errors(channel, channel.after, scale)],
+        [name, band, "before", *_errors(channel, channel.before, scale)],
+        [name, band, f"after{better}", *_errors(channel, channel.after, scale)],
     ]
 
 
-def _errors(channel: ChannelResult, figures: ErrorFigures, scale: Scale) -> list[Cell]:
+def _errors(channel: ChannelResult, figures: ErrorFigures, scale: Scale) -> list[str | Cell]:
     """The figures of one row."""
     noise = channel.noise_rms if channel.noise_rms > 0.0 else math.nan
     shown = [with_unit(significant(one * scale.factor), scale.unit) for one in (figures.rms, figures.max)]
     noise_text = with_unit(significant(noise * scale.factor), scale.unit) if math.isfinite(noise) else DASH
     return [
-        *map(number, shown),
-        number(share_text(figures.relative)),
-        number(noise_text),
-        number(significant(figures.rms / noise)),
+        *shown,
+        share_text(figures.relative),
+        noise_text,
+        significant(figures.rms / noise),
     ]
 
 
@@ -91,14 +90,7 @@ def effects_section(diagnosis: Diagnosis) -> str:
     if not diagnosis.effects:
         return section("Effects found", paragraph("None: no effect was added to the declared plant."))
     channels = [channel.name for channel in diagnosis.channels]
-    heads = [
-        words("Effect"),
-        words("Parameter"),
-        number("value"),
-        number("95 % interval"),
-        words("Error without it"),
-        words("Carries over"),
-    ]
+    heads = ["Effect", "Parameter", "#value", "#95 % interval", "Error without it", "Carries over"]
     rows = [row for effect in diagnosis.effects for row in _effect_rows(effect, channels)]
     stories = "".join(_story(effect) for effect in diagnosis.effects)
     note = paragraph(
@@ -109,16 +101,16 @@ def effects_section(diagnosis: Diagnosis) -> str:
     return section("Effects found", table(heads, rows, "effects"), note, f"<dl>{stories}</dl>" if stories else "")
 
 
-def _effect_rows(effect: EffectResult, channels: list[str]) -> list[list[Cell]]:
+def _effect_rows(effect: EffectResult, channels: list[str]) -> list[list[str | Cell]]:
     """One row per parameter; the name and the shares stand in the first."""
     texts = [parameter_text(key, parameter) for key, parameter in effect.parameters.items()]
-    cells = [[words(one.name), number(one.value), number(one.interval or DASH)] for one in texts]
-    cells = cells or [[words(DASH), words(""), words("")]]
-    name = Cell(f"<b>{text(effect_words(effect.name))}</b><br>{catalogue_name(effect.name)}")
+    cells: list[list[str | Cell]] = [[one.name, one.value, one.interval or DASH] for one in texts]
+    cells = cells or [[DASH, "", ""]]
+    name = effect_name(effect.name, bold=True)
     ordered = sorted(effect.explains, key=lambda one: channels.index(one) if one in channels else len(channels))
     shares = [f"{text(plain(one))} {text(times_text(error_without(effect.explains[one])))}" for one in ordered]
-    first = [name, *cells[0], Cell("<br>".join(shares) or DASH), words("yes" if effect.carries else "no")]
-    return [first, *([words(""), *row, words(""), words("")] for row in cells[1:])]
+    first = [name, *cells[0], Cell("<br>".join(shares) or DASH), "yes" if effect.carries else "no"]
+    return [first, *[["", *row, "", ""] for row in cells[1:]]]
 
 
 def _story(effect: EffectResult) -> str:
@@ -138,14 +130,8 @@ _NOTE = (
 
 def calibrated_section(diagnosis: Diagnosis) -> str:
     """A table of the calibrated values; nothing where all were taken as exact."""
-    heads = [
-        words("Declared value"),
-        number("declared"),
-        number("tolerance"),
-        number("calibrated"),
-        number("95 % interval"),
-    ]
-    rows = [[words(shown[0]), *map(number, shown[1:])] for shown in map(_shown, diagnosis.calibrated)]
+    heads = ["Declared value", "#declared", "#tolerance", "#calibrated", "#95 % interval"]
+    rows = [[shown[0], *shown[1:]] for shown in map(_shown, diagnosis.calibrated)]
     return section("Declared values, calibrated", table(heads, rows), paragraph(_NOTE, "note")) if rows else ""
 
 
@@ -180,12 +166,9 @@ _MEASURED_NOTE = (
 
 def measured_section(diagnosis: Diagnosis) -> str:
     """A table of the measured numbers; nothing where none were given."""
-    heads = [words("Measured beside the recordings"), number("measured"), number("tolerance"), number("declared plant"),
-             number("with what was found"), words("met")]  # fmt: skip
-    rows = [
-        [words(one.number.name.replace("_", " ")), *map(number, _texts(one)), words(_met(one, "yes", "no"))]
-        for one in diagnosis.measured
-    ]
+    heads = ["Measured beside the recordings", "#measured", "#tolerance", "#declared plant",
+             "#with what was found", "met"]  # fmt: skip
+    rows = [[one.number.name.replace("_", " "), *_texts(one), _met(one, "yes", "no")] for one in diagnosis.measured]
     return section("Measured numbers", table(heads, rows), paragraph(_MEASURED_NOTE, "note")) if rows else ""
 
 

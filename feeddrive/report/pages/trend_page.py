@@ -13,7 +13,7 @@ from feeddrive.files import write_bytes_atomically, write_text_atomically
 from feeddrive.report.figures.drawing import RenderedFigure, render
 from feeddrive.report.figures.figure_trend import trend_figures
 from feeddrive.report.pages.html import page
-from feeddrive.report.pages.markup import bullets, figure, number, paragraph, section, table, words
+from feeddrive.report.pages.markup import bullets, figure, paragraph, section, table, verdict
 from feeddrive.report.words.trend_words import date_words, event_sentence, odds_words, quantity_rows, verdict_lines
 from feeddrive.trend.checkpoint import USED
 from feeddrive.trend.watch import Trend
@@ -49,9 +49,9 @@ def trend_table(trend: Trend) -> str:
 def trend_page(trend: Trend, searched: Mapping[int, str], title: str, pictures: list[RenderedFigure]) -> str:
     """The page as text."""
     parts = (
-        _verdict(trend, searched),
+        verdict(verdict_lines(trend, searched), calm=not trend.events),
         section("Over the recordings", *(figure(one) for one in pictures if one.stem.startswith("trend"))),
-        section("Quantities", _quantities(trend)),
+        section("Quantities", table(_QUANTITIES, quantity_rows(trend), "dense")),
         section("Changes", _changes(trend, searched)),
         section("Recordings that stand alone", bullets(_odd(trend)) if trend.odd else ""),
         section("The same in all recordings", *(figure(one) for one in pictures if one.stem.startswith("map"))),
@@ -63,45 +63,25 @@ def trend_page(trend: Trend, searched: Mapping[int, str], title: str, pictures: 
     )
 
 
+_QUANTITIES = ("quantity", "#at first", "#at last", "#one file", "what it did", "limits")
+
 _METHOD = (
     "Odds compare a course (jump, slope, settling) with none, its size, the scatter and any wandering of the machine "
-    "integrated out, and count every date, kind and quantity that was tried. A change is told from 100 : 1: where "
-    "nothing changes, at most one watch in a hundred tells of one.",
+    "integrated out, and count every date, kind and quantity that was tried. A change is reported from 100 : 1: where "
+    "nothing changes, at most one watch in a hundred reports one.",
     "Limits from the first recordings are left by chance in one of a hundred steady years of 250 recordings.",
     "The band of a line is that of what was found; ± one file is the scatter of a single recording, 95 %.",
 )
 
 
-def _verdict(trend: Trend, searched: Mapping[int, str]) -> str:
-    main, *others = verdict_lines(trend, searched)
-    kind = "verdict" if trend.events else "verdict clean"
-    return f'<div class="{kind}">{paragraph(main, "main")}{"".join(map(paragraph, others))}</div>'
-
-
-def _quantities(trend: Trend) -> str:
-    heads = [
-        words("quantity"),
-        number("at first"),
-        number("at last"),
-        number("one file"),
-        words("what it did"),
-        words("limits"),
-    ]
-    rows = (
-        [words(name), number(first), number(last), number(scatter), words(did), words(limit)]
-        for name, first, last, scatter, did, limit in quantity_rows(trend)
-    )
-    return table(heads, rows, "dense")
-
-
 def _changes(trend: Trend, searched: Mapping[int, str]) -> str:
-    heads = [words("what"), words("date, 95 %"), number("odds"), words("full search")]
+    heads = ["what", "date, 95 %", "#odds", "full search"]
     rows = [
         [
-            words(event_sentence(trend, event)),
-            words(" to ".join(date_words(trend, day) for day in event.dates)),
-            number(odds_words(max(one.found.odds for one in event.changes))),
-            words(searched.get(i, "not asked for")),
+            event_sentence(trend, event),
+            " to ".join(date_words(trend, day) for day in event.dates),
+            odds_words(max(one.found.odds for one in event.changes)),
+            searched.get(i, "not asked for"),
         ]
         for i, event in enumerate(trend.events)
     ]

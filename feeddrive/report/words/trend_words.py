@@ -16,14 +16,14 @@ from feeddrive.trend.watched_quantities import Quantity
 from feeddrive.units.quantity import format_quantity
 
 _CLOCK = 3.0
-"""Days of recordings up to which dates are told with the time of day."""
+"""Days of recordings up to which dates are printed with the time of day."""
 
 
 def verdict_lines(trend: Trend, searched: Mapping[int, str]) -> list[str]:
     """The findings, the first one the main one."""
-    told = [event_sentence(trend, event) for event in trend.events if not _is_growth(trend, event)]
+    changes = [event_sentence(trend, event) for event in trend.events if not _is_growth(trend, event)]
     growth = growth_lines(trend)
-    lines = [*growth, *told]
+    lines = [*growth, *changes]
     if not lines:
         lines = [f"Nothing changed in {len(trend.used)} recordings."]
     lines += [f"Full search: {text}." for _, text in sorted(searched.items())]
@@ -34,7 +34,7 @@ def verdict_lines(trend: Trend, searched: Mapping[int, str]) -> list[str]:
 
 
 def _is_growth(trend: Trend, event: Event) -> bool:
-    """Whether an event is told as growth already."""
+    """Whether an event is reported as growth already."""
     named = {change.quantity.name for change in event.changes}
     return trend.growth is not None and event.kind == SETTLING and named <= {"offset", "slope"}
 
@@ -149,7 +149,7 @@ def span_words(days: float) -> str:
 
 
 def odds_words(odds: float) -> str:
-    """Odds that are beyond counting are told as that."""
+    """Odds that are beyond counting are printed as that."""
     return f"{odds:.0f} : 1" if odds < 1e4 else "more than 10 000 : 1"
 
 

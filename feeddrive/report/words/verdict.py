@@ -5,10 +5,9 @@ from __future__ import annotations
 import math
 
 from feeddrive.diagnosis.judging.result import ChannelResult, Diagnosis
-from feeddrive.report.pages.section_changes import change_sentences
-from feeddrive.report.parameters import effect_sentence
 from feeddrive.report.words.explained_words import odds_text
-from feeddrive.report.words.people import error_text, share_text, significant
+from feeddrive.report.words.number_text import error_text, share_text, significant
+from feeddrive.report.words.parameters import effect_sentence
 from feeddrive.report.words.words import effect_words, joined, plain, variable_words
 
 _NOISE_REACHED = 1.5
@@ -19,7 +18,9 @@ def verdict_sentences(diagnosis: Diagnosis) -> list[str]:
     """The verdict in plain text, the main finding first."""
     tables = _tables(diagnosis) if diagnosis.effects else ""
     beside = f"Beside these it carries what no named effect explains: {tables}." if tables else ""
-    found = [_main_finding(diagnosis), beside, *change_sentences(diagnosis)]
+    stated = [one.statement for one in diagnosis.changes.changes]
+    changed = f"Between the recordings changed: {'; '.join(stated)}." if stated else ""
+    found = [_main_finding(diagnosis), beside, changed]
     sentences = [*found, _errors(diagnosis), *_above_noise(diagnosis)]
     return [sentence for sentence in sentences + _doubts(diagnosis) if sentence]
 
@@ -103,8 +104,8 @@ def _doubts(diagnosis: Diagnosis) -> list[str]:
     for one in diagnosis.possible:
         if not one.instead_of:
             odds = odds_text(one.odds / (1 + one.odds))
-            said = f"Possible beside these: {effect_words(one.name)} (odds {odds})"
-            sentences.append(f"{said}; {one.settles} settles it.")
+            possible = f"Possible beside these: {effect_words(one.name)} (odds {odds})"
+            sentences.append(f"{possible}; {one.settles} settles it.")
     idle = [effect_words(effect.name) for effect in diagnosis.effects if not effect.carries]
     if idle:
         sentences.append(f"Not confirmed on data not fitted: {joined(idle)}.")

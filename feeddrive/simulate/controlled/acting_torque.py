@@ -19,7 +19,7 @@ from itertools import accumulate
 
 import numpy as np
 
-from feeddrive.engine.timing import SPLIT
+from feeddrive.servo.sampled_plant import whole_and_rest
 from feeddrive.simulate.controlled.controlled_machine import TorqueLoop
 from feeddrive.typing import FloatArray
 
@@ -87,6 +87,4 @@ def mean_torque(acting: FloatArray, ends: FloatArray, lag: float, tick: float) -
 
 def _late(loop: TorqueLoop, tick: float) -> tuple[int, float]:
     """Whole ticks of dead time and the rest as part of a tick."""
-    dead = loop.dead_time / tick
-    late = math.floor(dead + SPLIT)
-    return late, dead - late if dead - late > SPLIT else 0.0
+    return whole_and_rest(loop.dead_time / tick)

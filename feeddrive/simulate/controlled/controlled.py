@@ -25,7 +25,7 @@ from feeddrive.engine.engine import Feed, Machine, rested, run_machine
 from feeddrive.engine.program import TOLERANCE, Position, StepReport
 from feeddrive.engine.timing import Timing
 from feeddrive.errors import InputError
-from feeddrive.plant.analysis.linear import state_names
+from feeddrive.plant.analysis.ode import state_names
 from feeddrive.plant.equations import bristle_count
 from feeddrive.plant.motor_torque import warn_beyond_top
 from feeddrive.plant.plant import Plant

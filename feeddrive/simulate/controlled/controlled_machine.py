@@ -13,10 +13,9 @@ from feeddrive.engine.program import Program
 from feeddrive.engine.step.step import torque_step
 from feeddrive.engine.timing import Timing, timing_of
 from feeddrive.errors import InputError
-from feeddrive.plant.equations import parameter_symbols
 from feeddrive.plant.motor_torque import acting_torque
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.structure import per_structure
+from feeddrive.plant.structure import parameter_symbols, per_structure
 from feeddrive.servo.sampled_plant import MEASUREMENTS, SampledController
 from feeddrive.simulate.held_torque import readings_of
 from feeddrive.symbolic_turn import SYMBOLS

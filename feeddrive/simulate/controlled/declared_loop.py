@@ -37,12 +37,11 @@ from functools import lru_cache
 import casadi as ca
 import numpy as np
 from scipy.interpolate import CubicSpline
-from scipy.signal import savgol_filter
 
 from feeddrive.errors import InputError
-from feeddrive.plant.file.entries import Origins, Table
 from feeddrive.plant.plant import DeclaredCascade, Plant, PositionVelocityController
 from feeddrive.recording import Recording
+from feeddrive.schema.table import Origins, Table
 from feeddrive.servo.cascade import Feedback
 from feeddrive.servo.cascade_function import cascade_controller
 from feeddrive.servo.sampled_plant import SampledController
@@ -159,6 +158,8 @@ class DeclaredLoop:
         return np.column_stack([columns[name][: len(time)] for name in self.controller.references])
 
     def _slope(self, setpoint: FloatArray, order: int, time: FloatArray) -> FloatArray:
+        from scipy.signal import savgol_filter  # takes a second to import
+
         sample = self.controller.sample_time * self.ticks
         width = max(2 * round(SMOOTHING / sample) + 1, 5)
         if len(setpoint) <= width:

@@ -19,10 +19,11 @@ from feeddrive.effects.base import ChainEffect, TimingEffect
 from feeddrive.effects.timing.channel_delay import ChannelDelay
 from feeddrive.engine.engine import Feed, run_machine
 from feeddrive.engine.program import CELL, TOLERANCE, Program, Stop, Tangents, Task
-from feeddrive.engine.step.step_constants import flattened, propagator_blocks, state_matrices
+from feeddrive.engine.step.linear_part import state_matrices
+from feeddrive.engine.step.step_constants import flattened, propagator_blocks
 from feeddrive.errors import InputError
-from feeddrive.plant.equations import parameter_names
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.structure import parameter_names
 from feeddrive.servo.sampled_plant import SampledController
 from feeddrive.simulate.controlled.controlled import (
     ControlledRun,

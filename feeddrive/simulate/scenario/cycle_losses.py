@@ -24,12 +24,11 @@ import numpy as np
 from feeddrive.effects.base import Motion, Port
 from feeddrive.effects.friction.shaft_drag import BearingDrag
 from feeddrive.engine.timing import timing_of
-from feeddrive.plant.equations import bristle_count, chain_symbols, parameter_symbols, parameter_values
+from feeddrive.plant.equations import bristle_count
 from feeddrive.plant.friction_law import bristle_energy, friction_parts, resisting_force, source_force
 from feeddrive.plant.motor_torque import acting_torques
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.structure import per_structure
-from feeddrive.plant.symbols import Symbols
+from feeddrive.plant.structure import Symbols, chain_symbols, parameter_symbols, parameter_values, per_structure
 from feeddrive.plant.transmission_law import nut_force
 from feeddrive.simulate.controlled.acting_torque import entered, mean_torque
 from feeddrive.simulate.controlled.controlled import ControlledRun, TorqueLoop

@@ -36,34 +36,22 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
 from feeddrive.errors import InputError
-from feeddrive.plant.chain.moving_inertia import inertia_at_motor
-from feeddrive.plant.file.entries import Table
+from feeddrive.plant.analysis.modes import inertia_at_motor
 from feeddrive.plant.plant import Plant
 from feeddrive.schema.controller import CONTROLLER
+from feeddrive.schema.table import Origins, Table
+from feeddrive.schema.toml_text import read_toml
 from feeddrive.servo.cascade import Cascade, Feedback, FeedForward, divider
 from feeddrive.servo.cascade_function import velocity_loop_of
 from feeddrive.servo.filters import Filter, biquad, notch, pt1, pt2
 from feeddrive.servo.vendor_names import with_own_names
-from feeddrive.simulate.scenario.scenario_values import boolean, optional, positive
 
 FORMAT = "feeddrive-controller/1"
-_MODES = ("position", "velocity", "torque")
-_FORWARD_UNITS = {
-    "speed": "1",
-    "torque": "1",
-    "inertia": "kg m^2",
-    "coulomb": "N m",
-    "smoothing_speed": "rad/s",
-    "viscous": "N m s/rad",
-}
-_FILTERS: dict[str, tuple[Callable[..., Filter], dict[str, str]]] = {
-    "PT1": (pt1, {"frequency": "Hz"}),
-    "PT2": (pt2, {"frequency": "Hz", "damping": "1"}),
-    "notch": (notch, {"frequency": "Hz", "bandwidth": "Hz", "depth": "dB"}),
-    "biquad": (biquad, {"zero_frequency": "Hz", "zero_damping": "1", "pole_frequency": "Hz", "pole_damping": "1"}),
-}
+_FILTERS: dict[str, Callable[..., Filter]] = {"PT1": pt1, "PT2": pt2, "notch": notch, "biquad": biquad}
 
 
 def read_cascade(written: Table, plant: Plant) -> tuple[Cascade, bool]:
@@ -81,41 +69,41 @@ def read_cascade(written: Table, plant: Plant) -> tuple[Cascade, bool]:
     table.refuse_undeclared()
     for key in ("format", "name", "source"):
         table.text(key, "")
-    fast, slow = positive(table, "velocity_rate", "Hz"), positive(table, "position_rate", "Hz")
-    reset = optional(table, "reset_time", "s", math.inf)
-    bandwidth = positive(table, "current_bandwidth", "Hz") if "current_bandwidth" in table.entries else math.inf
+    fast, slow = table.positive("velocity_rate"), table.positive("position_rate")
+    reset = table.optional("reset_time", math.inf)
+    bandwidth = table.positive("current_bandwidth") if "current_bandwidth" in table.entries else math.inf
     try:
         cascade = Cascade(
             radius=plant.chain.motor_radius,
             sample_time=1 / fast,
             position_divider=divider(fast, slow, table.place("position_rate")),
-            position_gain=optional(table, "position_gain", "1/s", 0.0),
-            velocity_gain=optional(table, "velocity_gain", "N m s/rad", 0.0),
+            position_gain=table.optional("position_gain", 0.0),
+            velocity_gain=table.optional("velocity_gain", 0.0),
             reset_time=reset,
-            tracking_time=optional(table, "tracking_time", "s", reset),
+            tracking_time=table.optional("tracking_time", reset),
             torque_limit=_torque_limit(table, plant),
-            speed_limit=optional(table, "speed_limit", "rad/s", math.inf),
-            feedback=Feedback(table.choice("position_feedback", [str(place) for place in Feedback], "motor")),
+            speed_limit=table.optional("speed_limit", math.inf),
+            feedback=Feedback(table.choice("position_feedback")),
             feed_forward=_feed_forward(table, plant),
-            balancing_time=optional(table, "balancing_time", "s", 0.0),
-            torque_offset=optional(table, "torque_offset", "N m", 0.0),
+            balancing_time=table.optional("balancing_time"),
+            torque_offset=table.optional("torque_offset"),
             torque_filters=_filters(table, "torque"),
             speed_filters=_filters(table, "speed"),
             current_lag=1 / (2 * math.pi * bandwidth),
-            dead_time=optional(table, "dead_time", "s", 0.0),
+            dead_time=table.optional("dead_time"),
         )
     except InputError as error:
         known = error.where.startswith(table.where)
         raise error if known else InputError(error.what, f"{table.where}, {error.where}", error.mend) from None
-    return _in_mode(cascade, table), boolean(table, "allow_unstable", False)
+    return _in_mode(cascade, table), table.switch("allow_unstable")
 
 
 def _in_mode(cascade: Cascade, table: Table) -> Cascade:
     """The cascade with its outer loops open as the mode says; loops that are closed need their gain."""
-    mode = table.choice("mode", _MODES, "position")
+    mode = table.choice("mode")
     needed = {"position": ("position_gain", "velocity_gain"), "velocity": ("velocity_gain",), "torque": ()}[mode]
     for key in needed:
-        positive(table, key, {"position_gain": "1/s", "velocity_gain": "N m s/rad"}[key])
+        table.positive(key)
     if mode == "velocity":
         return velocity_loop_of(cascade)
     if mode == "torque":
@@ -124,19 +112,19 @@ def _in_mode(cascade: Cascade, table: Table) -> Cascade:
 
 
 def _torque_limit(table: Table, plant: Plant) -> float:
-    limits = [optional(table, "torque_limit", "N m", math.inf), plant.torque_limit]
+    limits = [table.optional("torque_limit", math.inf), plant.torque_limit]
     if ("current_limit" in table.entries) != ("torque_constant" in table.entries):
         missing = "torque_constant" if "current_limit" in table.entries else "current_limit"
         raise InputError("current_limit and torque_constant belong together", table.where, f"add {missing}")
     if "current_limit" in table.entries:
-        limits.append(positive(table, "current_limit", "A") * positive(table, "torque_constant", "N m/A"))
+        limits.append(table.positive("current_limit") * table.positive("torque_constant"))
     return min(limits)
 
 
 def _feed_forward(table: Table, plant: Plant) -> FeedForward:
     inner = table.table("feed_forward")
     inner.refuse_undeclared()
-    values = {key: inner.quantity(key, unit, key) for key, unit in _FORWARD_UNITS.items() if key in inner.entries}
+    values = {key: inner.quantity(key, origin=key) for key in inner.entries}
     for key, value in values.items():
         if value < 0:
             raise InputError("is negative", inner.place(key), "write zero or more")
@@ -147,10 +135,53 @@ def _feed_forward(table: Table, plant: Plant) -> FeedForward:
 def _filters(table: Table, place: str) -> tuple[Filter, ...]:
     found = []
     for inner in table.tables("filter"):
-        kind = inner.choice("kind", _FILTERS)
-        make, units = _FILTERS[kind]
+        kind = inner.choice("kind")
         inner = inner.of_kind(kind)
         inner.refuse_undeclared()
-        if inner.choice("at", ("torque", "speed"), "torque") == place:
-            found.append(make(**{key: inner.quantity(key, unit, key) for key, unit in units.items()}))
+        if inner.choice("at") == place:
+            keys = CONTROLLER.sections["filter"].kinds[kind].keys
+            found.append(_FILTERS[kind](**{key: inner.quantity(key, origin=key) for key in keys}))
     return tuple(found)
+
+
+SCENARIO_FORMAT = "feeddrive-scenario/1"
+
+
+def read_controller(path: Path, plant: Plant) -> Cascade:
+    """The controller of a file, for a plant; of a scenario nothing else is read.
+
+    Args:
+        path: of a controller file or of a scenario.
+        plant: gives the lead, the torque limit and the inertia for the feed-forward.
+
+    Raises:
+        InputError: neither kind of file, or a controller that cannot be read.
+    """
+    entries = read_toml(path, "scenario or controller file")
+    written = entries.get("format")
+    if written == FORMAT:
+        return read_cascade(Table(entries, str(path), Origins()), plant)[0]
+    if written != SCENARIO_FORMAT:
+        mend = f'its first line is format = "{SCENARIO_FORMAT}" or "{FORMAT}"'
+        raise InputError("is neither a scenario nor a controller file of this version", str(path), mend)
+    where = insert_controller(entries, path)
+    held = Table(entries, str(path), Origins()).table("controller")
+    return read_cascade(Table(held.entries, where, held.origins), plant)[0]
+
+
+def insert_controller(entries: dict[str, Any], path: Path) -> str:
+    """Put the controller of another file in the place of its name; where it stands, for messages."""
+    named = entries.get("controller")
+    if named is None:
+        raise InputError("controller is missing", str(path), "write a table [controller] or the name of a file")
+    changes = dict(named) if isinstance(named, dict) else {"file": named}
+    if "file" not in changes:
+        return f"{path}, controller"
+    file = path.parent / str(changes.pop("file"))
+    read = read_toml(file, "controller file")
+    if read.get("format") != FORMAT:
+        what = "is not a controller file of this version"
+        raise InputError(what, str(file), f'write format = "{FORMAT}" in its first line')
+    own = with_own_names(read, str(file))
+    entries["controller"] = own | with_own_names(changes, f"{path}, controller")
+    return str(file) if not changes else f"{path}, controller"

@@ -44,40 +44,23 @@ from feeddrive import __version__
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant
 from feeddrive.plant.file.effect_sections import read_effects
-from feeddrive.plant.file.entries import Table, read_toml, whole_file
 from feeddrive.plant.file.plant_file import plant_from_entries
 from feeddrive.plant.file.plant_schema import EFFECT
 from feeddrive.plant.passive_friction import refuse_active_friction
 from feeddrive.plant.plant import Plant
 from feeddrive.recording.channels import CHANNEL_UNITS, channel_unit
+from feeddrive.schema.key import Kind
 from feeddrive.schema.scenario import scenario
+from feeddrive.schema.table import Table, whole_file
+from feeddrive.schema.toml_text import read_toml
 from feeddrive.servo.cascade import Cascade, divider
 from feeddrive.servo.linear_loop import refuse_unstable
 from feeddrive.servo.vendor_names import with_own_names
-from feeddrive.simulate.controlled.controller_file import insert_controller
-from feeddrive.simulate.scenario.scenario import Evaluation, Excitation, Place, Recorder, Scenario
-from feeddrive.simulate.scenario.scenario_controller import read_cascade
+from feeddrive.simulate.scenario.scenario import SERIES, Evaluation, Excitation, Place, Recorder, Scenario
+from feeddrive.simulate.scenario.scenario_controller import insert_controller, read_cascade
 from feeddrive.simulate.scenario.scenario_motion import read_excitation, read_forces, read_trajectory
 from feeddrive.simulate.scenario.scenario_overrides import with_absolute_paths, with_overrides
-from feeddrive.simulate.scenario.scenario_result import SERIES
-from feeddrive.simulate.scenario.scenario_values import boolean, positive, quantities, texts, whole
 from feeddrive.simulate.setpoints.trajectories import refuse_beyond_travel
-
-_WORD = "word"
-KINDS: dict[str, dict[str, str]] = {
-    "following": {"start": "s", "end": "s"},
-    "settling": {"window": "m"},
-    "positioning": {"average": "s"},
-    "circular": {},
-    "friction_map": {"skip": "s"},
-    "force_loop": {"start": "s", "period": "s"},
-    "torque_loop": {"start": "s", "period": "s"},
-    "step": {"channel": _WORD, "at": "s"},
-    "response": {"input": _WORD, "output": _WORD, "segment": "s", "start": "s"},
-}
-"""Kind to its settings: key to SI unit, or a word for one of `SERIES`."""
-
-_MAY_BE_LEFT_OUT = {("following", "start"), ("following", "end"), ("friction_map", "skip"), ("response", "start")}
 
 
 def read_evaluations(tables: list[Table]) -> tuple[Evaluation, ...]:
@@ -90,15 +73,13 @@ def read_evaluations(tables: list[Table]) -> tuple[Evaluation, ...]:
 
 
 def _evaluation(table: Table) -> Evaluation:
-    kind = table.choice("kind", KINDS)
-    keys = KINDS[kind]
+    kind = table.choice("kind")
     table = table.of_kind(kind)
     table.refuse_undeclared()
     settings: dict[str, float | str] = {}
-    for key, unit in keys.items():
-        if key not in table.entries and (kind, key) in _MAY_BE_LEFT_OUT:
-            continue
-        settings[key] = table.choice(key, SERIES) if unit == _WORD else table.quantity(key, unit, key)
+    for name, declared in SCENARIO.sections["evaluate"].kinds[kind].keys.items():
+        if declared.required or name in table.entries:
+            settings[name] = table.choice(name) if declared.kind is Kind.TEXT else table.quantity(name)
     for key, value in settings.items():
         if isinstance(value, float) and value < 0:
             raise InputError("is negative", table.place(key), "write zero or more")
@@ -215,7 +196,7 @@ def _plant(path: Path, overrides: Mapping[str, str]) -> Plant:
 def _ticks(top: Table, cascade: Cascade, trajectory: float) -> int:
     run = top.table("run")
     run.refuse_undeclared()
-    duration = positive(run, "duration", "s") if "duration" in run.entries else trajectory
+    duration = run.positive("duration") if "duration" in run.entries else trajectory
     ticks = math.ceil(duration / cascade.sample_time - 1e-6)
     if not 2 <= ticks <= _LONGEST:
         what = f"a run of {duration:g} s is {ticks} ticks"
@@ -224,7 +205,7 @@ def _ticks(top: Table, cascade: Cascade, trajectory: float) -> int:
 
 
 def _travel(top: Table) -> tuple[float, float]:
-    ends = quantities(top, "travel", "m")
+    ends = top.listed("travel")
     if len(ends) != 2 or ends[1] <= ends[0]:
         raise InputError("is not two ascending positions", top.place("travel"), 'write travel = ["0 mm", "500 mm"]')
     return ends[0], ends[1]
@@ -235,9 +216,9 @@ def _recorder(top: Table, cascade: Cascade, excitation: Excitation | None) -> Re
     table.refuse_undeclared()
     ticks = cascade.position_divider
     if "rate" in table.entries:
-        ticks = divider(1 / cascade.sample_time, positive(table, "rate", "Hz"), table.place("rate"))
+        ticks = divider(1 / cascade.sample_time, table.positive("rate"), table.place("rate"))
     injected = () if excitation is None else (_INJECTED[excitation.place],)
-    channels = texts(table, "channels", (*_USUAL, *injected))
+    channels = table.words("channels", (*_USUAL, *injected))
     for channel in channels:
         Table({"channel": channel}, table.place("channels"), top.origins).choice("channel", CHANNELS)
     inner = table.table("noise")
@@ -247,7 +228,7 @@ def _recorder(top: Table, cascade: Cascade, excitation: Excitation | None) -> Re
     }
     if any(value < 0 for value in noise.values()):
         raise InputError("a noise is negative", inner.where, "write its standard deviation")
-    return Recorder(ticks, channels, noise, boolean(table, "quantised", False), whole(table, "seed", 0))
+    return Recorder(ticks, channels, noise, table.switch("quantised"), table.whole("seed"))
 
 
 def _digest(entries: Mapping[str, Any], folder: Path, plant: bytes, overrides: Mapping[str, str]) -> str:

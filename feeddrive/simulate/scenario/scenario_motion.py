@@ -29,10 +29,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 from feeddrive.errors import InputError
-from feeddrive.plant.file.entries import Table
 from feeddrive.recording.files.reading import read_recording
+from feeddrive.schema.table import Table
 from feeddrive.simulate.scenario.scenario import Excitation, Place
-from feeddrive.simulate.scenario.scenario_values import optional, positive, quantities, whole
 from feeddrive.simulate.setpoints.cutting_force import (
     Force,
     Milling,
@@ -43,8 +42,7 @@ from feeddrive.simulate.setpoints.cutting_force import (
     SumOfForces,
     TriangleForce,
 )
-from feeddrive.simulate.setpoints.jerk_limited import Limits
-from feeddrive.simulate.setpoints.setpoint_motion import Pieces, Trajectory, rest
+from feeddrive.simulate.setpoints.setpoint_motion import Limits, Pieces, Trajectory, rest
 from feeddrive.simulate.setpoints.trajectories import (
     Circle,
     Sine,
@@ -55,12 +53,6 @@ from feeddrive.simulate.setpoints.trajectories import (
     velocity_steps,
 )
 from feeddrive.simulate.setpoints.waveforms import Multisine, Prbs, Sweep, Waveform
-
-MOST_REPEATS = 10_000
-"""Repeats of a motion at most: a day of moves of some seconds. Every piece of it is held in memory."""
-
-MOST_TEETH = 1000
-"""Teeth of a cutter at most; the largest face mills have some hundred."""
 
 
 def read_trajectory(table: Table) -> Trajectory:
@@ -84,7 +76,7 @@ def read_excitation(table: Table) -> Excitation:
     table.refuse_undeclared()
     place = Place(table.choice("at", [str(place) for place in Place]))
     unit = {Place.SPEED: "rad/s", Place.TORQUE: "N m"}[place]
-    return Excitation(place, positive(table, "amplitude", unit), _waveform(table), optional(table, "start", "s", 0.0))
+    return Excitation(place, table.positive("amplitude", unit), _waveform(table), table.optional("start"))
 
 
 def read_forces(tables: list[Table], folder: Path) -> Force:
@@ -103,75 +95,75 @@ def read_forces(tables: list[Table], folder: Path) -> Force:
 
 
 def _limits(table: Table, velocity: float | None = None) -> Limits:
-    speed = positive(table, "velocity", "m/s") if velocity is None else velocity
-    acceleration, jerk = table.quantity("acceleration", "m/s^2", ""), table.quantity("jerk", "m/s^3", "")
+    speed = table.positive("velocity") if velocity is None else velocity
+    acceleration, jerk = table.quantity("acceleration"), table.quantity("jerk")
     return Limits(speed, acceleration, jerk, table.where)
 
 
 def _hold(table: Table) -> Trajectory:
-    return Pieces((rest(table.quantity("position", "m", ""), positive(table, "duration", "s")),))
+    return Pieces((rest(table.quantity("position"), table.positive("duration")),))
 
 
 def _moves(table: Table) -> Trajectory:
-    targets, speeds = quantities(table, "targets", "m"), quantities(table, "velocity", "m/s")
+    targets, speeds = table.listed("targets"), table.listed("velocity")
     if len(speeds) not in (1, len(targets)):
         what = f"{len(speeds)} velocities for {len(targets)} targets"
         raise InputError(what, table.place("velocity"), "write one velocity, or one per target")
     each = speeds if len(speeds) > 1 else speeds * len(targets)
     pairs = [(target, _limits(table, speed)) for target, speed in zip(targets, each, strict=True)]
-    dwell = optional(table, "dwell", "s", 0.0)
-    return moves(table.quantity("start", "m", ""), pairs * whole(table, "repeat", 1, MOST_REPEATS), dwell)
+    dwell = table.optional("dwell")
+    return moves(table.quantity("start"), pairs * table.whole("repeat"), dwell)
 
 
 def _staircase(table: Table) -> Trajectory:
-    targets, runs = quantities(table, "targets", "m"), whole(table, "runs", None, MOST_REPEATS)
-    return staircase(targets, runs, positive(table, "overrun", "m"), _limits(table), positive(table, "dwell", "s"))
+    targets, runs = table.listed("targets"), table.whole("runs")
+    return staircase(targets, runs, table.positive("overrun"), _limits(table), table.positive("dwell"))
 
 
 def _position_step(table: Table) -> Trajectory:
-    height, at = table.quantity("height", "m", ""), positive(table, "at", "s")
-    duration = positive(table, "duration", "s")
+    height, at = table.quantity("height"), table.positive("at")
+    duration = table.positive("duration")
     if duration <= at:
         raise InputError("ends before the step", table.place("duration"), "write a longer duration")
-    return position_step(table.quantity("start", "m", ""), height, at, duration)
+    return position_step(table.quantity("start"), height, at, duration)
 
 
 def _velocity_steps(table: Table) -> Trajectory:
-    speeds, durations = quantities(table, "velocities", "m/s"), quantities(table, "durations", "s")
+    speeds, durations = table.listed("velocities"), table.listed("durations")
     if len(speeds) != len(durations) or min(durations) <= 0:
         what = f"{len(speeds)} velocities and {len(durations)} durations"
         raise InputError(what, table.place("durations"), "write one duration above zero per velocity")
-    return velocity_steps(table.quantity("start", "m", ""), list(zip(durations, speeds, strict=True)))
+    return velocity_steps(table.quantity("start"), list(zip(durations, speeds, strict=True)))
 
 
 def _circle(table: Table) -> Trajectory:
     centre, radius, turns = (
-        table.quantity("centre", "m", ""),
-        positive(table, "radius", "m"),
-        positive(table, "turns", "1"),
+        table.quantity("centre"),
+        table.positive("radius"),
+        table.positive("turns"),
     )
-    return Circle(centre, radius, turns, _limits(table), optional(table, "dwell", "s", 0.0))
+    return Circle(centre, radius, turns, _limits(table), table.optional("dwell"))
 
 
 def _sine(table: Table) -> Trajectory:
-    centre, amplitude = table.quantity("centre", "m", ""), positive(table, "amplitude", "m")
-    times = positive(table, "duration", "s"), positive(table, "fade", "s")
-    return Sine(centre, amplitude, positive(table, "frequency", "Hz"), *times)
+    centre, amplitude = table.quantity("centre"), table.positive("amplitude")
+    times = table.positive("duration"), table.positive("fade")
+    return Sine(centre, amplitude, table.positive("frequency"), *times)
 
 
 def _wave(table: Table) -> Trajectory:
-    start, offset = table.quantity("start", "m", ""), optional(table, "offset_velocity", "m/s", 0.0)
-    return Wave(start, offset, positive(table, "amplitude", "m/s"), _waveform(table))
+    start, offset = table.quantity("start"), table.optional("offset_velocity")
+    return Wave(start, offset, table.positive("amplitude"), _waveform(table))
 
 
 def _waveform(table: Table) -> Waveform:
-    kind = table.choice("waveform", ("sweep", "multisine", "prbs"))
+    kind = table.choice("waveform")
     if kind == "prbs":
-        return Prbs(positive(table, "bit", "s"), whole(table, "order"), whole(table, "periods", 1))
-    low, high = positive(table, "low", "Hz"), positive(table, "high", "Hz")
+        return Prbs(table.positive("bit"), table.whole("order"), table.whole("periods"))
+    low, high = table.positive("low"), table.positive("high")
     if kind == "sweep":
-        return Sweep(low, high, positive(table, "duration", "s"))
-    return Multisine(low, high, positive(table, "period", "s"), whole(table, "periods", 1), whole(table, "lines", 0))
+        return Sweep(low, high, table.positive("duration"))
+    return Multisine(low, high, table.positive("period"), table.whole("periods"), table.whole("lines"))
 
 
 _TRAJECTORIES: dict[str, Callable[[Table], Trajectory]] = {
@@ -187,21 +179,21 @@ _TRAJECTORIES: dict[str, Callable[[Table], Trajectory]] = {
 
 
 def _step_force(table: Table, _: Path) -> Force:
-    return StepForce(table.quantity("force", "N", ""), optional(table, "start", "s", 0.0), _end(table))
+    return StepForce(table.quantity("force"), table.optional("start"), _end(table))
 
 
 def _end(table: Table) -> float:
-    return optional(table, "end", "s", math.inf)
+    return table.optional("end", math.inf)
 
 
 def _triangle_force(table: Table, _: Path) -> Force:
-    amplitude, period = positive(table, "amplitude", "N"), positive(table, "period", "s")
-    return TriangleForce(amplitude, period, whole(table, "cycles", 1), optional(table, "start", "s", 0.0))
+    amplitude, period = table.positive("amplitude"), table.positive("period")
+    return TriangleForce(amplitude, period, table.whole("cycles"), table.optional("start"))
 
 
 def _sine_force(table: Table, _: Path) -> Force:
-    amplitude, frequency = positive(table, "amplitude", "N"), positive(table, "frequency", "Hz")
-    return SineForce(amplitude, frequency, optional(table, "mean", "N", 0.0), optional(table, "start", "s", 0.0))
+    amplitude, frequency = table.positive("amplitude"), table.positive("frequency")
+    return SineForce(amplitude, frequency, table.optional("mean"), table.optional("start"))
 
 
 def _recorded_force(table: Table, folder: Path) -> Force:
@@ -211,15 +203,15 @@ def _recorded_force(table: Table, folder: Path) -> Force:
 
 def _milling(table: Table, _: Path) -> Force:
     return Milling(
-        whole(table, "teeth", None, MOST_TEETH),
-        positive(table, "spindle_speed", "rad/s"),
-        positive(table, "depth", "m"),
-        positive(table, "feed_per_tooth", "m"),
-        positive(table, "tangential", "Pa"),
-        optional(table, "radial", "Pa", 0.0),
-        optional(table, "entry", "rad", 0.0),
-        optional(table, "exit", "rad", math.pi),
-        optional(table, "start", "s", 0.0),
+        table.whole("teeth"),
+        table.positive("spindle_speed"),
+        table.positive("depth"),
+        table.positive("feed_per_tooth"),
+        table.positive("tangential"),
+        table.optional("radial"),
+        table.optional("entry"),
+        table.optional("exit"),
+        table.optional("start"),
         _end(table),
     )
 

@@ -11,7 +11,7 @@ from typing import Any
 
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant
-from feeddrive.plant.file.entries import refuse_deep
+from feeddrive.schema.toml_text import refuse_deep
 
 
 def parse_overrides(texts: list[str]) -> dict[str, str]:

@@ -28,8 +28,7 @@ from feeddrive.simulate.controlled.controlled import (
     simulate_controlled,
     state_from,
 )
-from feeddrive.simulate.scenario.scenario import Place, Scenario
-from feeddrive.simulate.scenario.scenario_result import MEANS, SERIES, ScenarioResult, recorded
+from feeddrive.simulate.scenario.scenario import MEANS, SERIES, Place, Scenario, ScenarioResult, recorded
 from feeddrive.simulate.setpoints.cutting_force import held
 from feeddrive.typing import FloatArray
 

@@ -17,8 +17,7 @@ from itertools import pairwise
 import numpy as np
 
 from feeddrive.errors import InputError
-from feeddrive.simulate.setpoints.jerk_limited import Limits, move
-from feeddrive.simulate.setpoints.setpoint_motion import Motion, Piece, Pieces, Stop, Trajectory, rest
+from feeddrive.simulate.setpoints.setpoint_motion import Limits, Motion, Piece, Pieces, Stop, Trajectory, move, rest
 from feeddrive.simulate.setpoints.waveforms import Waveform
 from feeddrive.typing import FloatArray
 

@@ -12,12 +12,10 @@ from dataclasses import dataclass
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import Cascade
 from feeddrive.servo.mechanics_response import Case
-from feeddrive.simulate.scenario.scenario import Evaluation, Recorder, Scenario
-from feeddrive.simulate.scenario.scenario_result import ScenarioResult
+from feeddrive.simulate.scenario.scenario import Evaluation, Recorder, Scenario, ScenarioResult
 from feeddrive.simulate.scenario.scenario_run import run_scenario
 from feeddrive.simulate.setpoints.cutting_force import NoForce
-from feeddrive.simulate.setpoints.jerk_limited import Limits
-from feeddrive.simulate.setpoints.setpoint_motion import Trajectory
+from feeddrive.simulate.setpoints.setpoint_motion import Limits, Trajectory
 from feeddrive.simulate.setpoints.trajectories import Circle, position_step
 
 RADIUS, FEED, TURNS = 0.005, 0.05, 1.15

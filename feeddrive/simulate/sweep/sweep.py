@@ -11,7 +11,7 @@ from typing import Any
 
 from feeddrive.errors import InputError
 from feeddrive.files import write_text_atomically
-from feeddrive.plant.file.entries import nearest
+from feeddrive.schema.toml_text import nearest
 from feeddrive.servo.cascade_function import cascade_controller
 from feeddrive.simulate.controlled.controlled import TorqueLoop, resting_state
 from feeddrive.simulate.scenario.scenario_file import read_scenario

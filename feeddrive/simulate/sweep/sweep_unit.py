@@ -17,8 +17,8 @@ from typing import Any
 
 from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.files import write_text_atomically
+from feeddrive.simulate.scenario.scenario import ScenarioResult
 from feeddrive.simulate.scenario.scenario_file import read_scenario
-from feeddrive.simulate.scenario.scenario_result import ScenarioResult
 from feeddrive.simulate.scenario.scenario_run import run_scenario
 from feeddrive.simulate.sweep.sweep_design import Design, scenario_digest
 

@@ -26,15 +26,14 @@ from scipy.interpolate import RegularGridInterpolator
 from scipy.ndimage import uniform_filter1d
 
 from feeddrive.errors import InputError
-from feeddrive.plant.equations import parameter_values
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.structure import parameter_values
 from feeddrive.plant.warmed import followed
 from feeddrive.recording import Recording
 from feeddrive.simulate.uniform_motion import UniformMotion, uniform_motion
-from feeddrive.thermal.bound_function import BoundFunction
 from feeddrive.thermal.full.full_model import FRONT, NUT, REAR
 from feeddrive.thermal.laws.expansion import growths
-from feeddrive.thermal.laws.laws import FOLLOWED, INPUTS, PATHS, Laws, laws_of, values_of
+from feeddrive.thermal.laws.laws import FOLLOWED, INPUTS, PATHS, BoundFunction, Laws, laws_of, values_of
 from feeddrive.thermal.machine_heat import Heat
 from feeddrive.thermal.reduced.parametric_model import HeatModel
 from feeddrive.thermal.run.warm_up import Rows, channel_of, lagging, run

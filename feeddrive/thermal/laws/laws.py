@@ -16,7 +16,7 @@ Simulation in rows, linearisation, exact sensitivities and export all take the t
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -34,6 +34,26 @@ from feeddrive.thermal.machine_heat import Heat
 from feeddrive.thermal.reduced.parametric_model import AMBIENT, Path
 from feeddrive.thermal.thermal_coupling import viscous_share
 from feeddrive.typing import Expression, FloatArray
+
+
+class BoundFunction:
+    """A function with its arguments and results at fixed places; of one thread, and kept with its arrays."""
+
+    def __init__(
+        self, function: ca.Function, arguments: Sequence[FloatArray], results: Mapping[int, FloatArray]
+    ) -> None:
+        self._buffer, self._call = function.buffer()
+        self._kept = (function, tuple(arguments), dict(results))  # the buffer holds addresses alone
+        buffer: Expression = self._buffer
+        for i, array in enumerate(arguments):
+            buffer.set_arg(i, memoryview(array.data))
+        for i, array in results.items():
+            buffer.set_res(i, memoryview(array.data))
+
+    def __call__(self) -> None:
+        """Evaluate: reads the arguments where they are, writes the results."""
+        self._call()
+
 
 PATHS = tuple(Path)
 INPUTS = (NUT, FRONT, REAR, AMBIENT)

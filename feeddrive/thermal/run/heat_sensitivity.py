@@ -20,12 +20,10 @@ from functools import lru_cache
 
 import casadi as ca
 import numpy as np
-from scipy.signal import lfilter
 
 from feeddrive.symbolic_turn import SYMBOLS
-from feeddrive.thermal.bound_function import BoundFunction
 from feeddrive.thermal.full.full_model import NUT
-from feeddrive.thermal.laws.laws import FOLLOWED, INPUTS, PATHS, Laws, growth_places, laws_of, values_of
+from feeddrive.thermal.laws.laws import FOLLOWED, INPUTS, PATHS, BoundFunction, Laws, growth_places, laws_of, values_of
 from feeddrive.thermal.machine_heat import Heat
 from feeddrive.thermal.reduced.heat_propagators import Propagator, propagator
 from feeddrive.thermal.reduced.parametric_model import HeatModel, Path
@@ -267,6 +265,8 @@ def _lagged(
     carried = np.column_stack([lagging(column, 0.0, lag, step) for column in slopes.T]) if slopes.size else slopes
     if lag <= 1e-6 * step or not np.any(lag_slope):
         return read, carried
+    from scipy.signal import lfilter  # takes a second to import
+
     a = np.exp(-step / lag)
     a_slope = a * step / lag**2
     gain_slope = -a_slope * lag / step + (1 - a) / step

@@ -16,12 +16,10 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
-from scipy.signal import lfilter
 
 from feeddrive.errors import InputError, ValidityWarning
-from feeddrive.thermal.bound_function import BoundFunction
 from feeddrive.thermal.full.full_model import FRONT, NUT, REAR
-from feeddrive.thermal.laws.laws import FOLLOWED, INPUTS, PATHS, Laws, growth_places, laws_of, values_of
+from feeddrive.thermal.laws.laws import FOLLOWED, INPUTS, PATHS, BoundFunction, Laws, growth_places, laws_of, values_of
 from feeddrive.thermal.machine_heat import CHANNELS, Heat
 from feeddrive.thermal.reduced.heat_propagators import propagator
 from feeddrive.thermal.reduced.parametric_model import HeatModel, Path
@@ -245,6 +243,8 @@ def lagging(values: FloatArray, first: float, time_constant: float, step: float)
     """First-order lag of a signal that is straight between the rows, (k,); exact for it."""
     if time_constant <= 1e-6 * step:
         return values
+    from scipy.signal import lfilter  # takes a second to import
+
     a = np.exp(-step / time_constant)
     gain = (1 - a) * time_constant / step
     # dy/dt = (u - y)/τ with u from u₀ to u₁: y₁ = a y₀ + (1 - gain) u₁ + (gain - a) u₀

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from feeddrive.errors import InputError, printable
-from feeddrive.plant.file.entries import nearest
+from feeddrive.schema.toml_text import nearest
 from feeddrive.tuning.drive_forms import ax5000, heidenhain, linuxcnc, sinamics
 from feeddrive.tuning.drive_forms.parameter import DriveForm, Facts, Line, LoopSettings, Parameter
 from feeddrive.tuning.filter_choice import FilterChoice, FilterLimits

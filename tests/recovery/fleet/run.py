@@ -19,7 +19,8 @@ from typing import Any
 from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.judging.result import Diagnosis
 from feeddrive.errors import InputError
-from feeddrive.plant.file.plant_file import plant_text_with_effects, read_plant
+from feeddrive.plant.file.lumped_text import plant_text_with_effects
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.recording import read_recording
 from tests.recovery.fleet.case import Case, case
 from tests.recovery.fleet.floor import floors

@@ -37,7 +37,7 @@ def bounds(problem: Problem, effects: Sequence[Effect]) -> list[dict[str, float]
     base = problem.predicted(effects)
     slopes = problem.jacobian(effects, [True] * len(effects), base)
     information = np.zeros((slopes.shape[1], slopes.shape[1]))
-    at, residual = 0, problem.measured() - base
+    at, residual = 0, problem.measured - base
     for evidence in problem.evidence:
         rows = int(evidence.thinned(evidence.fit_rows).sum())
         rate = 1 / (evidence.recording.sample_time * evidence.thinning)

@@ -26,7 +26,7 @@ def detailed_channels(diagnosis: Diagnosis) -> list[ChannelResult]:
 
 
 def _excess(channel: ChannelResult) -> float:
-    """How far the error before stands above the noise; zero where it cannot be said."""
+    """How far the error before stands above the noise; zero where the ratio is not finite."""
     noise = channel.noise_rms if channel.noise_rms > 0.0 else 1.0
     ratio = channel.before.rms / noise
     return float(ratio) if np.isfinite(ratio) else 0.0

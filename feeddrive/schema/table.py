@@ -1,31 +1,22 @@
-"""Reading one table of a plant file: quantities with unit, source and tolerance, and nothing unknown."""
+"""Reading one table of a file: quantities with unit, source and tolerance, and nothing unknown."""
 
 from __future__ import annotations
 
-import difflib
 import re
-import tomllib
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 from typing import Any
 
-from feeddrive.effects.base import Value
 from feeddrive.errors import InputError, quoted
 from feeddrive.schema.key import Key
 from feeddrive.schema.section import Section, UndeclaredKeyError
-from feeddrive.units.quantity import parse
+from feeddrive.schema.toml_text import nearest, nearest_choice
+from feeddrive.units.quantity import format_quantity, parse
 
 _TABLE_KEYS = ("value", "source", "tolerance")
 
 _OBEYED = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u2028\u2029\u202a-\u202e\u2066-\u2069]")
 """Letters that a terminal, an editor or a browser obeys: controls but line ends and tabs, and turns of direction."""
-
-_MOST_CHOICES = 14
-"""Words that an error lists; the structures, kinds and channels are fewer."""
-
-MOST_LEVELS = 12
-"""Tables inside tables in a file: three times what any of ours needs, and far below what Python can walk through."""
 
 
 @dataclass
@@ -44,7 +35,7 @@ class Origins:
 
 @dataclass(frozen=True)
 class Table:
-    """A table of a plant file.
+    """A table of a file.
 
     Attributes:
         entries: what stands in it.
@@ -121,7 +112,7 @@ class Table:
             raise InputError("is a list, one value is needed", self.place(key), mend)
         return self._parsed(declared, written, unit, self.place(key), usual, may_vanish)
 
-    def quantities(self, key: str, unit: str = "", origin: str = "") -> Value:
+    def quantities(self, key: str, unit: str = "", origin: str = "") -> float | tuple[float, ...]:
         """A value in SI, or a list of them as a tuple, which may pass through zero.
 
         Raises:
@@ -138,19 +129,69 @@ class Table:
         pairs = zip(written, places, strict=True)
         return tuple(self._parsed(declared, item, unit, place, None, True) for item, place in pairs)
 
-    def whole(self, key: str, least: int, most: int, default: int | None = None) -> int:
-        """A whole number.
+    def optional(self, key: str, default: float | None = None, origin: str = "") -> float:
+        """As `quantity`; where it is left out the default, or the declared one."""
+        if key in self.entries:
+            return self.quantity(key, origin=origin or key)
+        if default is not None:
+            return default
+        declared = self._declared(key)
+        assert declared is not None and declared.default is not None, key
+        return parse(declared.default, declared.unit, self.place(key))
 
-        Args:
-            key: in this table.
-            least, most: ends of what is possible.
-            default: where it is left out; None if it must be given.
+    def positive(self, key: str, unit: str = "", origin: str = "", usual: tuple[float, float] | None = None) -> float:
+        """A value above zero.
+
+        Raises:
+            InputError: as `quantity`, or zero or negative.
+        """
+        value = self.quantity(key, unit, origin, usual)
+        if value <= 0:
+            shown = format_quantity(value, self._unit(self._declared(key), key, unit))
+            raise InputError(
+                f"{shown} is {'negative' if value < 0 else 'not above zero'}",
+                self.place(key),
+                "write a value above zero",
+            )
+        return value
+
+    def listed(self, key: str, unit: str = "") -> tuple[float, ...]:
+        """One quantity or a list of them, as a tuple in SI; raises as `quantities`."""
+        value = self.quantities(key, unit, key)
+        return value if isinstance(value, tuple) else (value,)
+
+    def switch(self, key: str, default: bool = False) -> bool:
+        """true or false, by default false.
+
+        Raises:
+            InputError: something else.
+        """
+        value = self.entries.get(key, default)
+        if not isinstance(value, bool):
+            raise InputError(f"{value!r} is neither true nor false", self.place(key), f"write {key} = true")
+        return value
+
+    def words(self, key: str, default: tuple[str, ...]) -> tuple[str, ...]:
+        """A list of words, none twice.
+
+        Raises:
+            InputError: not a list of words.
+        """
+        value = self.entries.get(key, list(default))
+        if not isinstance(value, list) or not value or not all(isinstance(word, str) for word in value):
+            raise InputError("is not a list of words", self.place(key), f'write {key} = ["...", "..."]')
+        return tuple(dict.fromkeys(value))
+
+    def whole(self, key: str) -> int:
+        """A whole number, its range and default as declared.
 
         Raises:
             InputError: missing without a default, not a whole number, or outside of what is possible.
         """
         declared = self._declared(key)
-        value = self.entries.get(key, default)
+        assert declared is not None
+        least, most = int(declared.minimum), int(declared.maximum)
+        value = self.entries.get(key, None if declared.default is None else int(declared.default))
         if value is None:
             raise InputError("is missing", self.place(key), _with(f"write {key} = {max(least, 1)}", declared))
         if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
@@ -174,20 +215,22 @@ class Table:
             raise InputError(f"holds {quoted(found[0])}, which is no letter", self.place(key), "take it out")
         return value
 
-    def choice(self, key: str, allowed: Iterable[str], default: str | None = None) -> str:
+    def choice(self, key: str, allowed: Iterable[str] = (), default: str | None = None) -> str:
         """One of some words.
+
+        Args:
+            key: in this table.
+            allowed: the words; those that are declared, with the declared default, if left out.
+            default: where the key is left out; None if it must be given.
 
         Raises:
             InputError: as `text`, and a word that is not among them.
         """
-        allowed = tuple(allowed)
-        declared = self._declared(key)
-        if (
-            declared is not None
-            and declared.choices
-            and (set(allowed) - set(declared.choices) or declared.default != default)
-        ):
-            raise UndeclaredKeyError(f"{key} is declared as one of {declared.choices}, by default {declared.default}")
+        allowed, declared = tuple(allowed), self._declared(key)
+        if not allowed and declared is not None:
+            allowed, default = declared.choices, declared.default
+        if declared is not None and declared.choices and set(allowed) - set(declared.choices):
+            raise UndeclaredKeyError(f"{key} is declared as one of {declared.choices}")
         if key not in self.entries and default is None:
             raise InputError("is missing", self.place(key), f"write one of {', '.join(allowed)}")
         value = self.text(key, default)
@@ -289,88 +332,6 @@ def whole_file(entries: Mapping[str, Any], where: str, section: Section) -> Tabl
     """
     plain = Table(entries, where, Origins())
     return replace(plain, source=plain.text("source", ""), section=section)
-
-
-def declares_heat_alone(entries: Mapping[str, Any]) -> bool:
-    """Whether a plant file has a thermal section and no structure: no chain can be made of it."""
-    return "thermal" in entries and "structure" not in entries
-
-
-def read_toml(path: Path, kind: str) -> dict[str, Any]:
-    """Parse a TOML file; a byte order mark is passed over.
-
-    Args:
-        path: of the file.
-        kind: what it is, for messages, such as "plant file".
-
-    Raises:
-        InputError: not found, not readable, not UTF-8, or not TOML (with line and column).
-    """
-    where = str(path)
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except (FileNotFoundError, NotADirectoryError):
-        raise InputError(f"no such {kind}", where, "check the name and the folder") from None
-    except IsADirectoryError:
-        raise InputError(f"is a folder, not a {kind}", where, "name a file in it") from None
-    except OSError as error:
-        raise InputError(f"cannot be read ({error.strerror})", where, "check the permissions of the file") from None
-    except UnicodeDecodeError:
-        raise InputError("is not a text in UTF-8", where, "save it as UTF-8") from None
-    except ValueError:  # a name that no system knows, such as one with a zero byte
-        raise InputError(f"no such {kind}", where, "check the name and the folder") from None
-    return parse_toml(text, where)
-
-
-def parse_toml(text: str, where: str) -> dict[str, Any]:
-    """Parse TOML text.
-
-    Raises:
-        InputError: not TOML (with line and column), or tables in more than `MOST_LEVELS` levels.
-    """
-    parse_text: Callable[[str], dict[str, Any]] = tomllib.loads
-    try:
-        entries = parse_text(text)
-    except (ValueError, RecursionError) as error:  # a plain ValueError: an integer beyond Python's digit limit
-        raise InputError(f"is not TOML: {error}", where, "correct that line") from None
-    refuse_deep(entries, where)
-    return entries
-
-
-def refuse_deep(entries: Mapping[str, Any], where: str) -> None:
-    """Refuse tables and lists in more than `MOST_LEVELS` levels, which no file of ours has.
-
-    Raises:
-        InputError: it is so; names the first key.
-    """
-    level = list(entries.items())
-    for _ in range(MOST_LEVELS):
-        level = [(first, inner) for first, value in level for inner in _inside(value)]
-    if level:
-        raise InputError(
-            f"tables or lists in more than {MOST_LEVELS} levels", f"{where}, {level[0][0]}", "write it flat"
-        )
-
-
-def _inside(value: Any) -> Iterable[Any]:
-    """What a table or a list holds; nothing of a value."""
-    return value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
-
-
-def nearest_choice(word: str, choices: Iterable[str]) -> str:
-    """The mend for a word that is not among a few: the nearest one, and all of them where they fit into a line."""
-    choices = tuple(choices)
-    near = difflib.get_close_matches(word, choices, n=1, cutoff=0.5)
-    listed = f"write one of {', '.join(choices)}" if len(choices) <= _MOST_CHOICES else ""
-    guess = f'did you mean "{near[0]}"?' if near else ""
-    return " ".join(part for part in (guess, listed) if part) or nearest(word, choices)
-
-
-def nearest(word: str, known: Iterable[str]) -> str:
-    """The mend for an unknown word: the nearest known one, or all of them where none is near."""
-    known = tuple(known)
-    near = difflib.get_close_matches(word, known, n=1, cutoff=0.5)
-    return f'did you mean "{near[0]}"?' if near else f"known are {', '.join(known)}"
 
 
 def _with(mend: str, declared: Key | None) -> str:

@@ -9,9 +9,9 @@ import numpy as np
 from feeddrive import __version__
 from feeddrive.diagnosis.judging.result import ChannelSeries, Diagnosis, FileStamp, JudgedRecording, Trial
 from feeddrive.diagnosis.suspicion.quality import quality_lines
-from feeddrive.report.pages.markup import Cell, bullets, catalogue_name, number, paragraph, section, table, text, words
-from feeddrive.report.words.people import fixed, share_text, significant, with_unit
-from feeddrive.report.words.words import effect_words, plain
+from feeddrive.report.pages.markup import Cell, bullets, catalogue_name, effect_name, paragraph, section, table, text
+from feeddrive.report.words.number_text import fixed, share_text, significant, with_unit
+from feeddrive.report.words.words import plain
 from feeddrive.typing import BoolArray
 
 _MOST_TRIALS = 8
@@ -47,25 +47,22 @@ def tried_section(diagnosis: Diagnosis, pictures: str) -> str:
 
 def _refused(diagnosis: Diagnosis) -> str:
     """Refused candidates with their reasons."""
-    rows = [
-        [Cell(f"{text(effect_words(one.name))}<br>{catalogue_name(one.name)}"), words(one.reason)]
-        for one in diagnosis.refused
-    ]
-    return table([words("Effect"), words("Why not")], rows) if rows else ""
+    rows: list[list[str | Cell]] = [[effect_name(one.name), one.reason] for one in diagnosis.refused]
+    return table(["Effect", "Why not"], rows) if rows else ""
 
 
 def _trials(trials: tuple[Trial, ...]) -> str:
     """Gains of the best candidates of each round."""
     if not trials:
         return ""
-    heads = [number("Round"), words("Candidate"), number("gain"), number("standard error"), words("")]
+    heads = ["#Round", "Candidate", "#gain", "#standard error", "result"]
     rows = [
-        [number(str(one.round)), Cell(catalogue_name(one.name)), number(_percent(one.gain)),
-         number(_percent(one.standard_error)), words("taken" if one.taken else "")]
+        [str(one.round), Cell(catalogue_name(one.name)), _percent(one.gain),
+         _percent(one.standard_error), "taken" if one.taken else ""]
         for kept in _best_by_round(trials)
         for one in kept
     ]  # fmt: skip
-    note = f"The {_MOST_TRIALS} best candidates of each round; the figure tells what the gain is."
+    note = f"The {_MOST_TRIALS} best candidates of each round; the figure says what the gain is."
     return table(heads, rows, "dense") + paragraph(note, "note")
 
 
@@ -83,10 +80,10 @@ def _percent(share: float) -> str:
 
 def recordings_section(diagnosis: Diagnosis) -> str:
     """The judged recordings with what was left out, notes and re-homed effects."""
-    heads = [words("Judged recording"), number("duration"), number("samples"), words("Channels, part used")]
+    heads = ["Judged recording", "#duration", "#samples", "Channels, part used"]
     rows = [_recording_row(recording) for recording in diagnosis.recordings]
-    said = (*quality_lines(diagnosis.quality), *diagnosis.notes)
-    notes = bullets(said) if said else ""
+    remarks = (*quality_lines(diagnosis.quality), *diagnosis.notes)
+    notes = bullets(remarks) if remarks else ""
     return section("The recordings", table(heads, rows) if rows else "", notes, _rehomed(diagnosis.rehomed))
 
 
@@ -100,6 +97,8 @@ def used_sentence(diagnosis: Diagnosis) -> str:
             shares[channel.name] = float(np.mean(np.concatenate(usable)))
     if not shares:
         return ""
+    if not any(share < 1.0 for share in shares.values()):
+        return "Every sample of the judged recordings is used."
     listed = ", ".join(f"{share_text(1.0 - share)} of {plain(name)}" for name, share in shares.items())
     return f"Not used of the judged recordings: {listed} (the cut ends, flawed rows, and what cannot be predicted)."
 
@@ -108,7 +107,7 @@ def _usable(one: ChannelSeries) -> BoolArray:
     return np.isfinite(one.measured - one.before)
 
 
-def _recording_row(recording: JudgedRecording) -> list[Cell]:
+def _recording_row(recording: JudgedRecording) -> list[str | Cell]:
     """Length of a recording and the part of it that was used."""
     duration = float(recording.time[-1] - recording.time[0]) if recording.time.size else 0.0
     used = [
@@ -116,8 +115,8 @@ def _recording_row(recording: JudgedRecording) -> list[Cell]:
         for one in recording.channels
         if one.measured.size
     ]
-    return [words(recording.name), number(with_unit(significant(duration), "s")), number(str(recording.time.size)),
-            words(", ".join(used))]  # fmt: skip
+    return [recording.name, with_unit(significant(duration), "s"), str(recording.time.size),
+            ", ".join(used)]  # fmt: skip
 
 
 def _rehomed(names: tuple[str, ...]) -> str:
@@ -134,13 +133,13 @@ def stamp_section(diagnosis: Diagnosis, occasion: Occasion) -> str:
     """Version, plant, command and files, so that the result can be had again."""
     who = paragraph(f"feeddrive {__version__}, plant {diagnosis.plant}.")
     who += f"<pre>{text(occasion.command)}</pre>\n" if occasion.command else ""
-    heads = [words("Use"), words("File"), words("SHA-256")]
+    heads = ["Use", "File", "SHA-256"]
     rows = [_stamp_row("fitted", one) for one in diagnosis.fit]
     rows += [_stamp_row("judged", one) for one in diagnosis.validate]
     alone = "" if diagnosis.validate else paragraph("Judged on the last part of each fitted file.", "note")
     return section("To reproduce this", who, table(heads, rows, "dense") if rows else "", alone)
 
 
-def _stamp_row(use: str, stamp: FileStamp) -> list[Cell]:
+def _stamp_row(use: str, stamp: FileStamp) -> list[str | Cell]:
     """One file."""
-    return [words(use), words(stamp.file), Cell(f'<code class="hash">{text(stamp.sha256)}</code>')]
+    return [use, stamp.file, Cell(f'<code class="hash">{text(stamp.sha256)}</code>')]

@@ -6,9 +6,9 @@ from feeddrive.diagnosis.certainty.certainty_result import Ambiguity, Correlatio
 from feeddrive.diagnosis.judging.result import Diagnosis, ParameterResult
 from feeddrive.diagnosis.simulated.simulation_result import ErrorFigure, RefinedValue, SimulationResult
 from feeddrive.effects.base import Value
-from feeddrive.report.pages.markup import Cell, bullets, number, paragraph, section, table, text, words
-from feeddrive.report.parameters import parameter_text
-from feeddrive.report.words.people import DASH, error_text, fixed, significant, with_unit
+from feeddrive.report.pages.markup import Cell, bullets, paragraph, section, table
+from feeddrive.report.words.number_text import DASH, error_text, fixed, significant, with_unit
+from feeddrive.report.words.parameters import parameter_text
 from feeddrive.report.words.words import effect_words, joined, plain
 
 _LARGEST_MATRIX = 10
@@ -32,15 +32,15 @@ def experiments_section(diagnosis: Diagnosis) -> str:
     """Scenarios that would settle what is open."""
     if not diagnosis.next_experiments:
         return ""
-    told = bullets([_sentence(one) for one in diagnosis.next_experiments])
+    listed = bullets([_sentence(one) for one in diagnosis.next_experiments])
     rows = [_ranked(one) for one in diagnosis.next_experiments if one.ranking]
-    heads = [words("Question"), words("Scenarios, the best first")]
+    heads = ["Question", "Scenarios, the best first"]
     note = (
         "Every shipped scenario that this axis can run was run by the plant with the effects found. To tell apart: "
         "distance of the two predictions in standard deviations of the sensor noise after the rival is fitted to both "
         "recordings; 3 is a hint, 5 settles it. To know better: width of the interval after it over that before."
     )
-    return section("Which experiment next", told, table(heads, rows) if rows else "", paragraph(note, "note"))
+    return section("Which experiment next", listed, table(heads, rows) if rows else "", paragraph(note, "note"))
 
 
 def correlation_section(diagnosis: Diagnosis) -> str:
@@ -70,21 +70,21 @@ def _names(one: Ambiguity) -> str:
     return joined([effect_words(name) for name in one.names])
 
 
-def _ranked(one: NextExperiment) -> list[Cell]:
+def _ranked(one: NextExperiment) -> list[str | Cell]:
     question = f"{plain(one.question[0])} known better" if len(one.question) == 1 else joined(list(one.question))
     shown = [f"{name} {significant(figure, 2)}" for name, figure in one.ranking[:_SCENARIOS_SHOWN]]
-    return [words(question), words(", ".join(shown))]
+    return [question, ", ".join(shown)]
 
 
 def _matrix(known: Correlation) -> str:
     """The matrix below its diagonal; nothing where it is too large to be read."""
     if len(known.names) > _LARGEST_MATRIX:
         return ""
-    heads = [words(""), *(Cell(text(_short(name)), number=True) for name in known.names[:-1])]
+    heads = ["", *(f"#{_short(name)}" for name in known.names[:-1])]
     rows = [
         [
-            words(_short(name)),
-            *(number(f"{known.matrix[i][j]:+.2f}" if j < i else DASH) for j in range(len(known.names) - 1)),
+            _short(name),
+            *(f"{known.matrix[i][j]:+.2f}" if j < i else DASH for j in range(len(known.names) - 1)),
         ]
         for i, name in enumerate(known.names)
         if i > 0
@@ -109,17 +109,17 @@ def simulation_section(diagnosis: Diagnosis) -> str:
     if run is None:
         return ""
     if not run.channels:
-        heads = [words("Channel"), number("before"), number("after")]
-        rows = [[words(plain(run.channel)), number(_percent(run.before)), number(_percent(run.after))]]
+        heads = ["Channel", "#before", "#after"]
+        rows = [[plain(run.channel), _percent(run.before), _percent(run.after)]]
     else:
         kinds = ("declared", "as attributed", "refined in simulation", "as reported")
-        heads = [words("Channel"), *map(number, kinds)]
+        heads = ["Channel", *(f"#{kind}" for kind in kinds)]
         figures = [(c.name, c.unit, c.before, c.after_attribution, c.after_refinement, c.after) for c in run.channels]
-        rows = [[words(plain(name)), *(_cell(one, unit) for one in each)] for name, unit, *each in figures]
+        rows = [[plain(name), *(_cell(one, unit) for one in each)] for name, unit, *each in figures]
     kept_back = [f"{effect_words(name)}: {reason}" for name, reason in run.not_refined.items()]
-    told = paragraph(run.statement) if run.statement else ""
+    stated = paragraph(run.statement) if run.statement else ""
     stayed = paragraph("Not refined:") + bullets(kept_back) if kept_back else ""
-    parts = (table(heads, rows), told, _refined(run), stayed, paragraph(NOTE, "note"))
+    parts = (table(heads, rows), stated, _refined(run), stayed, paragraph(NOTE, "note"))
     return section("Closed-loop simulation error", *parts)
 
 
@@ -138,21 +138,21 @@ def _refined(run: SimulationResult) -> str:
     """Values before and after the refinement."""
     if not run.refined:
         return ""
-    heads = [words("Value"), number("as attributed"), number("refined" if run.kept else "refined, not kept")]
+    heads = ["Value", "#as attributed", "#refined" if run.kept else "refined, not kept"]
     return table(heads, [_refined_row(one) for one in run.refined])
 
 
-def _refined_row(one: RefinedValue) -> list[Cell]:
+def _refined_row(one: RefinedValue) -> list[str | Cell]:
     shown = [parameter_text(one.key, ParameterResult(_plain(v), one.unit)).value for v in (one.before, one.after)]
-    return [words(f"{effect_words(one.effect)}, {plain(one.key)}"), *map(number, shown)]
+    return [f"{effect_words(one.effect)}, {plain(one.key)}", *shown]
 
 
 def _plain(value: Value) -> float | list[float]:
     return list(value) if isinstance(value, tuple) else value
 
 
-def _cell(figure: ErrorFigure | None, unit: str) -> Cell:
-    return number(DASH if figure is None else f"{error_text(figure.rms, unit)}, {_percent(figure.relative)}")
+def _cell(figure: ErrorFigure | None, unit: str) -> str:
+    return DASH if figure is None else f"{error_text(figure.rms, unit)}, {_percent(figure.relative)}"
 
 
 def _percent(share: float) -> str:

@@ -6,28 +6,20 @@ import math
 from dataclasses import dataclass
 
 from feeddrive.diagnosis.judging.result import EffectResult, ParameterResult
-from feeddrive.report.words.people import Scale, decimals_for, fixed, scale_for_value, significant, unit_name, with_unit
+from feeddrive.report.words.number_text import (
+    Scale,
+    decimals_for,
+    fixed,
+    scale_for_value,
+    significant,
+    unit_name,
+    with_unit,
+)
 from feeddrive.report.words.words import effect_words, headline_parameters, plain
 
 _LONGEST_LIST = 9
-_SPEAKING = frozenset(
-    {
-        "width",
-        "amplitude",
-        "mass",
-        "force",
-        "delay",
-        "delta_force",
-        "delta_viscous",
-        "slope",
-        "strain",
-        "stiffness",
-        "inertia",
-        "power",
-        "conductance",
-        "growth",
-    }
-)
+_SIZES = {"width", "amplitude", "mass", "delay", "slope", "strain", "stiffness", "inertia", "power", "growth"}
+_SPEAKING = _SIZES | {"force", "delta_force", "delta_viscous", "conductance"}
 """Keys that go without saying beside the effect's name."""
 
 
@@ -64,7 +56,7 @@ def parameter_text(key: str, parameter: ParameterResult) -> ParameterText:
 def _number_text(key: str, value: float, unit: str, ci95: object) -> ParameterText:
     """Value with as many digits as the interval supports, three significant ones where there is no interval."""
     ends = ci95 if isinstance(ci95, tuple) and len(ci95) == 2 and all(map(math.isfinite, ci95)) else None
-    # A value of zero has no size of its own; the interval tells the unit.
+    # A value of zero has no size of its own; the interval gives the unit.
     scale = _scale(key, value or max(map(abs, ends or (0.0,))), unit)
     shown = value * scale.factor
     if ends is None:

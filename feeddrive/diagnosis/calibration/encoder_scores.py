@@ -1,0 +1,66 @@
+"""What the encoder's steps draw declared values by: the sums K' r that they alone make, on motions that are drawn.
+
+    s_d = K_d' (f(A) - f(A_d)),    S_encoder = mean of s_d s_d'
+
+| symbol | meaning | unit |
+|---|---|---|
+| A, A_d | motion that is expected, and those that would be if it were the true one (`likelihood.encoder_error`) | rad |
+| f, K_d | what the declared plant makes of a motion over the noise, and its slopes with the values at A_d | 1 |
+
+The colour of a residual (`noise_colour`) knows how much an error scatters, not that slopes at a measured motion hold
+the same error: a damping that is told near a resonance alone is drawn by several of its deviations. Both are in the
+second moment about zero. Source: Carroll et al., Measurement Error in Nonlinear Models (2006), chapter 5 (errors that
+are simulated once more).
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from feeddrive.diagnosis.calibration.declared import with_values
+from feeddrive.diagnosis.likelihood.evidence import AxisEvidence
+from feeddrive.diagnosis.likelihood.fit import Problem
+from feeddrive.typing import FloatArray
+
+STEP = 3e-3
+"""Change of the logarithm of a value from which a slope is taken: its sign and size are enough."""
+
+_known: WeakKeyDictionary[AxisEvidence, dict[tuple[str, ...], FloatArray]] = WeakKeyDictionary()
+
+
+def encoder_scores(problem: Problem) -> FloatArray:
+    """S_encoder of the values that are fitted, (k, k); 0 where no recording holds an encoder's error."""
+    known = problem.calibration
+    assert known is not None
+    keys = tuple(value.key for value in known.values)
+    total = np.zeros((len(keys), len(keys)))
+    for e in problem.evidence:
+        if isinstance(e, AxisEvidence) and e.drawn:
+            scores = _known.setdefault(e, {})
+            if keys not in scores:
+                scores[keys] = _scores(problem, e)
+            total += scores[keys].T @ scores[keys] / len(e.drawn)
+    return total
+
+
+def _scores(problem: Problem, evidence: AxisEvidence) -> FloatArray:
+    """s_d of one recording, (draws, k)."""
+    known = problem.calibration
+    assert known is not None
+    rows, declared = evidence.thinned(evidence.fit_rows), np.zeros(len(known.values))
+    plants = [with_values(problem.plant, known.values, declared)]
+    for i, value in enumerate(known.values):
+        there = declared.copy()
+        there[i] = STEP / value.deviation
+        plants.append(with_values(problem.plant, known.values, there))
+    expected = evidence.weighted(problem.predictor.predict(plants[0], evidence), rows)
+    scores = []
+    for motion in evidence.drawn:
+        at = replace(evidence, motion=replace(motion, time=evidence.motion.time))
+        here, *others = (at.weighted(problem.predictor.predict(plant, at), rows) for plant in plants)
+        scores.append([float((other - here) @ (expected - here)) * value.deviation / STEP
+                       for other, value in zip(others, known.values, strict=True)])  # fmt: skip
+    return np.asarray(scores)

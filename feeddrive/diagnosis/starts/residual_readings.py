@@ -1,0 +1,196 @@
+"""What the present residual holds: a force on the table, a friction over the position, the strongest orders."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.signal import find_peaks
+
+from feeddrive.diagnosis.finding.scene import Scene
+from feeddrive.plant.analysis.stiffness_budget import static_stiffness
+from feeddrive.typing import FloatArray
+
+BINS = 60
+"""Bins along the stroke."""
+
+BINS_PER_TURN = 256
+"""Angle bins per revolution; the highest order is a quarter of it."""
+
+LEAST_PERIODS = 5
+"""Periods in the travel below which a sine is a trend over the stroke."""
+
+OVERSAMPLING = 8
+"""Zero padding, so that a peak is met to an eighth of the resolution."""
+
+
+def residual_force(scene: Scene, at: int) -> FloatArray:
+    """Force that resists + motion beyond what is predicted [N], shape (n,), of the recording number `at`.
+
+    From the torque over the radius; without a torque from the table lagging on the spring that holds it.
+    """
+    return residual_forces(scene, at)[0]
+
+
+def residual_forces(scene: Scene, at: int) -> list[FloatArray]:
+    """The force that is left, by every channel that shows it, the torque's first; shape (n,) each.
+
+    On a soft drive the lag of the table tells forces that are lost in the noise of the torque.
+    """
+    residual, forces = scene.residuals[at], []
+    if "motor_torque" in residual:
+        forces.append(residual["motor_torque"] / scene.plant.chain.motor_radius)
+    if "table_position" in residual and scene.plant.chain.elastic:
+        forces.append(-static_stiffness(scene.plant, scene.plant.middle) * residual["table_position"])
+    return forces
+
+
+@dataclass(frozen=True)
+class PositionCurve:
+    """Friction beyond the model along the stroke: position [m], force [N], samples, each of shape (k,)."""
+
+    position: FloatArray
+    force: FloatArray
+    samples: FloatArray
+
+
+def friction_over_position(position: FloatArray, velocity: FloatArray, force: FloatArray) -> PositionCurve | None:
+    """Mean resisting force per position bin, from both directions.
+
+    Args:
+        position: [m], shape (n,).
+        velocity: [m/s], shape (n,).
+        force: residual force, positive where the recording needs more [N], shape (n,).
+
+    Returns:
+        The curve, or None where the table hardly moves.
+    """
+    moving = np.abs(velocity) > 0.01 * np.abs(velocity).max(initial=0.0)
+    if np.sum(moving) < 10 * BINS:
+        return None
+    x, resisting = position[moving], (force * np.sign(velocity))[moving]
+    low, high = np.quantile(x, [0.002, 0.998])
+    if not high > low:
+        return None
+    edges = np.linspace(low, high, BINS + 1)
+    bins = np.clip(np.digitize(x, edges) - 1, 0, BINS - 1)
+    samples = np.bincount(bins, minlength=BINS)
+    mean = np.bincount(bins, weights=resisting, minlength=BINS) / np.maximum(samples, 1)
+    filled = samples > 0
+    centres = 0.5 * (edges[1:] + edges[:-1])
+    return PositionCurve(centres[filled], mean[filled], samples[filled].astype(float))
+
+
+def bump_of(curve: PositionCurve, count: int = 3) -> list[tuple[float, float, float]]:
+    """Peak [N], centre [m] and half width [m] of the Gaussian bumps that fit the curve best.
+
+    A scan over centre and width, each with the best peak; bins weigh by the root of their samples.
+    """
+    stroke = curve.position[-1] - curve.position[0]
+    weight = np.sqrt(curve.samples)
+    found = []
+    for width in stroke * np.array([0.03, 0.05, 0.08, 0.12, 0.18, 0.28, 0.45]):
+        for centre in np.linspace(curve.position[0], curve.position[-1], 41):
+            shape = np.exp(-(((curve.position - centre) / width) ** 2))
+            power = float(np.sum(weight * shape**2))
+            peak = float(np.sum(weight * shape * curve.force)) / power
+            found.append((peak**2 * power, peak, float(centre), float(width)))
+    found.sort(reverse=True)
+    chosen: list[tuple[float, float, float]] = []
+    for _, peak, centre, width in found:
+        if all(abs(centre - other[1]) > 0.5 * max(width, other[2]) for other in chosen):
+            chosen.append((peak, centre, width))
+        if len(chosen) == count:
+            break
+    return chosen
+
+
+def strongest_orders(
+    angle: FloatArray, residual: FloatArray, highest: float = BINS_PER_TURN / 4, count: int = 3, lowest: float = 0.0
+) -> list[float]:
+    """Orders per revolution of the largest peaks.
+
+    The residual is averaged per angle bin first, so that rests and slow strokes do not weigh by their duration.
+
+    Args:
+        angle: shape (n,) [rad].
+        residual: shape (n,).
+        highest: order up to which peaks count.
+        count: how many.
+        lowest: order from which peaks count.
+
+    Returns:
+        Orders, the strongest first; empty if the angle covers less than two revolutions.
+    """
+    bins = np.floor(angle * BINS_PER_TURN / (2 * np.pi)).astype(int)
+    bins -= bins.min()
+    size = int(bins.max()) + 1
+    turns = size / BINS_PER_TURN
+    if turns < 2:
+        return []
+    samples = np.bincount(bins, minlength=size)
+    filled = np.flatnonzero(samples)
+    mean = np.bincount(bins, weights=residual - np.mean(residual), minlength=size)[filled] / samples[filled]
+    # at speed whole bins are jumped over; left at zero they would put a comb of false orders into the spectrum
+    even = np.interp(np.arange(size), filled, mean)
+    padded = OVERSAMPLING * size
+    spectrum = np.abs(np.fft.rfft(even * np.hanning(size), padded))
+    orders = np.arange(len(spectrum)) * BINS_PER_TURN / padded
+    allowed = (orders > max(lowest, LEAST_PERIODS / turns)) & (orders < min(highest, BINS_PER_TURN / 4))
+    spectrum = np.where(allowed, spectrum, 0.0)
+    peaks, _ = find_peaks(spectrum, distance=OVERSAMPLING)
+    best = peaks[np.argsort(spectrum[peaks])[::-1][:count]]
+    return [float(orders[i]) for i in best]
+
+
+def sine_at(angle: FloatArray, residual: FloatArray, order: float) -> tuple[float, float]:
+    """Amplitude and phase of the best sine of this order: residual = A sin(order angle + phase) + constant."""
+    columns = np.column_stack([np.sin(order * angle), np.cos(order * angle), np.ones(len(angle))])
+    a, b, _ = np.linalg.lstsq(columns, residual, rcond=None)[0]
+    return float(np.hypot(a, b)), float(np.arctan2(b, a))
+
+
+@dataclass(frozen=True)
+class Sine:
+    """A sine over an angle: residual = amplitude sin(order angle + phase), and the share of the square it takes."""
+
+    order: float
+    amplitude: float
+    phase: float
+    share: float
+
+
+def strongest_sines(
+    angle: FloatArray, residual: FloatArray, speed: FloatArray, edge: float, count: int = 3
+) -> list[Sine]:
+    """Sines that take most of a residual, each looked for at the samples at which it is in the band.
+
+    An order n shows where n |speed| is below the edge: a high one at low speed alone, where the fast strokes, in which
+    it is filtered off, or sampled as another one, are noise. So octaves of orders are looked for, each where the speed
+    is so low that the whole octave is in the band; what each takes of the square is compared (of noise the best takes
+    as much of few samples as of many).
+
+    Args:
+        angle: shape (n,) [rad].
+        residual: shape (n,).
+        speed: rate of the angle, (n,) [rad/s].
+        edge: of the band [Hz].
+        count: how many.
+
+    Returns:
+        Sines, the one that takes most first.
+    """
+    fastest, square = float(np.max(np.abs(speed), initial=0.0)), float(residual @ residual)
+    if fastest == 0.0 or square == 0.0:
+        return []
+    found, lowest, highest = [], 0.0, 2 * np.pi * edge / fastest
+    while lowest < BINS_PER_TURN / 4:
+        slow = np.abs(speed) * highest <= 2 * np.pi * edge * (1 + 1e-9)
+        if not slow.any():
+            break
+        there, left = angle[slow], residual[slow]
+        for order in strongest_orders(there, left, highest, count, lowest):
+            amplitude, phase = sine_at(there, left, order)
+            found.append(Sine(order, amplitude, phase, 0.5 * amplitude**2 * len(left) / square))
+        lowest, highest = highest, 2 * highest
+    return sorted(found, key=lambda one: -one.share)[:count]

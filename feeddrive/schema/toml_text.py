@@ -1,0 +1,94 @@
+"""TOML files as they are written: read, refused where they cannot be, and the nearest word to a misspelt one."""
+
+from __future__ import annotations
+
+import difflib
+import tomllib
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from feeddrive.errors import InputError
+
+_MOST_CHOICES = 14
+"""Words that an error lists; the structures, kinds and channels are fewer."""
+
+MOST_LEVELS = 12
+"""Tables inside tables in a file: three times what any of ours needs, and far below what Python can walk through."""
+
+
+def read_toml(path: Path, kind: str) -> dict[str, Any]:
+    """Parse a TOML file; a byte order mark is passed over.
+
+    Args:
+        path: of the file.
+        kind: what it is, for messages, such as "plant file".
+
+    Raises:
+        InputError: not found, not readable, not UTF-8, or not TOML (with line and column).
+    """
+    where = str(path)
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except (FileNotFoundError, NotADirectoryError):
+        raise InputError(f"no such {kind}", where, "check the name and the folder") from None
+    except IsADirectoryError:
+        raise InputError(f"is a folder, not a {kind}", where, "name a file in it") from None
+    except OSError as error:
+        raise InputError(f"cannot be read ({error.strerror})", where, "check the permissions of the file") from None
+    except UnicodeDecodeError:
+        raise InputError("is not a text in UTF-8", where, "save it as UTF-8") from None
+    except ValueError:  # a name that no system knows, such as one with a zero byte
+        raise InputError(f"no such {kind}", where, "check the name and the folder") from None
+    return parse_toml(text, where)
+
+
+def parse_toml(text: str, where: str) -> dict[str, Any]:
+    """Parse TOML text.
+
+    Raises:
+        InputError: not TOML (with line and column), or tables in more than `MOST_LEVELS` levels.
+    """
+    parse_text: Callable[[str], dict[str, Any]] = tomllib.loads
+    try:
+        entries = parse_text(text)
+    except (ValueError, RecursionError) as error:  # a plain ValueError: an integer beyond Python's digit limit
+        raise InputError(f"is not TOML: {error}", where, "correct that line") from None
+    refuse_deep(entries, where)
+    return entries
+
+
+def refuse_deep(entries: Mapping[str, Any], where: str) -> None:
+    """Refuse tables and lists in more than `MOST_LEVELS` levels, which no file of ours has.
+
+    Raises:
+        InputError: it is so; names the first key.
+    """
+    level = list(entries.items())
+    for _ in range(MOST_LEVELS):
+        level = [(first, inner) for first, value in level for inner in _inside(value)]
+    if level:
+        raise InputError(
+            f"tables or lists in more than {MOST_LEVELS} levels", f"{where}, {level[0][0]}", "write it flat"
+        )
+
+
+def _inside(value: Any) -> Iterable[Any]:
+    """What a table or a list holds; nothing of a value."""
+    return value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
+
+
+def nearest_choice(word: str, choices: Iterable[str]) -> str:
+    """The mend for a word that is not among a few: the nearest one, and all of them where they fit into a line."""
+    choices = tuple(choices)
+    near = difflib.get_close_matches(word, choices, n=1, cutoff=0.5)
+    listed = f"write one of {', '.join(choices)}" if len(choices) <= _MOST_CHOICES else ""
+    guess = f'did you mean "{near[0]}"?' if near else ""
+    return " ".join(part for part in (guess, listed) if part) or nearest(word, choices)
+
+
+def nearest(word: str, known: Iterable[str]) -> str:
+    """The mend for an unknown word: the nearest known one, or all of them where none is near."""
+    known = tuple(known)
+    near = difflib.get_close_matches(word, known, n=1, cutoff=0.5)
+    return f'did you mean "{near[0]}"?' if near else f"known are {', '.join(known)}"

@@ -1,0 +1,46 @@
+"""Sines over an angle are looked for where they are in the band, at every speed of the recording."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from feeddrive.diagnosis.starts.residual_readings import strongest_orders, strongest_sines
+
+STEP, EDGE = 2e-3, 50.0
+
+
+def motion() -> tuple[np.ndarray, np.ndarray]:
+    """Angle and speed of slow cuts at 12 rad/s between rapid strokes at 200 rad/s."""
+    time = STEP * np.arange(9000)
+    speed = np.where(time % 3.0 < 2.4, 12.0, 200.0)
+    return np.cumsum(speed) * STEP, speed
+
+
+def test_high_order_that_shows_at_low_speed_alone_is_found() -> None:
+    angle, speed = motion()
+    noise = np.random.default_rng(4).standard_normal(len(angle))
+    slow = speed < 100.0
+    # at the speed of the rapids order 13.2 is at 420 Hz: the filter leaves nothing, and the rest is larger there
+    residual = np.where(slow, 0.5 * np.sin(13.2 * angle + 0.4) + noise, 4.0 * noise)
+    (first, *_) = strongest_sines(angle, residual, speed, EDGE)
+    assert first.order == pytest.approx(13.2, abs=0.02)
+    assert first.amplitude == pytest.approx(0.5, rel=0.15)
+    assert first.share == pytest.approx(0.5 * 0.5**2 * slow.sum() / (residual @ residual), rel=0.3)
+    # all samples together do not show it
+    assert all(abs(order - 13.2) > 0.5 for order in strongest_orders(angle, residual))
+
+
+def test_low_order_is_found_at_all_speeds() -> None:
+    angle, speed = motion()
+    residual = 0.3 * np.sin(angle - 1.0) + 0.5 * np.random.default_rng(5).standard_normal(len(angle))
+    (first, *_) = strongest_sines(angle, residual, speed, EDGE)
+    assert first.order == pytest.approx(1.0, abs=0.01)
+    assert first.amplitude == pytest.approx(0.3, rel=0.1)
+
+
+def test_nothing_moves_and_nothing_is_left() -> None:
+    rest = np.zeros(500)
+    assert strongest_sines(rest, np.ones(500), rest, EDGE) == []
+    angle, speed = motion()
+    assert strongest_sines(angle, np.zeros(len(angle)), speed, EDGE) == []
