@@ -195,7 +195,7 @@ figcaption { margin-top: 6px; }
     white-space: normal; }
   td::before { content: attr(data-label); flex: 0 0 38%; color: #6b6b6b; }
   td:not([data-label])::before, td:empty { display: none; }
-  td > div { min-width: 0; overflow-wrap: anywhere; }
+  td > div { min-width: 0; }
   figure { overflow-x: auto; } figure img { min-width: 640px; } figcaption { position: sticky; left: 0; }
   body { padding: 16px 12px 40px; } h1 { font-size: 21px; } .main { font-size: 16px; }
   .verdict { padding: 8px 12px; } dd { margin-left: 10px; }
