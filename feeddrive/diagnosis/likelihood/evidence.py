@@ -242,7 +242,7 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
     own = recorded(recording)
     noise = {name: sensor_noise(series[own], band) for name, series in sensed.items()}
     zero = _zero_of_angle(recording, plant)
-    encoder = None if slow else encoder_error(_placed(plant, zero), recording, band, noise)
+    encoder = encoder_error(_placed(plant, zero), recording, band, noise)
     motion = encoder.motion if encoder is not None else motor_motion(time, recording["motor_angle"])
     return AxisEvidence(
         recording,

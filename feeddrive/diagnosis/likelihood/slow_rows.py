@@ -16,9 +16,9 @@ between two rows the motor may have done anything. Where it was smooth, the four
 | s | how far the table stays behind per acceleration (`feeddrive.plant.analysis.modes`) | m s^2/rad |
 
 Rows at which either is more than the noise of its sensor are left out, unless the encoder's steps make as much of them,
-and those at which the torque jumps from row to row. So are those of a recording of 2 ms and less whose drive is
-declared to have several cycles in a row. Valid where what the drive does between rows shows at the rows; a vibration
-at a multiple of their rate does not.
+and those at which the torque jumps from row to row. So are those of faster rows whose drive is declared to have several
+cycles in each. Valid where what the drive does between rows shows at the rows; a vibration at a multiple of their rate
+does not.
 """
 
 from __future__ import annotations
