@@ -111,19 +111,21 @@ class LoadMotion:
         return sum(series.nbytes for series in own)
 
 
-def motor_motion(time: FloatArray, angle: FloatArray) -> MotorMotion:
+def motor_motion(time: FloatArray, angle: FloatArray, substeps: int | None = None) -> MotorMotion:
     """Speed and acceleration of a sampled angle by a quintic spline through the samples.
 
     Args:
         time: sample times, evenly spaced [s], shape (n,).
         angle: motor angle [rad], shape (n,).
+        substeps: grid steps per sample; as many as make them no longer than `GRID` if None.
 
     Returns:
-        The motion, on a grid of `GRID` or less.
+        The motion.
     """
     # about the start of the record, so that the spline's conditioning does not depend on the clock
     spline = make_interp_spline(time - time[0], angle, k=5)
-    substeps = max(1, math.ceil((time[1] - time[0]) / GRID - 1e-6))
+    if substeps is None:
+        substeps = max(1, math.ceil((time[1] - time[0]) / GRID - 1e-6))
     fine = np.linspace(0.0, time[-1] - time[0], (len(time) - 1) * substeps + 1)
     return MotorMotion(fine, spline(fine), spline(fine, 1), spline(fine, 2), substeps)
 
