@@ -31,9 +31,9 @@ KINDS: dict[Kind, str] = {
 """Headings of the list, in its order."""
 
 DECLARED = "declared"
-TELLS = 1.0
-"""Least error that a nearest imitator must leave, over the noise, for a scenario to tell it from the effect: as much as
-the noise itself is seen over hundreds of independent values of a recording."""
+DISTINGUISHES = 1.0
+"""Least error that a nearest imitator must leave, over the noise, for a scenario to distinguish it from the
+effect: as much as the noise itself is seen over hundreds of independent values of a recording."""
 
 
 def effects() -> dict[str, type[Effect]]:
@@ -170,26 +170,26 @@ def needed(effect: type[Effect]) -> str:
 
 
 def picture(effect: type[Effect], folder: Path) -> str:
-    """What the effect leaves in a residual, and which scenario tells it from its imitators."""
+    """What the effect leaves in a residual, and which scenario distinguishes it from its imitators."""
     one = planted.planted(effect.name)
     if one is None:
         return ""
     rows = planted.drawn(folder, one)["rows"]
-    size = ", ".join(f"{key} {value}" for key, value in planted.SIZES[effect.name].items())
+    size = ", ".join(f"{key} {value}" for key, value in planted.SIZES[effect.name].items()).replace(" um", " µm")
     figure = f"```{{figure}} {effect.name}.png\n:alt: residual with {effect.name}\n\n"
     if effect.kind == Kind.HEAT:
         caption = f"`thermal_bench` at 750 rev/min for three hours, with {size} less without it."
         return f"## What it does\n\n{figure}{caption}\n```\n"
     text = f"{figure}`bench_axis` with {size}, less what the declared machine predicts from the motor motion.\n```\n"
-    return f"## What it leaves in a residual\n\n{text}\n{telling(rows)}"
+    return f"## What it leaves in a residual\n\n{text}\n{scenarios_of(rows)}"
 
 
-def telling(rows: list[dict[str, object]]) -> str:
+def scenarios_of(rows: list[dict[str, object]]) -> str:
     """The scenarios with what each leaves of the nearest imitators."""
     names = list(rows[0]["imitated"])  # type: ignore[call-overload]
     head = "".join(f" | with `{name}` fitted instead" for name in names)
     lines = [
-        "## Which scenario tells it\n",
+        "## Which scenario shows it best\n",
         _verdict(rows, names),
         f"| scenario | declared machine{head} |",
         f"|---|---{'|---' * len(names)}|",
@@ -213,9 +213,9 @@ def _verdict(rows: list[dict[str, object]], names: list[str]) -> str:
     if not names:
         return f"`{scenario}` shows it most clearly. Nothing in the catalogue looks like it.\n"
     nearest = min(left, key=lambda name: left[name])
-    if left[nearest] >= TELLS:
+    if left[nearest] >= DISTINGUISHES:
         rest = f"its nearest imitator, `{nearest}`, leaves {_times(left[nearest])} times the noise."
-        return f"`{scenario}` tells it: {rest}\n"
+        return f"`{scenario}` distinguishes it: {rest}\n"
     return (
         f"At this size no shipped scenario settles it on this machine by itself. `{scenario}` comes nearest: "
         f"`{nearest}` in its place leaves {_times(left[nearest])} times the noise.\n"
@@ -244,9 +244,9 @@ def found_by(effect: type[Effect], rates: dict[str, dict[str, str]]) -> str:
     if row is None:
         return ""
     sizes = [(key, row[key]) for key in ("2%", "10%", "50%") if key in row]
-    told = ", ".join(f"{value} where it makes up {key.replace('%', ' %')} of the error" for key, value in sizes)
+    counts = ", ".join(f"{value} where it makes up {key.replace('%', ' %')} of the error" for key, value in sizes)
     rest = "All cases: [recovery](../../recovery.md)."
-    return f"## How often it is found\n\nNamed right, and nothing else: {told}. {rest}\n"
+    return f"## How often it is found\n\nNamed right, and nothing else: {counts}. {rest}\n"
 
 
 def _keys(effect: type[Effect]) -> str:

@@ -11,31 +11,11 @@ from collections import Counter
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
-from textwrap import shorten
-
-FLOORS = {
-    "quantity": 'Units at the border: "20 mm" in, 0.020 m inside',
-    "recording": "One time-series type; foreign trace formats; what is wrong with a file",
-    "parts": "What a catalogue sells: geometry and ratings to stiffness, friction, life",
-    "effects": "One file, one law",
-    "thermal": "Heat: finite volumes, reduction, warm-up",
-    "plant": "One plant: chain, heat network or both, and effects; their equations, linearisation, modes",
-    "servo": "Controllers, filters, loops",
-    "simulate": "The engine; scenarios; driven and controlled runs; sweeps",
-    "tuning": "Recommended gains and filters, and why; compensation",
-    "diagnosis": "From a residual to an effect, judged on data not fitted",
-    "metrology": "ISO 230-2, -3, -4, of simulated and measured positions",
-    "export": "State space, .mat, CasADi, C, FMU",
-    "report": "Sentences, figures and pages",
-    "interface": "import feeddrive as fd",
-    "reproduce": "The papers' numbers beside the computed ones",
-    "cli": "The command line: parse, call, print",
-}
-"""What happens on each floor; a folder that is not named here says it by the first line of its `__init__.py`."""
+from textwrap import wrap
 
 ROW, LEFT, TEXT, SIZES, GRID = 30, 16, 128, 560, 700
-LETTERS = 62
-"""Letters of a floor's words that fit beside its size."""
+LETTERS = 72
+"""Letters of a line of a floor's words that fit beside its size; there is room for two lines."""
 
 
 @dataclass(frozen=True)
@@ -44,7 +24,7 @@ class Floor:
 
     Attributes:
         name: of the folder.
-        words: what happens there.
+        words: what happens there, the first line of its `__init__.py`.
         files: how many.
         lines: of all its files.
         imports: folder to the number of import statements of it.
@@ -83,13 +63,13 @@ def _floor(package: Path, name: str, order: list[str]) -> Floor:
                 target = str(node.module).split(".")[1]
                 if target in order and target != name:
                     imports[target] += 1
-    return Floor(name, FLOORS.get(name) or _first_line(folder), len(files), lines, imports)
+    return Floor(name, _first_line(folder), len(files), lines, imports)
 
 
 def _first_line(folder: Path) -> str:
     """What a folder says of itself."""
     text = (folder / "__init__.py").read_text(encoding="utf-8") if folder.is_dir() else ""
-    return (ast.get_docstring(ast.parse(text)) or "").partition("\n")[0].rstrip(".")
+    return (ast.get_docstring(ast.parse(text)) or "").partition("\n")[0].rstrip(".").replace("`", "")
 
 
 def house(root: Path) -> str:
@@ -117,6 +97,12 @@ def _text(x: float, y: float, words: str, style: str = 'font-size="11" fill="#44
     return f'<text x="{x}" y="{y}" {style}>{escape(words)}</text>'
 
 
+def _words(words: str, middle: int) -> list[str]:
+    lines = wrap(words, LETTERS, max_lines=2, placeholder=" …")
+    top = middle - 6 * (len(lines) - 1)
+    return [_text(TEXT, top + 12 * number, line, 'font-size="10.5" fill="#223"') for number, line in enumerate(lines)]
+
+
 def _drawn(floor: Floor, number: int, floors: list[Floor]) -> list[str]:
     y = 94 + number * ROW
     middle = y + 19
@@ -125,7 +111,7 @@ def _drawn(floor: Floor, number: int, floors: list[Floor]) -> list[str]:
     parts = [
         f'<rect x="8" y="{y}" width="{SIZES + 104}" height="{ROW - 2}" fill="{shade}" stroke="#9db4c2"/>',
         _text(LEFT, middle, floor.name, 'font-size="13" font-weight="bold" fill="#123"'),
-        _text(TEXT, middle, shorten(floor.words, LETTERS, placeholder=" …"), 'font-size="11" fill="#223"'),
+        *_words(floor.words, middle),
         _text(SIZES + 104, middle, size, 'font-size="10" text-anchor="end" fill="#556"'),
     ]
     for column, below in enumerate(floors):

@@ -107,11 +107,16 @@ def keys_of(path: str) -> list[str]:
     rows = [row for row, record in zip(listing.rows, listing.records, strict=True) if "key" in record]
     parts = [f"### `{path}`\n", f"{found.meaning}\n"] if path else []
     if rows:
-        parts += [_row(listing.headings), _row(["---"] * len(listing.headings))]
-        parts += [_row([f"`{row[0]}`", *row[1:]]) for row in rows]
+        # the meaning, which comes last in a terminal, stands beside the key: a narrow page shows both
+        parts += [_row(_meaning_second(listing.headings)), _row(["---"] * len(listing.headings))]
+        parts += [_row(_meaning_second([f"`{row[0]}`", *row[1:]])) for row in rows]
         parts.append("")
     inside = [one for one in found.sections if one != path and not one.startswith(EFFECTS)]
     return [*parts, *(line for one in inside for line in keys_of(one))]
+
+
+def _meaning_second(cells: Sequence[str]) -> list[str]:
+    return [cells[0], cells[-1], *cells[1:-1]]
 
 
 def _row(cells: Sequence[str]) -> str:

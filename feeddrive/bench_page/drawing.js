@@ -31,6 +31,7 @@ function frame(s, box, x, y) {
   for (const v of y.ticks || ticks(y.low, y.high, Math.max(2, height / 42))) { line(left, fy(v), left + width, fy(v)); g.fillText(plain(v), left - 6, fy(v)); }
   if (x.label) { g.textAlign = "right"; g.textBaseline = "top"; g.fillText(x.label, left + width, top + height + 20); }
   g.save(); g.translate(12, top + height / 2); g.rotate(-Math.PI / 2); g.textAlign = "center"; g.textBaseline = "middle"; g.fillText(y.label, 0, 0); g.restore();
+  const numbers = []; // places of the numbers of margins: where two would lie on each other, the later stands lower
   const within = (draw) => { g.save(); g.beginPath(); g.rect(left, top, width, height); g.clip(); draw(); g.restore(); };
   return {
     curve(xs, ys, name, wide = 1.8, jump = Infinity) {
@@ -46,8 +47,11 @@ function frame(s, box, x, y) {
       within(() => {
         g.strokeStyle = colour(name); g.lineWidth = 3; line(fx(at), fy(from), fx(at), fy(to)); g.lineWidth = 1;
         g.fillStyle = colour(name); g.font = "600 12px system-ui, sans-serif"; g.textBaseline = "middle";
-        const right = fx(at) > left + width - 70; g.textAlign = right ? "right" : "left";
-        const px = fx(at) + (right ? -7 : 7), py = Math.min(top + height - 9, Math.max(top + 9, (fy(from) + fy(to)) / 2)), wide = g.measureText(text).width;
+        const wide = g.measureText(text).width, right = fx(at) > left + width - wide - 12; g.textAlign = right ? "right" : "left";
+        const px = fx(at) + (right ? -7 : 7), begin = right ? px - wide : px;
+        let py = Math.min(top + height - 9, Math.max(top + 9, (fy(from) + fy(to)) / 2));
+        for (const n of numbers) if (Math.abs(n.py - py) < 16 && begin < n.end + 6 && n.begin < begin + wide + 6) py = n.py + (n.py + 25 < top + height ? 16 : -16);
+        numbers.push({ py, begin, end: begin + wide });
         g.globalAlpha = 0.85; g.fillStyle = colour("paper"); g.fillRect(px - (right ? wide + 2 : 2), py - 8, wide + 4, 16); g.globalAlpha = 1;
         g.fillStyle = colour(name); g.fillText(text, px, py); g.font = "12px system-ui, sans-serif";
       });

@@ -16,6 +16,7 @@ function startPage() {
   }
   // one value: a slider, logarithmic where `log`, and the number, which may be typed
   function slider(box, name, unit, per, low, high, get, set, log = false) {
+    unit = unit === "1" ? "" : unit;
     const label = document.createElement("label"), text = document.createElement("span"), right = document.createElement("span"), typed = document.createElement("input"), range = document.createElement("input"), u = document.createElement("span");
     text.textContent = name; u.textContent = unit; u.className = "unit"; typed.className = "typed"; typed.inputMode = "decimal"; typed.setAttribute("aria-label", name + " " + unit);
     range.type = "range"; range.min = 0; range.max = 1000; range.step = 1; range.setAttribute("aria-label", name);

@@ -31,6 +31,7 @@ from feeddrive.recording.recording import Recording
 from feeddrive.thermal.machine_heat import Heat
 from feeddrive.thermal.reduced.parametric_model import HeatModel
 from feeddrive.typing import FloatArray
+from feeddrive.units.quantity import percent
 
 STEP = 60.0
 """Row of the duties [s]; a sensor of 60 s follows within it."""
@@ -163,7 +164,7 @@ def recorded_heat_table(recording: Recording, reference: float | None = None) ->
         raise InputError("no temperature moves by half a kelvin", recording.name, "record a warm-up")
     best = min(ranking, key=lambda name: ranking[name])
     after = error[split:] - tables[best].line(recording[best][split:]).at(positions)
-    words = f"the last {1 - FITTED_PART:.0%} of the recording, not fitted"
+    words = f"the last {percent(1 - FITTED_PART)} of the recording, not fitted"
     ordered = dict(sorted(ranking.items(), key=lambda one: one[1]))
     return HeatTable(recording.name, best, tables[best], left[best], words, ordered, recording.time[split:],
                      positions, error[split:], after)  # fmt: skip

@@ -14,7 +14,7 @@ from feeddrive.diagnosis.numbers.declared_values import DeclaredValue
 from feeddrive.errors import InputError
 from feeddrive.schema.toml_text import parse_toml
 from feeddrive.typing import FloatArray
-from feeddrive.units.quantity import format_quantity
+from feeddrive.units.quantity import format_quantity, percent
 
 _HEADER = re.compile(r"^\s*\[([^\[\]]+)\]\s*(#.*)?$")
 _LIST_HEADER = re.compile(r"^\s*\[\[([^\[\]]+)\]\]\s*(#.*)?$")
@@ -44,7 +44,7 @@ def with_calibrated_values(text: str, results: Sequence[CalibratedResult]) -> st
         for key, unit, declared in one.written:
             number = f"{factor * declared!r} {unit}".removesuffix(" 1")
             was = format_quantity(declared, unit)
-            changed[key] = (number, f"{100 * half:.2g} %", f"{SOURCE}, declared {was} within {one.tolerance:.0%}")
+            changed[key] = (number, f"{100 * half:.2g} %", f"{SOURCE}, declared {was} within {percent(one.tolerance)}")
     return with_written_values(text, changed) if changed else text
 
 

@@ -45,7 +45,7 @@ from feeddrive.parts.lubricant import Lubricant
 from feeddrive.parts.screw.double_nut import stiffness_share
 from feeddrive.thermal.rig import refuse_negative, refuse_unless, refuse_unless_positive
 from feeddrive.typing import Expression
-from feeddrive.units.quantity import format_quantity
+from feeddrive.units.quantity import format_quantity, percent
 
 
 class Spacer(Enum):
@@ -187,7 +187,7 @@ class Coupling:
         """
         share = 1 + self._gained(at.nut - at.shaft, preload, pitch_diameter, expansion) / preload
         if share < LEAST_PRELOAD:
-            what = f"a nut {at.nut - at.shaft:.3g} K warmer than its shaft keeps {share:.0%} of its preload"
+            what = f"a nut {at.nut - at.shaft:.3g} K warmer than its shaft keeps {percent(share)} of its preload"
             raise InputError(what, "coupling", f"cool it, or preload it with more than {format_quantity(preload, 'N')}")
         mean = (1 - self.rear_share) * at.front + self.rear_share * at.rear
         return Changes(

@@ -167,3 +167,9 @@ def _label_at_zero(unit: str) -> str:
     """Return the label of zero: the unit in which most values of the kind are shown."""
     usual = {"m": "mm", "s": "s", "N m": "N m", "N/m": "N/µm", "m/s": "m/min"}
     return usual.get(unit, _SCALES[unit][0][2])
+
+
+def percent(share: float, decimals: int = 0) -> str:
+    """A share as per cent, with a blank before the sign as before any unit."""
+    rounded = round(100.0 * share, decimals) + 0.0  # no minus before zero
+    return f"{rounded:.{decimals}f} %".replace("-", "\N{MINUS SIGN}")

@@ -197,11 +197,11 @@ def test_band_is_named_where_it_is_drawn(found: Diagnosis) -> None:
 @pytest.mark.parametrize(
     ("trial", "others", "words"),
     [
-        (Trial(2, "payload", 0.0979, 0.0095, False), [Trial(2, "backlash", 0.55, 0.01, True)], "backlash by 55.00%"),
-        (Trial(2, "payload", 0.01, 0.0095, False), [], "within the scatter of the blocks (1.5 times 0.95%)"),
+        (Trial(2, "payload", 0.0979, 0.0095, False), [Trial(2, "backlash", 0.55, 0.01, True)], "backlash by 55.00 %"),
+        (Trial(2, "payload", 0.01, 0.0095, False), [], "within the scatter of the blocks (1.5 times 0.95 %)"),
         (Trial(2, "payload", 0.0979, 0.0095, False), [], "too small to matter"),
         (Trial(1, "payload", 0.2, 0.01, True), [], "taken in round 1 and no longer paid"),
-        (Trial(1, "payload", 0.004, 0.01, False), [], "less than the 0.5% asked for"),
+        (Trial(1, "payload", 0.004, 0.01, False), [], "less than the 0.5 % asked for"),
         (Trial(1, "payload", -0.01, 0.01, False), [], "does not lower"),
     ],
 )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from html import unescape
 
@@ -63,7 +64,7 @@ def test_worn_parts_come_first_then_settings_then_tables() -> None:
 def test_figures_stand_before_after_repair_and_after_compensation() -> None:
     page = actions_section(_diagnosis(*EFFECTS_FOUND), _predicted())
     row = page[page.index("reversal value B") :].split("</tr>")[0]
-    shown = [cell.split(">")[-1] for cell in row.split("</td>")[1:4]]
+    shown = [re.sub("<[^>]*>", "", cell) for cell in row.split("</td>")[1:4]]
     assert [text.replace("\N{NO-BREAK SPACE}", " ") for text in shown] == ["7.50 µm", "0.00100 µm", "0.400 µm"]
     assert "wind-up" in page
 

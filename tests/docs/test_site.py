@@ -95,8 +95,10 @@ SCENARIOS = [
 @pytest.mark.usefixtures("extensions")
 def test_verdict_names_the_nearest_imitator() -> None:
     pages = module("effect_pages")
-    assert "`lost_motion` tells it: its nearest imitator, `presliding`, leaves 30 times" in pages.telling(SCENARIOS)
-    assert "no shipped scenario settles it" in pages.telling(SCENARIOS[1:])
+    assert "`lost_motion` distinguishes it: its nearest imitator, `presliding`, leaves 30 times" in pages.scenarios_of(
+        SCENARIOS
+    )
+    assert "no shipped scenario settles it" in pages.scenarios_of(SCENARIOS[1:])
 
 
 @pytest.mark.usefixtures("extensions")
@@ -141,7 +143,7 @@ def test_keys_are_shown_where_the_package_lists_them(monkeypatch: pytest.MonkeyP
     }
     monkeypatch.setattr(fd, "keys", listed.__getitem__, raising=False)
     text = module("written_pages_text").files_page()
-    assert "### `plant.table`" in text and "| `mass` | kg | a\\|b |" in text
+    assert "### `plant.table`" in text and "| `mass` | a\\|b | kg |" in text
     assert "backlash" not in text.split("## Shipped")[0]
 
 

@@ -85,7 +85,7 @@ def test_drag_with_the_square_of_the_velocity_is_found_with_its_form() -> None:
     wanted = 250.0 * at * np.abs(at) * BENCH_RADIUS
     # a twentieth of the largest: the noise of the table's nodes
     assert curve(one, at) - np.mean(curve(one, at)) == pytest.approx(wanted, abs=0.05 * wanted.max() + 0.002)
-    assert "100% of it odd" in one.statement or "99% of it odd" in one.statement
+    assert "100 % of it odd" in one.statement or "99 % of it odd" in one.statement
     assert all(said.over_floor(channel) < AT_THE_FLOOR for channel in said.after)
 
 

@@ -11,12 +11,13 @@ from feeddrive.compensation.forms import sinumerik_temp
 from feeddrive.compensation.forms.control import checked_axis, plain_line
 from feeddrive.compensation.sheet import Section, micrometres
 from feeddrive.compensation.temperature import HeatTable
+from feeddrive.units.quantity import percent
 
 
 def heat_sections(done: HeatTable, axis: str) -> list[Section]:
     """The sheet of a temperature compensation."""
     one = done.left
-    ranked = ", ".join(f"{name} {share:.0%}" for name, share in done.ranking.items())
+    ranked = ", ".join(f"{name} {percent(share)}" for name, share in done.ranking.items())
     steepest = float(np.max(np.abs(done.table.slopes)))
     recorded = done.sensor.endswith("_temperature")
     counted = "the recording" if recorded else "[thermal] of the plant file"

@@ -13,6 +13,7 @@ from feeddrive.diagnosis.calibration.known import known_values
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem
 from feeddrive.effects.chain.stiffness_deviation import PARTS
 from feeddrive.plant.analysis.stiffness_budget import participation
+from feeddrive.units.quantity import percent
 
 TOLD = 0.9
 """Deviation of a value over that of its tolerance, above which the recordings say nothing of it: it is not listed."""
@@ -69,7 +70,7 @@ def known_together(problem: Problem, found: Fit) -> tuple[str, ...]:
         for j in range(i + 1, len(known.values)):
             second, keys = known.values[j], (first.key, known.values[j].key)
             if alike[i, j] and deviations[[i, j]].min() < TOLD and set(keys) <= set(PARTS.values()):
-                shares = [f"{participation(plant, key, plant.middle):.0%}".replace("%", " %") for key in keys]
+                shares = [percent(participation(plant, key, plant.middle)) for key in keys]
                 remarks.append(
                     f"{first.words} and {second.words}: these recordings tell what both give way together much better "
                     f"than either; of the compliance at the table they have {shares[0]} and {shares[1]} in mid-stroke"

@@ -29,6 +29,7 @@ from feeddrive.effects.chain.stiffness_deviation import PARTS, StiffnessDeviatio
 from feeddrive.errors import InputError
 from feeddrive.plant.analysis.stiffness_budget import participation
 from feeddrive.plant.plant import Plant
+from feeddrive.units.quantity import percent
 
 SAME_ERROR = 1.05
 """Ratio of validation errors (rms) within which two effects count as the same."""
@@ -167,7 +168,7 @@ def _shares(effect: Effect, alike: Sequence[str], found: Search) -> str:
     if not isinstance(effect, StiffnessDeviation) or effect.place not in PARTS:
         return ""
     parts = [part for part in (effect.place, *alike) if part in PARTS]
-    shares = [f"{part} {participation(plant, PARTS[part], plant.middle):.0%}" for part in parts]
+    shares = [f"{part} {percent(participation(plant, PARTS[part], plant.middle))}" for part in parts]
     return f". Of the compliance at the table they have in mid-stroke: {', '.join(shares)}"
 
 

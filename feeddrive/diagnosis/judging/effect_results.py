@@ -13,6 +13,7 @@ from feeddrive.diagnosis.judging.physical_reading import physical_reading
 from feeddrive.diagnosis.judging.result import EffectResult, ParameterResult, RefusedEffect, Trial, error_without
 from feeddrive.diagnosis.likelihood.cross_validation import LEAST_GAIN, SIGNIFICANCE
 from feeddrive.effects.base import Effect
+from feeddrive.units.quantity import percent
 
 
 def effect_results(
@@ -72,7 +73,7 @@ def _curve_and_bump(effect: Effect) -> dict[str, ParameterResult]:
 
 def _evidence(effect: Effect, share: Share) -> str:
     larger = {name: error_without(value) for name, value in share.explains.items() if value > 0.001}
-    channels = ", ".join(f"that of {name} {factor:.3g} times" for name, factor in larger.items())
+    channels = ", ".join(f"that of {name.replace('_', ' ')} {factor:.3g} times" for name, factor in larger.items())
     seen = f"Without it the error on data not fitted is larger: {channels}" if channels else "It lowers no judged error"
     idle = "; it does not carry to them" if share.shows else "; they could hardly show it"
     more = "" if share.carries else idle
@@ -99,16 +100,16 @@ def refused_effects(found: Search) -> tuple[RefusedEffect, ...]:
 
 def _why_not(trial: Trial, trials: Sequence[Trial]) -> str:
     """Why a candidate was not kept, from its last round."""
-    lowers = f"it lowers the squared error on data not fitted by {trial.gain:.2%}"
+    lowers = f"it lowers the squared error on data not fitted by {percent(trial.gain, 2)}"
     winner = next((one for one in trials if one.round == trial.round and one.taken), None)
     if trial.gain <= 0:
         return "it does not lower the error on data not fitted"
     if trial.gain <= LEAST_GAIN:
-        return f"{lowers}, less than the {LEAST_GAIN:.1%} asked for"
+        return f"{lowers}, less than the {percent(LEAST_GAIN, 1)} asked for"
     if trial.taken:
         return f"it was taken in round {trial.round} and no longer paid beside what was found after it"
     if winner is not None:
-        return f"{lowers}, {winner.name} by {winner.gain:.2%}; after that it was worth no further trial"
+        return f"{lowers}, {winner.name} by {percent(winner.gain, 2)}; after that it was worth no further trial"
     if trial.gain <= SIGNIFICANCE * trial.standard_error:
-        return f"{lowers}, within the scatter of the blocks ({SIGNIFICANCE:g} times {trial.standard_error:.2%})"
+        return f"{lowers}, within the scatter of the blocks ({SIGNIFICANCE:g} times {percent(trial.standard_error, 2)})"
     return f"{lowers}, but it is too small to matter on this machine, or chance gives the best of many as much"

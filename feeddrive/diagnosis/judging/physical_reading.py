@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Mapping
 
 from feeddrive.effects.base import Effect, Value
+from feeddrive.units.quantity import percent
 
 
 def physical_reading(effect: Effect) -> str:
@@ -71,8 +72,8 @@ def _friction_deviation(v: Mapping[str, Value]) -> str:
 
 def _load_dependent_friction(v: Mapping[str, Value]) -> str:
     return (
-        f"The screw loses {_one(v['coefficient']):.2%} of the torque that the load takes: sliding in the nut, which an "
-        "efficiency declared too high leaves out."
+        f"The screw loses {percent(_one(v['coefficient']), 2)} of the torque that the load takes: sliding in the nut, "
+        "which an efficiency declared too high leaves out."
     )
 
 
@@ -147,9 +148,9 @@ def _stiffness_deviation(place: str, v: Mapping[str, Value]) -> str:
     factor = _one(v["factor"])
     if place in _SOFT_PARTS:
         part, cause = _SOFT_PARTS[place]
-        statement = f"The {part} has {factor:.0%} of the declared stiffness"
+        statement = f"The {part} has {percent(factor)} of the declared stiffness"
         if place == "nut":  # Hertz: the stiffness of a preloaded nut goes with the cube root of its preload
-            cause += f" (by preload alone, {factor**3:.0%} of it)"
+            cause += f" (by preload alone, {percent(factor**3)} of it)"
         return f"{statement}{f': {cause}' if factor < 1 else ''}."
     return _signed(
         _one(v["factor"]) - 1,
@@ -172,7 +173,7 @@ def _stiffness_vs_position(v: Mapping[str, Value]) -> str:
     share = _one(v["share_over_stroke"])
     where = "falls" if share > 0 else "rises"
     return (
-        f"The axial stiffness {where} by {abs(share):.0%} from {1e3 * _one(v['low']):.0f} mm to "
+        f"The axial stiffness {where} by {percent(abs(share))} from {1e3 * _one(v['low']):.0f} mm to "
         f"{1e3 * _one(v['high']):.0f} mm: the free length of a screw held at one end, or a bearing that is not the one "
         "declared."
     )
@@ -226,7 +227,7 @@ def _ambient_drift(v: Mapping[str, Value]) -> str:
 
 
 def _motor_heat(v: Mapping[str, Value]) -> str:
-    return f"The motor heats the end of the screw, {_one(v['share_at_rest']):.0%} of it whatever the speed."
+    return f"The motor heats the end of the screw, {percent(_one(v['share_at_rest']))} of it whatever the speed."
 
 
 def _bearing_heat(v: Mapping[str, Value]) -> str:
@@ -293,8 +294,8 @@ def _inertia_deviation(where: str, v: Mapping[str, Value]) -> str:
 
 def _torque_constant_droop(v: Mapping[str, Value]) -> str:
     return (
-        f"The motor gives {_one(v['share']):.2%} less than constant times current at {_one(v['at_torque']):.3g} N m: "
-        "its iron saturates."
+        f"The motor gives {percent(_one(v['share']), 2)} less than constant times current at "
+        f"{_one(v['at_torque']):.3g} N m: its iron saturates."
     )
 
 

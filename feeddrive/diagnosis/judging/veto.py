@@ -43,7 +43,7 @@ from feeddrive.diagnosis.recordings.compared import judged_changes
 from feeddrive.diagnosis.recordings.recordings import RecordingShift, is_shift, without_shifts
 from feeddrive.effects.base import ChainEffect, Effect
 from feeddrive.typing import FloatArray, IntegerArray
-from feeddrive.units.quantity import format_quantity
+from feeddrive.units.quantity import format_quantity, percent
 
 CLEARLY_NEEDED = 0.1
 """Share of the squared error that an effect must bring, by one linear step, not to be refitted without it."""
@@ -171,13 +171,14 @@ def _no_gain(found: Search, place: int, share: Share) -> str:
         return ""
     if share.shows:
         scatter = max(comparison.standard_error, comparison.least)
-        return f"on the judged data it lowers the squared error by {comparison.gain:.2%}, scatter {scatter:.2%}"
+        gain = percent(comparison.gain, 2)
+        return f"on the judged data it lowers the squared error by {gain}, scatter {percent(scatter, 2)}"
     inside = _left_out_gain(found, place)
     if inside.gain > SURE * inside.standard_error:
         return ""
     return (
         f"the judged data hardly show it, and on blocks left out of the fit it lowers the squared error by "
-        f"{inside.gain:.2%}, scatter {inside.standard_error:.2%}"
+        f"{percent(inside.gain, 2)}, scatter {percent(inside.standard_error, 2)}"
     )
 
 

@@ -15,6 +15,7 @@ from feeddrive.diagnosis.likelihood.coordinates import value_slopes
 from feeddrive.diagnosis.likelihood.cross_validation import SIGNIFICANCE, Comparison
 from feeddrive.diagnosis.recordings.recordings import RecordingShift, without_shifts
 from feeddrive.effects.base import Effect
+from feeddrive.units.quantity import percent
 
 
 def kept_of(found: Search, known: Certainty) -> Kept:
@@ -42,7 +43,8 @@ def _reason(comparison: Comparison, taken: bool, winner: str) -> str:
     if comparison.gain <= 0:
         return "refused: it does not lower the error on blocks left out"
     if comparison.gain <= comparison.least:
-        return f"refused: a gain of {comparison.gain:.2%} is less than the {comparison.least:.2%} asked for"
+        gain, least = percent(comparison.gain, 2), percent(comparison.least, 2)
+        return f"refused: a gain of {gain} is less than the {least} asked for"
     if not comparison.pays:
         return f"refused: its gain is less than {SIGNIFICANCE:g} times its scatter, or than what luck brings"
     if not winner:

@@ -255,7 +255,7 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
         band.thinning,
         tuple(name for name in measured_names if name == "table_position"),
         {s.channel: s.model_error for s in plant.sensors if s.model_error > 0 and s.channel in measured_names},
-        replace(motion, time=clock(recording)),
+        motion.timed(clock(recording)),
         band,
         scaled_from,
         zero,

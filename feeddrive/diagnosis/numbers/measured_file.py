@@ -46,7 +46,7 @@ from feeddrive.plant.plant import Plant
 from feeddrive.schema.measured import MEASURED
 from feeddrive.schema.table import Table, whole_file
 from feeddrive.schema.toml_text import read_toml
-from feeddrive.units.quantity import format_quantity, parse
+from feeddrive.units.quantity import format_quantity, parse, percent
 
 HELD, FREE = "held", "free"
 
@@ -248,7 +248,7 @@ def _velocity(table: Table) -> float:
 def _deviation(table: Table, value: float, kind: Measurable) -> tuple[float, str]:
     """Standard deviation [SI], and what was assumed of it."""
     if "tolerance" not in table.entries:
-        return 0.5 * kind.tolerance * value, f"tolerance {kind.tolerance:.0%} assumed"
+        return 0.5 * kind.tolerance * value, f"tolerance {percent(kind.tolerance)} assumed"
     text = table.text("tolerance").removeprefix("±").strip()
     place = table.place("tolerance")
     try:

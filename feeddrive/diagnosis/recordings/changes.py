@@ -34,6 +34,7 @@ from feeddrive.diagnosis.recordings.change_result import CommonTrial
 from feeddrive.diagnosis.recordings.recordings import RecordingShift, Target, is_shift, without_shifts
 from feeddrive.effects.base import Effect
 from feeddrive.effects.friction.friction_deviation import FrictionDeviation
+from feeddrive.units.quantity import percent
 
 REFERENCE_STEPS, JOINT_STEPS = 8, 10
 """Steps of the fit with everything in common, and of the fit with what differs."""
@@ -160,9 +161,8 @@ def _trials(ranked: dict[Target, Offer], kept: Sequence[Target]) -> tuple[Common
     result = []
     for target, (one, comparison) in sorted(ranked.items(), key=lambda item: -item[1][1].gain):
         taken, gain, error = target in kept, comparison.gain, comparison.standard_error
-        reason = (
-            f"a value of its own lowers the squared error by {gain:.2%} ({error:.2%} scatter), or others say it better"
-        )
+        lowers = f"a value of its own lowers the squared error by {percent(gain, 2)}"
+        reason = f"{lowers} ({percent(error, 2)} scatter), or others say it better"
         if taken:
             reason = "it must differ for blocks left out to be met"
         elif gain <= 0:

@@ -40,6 +40,7 @@ from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.recording.channels import channel_unit
 from feeddrive.typing import BoolArray, FloatArray
+from feeddrive.units.quantity import percent
 
 CHANNEL_MARGIN = 0.01
 """Share by which the rms of one simulated channel may rise where the others gain."""
@@ -167,14 +168,14 @@ def why_not_kept(
     ratios = {name: after[name].rms / attributed[name].rms for name in attributed}
     gain = 1 - float(np.mean([ratio**2 for ratio in ratios.values()]))
     if not gain > 0:
-        return f"they raise the simulated squared error on data not fitted by {-gain:.2%}"
+        return f"they raise the simulated squared error on data not fitted by {percent(-gain, 2)}"
     for name, ratio in ratios.items():
         if ratio > 1 + CHANNEL_MARGIN:
-            return f"the simulated {name} would be worse by {ratio - 1:.1%} on data not fitted"
+            return f"the simulated {name} would be worse by {percent(ratio - 1, 1)} on data not fitted"
     pairs = zip(channel_results(found.problem, old), channel_results(found.problem, new), strict=True)
     for was, would in pairs:
         if would.after.rms > (1 + PREDICTION_MARGIN) * was.after.rms:
-            return f"the predicted {was.name} would be worse by {would.after.rms / was.after.rms - 1:.1%}"
+            return f"the predicted {was.name} would be worse by {percent(would.after.rms / was.after.rms - 1, 1)}"
     return ""
 
 

@@ -149,8 +149,13 @@ def screw_drag(scene: Scene) -> str:
 
 
 def both(first: Need, second: Need) -> Need:
-    """What needs two things: the first that is lacking."""
-    return lambda scene: first(scene) or second(scene)
+    """What needs two things: the first that is lacking. Its docstring, which the effect's page shows, is theirs."""
+
+    def need(scene: Scene) -> str:
+        return first(scene) or second(scene)
+
+    need.__doc__ = f"{first.__doc__} {second.__doc__}"
+    return need
 
 
 torque_turns, torque_inertia = both(torque, turns), both(torque, inertia)

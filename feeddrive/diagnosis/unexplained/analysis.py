@@ -15,7 +15,7 @@ from feeddrive.diagnosis.unexplained.terms import Form, Term, columns_in, finer_
 from feeddrive.diagnosis.unexplained.unexplained_result import Above, Dependence, Seen, Table
 from feeddrive.diagnosis.unexplained.view import View, above_noise
 from feeddrive.typing import FloatArray, IntegerArray
-from feeddrive.units.quantity import format_quantity
+from feeddrive.units.quantity import format_quantity, percent
 
 FEWEST = 60
 """Samples below which a residual is not taken apart."""
@@ -223,7 +223,7 @@ def _harmonics(values: FloatArray) -> str:
     powers = np.abs(np.fft.rfft(values))[1:4] ** 2
     shares = powers / powers.sum() if powers.sum() > 0 else powers
     phrases = [
-        f"{share:.0%} of it {word}" for share, word in zip(shares, ("once", "twice", "three times"), strict=True)
+        f"{percent(share)} of it {word}" for share, word in zip(shares, ("once", "twice", "three times"), strict=True)
     ]
     return f"{', '.join(phrases)} a period"
 
@@ -237,7 +237,7 @@ def _odd(table: Table) -> str:
     even = even - even.mean()
     total = float(odd @ odd + even @ even)
     share = float(odd @ odd) / total if total > 0 else 0.0
-    return f"{share:.0%} of it odd in the velocity"
+    return f"{percent(share)} of it odd in the velocity"
 
 
 def _shown(value: float, unit: str) -> str:

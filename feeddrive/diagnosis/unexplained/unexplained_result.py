@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from feeddrive.effects.tabulated import Tabulated
-from feeddrive.units.quantity import format_quantity
+from feeddrive.units.quantity import format_quantity, percent
 
 ABOVE = 3.0
 """Standard errors by which the rms must stand above the floor for something to be left."""
@@ -170,7 +170,7 @@ class Carried:
     @property
     def remark(self) -> str:
         """What it explains, beside it in the plant file."""
-        shares = ", ".join(f"{share:.1%} of {name}" for name, share in self.explains.items() if share > 0.001)
+        shares = ", ".join(f"{percent(share, 1)} of {name}" for name, share in self.explains.items() if share > 0.001)
         word = self.variable.replace("periodic_", "the period of the ").replace("_", " ")
         return f"Of no known name: what was left, as a table over {word}. Explains {shares} on data not fitted."
 
@@ -266,7 +266,7 @@ class Unexplained:
 
 def no_gain(explains: Mapping[str, float]) -> str:
     """Why a tabulated effect is not carried that does not pay on the judged data."""
-    shares = ", ".join(f"{share:.1%} of {name}" for name, share in explains.items())
+    shares = ", ".join(f"{percent(share, 1)} of {name}" for name, share in explains.items())
     return f"not carried, since a table of it does not lower the error on data not fitted enough ({shares})"
 
 
@@ -282,7 +282,7 @@ def rest_in_words(unit: str, rest: Unexplained, lost: Sequence[Dependence], afte
     above = rest.above
     assert above is not None
     rms, floor = format_quantity(above.rms, unit), format_quantity(above.floor, unit)
-    share = f"{above.share:.0%} ± {2 * above.standard_error:.0%} of its square"
+    share = f"{percent(above.share)} ± {percent(2 * above.standard_error)} of its square"
     if above.is_left:
         sentences = [f"Left on the judged data: {rms} rms, noise floor {floor} rms; {share} is above the noise."]
     else:
@@ -305,7 +305,7 @@ def rest_in_words(unit: str, rest: Unexplained, lost: Sequence[Dependence], afte
 def _followed(one: Dependence) -> str:
     also = f" (or {', '.join(one.alike)}: these recordings cannot tell)" if one.alike else ""
     seen = "" if one.confirmed else ", not confirmed on the judged data"
-    return f"{one.words} ({one.share:.0%} of it: {one.statement}{seen}){also}"
+    return f"{one.words} ({percent(one.share)} of it: {one.statement}{seen}){also}"
 
 
 def _instead(one: Instead) -> str:

@@ -40,7 +40,7 @@ from feeddrive.servo.response_family import (
     open_family,
 )
 from feeddrive.tuning.demand import cases_of
-from feeddrive.units.quantity import format_quantity, unit_conversion
+from feeddrive.units.quantity import format_quantity, percent, unit_conversion
 
 if TYPE_CHECKING:
     from feeddrive.report.figures.drawing import ReportFigure
@@ -306,7 +306,7 @@ def _resonances(title: str, family: Family, suffix: str, more: float) -> Listing
         for root in curve.response.marks:
             seen = on_curve(root, curve.seen)
             place = [f"{seen.frequency:.1f} Hz", f"{seen.decibel + more:.1f} dB"] if seen else ["not seen", ""]
-            natural = [f"{root.frequency:.1f} Hz", f"{root.damping:.2%}"]
+            natural = [f"{root.frequency:.1f} Hz", percent(root.damping, 2)]
             rows.append([case_text(curve.case), str(root.kind), *natural, *place])
     headings = ("table at", "kind", "natural", "damping", "on the curve", f"magnitude{suffix}")
     return Listing(f"{title}, resonances", headings, rows)

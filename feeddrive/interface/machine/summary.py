@@ -18,7 +18,7 @@ from feeddrive.plant.analysis.stiffness_budget import StiffnessBudget
 from feeddrive.plant.analysis.summary import Summary as Figures
 from feeddrive.plant.plant import Plant
 from feeddrive.report.words.words import chain_remark
-from feeddrive.units.quantity import format_quantity
+from feeddrive.units.quantity import format_quantity, percent
 
 if TYPE_CHECKING:
     from feeddrive.report.figures.drawing import ReportFigure
@@ -62,7 +62,7 @@ class Stiffness(Shown):
             ("combined stiffness, motor held", "", budget.total, 1.0),
         ]
         rows = [
-            [f"{part}, {how}" if how else part, format_quantity(k, "N/m"), f"{share:.1%}" if how else f"{share:.0%}"]
+            [f"{part}, {how}" if how else part, format_quantity(k, "N/m"), percent(share, 1) if how else percent(share)]
             for part, how, k, share in found
         ]
         names = ("part", "deformation", "stiffness [N/m]", "share")
@@ -215,7 +215,7 @@ class Summary(Shown):
         shown = [(one.coordinate.replace("_", " "), one.at_motor, one.at_table, one.share) for one in found.inertias]
         shown.append(("all", found.inertia_at_motor, found.mass_at_table, 1.0))
         return [
-            [name, format_quantity(motor, "kg m^2"), format_quantity(table, "kg"), f"{share:.0%}"]
+            [name, format_quantity(motor, "kg m^2"), format_quantity(table, "kg"), percent(share)]
             for name, motor, table, share in shown
         ]
 
@@ -238,7 +238,7 @@ class Summary(Shown):
         found = self.figures.modes
         kept = [i for i, name in enumerate(found.coordinates) if name in _KNOWN]
         rows = [
-            [motor, format_quantity(frequency, "Hz"), f"{damping:.2%}", *(f"{part:+.2f}" for part in shape)]
+            [motor, format_quantity(frequency, "Hz"), percent(damping, 2), *(f"{part:+.2f}" for part in shape)]
             for motor, modes in (("held", found.braked), ("free", found.free))
             for frequency, damping, shape in zip(
                 modes.frequencies, modes.damping, modes.shapes.T[:, kept] + 0.0, strict=False

@@ -27,7 +27,7 @@ from feeddrive.thermal.run.duty import AMBIENT_CHANNEL, SPEED, constant_duty, re
 from feeddrive.thermal.run.study import ThermalStudy, study
 from feeddrive.thermal.run.study import WarmUp as Settled
 from feeddrive.typing import FloatArray
-from feeddrive.units.quantity import format_quantity
+from feeddrive.units.quantity import format_quantity, percent
 
 if TYPE_CHECKING:
     from feeddrive.report.figures.drawing import ReportFigure
@@ -284,10 +284,7 @@ def _warm_up(name: str, one: Settled, found: ThermalStudy) -> list[str]:
 
 def _constants(found: ThermalStudy) -> Listing:
     names = list(found.constants[0].shares) if found.constants else []
-    rows = [
-        [_time(one.value), *(f"{one.shares[name] + 0.0:.1%}".replace("-0.0%", "0.0%") for name in names)]
-        for one in found.constants
-    ]
+    rows = [[_time(one.value), *(percent(one.shares[name], 1) for name in names)] for one in found.constants]
     headings = [_heading("nut_temperature" if name == NUT else f"table_{name}").split(" [")[0] for name in names]
     return Listing("Time constants, and their shares in a step", ["τ", *headings], rows)
 

@@ -20,6 +20,7 @@ from feeddrive.plant.analysis.summary import Summary, summarise
 from feeddrive.plant.plant import Plant, PositionVelocityController
 from feeddrive.thermal.machine_heat import Heat
 from feeddrive.thermal.run.heat_figures import HeatRow, heat_rows
+from feeddrive.units.quantity import percent
 
 USUAL_DN = 70_000 * 1e-3 * math.pi / 30
 """Ball circle times speed of a ground screw with return tubes [m rad/s]; 70 000 mm rev/min."""
@@ -159,7 +160,7 @@ def _inertia_ratio(summary: Summary) -> Finding:
 
 
 def _damping(plant: Plant, summary: Summary) -> Finding:
-    rule = f"damping ratio of the first mode, above {DAMPING[0]:.1%}"
+    rule = f"damping ratio of the first mode, above {percent(DAMPING[0], 1)}"
     if not plant.chain.elastic:
         return _unknown(rule, "needs an elastic structure")
     ratio = float(summary.modes.free.damping[1])

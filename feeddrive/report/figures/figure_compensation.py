@@ -25,6 +25,7 @@ from feeddrive.report.figures.drawing import (
 )
 from feeddrive.report.figures.figure_metrology import micrometres
 from feeddrive.typing import FloatArray
+from feeddrive.units.quantity import percent
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -90,7 +91,7 @@ def circle_figure(done: Compensated) -> ReportFigure:
     polar.set_yticks([])
     polar.tick_params(labelsize=8)
     polar.set_title(
-        f"nominal circle dashed; {micrometres(largest)} is {_RIM:.0%} of its radius", fontsize=9, loc="left"
+        f"nominal circle dashed; {micrometres(largest)} is {percent(_RIM)} of its radius", fontsize=9, loc="left"
     )
     right.set_xticks([0, 90, 180, 270, 360])
     dress(right, "angle [°], the axis reverses at 90° and 270°", "radial deviation [µm]")
@@ -121,7 +122,7 @@ def heat_figure(done: HeatTable) -> ReportFigure:
     dress(axes, "time [h]", "actual minus target [µm]")
     legend_above(axes, 4)
     share = done.left.rms_after / done.left.rms_before if done.left.rms_before > 0 else math.nan
-    text = f"{done.judged}: the table over {done.sensor} leaves {share:.0%} of the rms error."
+    text = f"{done.judged}: the table over {done.sensor} leaves {percent(share)} of the rms error."
     return ReportFigure("heat_compensation", "Thermal error with a table over one sensor", text, figure)
 
 

@@ -10,7 +10,7 @@ from feeddrive.report.figures.drawing import RenderedFigure
 from feeddrive.report.pages.html import page
 from feeddrive.report.pages.markup import bullets, figure, paragraph, section, table, verdict
 from feeddrive.report.words.explained_words import numbers_verdict, odds_text, response_verdict, value_text
-from feeddrive.units.quantity import format_quantity
+from feeddrive.units.quantity import format_quantity, percent
 
 _SETS, _FURTHER = 8, 6
 
@@ -82,7 +82,7 @@ def _sets(result: NumbersResult) -> str:
     rows = [
         [
             " and ".join(values[place].words for place in one.beyond) or "none",
-            f"{one.probability:.1%}",
+            percent(one.probability, 1),
             odds_text(one.probability),
         ]
         for one in result.sets[:_SETS]

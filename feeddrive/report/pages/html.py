@@ -161,7 +161,7 @@ table { border-collapse: collapse; width: 100%; margin: 6px 0; font-size: 14px;
 th { text-align: left; font-weight: 600; color: #4a4a4a; border-bottom: 1.5px solid #6b6b6b; padding: 4px 10px 4px 0;
   vertical-align: bottom; }
 td { border-bottom: 1px solid #e6e6e6; padding: 5px 10px 5px 0; vertical-align: top; overflow-wrap: break-word; }
-td:not(.number) { min-width: 9ch; }
+td:not(.number) { min-width: 9ch; } td:first-child { min-width: 13ch; }
 th.number, td.number { text-align: right; padding-left: 8px; }
 td.number { white-space: nowrap; }
 th.number + th:not(.number), td.number + td:not(.number) { padding-left: 14px; }
@@ -195,6 +195,8 @@ figcaption { margin-top: 6px; }
     white-space: normal; }
   td::before { content: attr(data-label); flex: 0 0 38%; color: #6b6b6b; }
   td:not([data-label])::before, td:empty { display: none; }
+  td > div { min-width: 0; }
+  figure { overflow-x: auto; } figure img { min-width: 640px; } figcaption { position: sticky; left: 0; }
   body { padding: 16px 12px 40px; } h1 { font-size: 21px; } .main { font-size: 16px; }
   .verdict { padding: 8px 12px; } dd { margin-left: 10px; }
 }

@@ -67,7 +67,9 @@ def _data_cell(cell: str | Cell, column: tuple[str, str]) -> str:
     """A cell under its column; its label stands beside it where a narrow page sets a row as a list."""
     side, label = column
     named = f' data-label="{label}"' if label else ""
-    return f"<td{side}{named}>{cell.inner if isinstance(cell, Cell) else text(cell)}</td>"
+    inner = cell.inner if isinstance(cell, Cell) else text(cell)
+    # one box beside the label, whatever breaks and code the cell holds
+    return f"<td{side}{named}>{inner and f'<div>{inner}</div>'}</td>"
 
 
 def section(title: str, *parts: str) -> str:

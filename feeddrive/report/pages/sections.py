@@ -31,7 +31,7 @@ from feeddrive.report.words.number_text import (
 from feeddrive.report.words.parameters import parameter_text
 from feeddrive.report.words.verdict import is_noise, verdict_sentences
 from feeddrive.report.words.words import effect_words, plain
-from feeddrive.units.quantity import format_quantity
+from feeddrive.units.quantity import format_quantity, percent
 
 
 def verdict_section(diagnosis: Diagnosis) -> str:
@@ -150,7 +150,7 @@ def _shown(one: CalibratedResult) -> list[str]:
     scale, unit = (100.0 / one.declared, "%") if one.unit == "1" else (1.0, one.unit)
     low, high = (_text(scale * end, unit) for end in one.ci95)
     declared, value = (_text(scale * size, unit) for size in (one.declared, one.value))
-    return [one.words, declared, f"{one.tolerance:.0%}".replace("%", " %"), value, f"{low} {DASH} {high}"]
+    return [one.words, declared, percent(one.tolerance), value, f"{low} {DASH} {high}"]
 
 
 def _text(value: float, unit: str) -> str:
