@@ -75,7 +75,7 @@ def test_file_and_sheet_are_written(
         (["worn.toml", *ENDS, "--controller", str(ROOT / "scenarios/controllers/bench_axis.toml")], "reads the scale"),
         (["worn.toml", "--form", "sinumerik-temp"], "declares no heat"),
         (["thermal_bench", "--form", "isg"], "--form sinumerik-temp"),
-        ([".", *ENDS], "plant_after.toml"),
+        ([".", *ENDS], "is no diagnosis"),
         (["nowhere", *ENDS], "nowhere"),
         (["nowhere.csv", *ENDS], "nowhere.csv"),
         (["worn.toml", *ENDS, "--out", "."], "is a folder"),
