@@ -150,7 +150,7 @@ def facts(effect: type[Effect]) -> str:
         "kind": str(effect.kind),
         "port": ", ".join(map(str, effect.ports)),
         "shows in": ", ".join(f"`{name}`" for name in effect.signature.channels),
-        "as a function of": effect.signature.variable,
+        "as a function of": effect.signature.variable.replace("_", " "),
         "can look like": alike,
         "a recording must hold": needed(effect),
     }

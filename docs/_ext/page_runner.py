@@ -85,10 +85,10 @@ class PageRunner:
                 continue
             if words[0] != "feeddrive":
                 raise ValueError(f"{title}: a terminal block holds feeddrive commands alone, not {line!r}")
-            with self._inside() as printed, contextlib.redirect_stderr(io.StringIO()) as told:
+            with self._inside() as printed, contextlib.redirect_stderr(io.StringIO()) as printed_errors:
                 status = main(words[1:])
             if status != 0:
-                raise RuntimeError(f"{title}: {line} ends with {status}: {told.getvalue()}")
+                raise RuntimeError(f"{title}: {line} ends with {status}: {printed_errors.getvalue()}")
             parts.append(f"$ {line}\n{printed.getvalue()}".replace(f"{self.folder}/", ""))
         return Shown("\n".join(parts))
 

@@ -1,7 +1,7 @@
 """What an effect does to a residual: planted in a shipped machine, run through the shipped scenarios, compared.
 
 The declared machine predicts torque and table position from the recorded motor motion, as `feeddrive diagnose` does.
-What is left is the picture. Its imitators are then fitted in its place; what they leave says which scenario tells.
+What is left is the picture. Its imitators are then fitted in its place; what they leave shows the best scenario.
 Results are kept in a folder under a digest of the package, since all effects together take some minutes.
 """
 
@@ -154,7 +154,7 @@ def _rms(residual: Any) -> float:
 
 
 def residual_figure(effect: Effect, run: Rehearsal) -> Any:
-    """What the declared machine misses in one scenario: over time, and over the variable that tells."""
+    """What the declared machine misses in one scenario: over time, and over the variable in which it shows."""
     from matplotlib.figure import Figure
 
     evidence = run.evidence

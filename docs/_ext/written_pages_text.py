@@ -30,7 +30,7 @@ FURTHER = "Further names"
 
 
 def commands_page() -> str:
-    """Every command as its `--help` tells it."""
+    """Every command with its `--help`."""
     os.environ["COLUMNS"] = str(HELP_WIDTH)
     parts = [
         "# Commands\n",

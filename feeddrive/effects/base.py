@@ -318,7 +318,7 @@ class FrictionEffect(Effect):
         return (self.level(motion, p),)
 
     def least_level(self, radius: float) -> float | None:
-        """What it adds to the level at least, whatever the motion and the load; None where turning points tell it.
+        """What it adds to the level at least, for any motion and load; None where turning points decide.
 
         Args:
             radius: travel of the nut per angle of the screw [m/rad].

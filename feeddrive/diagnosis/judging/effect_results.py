@@ -77,7 +77,7 @@ def _evidence(effect: Effect, share: Share) -> str:
     seen = f"Without it the error on data not fitted is larger: {channels}" if channels else "It lowers no judged error"
     idle = "; it does not carry to them" if share.shows else "; they could hardly show it"
     more = "" if share.carries else idle
-    return f"{seen}{more}. It shows as a function of {effect.signature.variable}."
+    return f"{seen}{more}. It shows as a function of {effect.signature.variable.replace('_', ' ')}."
 
 
 def refused_effects(found: Search) -> tuple[RefusedEffect, ...]:

@@ -89,7 +89,12 @@ def _torque_ripple(v: Mapping[str, Value]) -> str:
     order = v["order"]
     near = isinstance(order, float) and math.isclose(order, round(order), abs_tol=0.02) and round(order) > 0
     cause = "cogging, pole pairs, or current offset" if near else "not an integer: rolling elements or a gear"
-    return f"Locked to the motor angle, {order:.4g} periods per revolution ({cause})."
+    return f"Locked to the motor angle, {_periods(order)} per revolution ({cause})."
+
+
+def _periods(order: Value) -> str:
+    count = f"{_one(order):.4g}"
+    return f"{count} period{'' if count == '1' else 's'}"
 
 
 def _constant_force(v: Mapping[str, Value]) -> str:
@@ -105,11 +110,11 @@ def _backlash(v: Mapping[str, Value]) -> str:
 
 
 def _lead_error(v: Mapping[str, Value]) -> str:
-    return f"Travel error locked to the screw angle, {v['order']:.4g} periods per revolution: wobble, or pitch error."
+    return f"Travel error locked to the screw angle, {_periods(v['order'])} per revolution: wobble, or pitch error."
 
 
 def _ball_pass_ripple(v: Mapping[str, Value]) -> str:
-    return f"The drag of the screw changes with its angle, {v['order']:.4g} periods per revolution: balls passing."
+    return f"The drag of the screw changes with its angle, {_periods(v['order'])} per revolution: balls passing."
 
 
 def _position_spring(v: Mapping[str, Value]) -> str:

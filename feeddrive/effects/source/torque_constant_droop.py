@@ -9,7 +9,7 @@
 | T | (recorded) | torque constant times current: what is asked for, limited and recorded | N m |
 | T_acts | | torque that acts on the rotor | N m |
 
-Only s / T0^2 can be seen in a recording: 2 % at 5 N m is 8 % at 10 N m. A diagnosis tells the share at three tenths of
+Only s / T0^2 can be seen in a recording: 2 % at 5 N m is 8 % at 10 N m. A diagnosis gives the share at three tenths of
 the declared torque limit, so that recordings of one machine compare, or else at the largest torque recorded. Beyond
 T0 / sqrt(3 s), where the parabola would turn back, the torque is held at its greatest value, and a simulation that goes
 there warns. Odd in the torque; dissipative, as it takes from what drives.
