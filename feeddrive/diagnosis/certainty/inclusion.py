@@ -49,9 +49,9 @@ def odds_for(found: Search, rivals: Sequence[Sequence[Rival]]) -> tuple[float, .
 def asserted(found: Search) -> Search:
     """The search with the names alone for which the odds are 20 to 1 or more; the others may be.
 
-    The search takes a set that is likelier at all, so that what such a name explains is not taken for another. The least
-    likely goes first: of two that share what they explain the other is then likelier. Laws that cannot be told from each other
-    are one name here: their odds against each other are told with them, and they stand as an ambiguous set.
+    The search takes a set that is likelier at all, so that what such a name explains is not taken for another. The
+    least likely goes first: of two that share what they explain the other is then likelier. Laws that cannot be told
+    from each other are one name here: their odds against each other are told, and they stand as an ambiguous set.
 
     Args:
         found: what the search took, judged on data not fitted.
