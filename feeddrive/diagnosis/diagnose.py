@@ -12,7 +12,7 @@ from feeddrive.diagnosis.calibration.calibrate import calibrated
 from feeddrive.diagnosis.calibration.calibrated_result import calibrated_results, known_together
 from feeddrive.diagnosis.certainty.ambiguity import Rival, ambiguous_sets, other_places, rivals_of
 from feeddrive.diagnosis.certainty.correlation import correlation
-from feeddrive.diagnosis.certainty.inclusion import odds_for, possible_effects
+from feeddrive.diagnosis.certainty.inclusion import asserted, odds_for, possible_effects
 from feeddrive.diagnosis.certainty.next_experiment import next_experiments
 from feeddrive.diagnosis.certainty.preferred import with_the_preferred
 from feeddrive.diagnosis.certainty.uncertainty import certainty, intervals
@@ -249,6 +249,10 @@ def _settled(begun: _Begun, simulate: bool, progress: Progress, start: Sequence[
         kept, judged = without_denied(preferred, judge(preferred), judge)
         rivals = rivals if kept is preferred else rivals_of(kept, judged)
         found = kept
+    sure = asserted(found)
+    if sure is not found:
+        found, judged = sure, judge(sure)
+        rivals = rivals_of(found, judged)
     found, judged = not_worse_than_declared(found, judged, judge)
     judged, rehomed = _judged(found, evidence)
     refinement = Refinement(found, (judged, rehomed))

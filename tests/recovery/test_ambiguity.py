@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from feeddrive.diagnosis.certainty.ambiguity import ambiguous_sets, at_its_limit, rivals_of
+from feeddrive.diagnosis.certainty.inclusion import asserted, odds_for, possible_effects
 from feeddrive.diagnosis.certainty.next_experiment import distance, hardly_known, next_experiments
 from feeddrive.diagnosis.certainty.noise_colour import independent_share
 from feeddrive.diagnosis.certainty.preferred import with_the_preferred
@@ -82,6 +83,20 @@ def test_set_is_led_by_the_member_with_fewest_parameters() -> None:
     assert [effect.name for effect in found.fit.effects] == ["lead_error_cumulative"]
     (one,) = ambiguous_sets(found, rivals)
     assert one.names == ("lead_error_cumulative", "thermal_growth")
+
+
+def test_name_below_twenty_to_one_may_be_and_is_not_asserted() -> None:
+    """Half a newton on this bench is some two standard deviations beyond what a further name costs."""
+    found, _ = settled([force(0.52)], [force(0.52)], force(0.52), seed=7)
+    (odds,) = odds_for(found, [[]])
+    assert 1 / 20 < odds < 20
+    sure = asserted(found)
+    assert sure.fit.effects == () and sure.fit.squared_error > found.fit.squared_error
+    (one,) = possible_effects(sure, [])
+    assert (one.name, one.instead_of) == ("constant_force", "") and one.odds == pytest.approx(odds)
+    assert "times as long" in one.settles
+    large, _ = settled([force(3.0)], [force(3.0)], force(3.0), seed=7)
+    assert asserted(large) is large
 
 
 def test_effect_carries_where_the_judged_data_show_it_and_not_where_it_is_absent() -> None:

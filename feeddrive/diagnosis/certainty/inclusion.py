@@ -10,15 +10,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from scipy.special import logsumexp
 
+from feeddrive.diagnosis.calibration.beyond import without_effects
 from feeddrive.diagnosis.certainty.ambiguity import AGAINST, Rival
-from feeddrive.diagnosis.finding.search import Search
-from feeddrive.diagnosis.finding.sets import odds_of_members
+from feeddrive.diagnosis.finding.search import Near, Search
+from feeddrive.diagnosis.finding.sets import members_weighed, odds_of_members
 from feeddrive.diagnosis.judging.result import PossibleEffect
-from feeddrive.diagnosis.recordings.recordings import without_shifts
+from feeddrive.diagnosis.likelihood.fit import fit
+from feeddrive.diagnosis.recordings.recordings import is_shift, without_shifts
 
 OPEN = 0.5 * AGAINST
 """Logarithm of the odds, either way, within which a name is possible: those that refuse a rival."""
@@ -43,6 +46,32 @@ def odds_for(found: Search, rivals: Sequence[Sequence[Rival]]) -> tuple[float, .
     return tuple(result)
 
 
+def asserted(found: Search) -> Search:
+    """The search with the names alone for which the odds are 20 to 1 or more; the others may be.
+
+    The search takes a set that is likelier at all, so that what such a name explains is not taken for another. The
+    least likely goes first: of two that share what they explain the other is then likelier. Laws that cannot be told
+    from each other are one name here: their odds against each other are told, and they stand as an ambiguous set.
+
+    Args:
+        found: what the search took, judged on data not fitted.
+    """
+    count = len(found.problem.predictor.candidates)
+    if any(is_shift(effect) for effect in found.fit.effects):
+        return found  # what one recording has otherwise belongs to the effect taken
+    while found.fit.effects:
+        members = members_weighed(found.problem, found.fit, count)
+        place = max(range(len(members)), key=lambda i: members[i].gain)
+        if members[place].gain <= -OPEN:
+            return found
+        gone = found.fit.effects[place]
+        rest = [effect for i, effect in enumerate(found.fit.effects) if i != place]
+        near = Near(gone.name, -members[place].gain, -members[place].speaks)
+        problem = without_effects(found.problem, [gone], rest)
+        found = replace(found, problem=problem, fit=fit(problem, rest), near=(near, *found.near))
+    return found
+
+
 def possible_effects(found: Search, rivals: Sequence[Sequence[Rival]]) -> tuple[PossibleEffect, ...]:
     """Names that may be, beside those taken or in their place, the likeliest first."""
     taken = {effect.name for effect in found.fit.effects}
@@ -56,7 +85,7 @@ def possible_effects(found: Search, rivals: Sequence[Sequence[Rival]]) -> tuple[
     for near in found.near:
         if near.name in known or near.gain <= -OPEN:
             continue
-        longer = (OPEN - near.gain + near.speaks) / near.speaks
+        longer = (OPEN - near.gain + near.speaks) / near.speaks if near.speaks > 0 else 0.0
         if longer > 1:
             settles = f"a recording of the same motion {longer:.1f} times as long"
         else:

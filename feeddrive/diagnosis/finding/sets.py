@@ -121,8 +121,8 @@ def _may_join(one: Neighbour, attempts: Sequence[Attempt], i: int) -> bool:
     return not any(other.name == new.name and (other.place == new.place or not new.repeatable) for other in others)
 
 
-def odds_of_members(problem: Problem, found: Fit, count: int) -> tuple[float, ...]:
-    """Logarithm of the odds for each member of a set against the set without it, as far as slopes tell.
+def members_weighed(problem: Problem, found: Fit, count: int) -> tuple[Neighbour, ...]:
+    """Per member of a set, the set without it as far as slopes tell: what is less likely has a gain below zero.
 
     Args:
         problem: recordings.
@@ -131,7 +131,12 @@ def odds_of_members(problem: Problem, found: Fit, count: int) -> tuple[float, ..
     """
     columns = _Columns(problem, found, (), count)
     nothing = [columns.weighed((place,), ()) for place in range(len(found.effects))]
-    return tuple(-columns.weighed_closely(one).gain for one in nothing)
+    return tuple(columns.weighed_closely(one) for one in nothing)
+
+
+def odds_of_members(problem: Problem, found: Fit, count: int) -> tuple[float, ...]:
+    """Logarithm of the odds for each member of a set against the set without it; arguments as `members_weighed`."""
+    return tuple(-one.gain for one in members_weighed(problem, found, count))
 
 
 def needed_members(problem: Problem, found: Fit, may_go: Callable[[Effect], bool]) -> Fit:
