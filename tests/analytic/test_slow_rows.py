@@ -12,6 +12,8 @@ from feeddrive.diagnosis.likelihood.evidence import prepare
 from feeddrive.diagnosis.likelihood.slow_rows import is_slow, known_motion, refuse_unknown_motion, sentence
 from feeddrive.diagnosis.suspicion.logged import declared_hold
 from feeddrive.errors import InputError
+from feeddrive.plant.analysis.modes import braked_modes
+from feeddrive.plant.chain.chain import ThreeInertias
 from feeddrive.plant.plant import DeclaredCascade, Plant
 from feeddrive.recording import Recording
 from tests.convergence.test_simulate import BENCH
@@ -107,3 +109,22 @@ def test_rows_are_left_out_where_a_faster_loop_moves_between_them() -> None:
     every, faster = (prepare(made, PLANT, 1.0, hold).counted for hold in (None, 5e-4))
     assert every[2000] and not faster[1995:2005].any()
     assert faster[600:1900].all()
+
+
+def test_rows_are_left_out_while_the_load_rings_after_motion_that_is_not_known() -> None:
+    """A turn within a row sets the load ringing; dampers a fifth as strong keep it so five times as long."""
+    time = 4e-3 * np.arange(3000)
+    angle = np.where(time < 6.0, 30.0 * time, 180.0 - 30.0 * (time - 6.0)) + np.sin(time)
+    made = replace(recording(angle, np.where(time < 6.0, 1.0, -1.0)), time=time, sample_time=4e-3)
+    gone = []
+    for share in (1.0, 0.2):
+        weak = {key: share * BENCH.values[key] for key in ("axial_damping", "torsional_damping")}
+        plant = Plant("axis", ThreeInertias({**BENCH.values, **weak}))  # its modes are faster than 125 Hz
+        rows = known_motion(made, plant, comparison_band(plant, 250.0))
+        assert rows[:1450].all()  # nothing rings beforehand
+        lost = 4e-3 * np.flatnonzero(~rows[1500:]).max(initial=0)
+        gone.append(lost * min(-pole.real for pole in braked_modes(plant, plant.middle).poles))
+        assert rows[-200:].all()
+    assert gone[0] == pytest.approx(gone[1], rel=0.3)  # so many time constants either way
+    soft = Plant("axis", ThreeInertias({**BENCH.values, "axial_stiffness": 5e7, "torsional_damping": 3.0}))
+    assert known_motion(made, soft, comparison_band(soft, 250.0))[1530:].all()  # the slow mode is seen as it is

@@ -16,8 +16,11 @@ between two rows the motor may have done anything. Where it was smooth, the four
 | s | how far the table stays behind per acceleration (`feeddrive.plant.analysis.modes`) | m s^2/rad |
 
 Rows at which either is more than the noise of its sensor are left out, unless the encoder's steps make as much of them,
-and those at which the torque jumps from row to row. So are those of faster rows whose drive is declared to have several
-cycles in each. Valid where what the drive does between rows shows at the rows; a vibration at a multiple of their rate
+and those at which the torque jumps from row to row. What the motor did there sets the load ringing against it, and a
+mode faster than half the rate of the rows shows as a slow one: rows are left out until exp(Re(p) t), p its pole with
+the motor held, has brought it below the noise in the band. So are those of faster rows whose drive is declared to have
+several cycles in each.
+Valid where what the drive does between rows shows at the rows; a vibration at a multiple of their rate
 does not.
 """
 
@@ -28,9 +31,9 @@ import math
 import numpy as np
 from scipy.ndimage import binary_dilation, uniform_filter1d
 
-from feeddrive.diagnosis.likelihood.band import Band, white_noise
+from feeddrive.diagnosis.likelihood.band import Band, sensor_noise, white_noise
 from feeddrive.errors import InputError
-from feeddrive.plant.analysis.modes import inertia_at_motor, lag_per_acceleration
+from feeddrive.plant.analysis.modes import braked_modes, inertia_at_motor, lag_per_acceleration
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 from feeddrive.recording.checks.flaws import quantisation_step
@@ -68,10 +71,44 @@ def known_motion(recording: Recording, plant: Plant, band: Band) -> BoolArray:
     steps = ROUGH * math.sqrt(70 / 12) * quantisation_step(recording["motor_angle"])  # fourth differences of its steps
     least = max(_least_acceleration(recording, plant), steps / (12 * recording.sample_time**2))
     unknown: BoolArray = missed > least
+    unknown |= _ringing(np.where(unknown, missed, 0.0) * _most_shown(recording, plant, band), plant, recording)
     reach = int(np.ceil(band.sample_rate / band.edge))
     if "motor_torque" in recording:
         unknown |= _vibrating(recording["motor_torque"], band.sample_rate, reach)
     return ~np.asarray(binary_dilation(unknown, iterations=reach))
+
+
+def _ringing(over_noise: FloatArray, plant: Plant, recording: Recording) -> BoolArray:
+    """Rows at which modes that the rows show as slower ones still answer motion that is not known, (n,).
+
+    Args:
+        over_noise: what was missed over the noise in the band, 0 where nothing was, (n,).
+        plant: that rings.
+        recording: the rows.
+    """
+    fastest = math.pi / recording.sample_time
+    decays = [-pole.real for pole in braked_modes(plant, plant.middle).poles if pole.real < 0 and pole.imag > fastest]
+    if not decays:
+        return np.zeros(len(over_noise), dtype=bool)
+    decayed: FloatArray = min(decays) * recording.sample_time * np.arange(len(over_noise))
+    with np.errstate(divide="ignore"):
+        begun = np.maximum.accumulate(np.log(over_noise) + decayed)
+    return np.asarray(begun > decayed)
+
+
+def _most_shown(recording: Recording, plant: Plant, band: Band) -> float:
+    """Error over the noise in the band that an error of the acceleration makes in the channel that shows most [s²]."""
+    shown = [0.0]
+    if "motor_torque" in recording:
+        shown.append(_share(inertia_at_motor(plant), sensor_noise(recording["motor_torque"], band)))
+    if "table_position" in recording and plant.chain.elastic:
+        shown.append(_share(lag_per_acceleration(plant), sensor_noise(recording["table_position"], band)))
+    return max(shown)
+
+
+def _share(made: float, noise: float) -> float:
+    """Error over noise; 0 where a channel has none to compare with."""
+    return made / noise if noise > 0 else 0.0
 
 
 def _vibrating(torque: FloatArray, rate: float, reach: int) -> BoolArray:
