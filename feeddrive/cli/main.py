@@ -186,7 +186,7 @@ def _refuse_usage(error: Any, arguments: Sequence[str]) -> int:
         error.show()
         return INPUT_ERROR
     command = " ".join(["feeddrive", *(name for name in arguments[:1] if name in COMMANDS)])
-    what = quoted(error.format_message(), _LONGEST).rstrip(".")
+    what = quoted(error.format_message().replace("Value error, ", ""), _LONGEST).rstrip(".")
     return _refuse(f"{command}: {what[:1].lower()}{what[1:]}; {command} --help lists what is possible")
 
 

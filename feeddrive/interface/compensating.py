@@ -205,9 +205,9 @@ def compensate(
 def _ends(stroke: Sequence[Quantity] | None) -> tuple[float, float] | None:
     if stroke is None:
         return None
-    found = quantities(stroke, "m", "stroke")
+    found = quantities(stroke, "m", "stroke (--from, --to)")
     if len(found) != 2 or not found[0] < found[1]:
-        raise InputError("is not two ascending positions", "stroke", 'write ("0 mm", "500 mm")')
+        raise InputError("is not two ascending positions", "stroke (--from, --to)", "write the least position first")
     return found[0], found[1]
 
 

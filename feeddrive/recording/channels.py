@@ -107,6 +107,9 @@ def read_heading(text: str, where: str) -> Heading:
     if match is None or not match["name"]:
         raise InputError(f'"{text}" is not a column heading', where, 'write "name [unit]", e.g. "motor_torque [N m]"')
     name, unit = match["name"], match["unit"]
+    if unit is None and (round_ones := re.fullmatch(r"(.+?)\s*\(([^()]+)\)", name)):
+        mend = f'write "{nearest_channel(round_ones[1])} [{round_ones[2]}]" in the header'
+        raise InputError(f'"{text.strip()}" has its unit in round brackets', where, mend)
     needed = channel_unit(name, where)
     if not unit or not unit.strip():
         raise InputError(f'column "{name}" has no unit', where, f'write "{name} [{needed}]" in the header')

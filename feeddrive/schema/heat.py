@@ -27,7 +27,7 @@ viscosity_100 | m^2/s | > 0 | required | kinematic viscosity at 100 degC
 """
 
 THERMAL = sections(f"""
-[plant.thermal] heat of screw, nut and bearings
+[plant.thermal] heat of screw, nut and bearings; fixed-fixed supports hold the screw at both ends, else the near one
 shaft_radius | m | > 0 | required | half the diameter of the pitch circle, or the nominal radius
 shaft_length | m | > 0 | required | length of the shaft
 nut_outer_radius | m | > 0 | required | outer radius of the nut
@@ -37,7 +37,6 @@ growth_positions | m list | | required | where the growth of the table position 
 conductivity | W/(m K) | > 0 | = 50 W/(m K) | of the steel
 heat_capacity | J/(m^3 K) | > 0 | = 3.926e6 J/(m^3 K) | of the steel's volume
 expansion | 1/K | | = 11.7e-6 1/K | of the steel's length
-elasticity | Pa | > 0 | = 206e9 Pa | Young's modulus of the steel
 contact_conductance | W/(m^2 K) | > 0 | required | shaft to nut, at the preload
 preload | N | > 0 | required | of the nut, for which friction and contact are declared
 lead | m | > 0 | | table travel per turn; that of [ball_screw] if left out

@@ -90,5 +90,6 @@ def nearest_choice(word: str, choices: Iterable[str]) -> str:
 def nearest(word: str, known: Iterable[str]) -> str:
     """The mend for an unknown word: the nearest known one, or all of them where none is near."""
     known = tuple(known)
-    near = difflib.get_close_matches(word, known, n=1, cutoff=0.5)
+    begun = [name for name in known if len(word) > 1 and name.startswith(word)]
+    near = begun if len(begun) == 1 else difflib.get_close_matches(word, known, n=1, cutoff=0.5)
     return f'did you mean "{near[0]}"?' if near else f"known are {', '.join(known)}"

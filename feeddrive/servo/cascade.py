@@ -151,6 +151,6 @@ def divider(fast_rate: float, slow_rate: float, where: str) -> int:
     ratio = fast_rate / slow_rate
     nearest = max(1, round(ratio))
     if abs(ratio - nearest) > 1e-9 * ratio:
-        what = f"{fast_rate:g} Hz is no integer multiple of {slow_rate:g} Hz"
-        raise InputError(what, where, f"write {fast_rate / nearest:g} Hz")
+        what = f"{fast_rate:.12g} Hz is no integer multiple of {slow_rate:.12g} Hz"
+        raise InputError(what, where, f"write {fast_rate / nearest:.12g} Hz")
     return nearest

@@ -10,11 +10,12 @@ weight); a cutting force is added as the screw holds it, without the dynamics be
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import casadi as ca
 import numpy as np
 from scipy.interpolate import make_interp_spline
+from scipy.signal import firwin
 
 from feeddrive.engine.engine import Feed, Machine, machine_of, rested, run_machine
 from feeddrive.engine.program import Program, StepReport, joined
@@ -36,6 +37,17 @@ STRETCH = 2**16
 """Grid steps that are run at a time, about: what the engine is fed and shows takes several times the room of what is
 kept of it."""
 
+GRID = 0.5e-3
+"""Time between the steps of a motion at most [s]: what friction does in a reversal comes to the motor by the torsion
+of the screw, which lets little through beyond 1 kHz."""
+
+TAPS, KAISER = 4, 7.86
+"""Samples on either side over which a torque is averaged, and the window's shape: flat to 3e-4 up to a tenth of the
+sample rate, and 1e-4 of what comes back to there from nine tenths and beyond (Kaiser, 80 dB)."""
+
+TORQUE = 4
+"""Place of the motor torque among what is shown."""
+
 PASSES = 3
 """For the table position at the start; travel per length is below 1e-3, so each gains three digits."""
 
@@ -47,7 +59,7 @@ class MotorMotion:
     Attributes:
         time: grid [s], shape (m,).
         angle, speed: on the grid [rad, rad/s].
-        acceleration: at the samples [rad/s^2], shape (n,).
+        acceleration: on the grid [rad/s^2], shape (m,).
         substeps: grid steps per sample.
     """
 
@@ -62,6 +74,10 @@ class MotorMotion:
         """The samples within the grid."""
         return slice(None, None, self.substeps)
 
+    def timed(self, time: FloatArray) -> MotorMotion:
+        """The motion with its samples at other times [s], (n,)."""
+        return replace(self, time=on_grid(time, self.substeps))
+
 
 @dataclass(frozen=True)
 class LoadMotion:
@@ -71,7 +87,8 @@ class LoadMotion:
         motor_angle, motor_speed: as given [rad, rad/s].
         screw_angle, screw_speed: [rad, rad/s].
         table_position, table_velocity: [m, m/s].
-        torque: motor torque needed, without timing effects [N m].
+        torque: motor torque needed, without timing effects [N m], as far as samples at this rate tell it: what a
+            reversal does between two of them is not taken for something slow.
         force: of the nut on the table [N]; 0 where the structure is rigid.
         report: how the steps went.
     """
@@ -94,21 +111,23 @@ class LoadMotion:
         return sum(series.nbytes for series in own)
 
 
-def motor_motion(time: FloatArray, angle: FloatArray, substeps: int = 1) -> MotorMotion:
+def motor_motion(time: FloatArray, angle: FloatArray, substeps: int | None = None) -> MotorMotion:
     """Speed and acceleration of a sampled angle by a quintic spline through the samples.
 
     Args:
         time: sample times, evenly spaced [s], shape (n,).
         angle: motor angle [rad], shape (n,).
-        substeps: grid steps per sample.
+        substeps: grid steps per sample; as many as make them no longer than `GRID` if None.
 
     Returns:
         The motion.
     """
     # about the start of the record, so that the spline's conditioning does not depend on the clock
     spline = make_interp_spline(time - time[0], angle, k=5)
+    if substeps is None:
+        substeps = max(1, math.ceil((time[1] - time[0]) / GRID - 1e-6))
     fine = np.linspace(0.0, time[-1] - time[0], (len(time) - 1) * substeps + 1)
-    return MotorMotion(fine, spline(fine), spline(fine, 1), spline(time - time[0], 2), substeps)
+    return MotorMotion(fine, spline(fine), spline(fine, 1), spline(fine, 2), substeps)
 
 
 def simulate_driven(plant: Plant, motion: MotorMotion, tolerance: float = TOLERANCE) -> LoadMotion:
@@ -132,30 +151,57 @@ def simulate_driven(plant: Plant, motion: MotorMotion, tolerance: float = TOLERA
         states = np.array(beginning(motion.angle[0], motion.speed[0], values)).ravel()
     place = rested(machine, states, np.zeros(0))
     step = np.array([motion.time[1] - motion.time[0]])
-    shown = np.empty((6, len(motion.acceleration)))
+    count = len(motion.time[motion.samples])
+    shown, torque = np.empty((6, count)), np.empty(len(motion.time))
     first = outputs(place.memory, motion.angle[0], motion.speed[0], motion.acceleration[0], 0.0, values)
     shown[:, 0] = np.array(first).ravel()
+    torque[0] = shown[TORQUE, 0]
     length = max(1, STRETCH // motion.substeps)
     reports = []
-    for sample in range(0, len(motion.acceleration) - 1, length):
+    for sample in range(0, count - 1, length):
         fed = _fed(motion, sample, length)
         outcome = run_machine(machine, plant, Feed(fed, step, step), place, tolerance)
         shown[:, sample + 1 : sample + 1 + length] = outcome.seen[motion.substeps - 1 :: motion.substeps].T
+        begun = sample * motion.substeps + 1
+        torque[begun : begun + len(fed)] = outcome.seen[:, TORQUE]
         place = outcome.position
         reports.append(outcome.report)
+    shown[TORQUE] = at_rate(torque, motion.substeps)
     at = motion.samples
-    phi, rate, x, velocity, torque, force = shown
+    phi, rate, x, velocity, needed, force = shown
     kept = motion.time[at], motion.angle[at], motion.speed[at]
-    return LoadMotion(*kept, phi, rate, x, velocity, torque, force, joined(reports))
+    return LoadMotion(*kept, phi, rate, x, velocity, needed, force, joined(reports))
+
+
+def on_grid(series: FloatArray, substeps: int) -> FloatArray:
+    """Samples, (n,), and straight between them, on a grid; (m,)."""
+    at = np.arange((len(series) - 1) * substeps + 1) / substeps
+    return np.interp(at, np.arange(len(series)), series) if substeps > 1 else series
+
+
+def at_rate(series: FloatArray, substeps: int) -> FloatArray:
+    """A series on a grid as samples at a lower rate tell it, (n,): without what would come back as slow there.
+
+    A drive holds its torque from row to row, and the rows of the motor's angle hold what a jump of friction between
+    them did only as far as it moved the motor, that is hardly beyond their own rate. The torque that the plant asks
+    for is taken as far, by a zero-phase filter; read at the rows alone, a jump would be early or late by half a row.
+
+    Args:
+        series: on the grid, (m,).
+        substeps: grid steps per sample.
+    """
+    if substeps == 1:
+        return series
+    taps = firwin(2 * TAPS * substeps + 1, 1 / substeps, window=("kaiser", KAISER))
+    filtered: FloatArray = np.convolve(np.pad(series, TAPS * substeps, mode="edge"), taps, mode="valid")
+    return filtered[::substeps].copy()
 
 
 def _fed(motion: MotorMotion, sample: int, count: int) -> FloatArray:
     """What the engine is fed from a sample on, for so many samples or what there are."""
     steps = slice(sample * motion.substeps, (sample + count) * motion.substeps)
-    # the acceleration is known at the samples only, and only there is the torque read
     angle, speed = (series[steps.start : steps.stop + 1] for series in (motion.angle, motion.speed))
-    acceleration = np.zeros(len(angle) - 1)
-    acceleration[motion.substeps - 1 :: motion.substeps] = motion.acceleration[sample + 1 : sample + 1 + count]
+    acceleration = motion.acceleration[steps.start + 1 : steps.stop + 1]
     time = motion.time[steps.start : steps.stop + 1]
     return np.column_stack([angle[:-1], speed[:-1], angle[1:], speed[1:], acceleration, time[:-1]])
 

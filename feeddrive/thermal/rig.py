@@ -39,18 +39,15 @@ class Steel:
         conductivity: λ [W/(m K)].
         heat_capacity: ρc, of volume [J/(m³ K)].
         expansion: α of length [1/K].
-        elasticity: E [Pa].
     """
 
     conductivity: float = 50.0
     heat_capacity: float = 3.926e6
     expansion: float = 11.7e-6
-    elasticity: float = 206e9
 
     def __post_init__(self) -> None:
         refuse_unless_positive(self.conductivity, "W/(m K)", "conductivity")
         refuse_unless_positive(self.heat_capacity, "J/(m^3 K)", "heat_capacity")
-        refuse_unless_positive(self.elasticity, "Pa", "elasticity")
         refuse_unless(math.isfinite(self.expansion), "expansion is not a number", "expansion", "write a number")
 
     @property
@@ -148,6 +145,25 @@ class Body:
 
 
 @dataclass(frozen=True)
+class BothEnds:
+    """What holds a shaft whose bearings take axial force at both ends.
+
+    Attributes:
+        near, far: axial stiffness of the bearings at the front and at the rear end [N/m].
+        axial_rigidity: E A of the shaft [N].
+    """
+
+    near: float
+    far: float
+    axial_rigidity: float
+
+    def __post_init__(self) -> None:
+        refuse_unless_positive(self.near, "N/m", "near_stiffness")
+        refuse_unless_positive(self.far, "N/m", "far_stiffness")
+        refuse_unless_positive(self.axial_rigidity, "N", "axial_rigidity")
+
+
+@dataclass(frozen=True)
 class Rig:
     """Geometry and material of shaft and nut.
 
@@ -161,6 +177,7 @@ class Rig:
         nut_heat_share: share of the nut's friction heat that enters on the nut's side of the contact, the rest on the
             shaft's (0.5 in paper 002).
         growth_positions: of the nut, where the growth of the table position is wanted [m].
+        both_ends: what holds the shaft axially at both ends; None where the front bearing alone does.
     """
 
     radius: float
@@ -172,6 +189,7 @@ class Rig:
     steel: Steel = field(default_factory=Steel)
     nut_heat_share: float = 1.0
     growth_positions: tuple[float, ...] = ()
+    both_ends: BothEnds | None = None
 
     def __post_init__(self) -> None:
         refuse_unless_positive(self.radius, "m", "radius")

@@ -197,12 +197,14 @@ class _Columns:
         if channel == "table_position":
             f = force[used]
             return np.column_stack([ones, position - self.grid.middle, -0.5 * np.sign(f), -f, v, *turn])
-        acceleration = radius * evidence.band.filter(evidence.motion.acceleration)[used]
+        acceleration = radius * evidence.band.filter(evidence.motion.acceleration[evidence.motion.samples])[used]
         return np.column_stack([acceleration, np.sign(v), v, ones, *turn])
 
     def _slow_force(self, used: BoolArray, speed: FloatArray, force: FloatArray) -> float:
         """Median size of the force where little of it accelerates."""
-        inertial = np.abs(self.evidence.motion.acceleration) * self.plant.chain.motor_radius
+        inertial = (
+            np.abs(self.evidence.motion.acceleration[self.evidence.motion.samples]) * self.plant.chain.motor_radius
+        )
         mild = used & (inertial <= np.quantile(inertial[used], 0.3))
         return float(np.median(np.abs(force[mild]))) if mild.any() else 0.0
 

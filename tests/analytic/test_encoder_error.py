@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from feeddrive.diagnosis.likelihood.band import Band
 from feeddrive.diagnosis.likelihood.encoder_error import drawn_error, expected_motion
+from feeddrive.diagnosis.likelihood.evidence import prepare
+from feeddrive.files import find_plant
+from feeddrive.plant.file.plant_file import read_plant
+from feeddrive.recording.files.reading import read_recording
 from feeddrive.typing import FloatArray
 
 RATE, SECONDS, EDGE = 2000.0, 12.0, 150.0
@@ -62,3 +69,18 @@ def test_fine_steps_leave_the_motion_alone() -> None:
     measured = np.round(motion() / fine) * fine
     expected = expected_motion(measured, fine, 1 / RATE)
     assert np.max(np.abs(expected - measured)) < 5 * fine
+
+
+def test_torque_of_unknown_scale_is_weighed_as_the_torque_itself() -> None:
+    """What the encoder adds is a torque: beside a share of 30 N m it counts as a share."""
+    unit = 30.0
+    whole = read_recording(Path(__file__).parents[1] / "data" / "bench" / "backlash_train.csv.gz")
+    plant = read_plant(find_plant("bench_axis"))
+    rows, known = dict(whole.channels), prepare(whole, plant, 1.0)
+    rows["motor_torque_share"] = rows.pop("motor_torque") / unit
+    shared = prepare(replace(whole, channels=rows), plant, 1.0)
+    assert set(shared.gains) == set(known.gains)
+    # the declared plant lacks what was planted, which moves the scale that it sets by less than a hundredth
+    assert unit * shared.known_to("motor_torque") == pytest.approx(known.known_to("motor_torque"), rel=0.01)
+    for name, gains in known.gains.items():
+        np.testing.assert_allclose(shared.gains[name], gains, atol=0.01)

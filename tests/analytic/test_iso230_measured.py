@@ -322,7 +322,7 @@ def test_circle_of_one_axis_with_its_run_up() -> None:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("target [mm],up 1 [µm]\n0,1\n10,2\n", "twice"),
+        ("target [mm],up 1 [µm]\n0,1\n10,2\n", "every target is approached once; approach every target twice"),
         ("target [mm],up 1 [µm],up 2 [µm],down 1 [µm]\n0,1,2,3\n", "not approached alike"),
         ("target [mm],up 1,up 2\n0,1,2\n", "has no unit"),
         ("target [mm],direction [1],deviation [µm]\n0,3,1\n", "neither 1 nor -1"),

@@ -19,6 +19,11 @@ from feeddrive.units.usual_ranges import USUAL
 
 WRITTEN = [
     ("20 mm", "m", 0.020),
+    ("2 ft", "m", 0.6096),
+    ("3 thou", "m", 7.62e-5),
+    ("10 lb", "kg", 4.5359237),
+    ("10 lbf", "N", 44.482216152605),
+    ("10 lbf in", "N m", 44.482216152605 * 0.0254),
     ("25mm", "m", 0.025),
     ("7.6 µm", "m", 7.6e-6),  # micro sign
     ("7.6 μm", "m", 7.6e-6),  # Greek mu

@@ -60,7 +60,8 @@ def test_filters_that_do_not_fit_are_refused() -> None:
 
 def test_rates_that_are_no_integer_multiples_are_refused() -> None:
     assert divider(8000.0, 2000.0, "controller") == 4
-    with pytest.raises(InputError, match=r"8000 Hz is no integer multiple of 3000 Hz; write 2666\.67 Hz"):
+    with pytest.raises(InputError, match=r"8000 Hz is no integer multiple of 3000 Hz; write 2666\.66666667 Hz"):
         divider(8000.0, 3000.0, "controller")
+    assert divider(8000.0, 2666.66666667, "controller") == 3  # what the message says to write
     with pytest.raises(InputError, match="2000 Hz is no integer multiple of 8000 Hz"):
         divider(2000.0, 8000.0, "controller")

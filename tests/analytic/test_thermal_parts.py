@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path as FilePath
 
 import numpy as np
 import pytest
 
 from feeddrive.errors import InputError, ValidityWarning
+from feeddrive.files import find_plant
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.thermal.full.full_model import full_model
 from feeddrive.thermal.full.grid import cell_edges
 from feeddrive.thermal.laws.expansion import growths
 from feeddrive.thermal.laws.films import Films, rotating_cylinder_film
 from feeddrive.thermal.laws.friction import Friction
+from feeddrive.thermal.reduced.network import network
+from feeddrive.thermal.rig import BothEnds
 from feeddrive.thermal.thermal_coupling import Spacer, preload_change
 from tests.analytic.thermal_cases import BENCH, BENCH_FILE, RPM, conductances
 
@@ -121,3 +125,65 @@ def test_bearings_may_have_heat_and_film(tmp_path: FilePath) -> None:
     assert plant.rig.front.length == pytest.approx(0.012)
     assert plant.rig.rear.film == pytest.approx(9.7)
     assert plant.heats(np.array([500 * RPM]))["front"][0] > 0
+
+
+HELD = replace(RIG, both_ends=BothEnds(near=900e6, far=600e6, axial_rigidity=200.5e6))
+
+
+def test_shaft_between_two_bearings_pushes_both_outwards_by_one_thrust() -> None:
+    # Springs in series, written from the balance of the thrust: bearing, shaft, bearing shorten by the whole expansion.
+    whole = ALPHA * 10 * RIG.length
+    thrust = whole / (1 / 900e6 + RIG.length / 200.5e6 + 1 / 600e6)
+    rises = np.full(50, 10.0)
+    front, middle, rear = growths(HELD, rises, EDGES, np.array([0.0, RIG.length / 2, RIG.length]))[0]
+    assert front == pytest.approx(-thrust / 900e6, rel=1e-12)
+    assert rear == pytest.approx(thrust / 600e6, rel=1e-12)
+    assert middle == pytest.approx(whole / 2 - thrust * (1 / 900e6 + RIG.length / 2 / 200.5e6), rel=1e-12)
+
+
+def test_rigid_bearings_keep_the_ends_and_a_soft_far_one_lets_the_shaft_grow() -> None:
+    rises, places = np.linspace(4.0, 12.0, 50), np.array([0.0, 0.2, RIG.length])
+    rigid = replace(RIG, both_ends=BothEnds(1e18, 1e18, 200.5e6))
+    assert growths(rigid, rises, EDGES, places)[0, [0, 2]] == pytest.approx([0.0, 0.0], abs=1e-12)
+    soft = replace(RIG, both_ends=BothEnds(1e18, 1e-3, 200.5e6))
+    np.testing.assert_allclose(growths(soft, rises, EDGES, places), growths(RIG, rises, EDGES, places), atol=1e-12)
+
+
+def test_network_and_full_model_of_a_held_shaft_read_the_same_growth() -> None:
+    # Both models hold an evenly warm machine exactly, so that only the law of the growth is compared.
+    full, lumped = full_model(HELD), network(HELD, conductances(500)).system()
+    whole = HELD.steel.expansion * HELD.length
+    for name in ("growth_250mm", "growth_end"):
+        found = float(np.sum(full.readings[name]))
+        assert found == pytest.approx(float(lumped.rows[lumped.output_names.index(name)].sum()), rel=1e-9)
+        assert found < 0.5 * whole
+
+
+def _plant_with_heat(tmp_path: FilePath, kind: str) -> FilePath:
+    """The warm axis with another kind of support and, where that takes thrust, a far bearing."""
+    text = find_plant("warm_axis").read_text()
+    text = text.replace('kind = "fixed-supported"', f'kind = "{kind}"')
+    far = '[bearing.far]\naxial_stiffness = "600 N/µm"\n\n' if kind.endswith(("fixed", "d-supported")) else ""
+    path = tmp_path / "axis.toml"
+    path.write_text(text.replace("[nut]\n", f"{far if kind != 'fixed-supported' else ''}[nut]\n", 1))
+    return path
+
+
+def test_file_with_fixed_supports_at_both_ends_grows_between_them(tmp_path: FilePath) -> None:
+    held = read_plant(_plant_with_heat(tmp_path, "fixed-fixed")).heat.rig.both_ends
+    # E A of the root: 206 GPa on 28.4 mm.
+    assert held is not None and (held.near, held.far) == (600e6, 600e6)
+    assert held.axial_rigidity == pytest.approx(206e9 * math.pi * 0.0284**2 / 4)
+    assert read_plant(_plant_with_heat(tmp_path, "fixed-supported")).heat.rig.both_ends is None
+
+
+def test_supports_that_do_not_say_whether_the_screw_may_grow_are_refused(tmp_path: FilePath) -> None:
+    with pytest.raises(InputError, match=r'support\.kind: .*\[thermal\] has to know; write "fixed-fixed"'):
+        read_plant(_plant_with_heat(tmp_path, "supported-supported"))
+
+
+def test_modulus_that_enters_nothing_is_no_key(tmp_path: FilePath) -> None:
+    path = tmp_path / "bench.toml"
+    path.write_text(BENCH_FILE.read_text().replace("[thermal]\n", '[thermal]\nelasticity = "206 GPa"\n', 1))
+    with pytest.raises(InputError, match='unknown key "elasticity"'):
+        read_plant(path)

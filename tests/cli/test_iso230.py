@@ -28,6 +28,20 @@ def test_table_and_files(laser: Path, tmp_path: Path, capsys: pytest.CaptureFixt
     assert {path.name for path in out.iterdir()} == {"report.html", "iso230.json", "positioning.png"}
 
 
+def test_fewer_readings_than_the_standard_asks_for_are_said(
+    laser: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["iso230", str(laser), "--json"]) == 0
+    few = json.loads(capsys.readouterr().out)["fewer_than_asked"]
+    assert few == [["targets", "2", "5"], ["approaches of each from one side", "2", "5"]]
+    heads = ",".join(f"up {i} [µm],down {i} [µm]" for i in range(1, 6))
+    rows = "\n".join(f"{100 * k}," + ",".join(f"{k + 0.1 * i},{k - 2 - 0.1 * i}" for i in range(5)) for k in range(5))
+    full = tmp_path / "full.csv"
+    full.write_text(f"target [mm],{heads}\n{rows}\n", encoding="utf-8")
+    assert main(["iso230", str(full)]) == 0
+    assert "Fewer than" not in capsys.readouterr().out
+
+
 def test_json_is_what_the_file_says(laser: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "out"
     assert main(["iso230", str(laser), "--json", "--out", str(out)]) == 0

@@ -290,7 +290,10 @@ USAGE = [
     (["show", "bench_axis", "--nonsense"], "feeddrive show: no such option: --nonsense"),
     (["nonsense"], "feeddrive: no such command 'nonsense'"),
     (["tune", "bench_axis", "--payload"], "feeddrive tune: option '--payload' requires an argument"),
-    (["export", "bench_axis", "--to", "x", "--out", "y"], "feeddrive export: invalid value for '--to'"),
+    (
+        ["export", "bench_axis", "--to", "x", "--out", "y"],
+        "feeddrive export: invalid value for '--to': 'x' is not one of",
+    ),
     (["export", "bench_axis"], "feeddrive export: missing option '--to'"),
     (["sweep", "x", "--seed", "-1"], "feeddrive sweep: invalid value for '--seed'"),
     (["show", "--\x1b[31m" + "x" * 300_000], "feeddrive show: no such option: --"),

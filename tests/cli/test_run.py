@@ -70,7 +70,7 @@ def test_same_run_gives_the_same_files(tmp_path: Path) -> None:
         (["trajectory.kind=moove"], '"moove" is not possible; did you mean "moves"?'),
         (['trajectory.targets=["600 mm"]'], "100 mm beyond the travel at 1.55 s; the travel is 0 mm to 500 mm"),
         (['trajectory.velocity=["1 m/min", "2 m/min"]'], "2 velocities for 4 targets; write one velocity"),
-        (["controller.position_rate=3 kHz"], "8000 Hz is no integer multiple of 3000 Hz; write 2666.67 Hz"),
+        (["controller.position_rate=3 kHz"], "8000 Hz is no integer multiple of 3000 Hz; write 2666.66666667 Hz"),
         (["record.rate=3 kHz"], "8000 Hz is no integer multiple of 3000 Hz"),
         (["controller.velocity_gain=20 N m s/rad"], "the loop is unstable: eigenvalue"),
         (["controller.position_feedback=table top"], '"table top" is not possible; did you mean "table"?'),
@@ -184,6 +184,12 @@ def test_values_of_the_plant_are_set_too(capsys: pytest.CaptureFixture[str]) -> 
     for setting, message in [
         ("plant.tabel.mass=1 kg", 'unknown key "tabel"; did you mean "table"?'),
         ("plant.table.mass=-1 kg", "table.mass"),
+        (
+            "plant.guide_friction.coulomb=1 N",
+            'unknown key "guide_friction"; it is an effect: write effect.guide_friction',
+        ),
+        ("table.mass=1 kg", 'unknown key "table"; write plant.table.mass'),
+        ("position_gain=40 1/s", 'unknown key "position_gain"; write controller.position_gain'),
         ("plant.effect.guide.coulomb=1 N", "no entry guide; count from 1 to 3, or name one of guide_friction"),
     ]:
         assert main(["run", "step_velocity", "--set", setting]) == 2

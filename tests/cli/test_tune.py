@@ -60,7 +60,7 @@ def test_drive_of_a_scenario_and_json_alone(capsys: pytest.CaptureFixture[str]) 
         (["--margin-phase", "120deg"], "a phase margin of 120° is not between 0° and 90°"),
         (["--margin-phase", "89deg"], "no gain of the velocity loop keeps 89° and 8 dB in every case"),
         (["--margin-gain", "-3dB"], "a gain margin of -3 dB is not between 0 dB and 60 dB"),
-        (["--position-rate", "3kHz"], "8000 Hz is no integer multiple of 3000 Hz; write 2666.67 Hz"),
+        (["--position-rate", "3kHz"], "8000 Hz is no integer multiple of 3000 Hz; write 2666.66666667 Hz"),
         (["--velocity-rate", "0 Hz"], "0 Hz is not above zero"),
         (["--dead-time", "-1ms"], "-1ms is negative"),
         (["--feedback", "tabel"], 'did you mean "table"?'),

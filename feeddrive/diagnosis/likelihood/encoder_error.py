@@ -37,6 +37,7 @@ from scipy.ndimage import uniform_filter
 from scipy.signal.windows import hann
 
 from feeddrive.diagnosis.likelihood.band import END_CUT, Band
+from feeddrive.diagnosis.suspicion.torque_channel import scale_of
 from feeddrive.engine.step.linear_part import SimulationError
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
@@ -122,14 +123,18 @@ class Weighing:
         return folded
 
 
-def encoder_error(plant: Plant, recording: Recording, band: Band, noise: dict[str, float]) -> EncoderError | None:
+def encoder_error(
+    plant: Plant, recording: Recording, band: Band, noise: dict[str, float], proportional: bool = False
+) -> EncoderError | None:
     """The encoder's error in a recording; None where it does not matter beside the sensors' noise.
 
     Args:
         plant: as declared, that answers the motion.
         recording: with a motor angle.
         band: of the comparison.
-        noise: channel to the rms of its sensor noise in the band [SI].
+        noise: channel to the rms of its sensor noise in the band [of the channel].
+        proportional: whether the recorded torque is only proportional to a torque; the declared plant then sets what
+            a newton metre is in its unit.
     """
     angle, sample_time = recording["motor_angle"], recording.sample_time
     step = quantisation_step(angle)
@@ -148,13 +153,22 @@ def encoder_error(plant: Plant, recording: Recording, band: Band, noise: dict[st
     gains, added, material = {}, {}, False
     for name in noise:
         true, *others = (run.torque if name == "motor_torque" else run.table_position for run in runs)
-        made = [other - true for other in others]
+        unit = _per_newton_metre(recording, true, band) if proportional and name == "motor_torque" else 1.0
+        made = [unit * (other - true) for other in others]
         added[name] = float(np.sqrt(np.mean([np.var(band.filter(error)[inner]) for error in made])))
         frequency, density = _density([error[inner] for error in made], sample_time)
         over = density / (2 * sample_time * (noise[name] / band.noise_gain) ** 2)
         material = material or bool(np.any(over[frequency <= band.edge] > MATERIAL))
         gains[name] = 1 / np.sqrt(1 + np.interp(frequencies, frequency, over))
     return EncoderError(motion, tuple(drawn), gains, added) if material else None
+
+
+def _per_newton_metre(recording: Recording, torque: FloatArray, band: Band) -> float:
+    """What a newton metre is in the unit of a recorded torque: by the torque [N m] that the plant needs, (n,)."""
+    recorded = recording["motor_torque"]
+    known = np.isfinite(recorded)
+    needed = band.filter(torque)[known]
+    return scale_of(band.filter(np.where(known, recorded, 0.0))[known], needed)
 
 
 def _density(series: Sequence[FloatArray], sample_time: float) -> tuple[FloatArray, FloatArray]:

@@ -242,7 +242,7 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
     own = recorded(recording)
     noise = {name: sensor_noise(series[own], band) for name, series in sensed.items()}
     zero = _zero_of_angle(recording, plant)
-    encoder = encoder_error(_placed(plant, zero), recording, band, noise)
+    encoder = encoder_error(_placed(plant, zero), recording, band, noise, bool(scaled_from))
     motion = encoder.motion if encoder is not None else motor_motion(time, recording["motor_angle"])
     return AxisEvidence(
         recording,
@@ -255,7 +255,7 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
         band.thinning,
         tuple(name for name in measured_names if name == "table_position"),
         {s.channel: s.model_error for s in plant.sensors if s.model_error > 0 and s.channel in measured_names},
-        replace(motion, time=clock(recording)),
+        motion.timed(clock(recording)),
         band,
         scaled_from,
         zero,

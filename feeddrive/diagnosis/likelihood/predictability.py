@@ -17,7 +17,7 @@ from feeddrive.diagnosis.likelihood.evidence import AxisEvidence
 from feeddrive.effects.base import TransmissionEffect
 from feeddrive.plant.plant import Plant
 from feeddrive.recording.checks.flaws import quantisation_step
-from feeddrive.simulate.driven import simulate_driven
+from feeddrive.simulate.driven import on_grid, simulate_driven
 from feeddrive.typing import BoolArray, FloatArray
 
 TINY_ANGLE = 1e-9
@@ -80,11 +80,12 @@ def _growth(plant: Plant, evidence: AxisEvidence) -> FloatArray:
     """Motion of the table in the band over that of the encoder's noise that caused it, shape (n,)."""
     generator = np.random.default_rng(20240501)
     plant = evidence.placed(plant)
-    base = simulate_driven(plant, evidence.motion).table_position.copy()  # not with all else that was simulated
+    motion = evidence.motion
+    base = simulate_driven(plant, motion).table_position.copy()  # not with all else that was simulated
     squares = np.zeros(len(base))
     for _ in range(DRAWS):
-        moved = evidence.motion.angle + TINY_ANGLE * generator.standard_normal(len(evidence.motion.angle))
-        other = simulate_driven(plant, replace(evidence.motion, angle=moved)).table_position
+        noise = on_grid(TINY_ANGLE * generator.standard_normal(len(base)), motion.substeps)
+        other = simulate_driven(plant, replace(motion, angle=motion.angle + noise)).table_position
         squares += (evidence.band.filter(other - base) / (TINY_ANGLE * plant.chain.motor_radius)) ** 2 / DRAWS
     return np.sqrt(squares)
 

@@ -162,7 +162,8 @@ def torque_parts(problem: Problem, plant: Plant, evidence: AxisEvidence) -> Torq
     predicted = problem.predictor.predict(plant, evidence)["motor_torque"][rows]
     assert isinstance(problem.predictor, AxisPredictor)
     scale = problem.predictor.scale(plant) if evidence.scaled_from else 1.0
-    inertial = scale * inertia_at_motor(plant) * evidence.band.filter(evidence.motion.acceleration)[rows]
+    accelerating = evidence.motion.acceleration[evidence.motion.samples]
+    inertial = scale * inertia_at_motor(plant) * evidence.band.filter(accelerating)[rows]
     series = [one - np.mean(one) for one in (evidence.measured["motor_torque"][rows], inertial, predicted - inertial)]
     if not all(np.all(np.isfinite(one)) and one.any() for one in series):
         return None

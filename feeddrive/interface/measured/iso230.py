@@ -39,6 +39,9 @@ if TYPE_CHECKING:
 Test = LinearTest | DriftTest | CircleTest | Circular
 Given = Recording | str | Path
 
+_FEWEST, _LONG = 5, 2.0
+"""Targets in all and in a metre, and approaches of each from a side; length of the axes that are tested so [m]."""
+
 STANDARDS = {2: EDITION, 3: "ISO 230-3:2020", 4: "ISO 230-4:2022"}
 
 
@@ -75,8 +78,10 @@ class Iso230(Shown):
 
     def tables(self) -> tuple[Listing, ...]:
         """The figures, and with a plant what it explains of the mean deviations."""
+        fewer = self._fewer_than_asked()
+        short = (Listing("Fewer than ISO 230-2 asks for", ("", "found", "asked for"), fewer),) if fewer else ()
         if self.share is None:
-            return (self.listing(),)
+            return (self.listing(), *short)
         one = self.share
         named = {"measured": (one.measured, ""), "the plant alone": (one.predicted, "")}
         named["left"] = (one.left, f"{100 * one.left.explains:.1f} %")
@@ -86,7 +91,19 @@ class Iso230(Shown):
             for name, (left, explains) in named.items()
         ]
         title = "What the plant explains of the mean deviations"
-        return (self.listing(), Listing(title, ("", "E", "M", "B", "explains"), rows))
+        return (self.listing(), *short, Listing(title, ("", "E", "M", "B", "explains"), rows))
+
+    def _fewer_than_asked(self) -> list[list[str]]:
+        """What a positioning test has fewer of than ISO 230-2:2014, 5.3.2, asks for on an axis of up to 2 m."""
+        if not isinstance(self.test, LinearTest):
+            return []
+        test, length = self.test, float(self.test.target[-1] - self.test.target[0])
+        if length > _LONG:
+            return []
+        runs = min(side.shape[1] for side in (test.up, test.down) if side is not None)
+        asked = max(_FEWEST, math.ceil(_FEWEST * length - 1e-9))
+        found = (("targets", len(test.target), asked), ("approaches of each from one side", runs, _FEWEST))
+        return [[what, str(n), str(least)] for what, n, least in found if n < least]
 
     def record(self) -> dict[str, Any]:
         """Plain values for JSON, SI."""
@@ -98,6 +115,7 @@ class Iso230(Shown):
         }
         if isinstance(self.test, LinearTest):
             content["targets"] = _target_records(self.test)
+            content["fewer_than_asked"] = self._fewer_than_asked()
         if self.share is not None:
             shares = {"measured": self.share.measured, "plant": self.share.predicted, "left": self.share.left}
             content["plant"] = {name: asdict(one) for name, one in shares.items()}

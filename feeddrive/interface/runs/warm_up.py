@@ -241,7 +241,8 @@ def _over_time(found: ThermalStudy) -> list[Listing]:
     title = f"{found.heat.name}: {what}, nut from {travel.low * 1e3:.4g} to {travel.high * 1e3:.4g} mm"
     grown = [name for name in found.series if name.startswith("table_growth")]
     others = [name for name in found.series if name not in grown]
-    return [_series(title, others, found), _series("Error at the table, growth of the screw", grown, found)]
+    held = "" if found.heat.rig.both_ends is None else ", held at both ends"
+    return [_series(title, others, found), _series(f"Error at the table, growth of the screw{held}", grown, found)]
 
 
 def _series(title: str, names: Sequence[str], found: ThermalStudy) -> Listing:

@@ -79,6 +79,9 @@ def linear_test_of(found: dict[tuple[float, int], list[float]], where: str) -> L
     sides = sorted({side for _, side in found}, reverse=True)
     targets = sorted({target for target, _ in found})
     counts = {len(found.get((target, side), [])) for target in targets for side in sides}
+    if counts == {1}:
+        mend = "approach every target twice at least: one reading of each tells nothing of how they scatter"
+        raise InputError("every target is approached once", where, mend)
     if len(counts) != 1 or min(counts) < 2:
         most = max(counts, default=0)
         odd = next((t for t in targets for s in sides if len(found.get((t, s), [])) < max(2, most)), 0.0)

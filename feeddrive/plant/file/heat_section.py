@@ -5,7 +5,7 @@
     shaft_length = "500 mm"
     nut_outer_radius = "20 mm"
     nut_length = "100 mm"
-    travel = ["200 mm", "300 mm"]              # of the nut's centre, from the motor-side end, which is fixed
+    travel = ["200 mm", "300 mm"]              # of the nut's centre, from the motor-side end, which is held
     growth_positions = ["200 mm", "250 mm"]    # where the growth of the table position is wanted
     conductivity = "50 W/(m K)"
     heat_capacity = "3.926e6 J/(m^3 K)"        # of volume
@@ -45,7 +45,8 @@
     power = "1.8 W"
     at_speed = "750 rev/min"
 
-A file with `[thermal]` and no `structure` declares heat alone, no chain. Nothing in it is evaluated.
+A file with `[thermal]` and no `structure` declares heat alone, no chain; its screw is held at the motor-side end alone.
+Where the machine's own bearings hold the screw at both ends (fixed-fixed), it grows between them. Nothing is evaluated.
 
 The coupling of heat and drive in a plant file that declares both.
 
@@ -75,14 +76,18 @@ from typing import Any
 
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
+from feeddrive.parts.bearings.supports import Support
 from feeddrive.parts.lubricant import Lubricant
+from feeddrive.parts.screw.screw_drive import BallScrewDrive
+from feeddrive.plant.chain.chain import Chain
+from feeddrive.plant.chain.distributed_screw import DistributedScrew
 from feeddrive.plant.file.equipment import read_heat_sensors
 from feeddrive.plant.file.ratings import declares_heat_alone
 from feeddrive.schema.table import Table
 from feeddrive.thermal.laws.films import Films
 from feeddrive.thermal.laws.friction import Friction, bearings_of, nut_of
 from feeddrive.thermal.machine_heat import Heat
-from feeddrive.thermal.rig import Body, Nut, Rig, Seat, Steel, Travel, refuse_unless
+from feeddrive.thermal.rig import Body, BothEnds, Nut, Rig, Seat, Steel, Travel, refuse_unless
 from feeddrive.thermal.thermal_coupling import Coupling, Spacer
 
 SECTION = "thermal"
@@ -90,7 +95,9 @@ _LENGTHS = ("shaft_radius", "shaft_length", "nut_outer_radius", "nut_length")
 _FRICTION = ("load_torque", "viscous_factor", "viscosity", "mean_diameter")
 
 
-def read_heat(top: Table, name: str, effects: Sequence[Effect], joint: Coupling | None) -> Heat | None:
+def read_heat(
+    top: Table, name: str, effects: Sequence[Effect], joint: Coupling | None, both_ends: BothEnds | None = None
+) -> Heat | None:
     """What a plant file declares about heat; None where it declares nothing.
 
     Args:
@@ -98,6 +105,7 @@ def read_heat(top: Table, name: str, effects: Sequence[Effect], joint: Coupling 
         name: where the file gives none.
         effects: that it declares; friction of a motion that is joined to the heat is declared by them.
         joint: how the two are joined, where they are.
+        both_ends: what holds its screw at both ends; None where the bearing at the motor alone does.
 
     Raises:
         InputError: unknown key, a value that is missing, without unit, of another dimension or impossible.
@@ -111,7 +119,7 @@ def read_heat(top: Table, name: str, effects: Sequence[Effect], joint: Coupling 
         declared = _declared(top, table, effects, joint)
         return Heat(
             name=top.text("name", name),
-            rig=_rig(table, tuple(sensor.at for sensor in sensors if isinstance(sensor.at, float))),
+            rig=_rig(table, tuple(sensor.at for sensor in sensors if isinstance(sensor.at, float)), both_ends),
             films=Films(*(_value(table.table("film"), f.name) for f in fields(Films))),
             contact=_value(table, "contact_conductance"),
             preload=_value(table, "preload"),
@@ -131,6 +139,36 @@ def read_heat(top: Table, name: str, effects: Sequence[Effect], joint: Coupling 
         raise error if inside else InputError(error.what, f"{table.where}, {error.where}", error.mend) from None
 
 
+def read_both_ends(top: Table, chain: Chain | None, drive: BallScrewDrive | None) -> BothEnds | None:
+    """What holds the screw of a file with [thermal] at both ends; None where its front bearing alone does.
+
+    Args:
+        top: the whole file.
+        chain: of the machine, None where it declares heat alone.
+        drive: its parts, where it is described by them.
+
+    Raises:
+        InputError: bearings that take thrust one way each: the file does not say whether they let the screw grow.
+    """
+    if SECTION not in top.entries:
+        return None
+    if drive is not None:
+        supports = drive.supports
+        if supports.kind is Support.SUPPORTED_SUPPORTED:
+            what = "bearings that take thrust one way each hold a warm screw or let it grow, by the way they face"
+            mend = f'write "{Support.FIXED_FIXED.value}" if they hold it, "{Support.FIXED_SUPPORTED.value}" if not'
+            raise InputError(f"{what}, which [{SECTION}] has to know", f"{top.where}, support.kind", mend)
+        far = supports.far.axial_stiffness if supports.far is not None else 0.0
+        near, rigidity = supports.near.axial_stiffness, drive.screw.axial_rigidity
+    elif isinstance(chain, DistributedScrew):
+        near, far, rigidity = (
+            chain.values[k] for k in ("bearing_stiffness", "far_bearing_stiffness", "axial_rigidity")
+        )
+    else:
+        return None
+    return BothEnds(near, far, rigidity) if near > 0 and far > 0 else None
+
+
 def _declared(
     top: Table, table: Table, effects: Sequence[Effect], joint: Coupling | None
 ) -> tuple[Friction | None, Friction | None, Friction | None]:
@@ -143,7 +181,7 @@ def _declared(
     return nut, *bearings_of(effects, joint, ambient, diameter)
 
 
-def _rig(table: Table, scales: tuple[float, ...]) -> Rig:
+def _rig(table: Table, scales: tuple[float, ...], both_ends: BothEnds | None) -> Rig:
     lengths = {key: _value(table, key) for key in _LENGTHS}
     steel = Steel(**{f.name: _optional(table, f.name) for f in fields(Steel)})
     travel = _pair(table, "travel")
@@ -159,6 +197,7 @@ def _rig(table: Table, scales: tuple[float, ...]) -> Rig:
         steel=steel,
         nut_heat_share=_optional(table, "nut_heat_share"),
         growth_positions=(*listed, *(x for x in scales if not any(math.isclose(x, other) for other in listed))),
+        both_ends=both_ends,
     )
 
 

@@ -75,7 +75,7 @@ from feeddrive.plant.file.drive_sections import PART_VALUES, describes_parts
 from feeddrive.plant.file.effect_sections import read_effects
 from feeddrive.plant.file.equipment import read_controller, read_sensors
 from feeddrive.plant.file.guide_section import WEIGHT_KEYS, derived_effects
-from feeddrive.plant.file.heat_section import read_coupling, read_heat
+from feeddrive.plant.file.heat_section import read_both_ends, read_coupling, read_heat
 from feeddrive.plant.file.plant_schema import NAMED_PARTS, plant_table
 from feeddrive.plant.file.ratings import RATINGS, declares_heat_alone, read_data, read_stroke
 from feeddrive.plant.motor_torque import TorqueGain
@@ -137,7 +137,8 @@ def plant_from_entries(entries: Mapping[str, Any], path: Path) -> Plant:
     top.text("description", "")
     moving = not declares_heat_alone(entries)
     if moving:
-        top.refuse_undeclared()
+        named = [one["name"] for one in top.entries.get("effect", []) if isinstance(one, dict) and "name" in one]
+        top.refuse_undeclared({name: f"it is an effect: write effect.{name}" for name in named})
         _refuse_unknown_keys(top)
     else:
         top.refuse_unknown(_TOP_OF_HEAT_ALONE)
@@ -165,7 +166,7 @@ def plant_from_entries(entries: Mapping[str, Any], path: Path) -> Plant:
         data=read_data(top),
         origins=top.origins.found,
         torque_constant=per_ampere,
-        network=read_heat(top, path.stem, effects, joint),
+        network=read_heat(top, path.stem, effects, joint, read_both_ends(top, chain, drive)),
         joint=joint,
     )
     if chain is not None:

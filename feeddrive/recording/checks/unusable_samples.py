@@ -84,7 +84,9 @@ def check_length(rows: int, where: str) -> None:
         InputError: fewer than `FEWEST_ROWS` rows.
     """
     if rows < FEWEST_ROWS:
-        raise InputError(f"only {rows} rows of numbers", where, f"record at least {FEWEST_ROWS} samples")
+        raise InputError(
+            f"only {rows} row{'s' if rows != 1 else ''} of numbers", where, f"record at least {FEWEST_ROWS} samples"
+        )
 
 
 def check_finite(samples: FloatArray, column: str, first_row: int, where: str) -> None:
@@ -189,7 +191,8 @@ def _uneven(steps: FloatArray, odd: NDArray[np.int64], usual: float, first_row: 
         return InputError(what, place, "split the file, or resample it to one rate")
     if bool(np.all(steps[odd] > usual)) and odd.size <= 0.05 * steps.size:
         missing = round(float(steps[first]) / usual) - 1
-        what = f"gap of {missing} missing sample{'s' if missing != 1 else ''} ({odd.size} gaps in the file)"
+        gaps = "1 gap" if odd.size == 1 else f"{odd.size} gaps"
+        what = f"gap of {missing} missing sample{'s' if missing != 1 else ''} ({gaps} in the file)"
         return InputError(what, place, "record without interruption, or cut the file at the gap")
     what = f"irregular sampling: a step of {steps[first]:g} s where most are {usual:g} s ({odd.size} such steps)"
     return InputError(what, place, "resample the file to one rate")

@@ -45,7 +45,7 @@ from feeddrive.errors import InputError
 from feeddrive.files import find_plant
 from feeddrive.plant.file.effect_sections import read_effects
 from feeddrive.plant.file.plant_file import plant_from_entries
-from feeddrive.plant.file.plant_schema import EFFECT
+from feeddrive.plant.file.plant_schema import EFFECT, PLANT
 from feeddrive.plant.passive_friction import refuse_active_friction
 from feeddrive.plant.plant import Plant
 from feeddrive.recording.channels import CHANNEL_UNITS, channel_unit
@@ -145,7 +145,7 @@ def read_scenario(
     controller_where = insert_controller(entries, path)
     entries = with_overrides(entries, _own_keys(wanted))
     top = whole_file(entries, where, SCENARIO)
-    top.refuse_undeclared()
+    top.refuse_undeclared(_elsewhere(wanted))
     if given is None:
         plant_path = _plant_path(top, path.parent)
         given = GivenPlant(_plant(plant_path, of_plant), plant_path.read_bytes())
@@ -168,6 +168,15 @@ def read_scenario(
         recorder=_recorder(top, cascade, excitation), ticks=ticks, evaluations=read_evaluations(top.tables("evaluate")),
         digest=_digest(entries, path.parent, given.content, of_plant),
     )  # fmt: skip
+
+
+def _elsewhere(overrides: Mapping[str, str]) -> dict[str, str]:
+    """What is to be written for keys that are set as if they were the scenario's: those of its controller and plant."""
+    found: dict[str, str] = {}
+    for owner, section in (("plant", PLANT), ("controller", SCENARIO.sections["controller"])):
+        of_owner = (key for key in overrides if key.partition(".")[0] in section.names())
+        found |= {key.partition(".")[0]: f"write {owner}.{key}" for key in of_owner}
+    return found
 
 
 def _own_keys(overrides: Mapping[str, str]) -> dict[str, str]:

@@ -14,6 +14,7 @@ import numpy as np
 import scipy.sparse as sparse
 
 from feeddrive.thermal.full.grid import Cells, Cylinder, covered_share, cylinder, overlap
+from feeddrive.thermal.laws.expansion import growth_row
 from feeddrive.thermal.reduced.parametric_model import AMBIENT, COOLANT, HeatModel, Path, Way
 from feeddrive.thermal.rig import Rig, Seat, Travel
 from feeddrive.typing import Expression, FloatArray
@@ -92,7 +93,7 @@ def full_model(rig: Rig, cells: Cells | None = None, travel: Travel | None = Non
     Returns:
         The model; inputs: heat of the nut, the front and the rear seat; outputs: mean rise of the nut's outer surface
         ("nut"), of the seats' surfaces ("front", "rear"), mean of the shaft over the travel ("shaft_travel"), growth
-        from the front end to each of the rig's growth positions ("growth_200mm") and to the free end ("growth_end").
+        from the front end to each of the rig's growth positions ("growth_200mm") and to the rear end ("growth_end").
 
     Raises:
         InputError: a travel on which the nut leaves the shaft.
@@ -199,16 +200,14 @@ def _readings(parts: Discretisation, travel: Travel) -> dict[str, FloatArray]:
         return parts.spread(slice(0, parts.shaft.nodes), share @ profile)
 
     swept = covered_share(*_not_a_point(travel, parts.shaft.spacing), edges)
-    α, Δz = parts.rig.steel.expansion, parts.shaft.spacing
-    grown = {growth_name(x): over(α * Δz * covered_share(0.0, x, edges)) for x in parts.rig.growth_positions}
-    end = over(np.full(parts.shaft.axial, α * Δz))
+    grown = {growth_name(x): over(growth_row(parts.rig, edges, x)) for x in parts.rig.growth_positions}
     return {
         NUT: ports[NUT],
         FRONT: ports[FRONT],
         REAR: ports[REAR],
         SHAFT: over(swept / swept.sum()),
         **grown,
-        END: end,
+        END: over(growth_row(parts.rig, edges, float(edges[-1]))),
     }
 
 

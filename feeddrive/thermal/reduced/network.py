@@ -20,6 +20,7 @@ import numpy as np
 
 from feeddrive.thermal.full.full_model import END, FRONT, NUT, REAR, SHAFT, growth_name
 from feeddrive.thermal.full.grid import covered_share, overlap
+from feeddrive.thermal.laws.expansion import growth_row
 from feeddrive.thermal.reduced.parametric_model import AMBIENT, COOLANT, Path
 from feeddrive.thermal.reduced.system import HeatSystem
 from feeddrive.thermal.rig import Body, Rig, Travel, refuse_unless
@@ -105,15 +106,16 @@ class Network:
             others = np.zeros(len(self.lumps) - 1 - len(lengths))
             return np.concatenate([[0.0], lengths / lengths.sum(), others])
 
+        def grows(position: float) -> FloatArray:
+            return single[1 : len(self.edges)].T @ growth_row(self.rig, self.edges, position)
+
+        single = np.eye(len(self.lumps))
         rig, travel = self.rig, self.rig.travel
-        α = rig.steel.expansion
-        grown = {growth_name(x): α * x * mean(0.0, x) for x in rig.growth_positions}
+        grown = {growth_name(x): grows(x) for x in rig.growth_positions}
         swept = mean(travel.low - 1e-6, travel.high + 1e-6)
         ends = {FRONT: mean(0.0, rig.front.length), REAR: mean(rig.length - rig.rear.length, rig.length)}
-        single = np.eye(len(self.lumps))
         bodies = {lump.name: single[i] for i, lump in enumerate(self.lumps) if i >= len(self.edges)}
-        end = α * rig.length * mean(0.0, rig.length)
-        return {NUT: single[0], **ends, SHAFT: swept, **grown, END: end, **bodies}
+        return {NUT: single[0], **ends, SHAFT: swept, **grown, END: grows(float(self.edges[-1])), **bodies}
 
 
 def network(rig: Rig, conductances: Mapping[Path, float], segments: int = 10, bodies: tuple[Body, ...] = ()) -> Network:
