@@ -34,7 +34,7 @@ def test_page_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pyte
     assert "wind-up, not play" in capsys.readouterr().out
     table = names["table"]
     assert isinstance(table, fd.Compensation)
-    # the diagnosed play is within its interval of 1 nm, the file counts tenths of a micrometre
+    # the diagnosed play is within its interval of 5 nm, the file counts tenths of a micrometre
     assert table.record()["play"] == pytest.approx(7.5e-6, abs=0.11e-6)
     predicted = {row["figure"]: row for row in table.record()["predicted"]}
     accuracy = next(row for name, row in predicted.items() if name.endswith("accuracy A"))
@@ -42,7 +42,8 @@ def test_page_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pyte
     joint = read.LinuxCncJoint(100.0, 1000.0, 1e-3)
     assert joint.load((tmp_path / "x.comp").read_text()) == len((tmp_path / "x.comp").read_text().splitlines())
     slope = (joint.forward[-1] - joint.forward[0]) / (joint.nominal[-1] - joint.nominal[0])
-    assert slope == pytest.approx(-40e-6, rel=1e-3)
+    # the 95 % interval of the slope is 0.3 % to either side, with 15 nm of noise on the scale
+    assert slope == pytest.approx(-40e-6, rel=3e-3)
     report = (tmp_path / "diagnosis" / "report.html").read_text(encoding="utf-8")
     for words in ("What to do", "after repair", "after compensation", "1. Look at"):
         assert words in report

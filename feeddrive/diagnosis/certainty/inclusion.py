@@ -78,7 +78,7 @@ def possible_effects(found: Search, rivals: Sequence[Sequence[Rival]]) -> tuple[
     result = []
     for effect, alike in zip(found.fit.effects, rivals, strict=False):
         for rival in alike:
-            settles = f"an experiment in which {rival.effect.signature.variable} varies otherwise"
+            settles = f"an experiment in which {rival.effect.signature.variable.replace('_', ' ')} varies otherwise"
             odds = math.exp(-0.5 * max(rival.odds, -2 * OPEN))
             result.append(PossibleEffect(rival.effect.name, odds, effect.name, settles))
     known = taken | {one.name for one in result}
@@ -87,7 +87,7 @@ def possible_effects(found: Search, rivals: Sequence[Sequence[Rival]]) -> tuple[
             continue
         longer = (OPEN - near.gain + near.speaks) / near.speaks if near.speaks > 0 else 0.0
         if longer > 1:
-            settles = f"a recording of the same motion {longer:.1f} times as long"
+            settles = f"a recording of the same motion {math.ceil(10 * longer) / 10:g} times as long"
         else:
             settles = "a recording of another motion: on blocks left out of the fit it does not pay"
         result.append(PossibleEffect(near.name, min(math.exp(min(near.gain, OPEN)), MOST), "", settles))
