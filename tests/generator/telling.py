@@ -97,7 +97,7 @@ def calibration(run: Run, floor: Missed, without: tuple[str, ...] = ()) -> Array
 
     def turning_over(level: float, over: Array) -> Array:
         """Change with the logarithm of the speed that `over` is of."""
-        return -level * over / np.cosh(np.minimum(np.abs(over), 300.0)) ** 2
+        return np.asarray(-level * over / np.cosh(np.minimum(np.abs(over), 300.0)) ** 2)
 
     change: dict[str, tuple[Array, Array]] = {
         "table_mass": by_force(heavy),
@@ -147,7 +147,7 @@ def missed(run: Run, seed: int) -> Missed:
         local = np.sqrt(uniform_filter1d(inside**2, max(3, round(LOCAL * rate)), mode="nearest").clip(1e-300))
         weights.append(np.minimum(1.0, np.median(local) / local))
         densities.append(_smoothed(np.abs(_spectrum(error, weights[-1])) ** 2))
-    hertz = np.fft.rfftfreq(len(torque), machine.row_time)
+    hertz: Array = np.asarray(np.fft.rfftfreq(len(torque), machine.row_time), dtype=np.float64)
     return Missed(tuple(weights), tuple(densities), hertz, (hertz > 0.0) & (hertz <= min(HIGHEST, 0.2 * rate)))
 
 
