@@ -15,7 +15,7 @@ from tests.generator.effects import Effect, PlantedEffects
 from tests.generator.lateness import as_recorded, lateness
 from tests.generator.loop import closed_loop
 from tests.generator.machines import Machine
-from tests.generator.recording import encoder_step, measured, sampling_of, state_at_rest
+from tests.generator.recording import measured, sampling_of, state_at_rest
 from tests.generator.state import State
 
 Array = npt.NDArray[np.float64]
@@ -133,63 +133,6 @@ def transmitted(machine: Machine, angle: Array, row_time: float) -> tuple[Array,
     spectrum = np.fft.rfft(angle)
     torque, position = impedance(machine, hertz)
     return np.fft.irfft(torque * spectrum, len(angle)), np.fft.irfft(position * spectrum, len(angle))
-
-
-BANDS = (5.0, 10.0, 20.0, 40.0, 80.0, 150.0)
-"""Edges of the bands in which an effect may show [Hz]."""
-
-CUT = 0.5
-"""Left out at both ends [s]."""
-
-
-@dataclass(frozen=True)
-class Visible:
-    """How much an effect changes in each channel, in the band where it shows most: rms of the change over the noise.
-
-    hertz: edge of that band. size: error without the effect over that with it, sqrt(1 + r^2) of the larger r.
-    """
-
-    torque: float
-    position: float
-    hertz: tuple[float, float]
-
-    @property
-    def size(self) -> float:
-        """Error of a plant without the effect, over the floor."""
-        return math.hypot(1.0, max(self.torque, self.position))
-
-
-def visible(machine: Machine, torque: Array, position: Array) -> Visible:
-    """Return how visible changes of the rows, (n,) each, are beside the sensors' noise.
-
-    Noise: that of the torque's and the scale's sensor, steps included, white, and the encoder's step carried through
-    the chain into either channel. Bands end at a fifth of the rate of the rows.
-    """
-    row_time, sensors = machine.row_time, machine.axis.sensors
-    cut = round(CUT / row_time)
-    hertz = np.fft.rfftfreq(len(torque) - 2 * cut, row_time)
-    to_torque, to_position = impedance(machine, hertz)
-    angle = encoder_step(sensors) ** 2 / 12.0
-    noises = (
-        sensors.torque_noise**2 + sensors.torque_step**2 / 12.0 + np.abs(to_torque) ** 2 * angle,
-        sensors.scale_noise**2 + sensors.scale_step**2 / 12.0 + np.abs(to_position) ** 2 * angle,
-    )
-    best, edges = [0.0, 0.0], [0.0, 0.0]
-    for channel, series in enumerate((torque, position)):
-        if channel == 1 and not machine.scale:
-            continue
-        kept = series[cut : len(series) - cut]
-        kept = kept - np.mean(kept) if channel == 1 else kept
-        power = np.abs(np.fft.rfft(kept)) ** 2 / len(kept)
-        twice = np.where(hertz > 0.0, 2.0, 1.0)
-        for edge in BANDS:
-            if edge > 0.2 / row_time and edge > BANDS[0]:
-                break
-            inside = hertz <= edge
-            ratio = math.sqrt(np.sum((twice * power)[inside]) / np.sum((twice * noises[channel])[inside]))
-            if ratio > best[channel]:
-                best[channel], edges[channel] = ratio, edge
-    return Visible(best[0], best[1], (edges[0], edges[1]))
 
 
 def steady(one: Run) -> bool:

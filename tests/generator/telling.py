@@ -1,33 +1,77 @@
 """How far the change that an effect makes is from what declared values within their tolerance make.
 
-Changes of torque and position under the recorded motion are taken over the density of the sensors' noise, the encoder's
-error carried through the chain included, and compared there: lengths are standard deviations.
+Changes of torque and position under the recorded motion are taken over the density of what the true plant, led by the
+recorded motor angle, misses of the recording, and compared there: lengths are standard deviations.
 """
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
+from scipy import signal
+from scipy.ndimage import uniform_filter1d
 
 from tests.generator.drawn_effects import OFF_GROUPS, TOLERANCES
+from tests.generator.driven import driven
 from tests.generator.effects import Effect
-from tests.generator.machines import Machine
-from tests.generator.recording import encoder_step
-from tests.generator.runs import Array, Run, changes, impedance
+from tests.generator.runs import Array, Run, at_rest, changes, longest_step
 
 HIGHEST = 150.0
 """Highest frequency that counts [Hz]; a fifth of the rate of the rows where that is less."""
 
 
-def from_declared(run: Run, name: str) -> float:
+WIDTH = 0.30
+"""Tolerance of a speed at which friction changes its sign, which no data sheet states."""
+
+LOCAL = 0.1
+"""Seconds over which what is missed is told to be large or small."""
+
+BANDS = (5.0, 10.0, 20.0, 40.0, 80.0, 150.0)
+"""Edges of the bands in which an effect may show [Hz]."""
+
+
+@dataclass(frozen=True)
+class Missed:
+    """What the true plant, led by the recorded angle, misses, per channel.
+
+    weights: of the rows, (rows,), 1 where as little is missed as usual. densities: of the weighted rows at `hertz`,
+    (k,), white noise of unit variance being 1. inside: frequencies that count.
+    """
+
+    weights: tuple[Array, ...]
+    densities: tuple[Array, ...]
+    hertz: Array
+    inside: npt.NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Visible:
+    """How much an effect changes in each channel, in the band where it shows most: its rms over what is missed.
+
+    hertz: edge of that band. size: error without the effect over that with it, sqrt(1 + r^2) of the larger r.
+    """
+
+    torque: float
+    position: float
+    hertz: tuple[float, float]
+
+    @property
+    def size(self) -> float:
+        """Error of a plant without the effect, its declared values fitted, over the floor."""
+        return math.hypot(1.0, max(self.torque, self.position))
+
+
+def from_declared(run: Run, name: str, floor: Missed) -> float:
     """Return how far the planted effect of this name is from declared values that are off within their tolerance."""
     without: tuple[Effect, ...] = tuple(other for other in run.effects if other.name != name)
-    return distance(whitened(run.machine, *changes(run, without)), calibration(run), free=0)
+    return distance(whitened(floor, *changes(run, without)), calibration(run, floor), free=0)
 
 
-def calibration(run: Run) -> Array:
-    """Return what every group of declared values changes that is off by one tolerance, (k, groups).
+def calibration(run: Run, floor: Missed, without: tuple[str, ...] = ()) -> Array:
+    """Return what every group of declared values but those `without` changes that is off by one tolerance, (k, groups).
 
     Quasi-static, as below the first resonance: x = r phi - F / k - r T / kt, the force F of the nut and the torque T of
     the screw being those of masses, friction and weight in the motion of the run.
@@ -51,6 +95,10 @@ def calibration(run: Run) -> Array:
     def by_torque(part: Array) -> tuple[Array, Array]:
         return part / gear, -part * r / a.torsional_stiffness
 
+    def turning_over(level: float, over: Array) -> Array:
+        """Change with the logarithm of the speed that `over` is of."""
+        return np.asarray(-level * over / np.cosh(np.minimum(np.abs(over), 300.0)) ** 2)
+
     change: dict[str, tuple[Array, Array]] = {
         "table_mass": by_force(heavy),
         "motor_inertia": (motor, none),
@@ -67,39 +115,111 @@ def calibration(run: Run) -> Array:
     }
     columns = []
     for names, kind in OFF_GROUPS:
+        if set(names) & set(without):
+            continue
         torque, position = (TOLERANCES[kind] * part[run.rows] for part in change[names[0]])
-        columns.append(whitened(run.machine, torque, position))
+        columns.append(whitened(floor, torque, position))
+    for part in (
+        by_force(turning_over(a.guide_coulomb, velocity / a.guide_velocity)),
+        by_torque(turning_over(a.nut_coulomb + a.bearing_coulomb, turning / a.drag_speed)),
+    ):
+        columns.append(whitened(floor, *(WIDTH * one[run.rows] for one in part)))
     return np.column_stack(columns)
 
 
-def whitened(machine: Machine, torque: Array, position: Array) -> Array:
-    """Return both channels, Fourier transformed, over the noise's density: real numbers of unit variance, (k,)."""
-    row_time, sensors = machine.row_time, machine.axis.sensors
-    hertz = np.fft.rfftfreq(len(torque), row_time)
-    inside = (hertz > 0.0) & (hertz <= min(HIGHEST, 0.2 / row_time))
-    angle = encoder_step(sensors) ** 2 / 12.0
-    to_torque, to_position = impedance(machine, hertz[inside])
-    noises = [
-        sensors.torque_noise**2 + sensors.torque_step**2 / 12.0 + np.abs(to_torque) ** 2 * angle,
-        sensors.scale_noise**2 + sensors.scale_step**2 / 12.0 + np.abs(to_position) ** 2 * angle,
-    ]
-    series = [torque, position] if machine.scale else [torque]
-    window = np.hanning(len(torque))
+def missed(run: Run, seed: int) -> Missed:
+    """Return what the plant of a run, led by the recorded motor angle, misses of its recording.
+
+    What the encoder's steps do through friction and free play, and what the motor does between rows, are in it: rows at
+    which it misses more than half of all do count for as much less, and what is left has a density of its own.
+    """
+    machine, c = run.machine, run.constants
+    recorded = run.recorded(seed)
+    step = longest_step(c, machine.axis.top_speed)
+    torque, position = driven(machine, c, recorded["motor_angle"], at_rest(run.setpoint[0], c), step)
+    errors = [recorded["motor_torque"] - torque]
+    if machine.scale:
+        errors.append(recorded["table_position"] - position)
+    rate, weights, densities = 1.0 / machine.row_time, [], []
+    sections = signal.butter(4, min(HIGHEST, 0.1 * rate), fs=rate, output="sos")
+    for error in errors:
+        inside = signal.sosfiltfilt(sections, error - np.median(error))
+        local = np.sqrt(uniform_filter1d(inside**2, max(3, round(LOCAL * rate)), mode="nearest").clip(1e-300))
+        weights.append(np.minimum(1.0, np.median(local) / local))
+        densities.append(_smoothed(np.abs(_spectrum(error, weights[-1])) ** 2))
+    hertz: Array = np.asarray(np.fft.rfftfreq(len(torque), machine.row_time), dtype=np.float64)
+    return Missed(tuple(weights), tuple(densities), hertz, (hertz > 0.0) & (hertz <= min(HIGHEST, 0.2 * rate)))
+
+
+def _spectrum(series: Array, weights: Array) -> npt.NDArray[np.complex128]:
+    """Return the Fourier transform of a weighted series; white noise of unit variance has unit mean square."""
+    window = np.hanning(len(series))
+    values = weights * (series - np.average(series, weights=weights))
+    spectrum: npt.NDArray[np.complex128] = np.fft.rfft(values * window) / math.sqrt(float(window @ window))
+    return spectrum
+
+
+def _smoothed(power: Array) -> Array:
+    """Return the power averaged over neighbours: a fifth of the frequency on either side, eight at least."""
+    total, at = np.concatenate([[0.0], np.cumsum(power)]), np.arange(len(power))
+    reach = np.maximum(8, at // 5)
+    first, last = np.maximum(at - reach, 0), np.minimum(at + reach + 1, len(power))
+    return np.asarray((total[last] - total[first]) / (last - first))
+
+
+def whitened(floor: Missed, torque: Array, position: Array) -> Array:
+    """Return both channels, Fourier transformed, over what is missed: real numbers of unit variance, (k,)."""
     parts = []
-    for values, noise in zip(series, noises, strict=False):
-        spectrum = np.fft.rfft((values - np.mean(values)) * window)[inside]
-        scaled = spectrum * math.sqrt(2.0 / np.sum(window**2)) / np.sqrt(noise)
+    for values, weights, density in zip((torque, position), floor.weights, floor.densities, strict=False):
+        scaled = (_spectrum(values, weights) * np.sqrt(2.0 / density))[floor.inside]
         parts += [scaled.real, scaled.imag]
     return np.concatenate(parts)
 
 
+def visible(floor: Missed, base: Array, torque: Array, position: Array) -> Visible:
+    """Return how visible changes of the rows, (rows,) each, are once declared values have done what they can.
+
+    Args:
+        floor: what the true plant misses.
+        base: `calibration` of the run.
+        torque, position: changes [N m], [m].
+    """
+    target = whitened(floor, torque, position)
+    left, best, edges = remaining(target, base, free=0), [0.0, 0.0], [0.0, 0.0]
+    hertz = floor.hertz[floor.inside]
+    parts = left.reshape(len(floor.densities), 2, len(hertz))
+    for channel, density in enumerate(floor.densities):
+        noise = density[floor.inside]
+        power = 0.5 * np.sum(parts[channel] ** 2, axis=0) * noise
+        for edge in BANDS:
+            inside = hertz <= edge
+            ratio = math.sqrt(float(np.sum(power[inside]) / np.sum(noise[inside])))
+            if ratio > best[channel]:
+                best[channel], edges[channel] = ratio, edge
+            if edge >= hertz[-1]:
+                break
+    return Visible(best[0], best[1], (edges[0], edges[1]))
+
+
 def distance(target: Array, columns: Array, free: int) -> float:
     """Return the length of what columns leave of a target; all but the last `free` have unit prior deviation."""
+    solution, scale = _solved(target, columns, free)
+    priors = (solution / scale)[: columns.shape[1] - free]
+    return math.hypot(float(np.linalg.norm(target - columns @ (solution / scale))), float(np.linalg.norm(priors)))
+
+
+def remaining(target: Array, columns: Array, free: int) -> Array:
+    """Return what columns leave of a target, (k,); all but the last `free` have unit prior deviation."""
+    solution, scale = _solved(target, columns, free)
+    return np.asarray(target - columns @ (solution / scale))
+
+
+def _solved(target: Array, columns: Array, free: int) -> tuple[Array, Array]:
+    """Return sizes of unit columns, and lengths of the columns."""
     count = columns.shape[1]
     scale = np.linalg.norm(columns, axis=0)
     scale[scale == 0.0] = 1.0
     prior = np.diag(np.concatenate([np.ones(count - free), np.zeros(free)]) / scale)
     stacked = np.vstack([columns / scale, prior])
     wanted = np.concatenate([target, np.zeros(count)])
-    solution = np.linalg.lstsq(stacked, wanted, rcond=None)[0]
-    return float(np.linalg.norm(wanted - stacked @ solution))
+    return np.asarray(np.linalg.lstsq(stacked, wanted, rcond=None)[0]), scale

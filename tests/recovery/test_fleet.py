@@ -14,18 +14,18 @@ import pytest
 from feeddrive.plant.file.plant_file import read_plant
 from tests.generator.drawn_effects import MAKERS, OFF_GROUPS, TOLERANCES
 from tests.generator.machines import drawn_machine
-from tests.generator.runs import impedance, visible
-from tests.generator.telling import calibration, distance, from_declared
+from tests.generator.runs import impedance
+from tests.generator.telling import calibration, distance, from_declared, missed, visible
 from tests.recovery.fleet.case import LEAST_TOLD, SHARES, Case, case, encoder_null_seeds, kind_of
-from tests.recovery.fleet.floor import true_errors
+from tests.recovery.fleet.floor import SLOWEST_CYCLE, true_errors
 from tests.recovery.fleet.run import cases_done
 from tests.recovery.fleet.state import state_files
 from tests.recovery.fleet.table import section, wilson
 from tests.recovery.fleet.verdict import Verdict, possible
 from tests.recovery.page import with_section
 
-NULL, PAIR, SPOILT = 10, 3, 20
-"""Seeds of quick cases: nothing planted, two relatives at 250 Hz, a torque from an rms current."""
+NULL, PAIR, SPOILT, SLOW = 10, 3, 20, 1214
+"""Seeds of quick cases: nothing planted, two effects, a torque from an rms current, rows of 4 ms."""
 
 
 @pytest.fixture(scope="module")
@@ -78,9 +78,11 @@ def test_what_is_recorded_is_the_true_machine_and_its_sensors() -> None:
     assert np.std(smooth) == pytest.approx(noise / math.sqrt(20), rel=0.15)
 
 
-def test_rows_slower_than_a_drive_are_taken_from_the_exact_motion(pair: Case) -> None:
-    """At 250 Hz and 20 bits the sensors' noise is left, not what a spline through the rows makes of the motion."""
-    sensors, left = pair.true.axis.sensors, true_errors(pair)
+def test_rows_slower_than_a_drive_are_taken_from_the_exact_motion() -> None:
+    """At 250 Hz and 22 bits the sensors' noise is left, not what a spline through the rows makes of the motion."""
+    drawn = case(SLOW)
+    assert drawn.true.row_time > SLOWEST_CYCLE
+    sensors, left = drawn.true.axis.sensors, true_errors(drawn)
     torque = math.hypot(sensors.torque_noise, sensors.torque_step / math.sqrt(12))
     assert np.std(left["motor_torque"]) == pytest.approx(torque, rel=0.1)
     position = math.hypot(sensors.scale_noise, sensors.scale_step / math.sqrt(12))
@@ -97,21 +99,26 @@ def test_spoilt_recordings_keep_their_channels() -> None:
     assert np.max(np.abs(drawn.judge["motor_angle"] - angle)) <= math.pi / 2 ** drawn.truth["bits"] * 1.001
 
 
-def test_size_is_the_error_over_the_floor() -> None:
-    """A change as large as the noise makes the error the root of two times as large."""
-    machine = drawn_machine(np.random.default_rng(5), bits=24, rate=1000.0)
+def test_size_is_the_error_over_what_the_true_plant_misses(pair: Case) -> None:
+    """A change like what is missed makes the error the root of two times as large; declared values show as none."""
+    one = pair.runs[0]
+    floor = missed(one, pair.seed)
     random = np.random.default_rng(1)
-    sensors = machine.axis.sensors
-    noise = math.hypot(sensors.torque_noise, sensors.torque_step / math.sqrt(12))
-    shown = visible(machine, noise * random.standard_normal(20000), np.zeros(20000))
-    assert shown.size == pytest.approx(math.sqrt(2), rel=0.05)
+    white = random.standard_normal(len(one.torque[one.rows]))
+    shaped = np.fft.irfft(np.fft.rfft(white) * np.sqrt(floor.densities[0]), len(white)) / floor.weights[0]
+    nothing = np.zeros(len(white))
+    base = calibration(one, floor)
+    assert visible(floor, base, shaped, nothing).torque == pytest.approx(1.0, rel=0.25)  # the best of six bands
+    heavy = 0.02 * np.gradient(one.states[:, 1], pair.true.axis.sample_time)[one.rows] * pair.true.axis.motor_inertia
+    assert visible(floor, base, heavy, nothing).torque < 0.5 * visible(floor, 1e-9 * base, heavy, nothing).torque
 
 
 def test_planted_effects_are_told_from_declared_values(pair: Case) -> None:
     """A mass that is off by half its tolerance is no finding: its change is that of the prior, to half a deviation."""
+    floor = missed(pair.runs[0], pair.seed)
     for one in pair.planted:
-        assert from_declared(pair.runs[0], one.effect.name) >= LEAST_TOLD
-    columns = calibration(pair.runs[0])
+        assert from_declared(pair.runs[0], one.effect.name, floor) >= 0.7 * LEAST_TOLD  # another draw of the sensors
+    columns = calibration(pair.runs[0], floor)
     assert distance(0.5 * columns[:, 0], columns, free=0) <= 0.5
     assert distance(np.ones(len(columns)), columns, free=0) > 0.5 * math.sqrt(len(columns))
 

@@ -90,7 +90,7 @@ def _ringing(over_noise: FloatArray, plant: Plant, recording: Recording) -> Bool
     decays = [-pole.real for pole in braked_modes(plant, plant.middle).poles if pole.real < 0 and pole.imag > fastest]
     if not decays:
         return np.zeros(len(over_noise), dtype=bool)
-    decayed: FloatArray = np.arange(len(over_noise)) * (min(decays) * recording.sample_time)
+    decayed: FloatArray = min(decays) * recording.sample_time * np.arange(len(over_noise), dtype=np.float64)
     with np.errstate(divide="ignore"):
         begun = np.maximum.accumulate(np.log(over_noise) + decayed)
     return np.asarray(begun > decayed)

@@ -3,8 +3,9 @@
     20 % nothing planted, 15 % a spoilt recording, 15 % two effects, the rest one; half of the laws are relatives where
     the law has one; in half of all cases declared values are off, each within its tolerance, two of them up to twice.
 
-Sizes are from 1.1 to 8 times the floor (`tests.generator.runs.visible`): the error of the true plant without the
-effect, over that of the true plant. An effect that a machine and a programme cannot show at its size, or that
+Sizes are from 1.1 to 8 times the floor (`tests.generator.telling.visible`): the error of the true plant without the
+effect, its declared values fitted within their tolerances, over that of the true plant, both led by the recorded motor
+angle. An effect that a machine and a programme cannot show at its size, or that
 declared values within their tolerance imitate, is drawn again on another machine. Nothing of the package takes part.
 """
 
@@ -35,8 +36,8 @@ from tests.generator.effects import Effect
 from tests.generator.effects.relatives import Relative
 from tests.generator.machines import Machine, Random, drawn_machine
 from tests.generator.programmes import KINDS, programme
-from tests.generator.runs import Array, Channels, Run, Visible, changes, run, softened, steady, visible
-from tests.generator.telling import from_declared
+from tests.generator.runs import Array, Channels, Run, changes, run, softened, steady
+from tests.generator.telling import Missed, Visible, calibration, from_declared, missed, visible
 from tests.recovery.fleet.spoilt import spoilings, spoilt
 
 SHARES = {"null": 0.20, "corrupted": 0.15, "pair": 0.15, "single": 0.50}
@@ -100,7 +101,7 @@ class Case:
     programme: of KINDS. excited: whether torque is injected. off: number -> true over declared.
     spoiling: how both recordings are spoilt.
     plant: text of the plant file. fit, judge: channels as recorded (SI). exact: torque, motor angle and table position
-    of the judged rows without sensor errors. runs: what made them.
+    of the judged rows without sensor errors. runs: what made them. redrawn: machines that showed too little before.
     """
 
     seed: int
@@ -117,6 +118,7 @@ class Case:
     judge: Channels
     exact: tuple[Array, Array, Array]
     runs: tuple[Run, Run] = field(repr=False)
+    redrawn: int = 0
 
     @property
     def truth(self) -> dict[str, Any]:
@@ -135,6 +137,7 @@ class Case:
             "off": dict(self.off),
             "may": sorted(self.may_be_named()),
             "spoiling": self.spoiling,
+            "redrawn": self.redrawn,
             "rate_hz": 1.0 / m.row_time,
             "cycle_s": m.axis.sample_time,
             "rows": [len(self.fit["time"]), len(self.judge["time"])],
@@ -225,7 +228,7 @@ def case(seed: int) -> Case:
             names = tuple(every[(every.index(name) + 1) % len(every)] for name in names)
         made = _attempt(seed, kind, names, random, drawn_machine(random))
         if made is not None:
-            return made
+            return dataclasses.replace(made, redrawn=attempt)
     raise RuntimeError(f"seed {seed}: no machine shows {names}")
 
 
@@ -290,7 +293,8 @@ def _attempt(seed: int, kind: str, names: tuple[str, ...], random: Random, decla
             break
     else:
         return None
-    planted = _sized(true, drawn, targets, asked[0])
+    floor = missed(bare, seeds[2])
+    planted = _sized(true, drawn, targets, asked[0], floor)
     if planted is None:
         return None
     effects = tuple(one.effect for one in planted)
@@ -300,7 +304,7 @@ def _attempt(seed: int, kind: str, names: tuple[str, ...], random: Random, decla
         return None
     if not all(steady(one) for one in runs):
         return None
-    if any(from_declared(runs[0], name) < LEAST_TOLD for name in names):
+    if any(from_declared(runs[0], name, floor) < LEAST_TOLD for name in names):
         return None
     factor = off.get("torque_constant", 1.0)
     fit, judge = (one.recorded(noise, factor) for one, noise in zip(runs, seeds[2:], strict=True))
@@ -346,18 +350,20 @@ NEAR = 0.12
 """By how much of its logarithm a size may miss the drawn one."""
 
 
-def _sized(true: Machine, drawn: list[Drawn], targets: list[float], asked: tuple[Array, Array]) -> list[Planted] | None:
+def _sized(
+    true: Machine, drawn: list[Drawn], targets: list[float], asked: tuple[Array, Array], floor: Missed
+) -> list[Planted] | None:
     """Return the effects at sizes near the targets; None where one cannot be."""
     found: list[Planted] = []
     for one, target in zip(drawn, targets, strict=True):
-        shown = _grown(true, one, target, asked)
+        shown = _grown(true, one, target, asked, floor)
         if shown is None:
             return None
         found.append(shown)
     return found
 
 
-def _grown(true: Machine, drawn: Drawn, target: float, asked: tuple[Array, Array]) -> Planted | None:
+def _grown(true: Machine, drawn: Drawn, target: float, asked: tuple[Array, Array], floor: Missed) -> Planted | None:
     wanted, factor = math.sqrt(target**2 - 1.0), max(1.0, drawn.low)
     tried: list[tuple[float, float]] = []
     last: Planted | None = None
@@ -369,7 +375,8 @@ def _grown(true: Machine, drawn: Drawn, target: float, asked: tuple[Array, Array
             one = run(true, (effect,), *asked)
         except FloatingPointError:
             return None
-        shown = visible(true, *changes(one, ()))
+        others = calibration(one, floor, TOUCHED.get(drawn.effect.name, ()))
+        shown = visible(floor, others, *changes(one, ()))
         ratio = max(shown.torque, shown.position)
         if not math.isfinite(ratio) or ratio <= 0.0:
             return None

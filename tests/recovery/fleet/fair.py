@@ -2,10 +2,10 @@
 
     python -m tests.recovery.fleet.fair SEED ...
 
-The change that an effect makes in torque and position under the recorded motion, over the density of the sensors' noise
-(the encoder's error carried through included), is regressed on the changes that declared values within their tolerance
-make (one tolerance is one standard deviation), and then on that of one other effect beside, its size free. What is left
-is in standard deviations: below about five, no method can tell the one from the other.
+The change that an effect makes in torque and position under the recorded motion, over the density of what the true
+plant misses when it is led by the recorded angle, is regressed on the changes that declared values within their
+tolerance make (one tolerance is one standard deviation), and then on that of one other effect beside, its size free.
+What is left is in standard deviations: below about five, no method can tell the one from the other.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from tests.generator.drawn_effects import MAKERS, drawn_effect, is_possible
 from tests.generator.effects import Effect
 from tests.generator.machines import Machine
 from tests.generator.runs import Run, changes
-from tests.generator.telling import calibration, distance, whitened
+from tests.generator.telling import calibration, distance, missed, whitened
 from tests.recovery.fleet.case import Case, case
 
 BY_ORDER = ("torque_ripple", "ball_pass_ripple", "lead_error_periodic")
@@ -48,17 +48,18 @@ def told_apart(drawn: Case) -> list[Told]:
     """Return it for every planted effect of a case, on the recording that is fitted."""
     run, machine = drawn.runs[0], drawn.true
     effects = run.effects
-    base = calibration(run)
+    floor = missed(run, drawn.seed)
+    base = calibration(run, floor)
     found = []
     for one in drawn.planted:
         without = tuple(other for other in effects if other.name != one.effect.name)
-        target = whitened(machine, *changes(run, without))
+        target = whitened(floor, *changes(run, without))
         least, nearest = math.inf, ""
         for rival in rivals(machine, {planted.name for planted in effects}, drawn.seed, run):
             if not is_possible(rival, machine):
                 continue
             with_rival = changes(run, (*without, rival))
-            column = target - whitened(machine, *with_rival)
+            column = target - whitened(floor, *with_rival)
             left = distance(target, np.column_stack([base, column]), free=1)
             if left < least:
                 least, nearest = left, rival.name
