@@ -262,7 +262,8 @@ class _Drop(Problem):
     def predicted(self, effects: Sequence[Effect]) -> FloatArray:
         return np.full(3, effects[0].values["delta_force"], dtype=float)
 
-    def measured(self) -> FloatArray:
+    @property
+    def measured(self) -> FloatArray:  # type: ignore[override]
         return np.full(3, -80.0)
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from feeddrive.diagnosis.recordings.change_result import Measure
 from feeddrive.diagnosis.recordings.change_words import Moved, change_reading, change_statement
 from feeddrive.diagnosis.recordings.recordings import (
     RecordingShift,
@@ -65,7 +66,9 @@ def test_a_shift_of_an_effect_that_is_gone_does_nothing(plant: Plant) -> None:
 
 def moved(key: str, difference: float, half: float = 0.01, effect: str = "friction_deviation") -> Moved:
     """A difference of a factor from one."""
-    return Moved(effect, Port.TABLE, key, "1", 1 + difference, 1.0, difference, half)
+    return Moved(
+        effect, Port.TABLE, key, "1", Measure(1 + difference, half), Measure(1.0, half), Measure(difference, half)
+    )
 
 
 def test_level_is_said_in_per_cent() -> None:
@@ -83,9 +86,15 @@ def test_friction_is_read_from_both_parts(level: float, viscous: float, read: st
 
 
 def test_play_and_length_are_read() -> None:
-    play = Moved("backlash", Port.TRANSMISSION, "width", "m", 9e-6, 4e-6, 5e-6, 1e-7)
+    play = Moved("backlash", Port.TRANSMISSION, "width", "m", *(Measure(value, 1e-7) for value in (9e-6, 4e-6, 5e-6)))
     assert "wear" in change_reading(play, [play])
     told = change_statement(play, "b", "a")
     assert told == "backlash width 5 µm (± 0.1 µm) higher in b than in a: 9 µm after 4 µm"
-    growth = Moved("lead_error_cumulative", Port.TRANSMISSION, "slope", "m/m", 11.7e-6, 0.0, 11.7e-6, 1e-7)
+    growth = Moved(
+        "lead_error_cumulative",
+        Port.TRANSMISSION,
+        "slope",
+        "m/m",
+        *(Measure(value, 1e-7) for value in (11.7e-6, 0.0, 11.7e-6)),
+    )
     assert "1 K warmer" in change_reading(growth, [growth])

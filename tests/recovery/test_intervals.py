@@ -151,7 +151,8 @@ class _Drawn(Problem):
 
     drawn: FloatArray = field(kw_only=True)
 
-    def measured(self) -> FloatArray:
+    @property
+    def measured(self) -> FloatArray:  # type: ignore[override]
         return self.drawn
 
 
