@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from feeddrive.diagnosis.diagnose import diagnose
@@ -22,7 +24,8 @@ from feeddrive.effects.friction.stribeck import Stribeck
 from feeddrive.effects.source.torque_ripple import TorqueRipple
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
-from tests.recovery.rigid_runs import PLANT, Truth, rigid_run
+from feeddrive.recording import Recording
+from tests.recovery.rigid_runs import COULOMB, LEAD, MASS, NOISE, PLANT, SMOOTH, STEP, VISCOUS, Truth, rigid_run
 
 RIPPLE, BOGUS = (
     TorqueRipple.of(amplitude=0.01, order=3.0, phase=0.0),
@@ -71,6 +74,29 @@ def test_channel_made_worse_is_given_back(rigid: Plant) -> None:
     found, judged = kept_of(rigid, Truth(), Payload.of(mass=15.0), iterations=0)
     assert found.fit.effects == () and "payload" in found.impossible
     assert worse_by(found.problem, judged, "motor_torque") < 0
+
+
+def one_stroke(name: str, seed: int) -> Recording:
+    """Rest, one stroke of 100 mm in a second, and rest again: the mass shows in two blocks of twenty."""
+    time = np.arange(round(11.0 / STEP)) * STEP
+    s = np.clip(time + 0.5 * STEP - 5.0, 0.0, 1.0)  # the torque of a row is that at the middle of its hold
+    speed, acceleration = 0.1 * (30 * s**2 - 60 * s**3 + 30 * s**4), 0.1 * (60 * s - 180 * s**2 + 120 * s**3)
+    r = LEAD / (2 * math.pi)
+    torque = r * (MASS * acceleration + COULOMB * np.tanh(speed / SMOOTH) + VISCOUS * speed)
+    torque += NOISE * np.random.default_rng(seed).standard_normal(len(time))
+    s = np.clip(time - 5.0, 0.0, 1.0)
+    return Recording(
+        name, time, {"motor_torque": torque, "motor_angle": 0.1 * s**3 * (10 - 15 * s + 6 * s**2) / r}, STEP
+    )
+
+
+def test_what_is_worse_in_one_brief_stroke_is_worse(rigid: Plant) -> None:
+    """Few blocks hold all that the two plants differ by: how that is spread over blocks is no chance."""
+    problem, evidence, _ = prepared(rigid, [one_stroke("a", 1)], [one_stroke("b", 2)], 0.75)
+    wrong = Search(problem, fit(problem, [Payload.of(mass=15.0)], iterations=0), (), (), {})
+    assert worse_by(problem, judging(wrong, evidence), "motor_torque") > 0.5
+    right = Search(problem, fit(problem, [Payload.of(mass=0.02)], iterations=0), (), (), {})
+    assert worse_by(problem, judging(right, evidence), "motor_torque") < 0
 
 
 def test_value_at_the_end_of_what_is_physical_is_no_estimate(rigid: Plant) -> None:

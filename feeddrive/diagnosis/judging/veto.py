@@ -283,9 +283,11 @@ def _worst_channel(problem: Problem, judged: Sequence[Judged]) -> str:
 
 
 def worse_by(problem: Problem, judged: Sequence[Judged], name: str) -> float:
-    """Share by which a channel's squared error is larger than as declared, beyond its scatter; negative where not.
+    """Share by which a channel's squared error as declared is smaller, beyond its scatter; negative where it is not.
 
-    Both scatters count: that of the gain between blocks, and that of a mean square of 2 B T independent values.
+    It is the gain of the declared plant over the corrected one: of what they differ by, only the product with the
+    declared plant's own error is chance, however few blocks hold it. Both scatters count: that of the gain between
+    blocks, and that of a mean square of 2 B T independent values.
     """
     before, after, blocks, first, values = [], [], [], 0, 0.0
     for one in judged:
@@ -299,6 +301,6 @@ def worse_by(problem: Problem, judged: Sequence[Judged], name: str) -> float:
         blocks.append(first + numbers)
         first += int(numbers.max(initial=-1)) + 1
         values += 2 * one.evidence.edge * float(rows.sum()) * step
-    gain = compare_left_out(np.concatenate(before), np.concatenate(after), np.concatenate(blocks), 0.0)
+    gain = compare_left_out(np.concatenate(after), np.concatenate(before), np.concatenate(blocks), 0.0)
     scatter = max(gain.standard_error, math.sqrt(2 / max(values, 1.0)))
-    return -gain.gain - SCATTER * scatter
+    return gain.gain - SCATTER * scatter
