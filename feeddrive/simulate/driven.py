@@ -152,7 +152,8 @@ def simulate_driven(plant: Plant, motion: MotorMotion, tolerance: float = TOLERA
     place = rested(machine, states, np.zeros(0))
     step = np.array([motion.time[1] - motion.time[0]])
     count = len(motion.time[motion.samples])
-    shown, torque = np.empty((6, count)), np.empty(len(motion.time))
+    shown = np.empty((6, count))
+    torque = shown[TORQUE] if motion.substeps == 1 else np.empty(len(motion.time))
     first = outputs(place.memory, motion.angle[0], motion.speed[0], motion.acceleration[0], 0.0, values)
     shown[:, 0] = np.array(first).ravel()
     torque[0] = shown[TORQUE, 0]

@@ -137,8 +137,8 @@ def plant_from_entries(entries: Mapping[str, Any], path: Path) -> Plant:
     top.text("description", "")
     moving = not declares_heat_alone(entries)
     if moving:
-        named = [one["name"] for one in top.entries.get("effect", []) if isinstance(one, dict) and "name" in one]
-        top.refuse_undeclared({name: f"it is an effect: write effect.{name}" for name in named})
+        named = [one.get("name") for one in top.entries.get("effect", []) if isinstance(one, dict)]
+        top.refuse_undeclared({one: f"it is an effect: write effect.{one}" for one in named if isinstance(one, str)})
         _refuse_unknown_keys(top)
     else:
         top.refuse_unknown(_TOP_OF_HEAT_ALONE)
