@@ -14,7 +14,7 @@ from feeddrive.diagnosis.numbers.declared_values import DeclaredValue
 from feeddrive.errors import InputError
 from feeddrive.schema.toml_text import parse_toml
 from feeddrive.typing import FloatArray
-from feeddrive.units.quantity import format_quantity, percent
+from feeddrive.units.quantity import format_quantity, parse, percent
 
 _HEADER = re.compile(r"^\s*\[([^\[\]]+)\]\s*(#.*)?$")
 _LIST_HEADER = re.compile(r"^\s*\[\[([^\[\]]+)\]\]\s*(#.*)?$")
@@ -39,13 +39,27 @@ def with_calibrated_values(text: str, results: Sequence[CalibratedResult]) -> st
         InputError: a text in which a value cannot be placed.
     """
     changed = {}
+    entries = parse_toml(text, "declared plant")
     for one in results:
         factor, half = one.value / one.declared, 0.5 * (one.ci95[1] - one.ci95[0]) / one.value
         for key, unit, declared in one.written:
             number = f"{factor * declared!r} {unit}".removesuffix(" 1")
             was = format_quantity(declared, unit)
+            key, number = _in_guide(entries, key, number, factor)
             changed[key] = (number, f"{100 * half:.2g} %", f"{SOURCE}, declared {was} within {percent(one.tolerance)}")
     return with_written_values(text, changed) if changed else text
+
+
+def _in_guide(entries: Mapping[str, object], key: str, number: str, factor: float) -> tuple[str, str]:
+    """Key and value of a friction that is computed from [guide]; as they are where it is not."""
+    guide = entries.get("guide")
+    if not key.startswith("effect.guide_friction.") or not isinstance(guide, Mapping):
+        return key, number
+    if key.endswith(".smoothing_velocity"):
+        return "guide.smoothing_velocity", number
+    present = guide.get("friction_factor", 1.0)
+    present = present.get("value", 1.0) if isinstance(present, Mapping) else present
+    return "guide.friction_factor", repr(factor * parse(present, "1", "guide.friction_factor"))
 
 
 def most_likely_values(

@@ -13,6 +13,7 @@ seal_drag = "6 N"               # of one carriage; may be left out
 load = "500 N"                  # vertical load of one carriage; may be left out: the table's weight, shared evenly
 coefficients = "A"              # of rolling and slip: set A or B; may be left out
 smoothing_velocity = "0.5 mm/s" # may be left out
+friction_factor = 1.1           # level that acts over the computed one, as a recording told it; may be left out
 
 or a carriage of the catalogue, whose geometry is not published (`feeddrive.parts.guide.guide_rating`):
 
@@ -51,7 +52,7 @@ CARRIAGES = {"HSR-20R": HSR_20R, "HSR-30R": HSR_30R}
 
 COEFFICIENTS = {"A": SET_A, "B": SET_B}
 _GEOMETRY = tuple(value.key for value in GUIDE_VALUES)
-_SHARED = ("carriage", "carriages", "seal_drag", "smoothing_velocity", "load", "source")
+_SHARED = ("carriage", "carriages", "seal_drag", "smoothing_velocity", "load", "source", "friction_factor")
 _OF_GEOMETRY = (*_SHARED, "coefficients", *_GEOMETRY)
 _OF_RATING = (*_SHARED, "preload_class", "preload", "friction_coefficient")
 
@@ -84,9 +85,15 @@ def guide_friction_of(top: Table, gravity: float, before: Sequence[Effect]) -> l
         origin += (
             f" under {under} and a preload of {format_quantity(one.preload, 'N')} each; {_rated()[found.name].source}"
         )
-        return [(GuideFriction.of(coulomb=count * drag, smoothing_velocity=turning), origin)]
+        return [(_scaled(GuideFriction.of(coulomb=count * drag, smoothing_velocity=turning), table), origin)]
     effect = placed(table.where, lambda: guide_effect(one.guide, one.coefficients, count, load, seal, turning))
-    return [(effect, f"{origin} with {under} and seals of {format_quantity(seal, 'N')} each")]
+    return [(_scaled(effect, table), f"{origin} with {under} and seals of {format_quantity(seal, 'N')} each")]
+
+
+def _scaled(effect: GuideFriction, table: Table) -> GuideFriction:
+    """The friction that acts: the computed level times what recordings have told of it."""
+    factor = table.quantity("friction_factor") if "friction_factor" in table.entries else 1.0
+    return effect.with_values(coulomb=factor * float(effect.values["coulomb"]))  # type: ignore[arg-type]
 
 
 def declared_carriages(top: Table, gravity: float) -> Carriages | None:

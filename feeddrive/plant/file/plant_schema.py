@@ -157,6 +157,7 @@ seal_drag | N | >= 0 usual 0 to 100 | | of the seals of one carriage; 0 or the c
 load | N | | | vertical load of one carriage; the table's weight, shared evenly, if left out
 coefficients | text | A, B | = A | of rolling and slip | with a geometry
 smoothing_velocity | m/s | >= 0 | = 0.5 mm/s | where the friction turns
+friction_factor | 1 | > 0 usual 0.3 to 3 | = 1 | level of the friction that acts, over that computed from the carriages
 preload_class | text | | | as the catalogue calls it; its lightest if left out | {catalogue}
 preload | N | >= 0 | | of one carriage, in place of that of the class | {catalogue}
 friction_coefficient | 1 | [0, 0.1] | | force over load; the catalogue's if left out | {catalogue}
