@@ -11,12 +11,13 @@ import time
 from collections.abc import Callable
 from threading import Lock
 
-SEARCH = 0.6
-"""Share of the time in which effects are searched. What is left covers the questions to what was found, each about a
-round of the search, and the report."""
+SEARCH = 0.5
+"""Share of the time in which effects are searched. What is under way ends after it, and the questions to what was found
+take as long as a round or two of the search."""
 
-DOUBTS = 0.85
-"""Share of the time after which no further question is asked: judging and the report take some seconds of a minute."""
+DOUBTS = 0.75
+"""Share of the time after which no further question is asked: what is under way ends, and judging and the report take
+some seconds of a minute."""
 
 
 class Budget:

@@ -151,6 +151,8 @@ def _reported(
     count = len(without_shifts(found.fit.effects))
     shares = [share_of(found.problem, judged, found.fit.effects, i) for i in range(count)]
     progress("looking for what would settle doubts")
+    no_time = budget.skips("which experiment settles a doubt")
+    experiments = () if no_time else next_experiments(found, settled.rivals, spans)
     result = Diagnosis(
         plant=plant.name,
         fit=_stamps(recordings),
@@ -176,7 +178,7 @@ def _reported(
         measured=_numbers_met(found, doubted),
         kept=kept_of(found, known),
         alike=alike,
-        next_experiments=next_experiments(found, settled.rivals, spans),
+        next_experiments=experiments,
         correlation=correlation(found.problem, found.fit, known),
         notes=(
             *begun.notes,

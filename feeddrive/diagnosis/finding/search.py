@@ -120,7 +120,8 @@ def search(
             found = fit(problem, [one for one in found.effects if not any(one is other for other in others)])
             continue
         if taken is None:
-            beyond = beyond_tolerance(problem, found)
+            left_out = problem.budget.skips("declared values beyond their tolerances")
+            beyond = None if left_out else beyond_tolerance(problem, found)
             if beyond is None:
                 break
             problem, effect = beyond
