@@ -16,6 +16,7 @@ from feeddrive.files import find_plant
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.recording import Recording
 from feeddrive.recording.files.reading import read_recording
+from feeddrive.report.figures.drawing import without_formula
 from feeddrive.simulate.driven import motor_motion, motor_motions
 
 
@@ -60,3 +61,11 @@ def test_rows_at_other_times_are_those_of_a_recording_with_such_times(bits: int)
 def slower(recording: Recording) -> Recording:
     """The same rows, a thousandth further apart."""
     return replace(recording, time=1.001 * recording.time, sample_time=1.001 * recording.sample_time)
+
+
+@pytest.mark.parametrize(
+    ("formula", "plain"),
+    [(r"$\mathdefault{10^{2}}$", "10²"), (r"$\mathdefault{6\times10^{-4}}$", "6 × 10⁻⁴"), ("", ""), ("0.5", "0.5")],
+)
+def test_powers_of_ten_in_plain_letters(formula: str, plain: str) -> None:
+    assert without_formula(formula) == plain
