@@ -11,7 +11,13 @@ import numpy as np
 
 from feeddrive.diagnosis.likelihood.band import END_CUT, Band, comparison_band, held, sensor_noise
 from feeddrive.diagnosis.likelihood.encoder_error import Weighing, encoder_error
-from feeddrive.diagnosis.likelihood.slow_rows import is_slow, known_motion, refuse_unknown_motion, sentence
+from feeddrive.diagnosis.likelihood.slow_rows import (
+    is_slow,
+    known_motion,
+    missed_between_rows,
+    refuse_unknown_motion,
+    sentence,
+)
 from feeddrive.diagnosis.suspicion.channel_timing import lagging
 from feeddrive.diagnosis.suspicion.flawed_rows import refuse_little_left, sound_rows, without_copied_position
 from feeddrive.diagnosis.suspicion.torque_channel import with_torque
@@ -24,6 +30,10 @@ from feeddrive.typing import BoolArray, FloatArray
 
 PREDICTED = ("motor_torque", "table_position")
 """Channels that are predicted from the measured motor motion."""
+
+NO_SENSOR = 2.0**-32
+"""Noise over the range of a channel below which no sensor made it: the finest encoders count 2^32 steps. A simulation
+without noise is compared as far as its rows tell the motion between them."""
 
 SHORTEST = 3.0
 """Shortest recording [s] that leaves something between the cut ends."""
@@ -241,6 +251,9 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
         sensed["motor_torque"] = raw["motor_torque"] - recording["injected_torque"]
     own = recorded(recording)
     noise = {name: sensor_noise(series[own], band) for name, series in sensed.items()}
+    for name, series in sensed.items():
+        if noise[name] < NO_SENSOR * float(np.ptp(series)):
+            noise[name] = math.hypot(noise[name], missed_between_rows(recording, plant, counted).get(name, 0.0))
     zero = _zero_of_angle(recording, plant)
     encoder = encoder_error(_placed(plant, zero), recording, band, noise, bool(scaled_from))
     motion = encoder.motion if encoder is not None else motor_motion(time, recording["motor_angle"])
