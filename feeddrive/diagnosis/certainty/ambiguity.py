@@ -97,6 +97,9 @@ def rivals_of(found: Search, judged: Sequence[Judged]) -> list[list[Rival]]:
     mine = Residuals.of(found.problem, found.fit, [(j.after, j) for j in judged])
     result = []
     for place in range(len(found.fit.effects)):
+        if found.problem.budget.skips("which other names do as well as", found.fit.effects[place].name):
+            result.append([])
+            continue
         near = [attempt.fit.effects[-1] for attempt in _near(found, place)]
         like = [
             other for other in imitations_of(found.fit.effects[place], found.problem.plant) if _is_free(found, other)

@@ -106,9 +106,9 @@ def search(
     impossible: dict[str, str] = {**denied}
     met: set[tuple[str, ...]] = set()
     near: tuple[Near, ...] = ()
-    while len(rounds) < MOST_ROUNDS:
+    while len(rounds) < MOST_ROUNDS and not (rounds and problem.budget.skips("further rounds of the search")):
         progress(f"round {len(rounds) + 1}: {len(found.effects)} effects so far")
-        now = one_round(scene_of(problem, found.effects), found, impossible, denied)
+        now = one_round(scene_of(problem, found.effects), found, impossible, denied, len(rounds) + 1)
         taken, near = _likelier(problem, found, now)
         rounds.append(tuple(attempt.for_the_record() for attempt in now.attempts))
         names = taken.name.split(" with ") if taken is not None else []
@@ -150,7 +150,10 @@ def _likelier(problem: Problem, found: Fit, now: Round) -> tuple[_Taken | None, 
     sets = neighbours(problem, found, here, now.count)
     able = [one for one in sets if one.gain > 0]
     chosen = [one for one in able if one.is_next][:FITTED] + [one for one in able[:1] if not one.is_next]
-    tried = [_fitted(problem, found, one, here, now.count) for one in chosen]
+    tried: list[_Taken | None] = []
+    for one in chosen:  # the likeliest in any case
+        if not tried or not problem.budget.skips("sets of effects that came near"):
+            tried.append(_fitted(problem, found, one, here, now.count))
     for attempt in now.attempts:
         if len(attempt.fit.residual) != len(found.residual):  # some samples tell nothing of it: compared on the others
             there = fit(attempt.problem, found.effects, iterations=0)

@@ -42,7 +42,7 @@ from feeddrive.engine.step.linear_part import SimulationError
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 from feeddrive.recording.checks.flaws import quantisation_step
-from feeddrive.simulate.driven import MotorMotion, motor_motion, simulate_driven
+from feeddrive.simulate.driven import MotorMotion, motor_motions, simulate_driven
 from feeddrive.typing import ComplexArray, FloatArray
 
 WINDOW = 0.128
@@ -143,7 +143,7 @@ def encoder_error(
     time: FloatArray = np.arange(len(angle), dtype=np.float64) * sample_time
     expected = expected_motion(angle, step, sample_time)
     errors = [drawn_error(expected, step, sample_time, draw) for draw in range(DRAWS)]
-    motion, *drawn = (motor_motion(time, expected + left) for left in (np.zeros(len(angle)), *errors))
+    motion, *drawn = motor_motions(time, np.column_stack([expected, *(expected + left for left in errors)]))
     try:
         runs = [simulate_driven(plant, one) for one in (motion, *drawn)]
     except SimulationError:

@@ -10,7 +10,7 @@ from typing import Self
 import numpy as np
 
 from feeddrive.diagnosis.likelihood.band import END_CUT, Band, comparison_band, held, sensor_noise
-from feeddrive.diagnosis.likelihood.encoder_error import Weighing, encoder_error
+from feeddrive.diagnosis.likelihood.encoder_error import Weighing, encoder_error, expected_motion
 from feeddrive.diagnosis.likelihood.slow_rows import (
     is_slow,
     known_motion,
@@ -24,6 +24,7 @@ from feeddrive.diagnosis.suspicion.torque_channel import with_torque
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
+from feeddrive.recording.checks.flaws import quantisation_step
 from feeddrive.recording.long.joined import clock, recorded
 from feeddrive.simulate.driven import MotorMotion, motor_motion
 from feeddrive.typing import BoolArray, FloatArray
@@ -188,6 +189,14 @@ class AxisEvidence(Evidence):
         """The plant with its nut where it stood: simulated positions count from the zero of the motor angle."""
         return _placed(plant, self.zero)
 
+    def at_other_times(self, recording: Recording) -> AxisEvidence:
+        """The evidence as it is where the same rows have other times: what changes is the motion between them."""
+        angle, sample_time = recording["motor_angle"], recording.sample_time
+        if self.gains:
+            angle = expected_motion(angle, quantisation_step(angle), sample_time)
+        motion = motor_motion(_from_zero(recording), angle).timed(clock(recording))
+        return replace(self, recording=recording, motion=motion)
+
     @property
     def motion_speed(self) -> FloatArray:
         """Speed of the motor [rad/s], (n,)."""
@@ -227,7 +236,7 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
         raise InputError(f"the recording lasts {recording.duration:.3g} s, too short to compare", recording.name, mend)
     rate = 1 / recording.sample_time
     band = comparison_band(plant, rate)
-    time: FloatArray = np.arange(len(recording), dtype=np.float64) * recording.sample_time
+    time = _from_zero(recording)
     raw = {name: recording[name] for name in measured_names}
     slow = is_slow(recording)
     acting = dict(raw)
@@ -276,6 +285,12 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
         encoder.added if encoder is not None else {},
         encoder.drawn if encoder is not None else (),
     )
+
+
+def _from_zero(recording: Recording) -> FloatArray:
+    """Times of the rows from the first on [s], (n,), as many periods of the clock as there are rows between."""
+    time: FloatArray = np.arange(len(recording), dtype=np.float64) * recording.sample_time
+    return time
 
 
 def _placed(plant: Plant, zero: float) -> Plant:

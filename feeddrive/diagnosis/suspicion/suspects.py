@@ -39,13 +39,12 @@ from feeddrive.diagnosis.likelihood.cross_validation import (
     left_out_residual,
     prior_of,
 )
-from feeddrive.diagnosis.likelihood.evidence import AxisEvidence, prepare
+from feeddrive.diagnosis.likelihood.evidence import AxisEvidence
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit, linear_step
 from feeddrive.diagnosis.likelihood.folds import block_numbers
 from feeddrive.diagnosis.likelihood.tolerances import SURE
 from feeddrive.diagnosis.recordings.recordings import is_shift
 from feeddrive.diagnosis.suspicion.quality import Quality
-from feeddrive.errors import InputError
 from feeddrive.recording import Recording
 from feeddrive.typing import FloatArray
 
@@ -205,12 +204,7 @@ def _clock_column(problem: Problem, found: Fit) -> FloatArray | None:
     plant, parts = problem.machine(found.effects), []
     for e in problem.evidence:
         assert isinstance(e, AxisEvidence)
-        try:
-            other = prepare(Suspect(CLOCK, STEP).mended(e.recording), problem.plant, 1.0)
-        except InputError:
-            return None
-        # the same rows pass the same filter: what changes is the motion between them
-        other = replace(e, recording=other.recording, motion=other.motion)
+        other = e.at_other_times(Suspect(CLOCK, STEP).mended(e.recording))
         rows = e.thinned(e.fit_rows)
         here, there = (e.weighted(problem.predictor.predict(plant, one), rows) for one in (e, other))
         parts.append((there - here) / STEP)

@@ -20,7 +20,7 @@ def verdict_sentences(diagnosis: Diagnosis) -> list[str]:
     beside = f"Beside these it carries what no named effect explains: {tables}." if tables else ""
     stated = [one.statement for one in diagnosis.changes.changes]
     changed = f"Between the recordings changed: {'; '.join(stated)}." if stated else ""
-    found = [_main_finding(diagnosis), beside, changed]
+    found = [_main_finding(diagnosis), diagnosis.untried, beside, changed]
     sentences = [*found, _errors(diagnosis), *_above_noise(diagnosis)]
     return [sentence for sentence in sentences + _doubts(diagnosis) if sentence]
 
@@ -47,6 +47,8 @@ def _main_finding(diagnosis: Diagnosis) -> str:
     if diagnosis.changes.changes:
         return "No effect is missing in every recording, but the recordings differ."
     within = ", its values calibrated within their tolerances," if diagnosis.calibrated else ""
+    if diagnosis.untried:
+        return "Nothing was found that the declared plant lacks, as far as was tried."
     if all(is_noise(channel) for channel in diagnosis.channels):
         return f"Nothing is missing: the declared plant{within} explains the recording down to sensor noise."
     return "No known effect was found that the declared plant lacks, but it does not explain the recording fully."
