@@ -152,7 +152,8 @@ def diagnose_files(job: Job, progress: Callable[[str], None] = lambda _: None) -
     declared = _bytes(job.plant)
     axis = load(job.plant)  # refused before the recordings are read
     fitted, judged = ([_read(source) for source in sources] for sources in (job.recordings, job.validation))
-    fitted, judged = (list(informative(axis.plant, ones)) for ones in (fitted, judged))  # the rest is given back
+    fitted = list(informative(axis.plant, fitted, 1.0 if judged else job.split))  # the rest is given back
+    judged = list(informative(axis.plant, judged))
     if _bytes(job.plant) != declared:
         raise InputError("was changed while it was read", str(job.plant), "diagnose again")
     plant = axis.plant
