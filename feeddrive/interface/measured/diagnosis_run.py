@@ -33,6 +33,7 @@ from feeddrive.errors import InputError
 from feeddrive.files import find_plant, shipped_plants
 from feeddrive.interface.axis import load
 from feeddrive.interface.measured.diagnosed import Diagnosed
+from feeddrive.interface.measured.first_look import play_seen
 from feeddrive.output_folder import finish_interrupted, output_folder, refuse_unusable, take_away
 from feeddrive.recording import Recording, read_recording
 from feeddrive.report.figures.figures import render_figures, save_figures
@@ -159,7 +160,8 @@ def diagnose_files(job: Job, progress: Callable[[str], None] = lambda _: None) -
     plant = axis.plant
     numbers = read_measured_numbers(job.measured, plant) if job.measured is not None else ()
     as_read = checksum(job.measured) if job.measured is not None else ""
-    result, effects = diagnose(plant, fitted, judged, job.split, job.simulate, progress, job.start, numbers)
+    start = job.start or play_seen(plant, fitted)
+    result, effects = diagnose(plant, fitted, judged, job.split, job.simulate, progress, start, numbers)
     if job.earlier is not None:
         since = changed_since(job.earlier.reported, result.effects)
         result = replace(result, kept=replace(result.kept, since=since))

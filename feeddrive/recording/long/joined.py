@@ -57,9 +57,14 @@ def shortened(recording: Recording, radius: float, split: float = 1.0) -> Record
     return _joined(recording, name, stretches, judged, radius if name == "motor_angle" else 1.0)
 
 
+def is_joined(recording: Recording) -> bool:
+    """Tell whether a recording is what was kept of a long one."""
+    return any(one.kind == JOINED for one in recording.flaws)
+
+
 def clock(recording: Recording) -> FloatArray:
     """Time of the samples since the first, (n,) [s]: even, but where stretches are joined."""
-    if any(one.kind == JOINED for one in recording.flaws):
+    if is_joined(recording):
         since: FloatArray = recording.time - recording.time[0]
         return since
     return np.arange(len(recording), dtype=np.float64) * recording.sample_time
