@@ -214,7 +214,7 @@ class AxisEvidence(Evidence):
 
 
 def prepare(recording: Recording, plant: Plant, share: float, hold: float | None = None) -> AxisEvidence:
-    """Evidence of a recording, its first `share` fitted and the rest judged.
+    """Evidence of a recording, its first `share` fitted and the rest judged, or what was kept apart of it for that.
 
     Args:
         recording: with a torque, a current or the table position beside the motor angle.
@@ -271,7 +271,7 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
         {name: band.filter(series) for name, series in acting.items()},
         noise,
         counted,
-        time < share * time[-1] if share < 1 else np.ones(len(time), dtype=bool),
+        _fitted(recording, share),
         band.edge,
         BLOCK,
         band.thinning,
@@ -291,6 +291,17 @@ def _from_zero(recording: Recording) -> FloatArray:
     """Times of the rows from the first on [s], (n,), as many periods of the clock as there are rows between."""
     time: FloatArray = np.arange(len(recording), dtype=np.float64) * recording.sample_time
     return time
+
+
+def _fitted(recording: Recording, share: float) -> BoolArray:
+    """Samples that are fitted, (n,)."""
+    if share >= 1 or share <= 0:
+        return np.full(len(recording), share >= 1)
+    if recording.kept_apart is not None:
+        return ~recording.kept_apart
+    time = np.arange(len(recording)) * recording.sample_time
+    found: BoolArray = time < share * time[-1]
+    return found
 
 
 def _placed(plant: Plant, zero: float) -> Plant:
