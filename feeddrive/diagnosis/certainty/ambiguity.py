@@ -95,7 +95,7 @@ def rivals_of(found: Search, judged: Sequence[Judged]) -> list[list[Rival]]:
         judged: recordings with the found effects in.
     """
     mine = Residuals.of(found.problem, found.fit, [(j.after, j) for j in judged])
-    result = []
+    result: list[list[Rival]] = []
     for place in range(len(found.fit.effects)):
         if found.problem.budget.skips("which other names do as well as", found.fit.effects[place].name):
             result.append([])
