@@ -134,6 +134,11 @@ def _usable(scene: Scene, problem: Problem, name: str, result: Fit) -> Attempt:
     return compared(problem, name, result, scene.found)
 
 
+def has_play(effects: Sequence[Effect]) -> bool:
+    """Whether one of the effects is a free play."""
+    return any(_jumps(effect) for effect in effects)
+
+
 def _jumps(effect: Effect) -> bool:
     return isinstance(effect, TransmissionEffect) and effect.has_play
 
@@ -165,6 +170,14 @@ def _free(result: Fit, before: Sequence[Effect]) -> list[bool]:
 def _reference(problem: Problem, before: Sequence[Effect], result: Fit) -> Fit:
     joint = result.effects[: len(before)] != tuple(before)
     return fit(problem, before, [joint] * len(before), iterations=0)
+
+
+def same_samples(one: Problem, other: Problem) -> bool:
+    """Whether two problems, of the same recordings, weigh the same samples alike."""
+    return all(
+        a is b or (np.array_equal(a.fit_rows, b.fit_rows) and a.weighs_as(b))
+        for a, b in zip(one.evidence, other.evidence, strict=True)
+    )
 
 
 def with_short_blocks(problem: Problem) -> Problem:

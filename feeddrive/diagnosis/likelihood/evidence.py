@@ -122,9 +122,13 @@ class Evidence:
         """Rms of what the model itself may miss of a channel."""
         return self.model_error.get(name, 0.0)
 
-    def where_predictable(self, predictable: BoolArray) -> Self:
-        """The evidence without the samples that cannot be predicted."""
-        return replace(self, counted=self.counted & predictable)
+    def weighs_as(self, other: Self) -> bool:
+        """Whether samples weigh as much in another evidence of this recording."""
+        return True
+
+    def where_predictable(self, predictable: BoolArray | FloatArray) -> Self:
+        """The evidence without the samples that cannot be predicted, (n,): false, or of weight 0."""
+        return replace(self, counted=self.counted & (predictable > 0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,6 +143,8 @@ class AxisEvidence(Evidence):
         gains: channel to the gain of each frequency of its whole series, where the encoder's error shows in it.
         added: channel to the rms in the band that the encoder's error adds to its noise; as `gains`.
         drawn: motions with the encoder's error once more; as `gains`.
+        weights: channel to the weight of every sample, (n,): noise over noise and what the encoder's error makes of a
+            free play there; channels left out are predicted alike everywhere.
         torque_rows: rows that the recorder writes a torque for, and the first row of one (`suspicion.logged_rows`);
             None where the torque is what the drive holds.
     """
@@ -151,6 +157,27 @@ class AxisEvidence(Evidence):
     added: dict[str, float] = field(default_factory=dict)
     drawn: tuple[MotorMotion, ...] = ()
     torque_rows: tuple[int, int] | None = None
+    weights: dict[str, FloatArray] = field(default_factory=dict)
+
+    def where_predictable(self, predictable: BoolArray | FloatArray) -> Self:
+        """The evidence without the samples of weight 0, the table position weighed at the others."""
+        kept = super().where_predictable(predictable)
+        if predictable.dtype == np.bool_ or "table_position" not in self.measured:
+            return kept
+        return replace(kept, weights={"table_position": np.asarray(predictable, dtype=float)})
+
+    def weighs_as(self, other: Self) -> bool:
+        """Whether samples weigh as much in another evidence of this recording."""
+        mine, its = self.weights, other.weights
+        return mine.keys() == its.keys() and all(np.array_equal(mine[name], its[name]) for name in mine)
+
+    def without_open(self, name: str, part: FloatArray, rows: BoolArray) -> FloatArray:
+        """One channel over its noise and by its weights, (k,), without the zero of a scale."""
+        if name not in self.weights:
+            return super().without_open(name, part, rows)
+        weights = self.weights[name][rows]
+        weighed = weights * part / self.noise[name]
+        return weighed - weights * float(weights @ weighed / (weights @ weights)) if name in self.floating else weighed
 
     def in_band(self, series: FloatArray) -> FloatArray:
         """A series or columns, (n,), in the band of the comparison."""
