@@ -7,15 +7,12 @@ all effects together, and the likeliest of them is taken if what it adds also lo
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
-
-import numpy as np
+from dataclasses import dataclass
 
 from feeddrive.diagnosis.calibration.beyond import beyond_tolerance, without_effects
 from feeddrive.diagnosis.calibration.calibrate import calibrated, recalibrated
-from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, Attempt, compared, has_play, same_samples, started
+from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, Attempt, compared, started
 from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.finding.round import Round, one_round
 from feeddrive.diagnosis.finding.scene import scene_of
@@ -23,9 +20,8 @@ from feeddrive.diagnosis.finding.sets import Neighbour, neighbours
 from feeddrive.diagnosis.heat.heat_candidates import is_another
 from feeddrive.diagnosis.judging.result import Trial
 from feeddrive.diagnosis.likelihood.coordinates import write_coordinates
-from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
-from feeddrive.diagnosis.likelihood.set_evidence import log_odds
+from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between, regained, same_samples
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 
@@ -78,11 +74,9 @@ class Near:
 
 
 @dataclass(frozen=True)
-class _Taken:
+class _Taken(Standing):
     """A likelier set: its recordings and fit, what was added, and by how much it is likelier."""
 
-    problem: Problem
-    fit: Fit
     name: str
     odds: float
 
@@ -113,7 +107,7 @@ def search(
     while len(rounds) < MOST_ROUNDS:
         progress(f"round {len(rounds) + 1}: {len(found.effects)} effects so far")
         now = one_round(scene_of(problem, found.effects), found, impossible, denied)
-        taken, near = _likelier(problem, begun[0].evidence, found, now)
+        taken, near = _likelier(problem, found, now)
         rounds.append(tuple(attempt.for_the_record() for attempt in now.attempts))
         names = taken.name.split(" with ") if taken is not None else []
         trials += [_trial(len(rounds), attempt, attempt.name in names) for attempt in rounds[-1]]
@@ -148,24 +142,19 @@ def search(
     return Search(problem, found, tuple(trials), tuple(rounds), impossible, near, begun)
 
 
-def _likelier(
-    problem: Problem, whole: Sequence[Evidence], found: Fit, now: Round
-) -> tuple[_Taken | None, tuple[Near, ...]]:
+def _likelier(problem: Problem, found: Fit, now: Round) -> tuple[_Taken | None, tuple[Near, ...]]:
     """The likeliest of the sets near one, fitted, None where none is likelier; and what comes near beside it."""
     here = [attempt for attempt in now.attempts if same_samples(attempt.problem, problem)]
     sets = neighbours(problem, found, here, now.count)
     able = [one for one in sets if one.gain > 0]
     chosen = [one for one in able if one.is_next][:FITTED] + [one for one in able[:1] if not one.is_next]
-    tried = [_fitted(problem, whole, found, one, here, now.count) for one in chosen]
+    at_hand = Standing(problem, found)
+    tried = [_fitted(at_hand, one, here, now.count) for one in chosen]
     for attempt in now.attempts:
         if not same_samples(attempt.problem, problem):  # some samples tell less of it: compared on the others
             there = fit(attempt.problem, found.effects, iterations=0)
             away = neighbours(attempt.problem, there, [attempt], now.count)
-            tried += [
-                _fitted(attempt.problem, whole, there, one, [attempt], now.count)
-                for one in away[:1]
-                if one.gain > 0 and one.added
-            ]
+            tried += [_fitted(at_hand, one, [attempt], now.count) for one in away[:1] if one.gain > 0 and one.added]
     best = _best((one for one in tried if one is not None and one.odds > 0), now.count)
     beside = [one for one in sets if not one.dropped and len(one.added) == 1 and one.speaks > 0]
     return best, tuple(Near(here[one.added[0]].name, one.gain, one.speaks) for one in beside)
@@ -175,55 +164,14 @@ def _best(likelier: Iterable[_Taken], count: int) -> _Taken | None:
     """The likeliest of sets, compared with each other: all may be far ahead of the set at hand."""
     best: _Taken | None = None
     for one in sorted(likelier, key=lambda one: len(one.fit.coordinates)):
-        if best is None or _odds_between(best, one, count) > 0:
+        if best is None or odds_between(best, one, count) > 0:
             best = one
     return best
 
 
-def _odds_between(first: _Taken, second: _Taken, count: int) -> float:
-    """Logarithm of the odds for the second of two sets, each on the samples that it predicts.
-
-    Against the set at hand they cannot be compared: the one that predicts fewer samples is behind, however much better
-    it does there. So both are compared on the samples that both predict, and on the others by what each says of them.
-    """
-    if same_samples(first.problem, second.problem):
-        return log_odds(second.problem, first.fit, second.fit, count)
-    if len(first.fit.residual) < len(second.fit.residual):
-        return -_odds_between(second, first, count)
-    try:
-        there = fit(second.problem, first.fit.effects, iterations=JOINT_ITERATIONS)
-        odds = log_odds(second.problem, there, second.fit, count)
-    except InputError:  # cannot be simulated
-        return math.inf
-    level = min(there.squared_error, second.fit.squared_error) / len(there.residual)
-    return odds + _of_chaos(first, second, level)
-
-
-def _of_chaos(first: _Taken, second: _Taken, level: float) -> float:
-    """Logarithm of the odds for a set by the samples that it cannot predict, and another can.
-
-        log p(second) - log p(first) = m/2 [ q1 / c + log c - 1 - log max(q2, c) ]
-
-    The first must do there as well as elsewhere, mean square q1 of variance c = `level`; the second says only how large
-    its error is, q2, and pays for that freedom what a normal distribution of that variance costs.
-    """
-    wide = first.problem
-    lost = [a.counted & ~b.counted for a, b in zip(wide.evidence, second.problem.evidence, strict=True)]
-    kept = tuple(e.where_predictable(mask) for e, mask in zip(wide.evidence, lost, strict=True))
-    if not any(e.fit_rows.any() for e in kept):
-        return 0.0
-    there = replace(wide, evidence=kept)
-    errors = [there.residual(one.fit.effects) for one in (first, second)]
-    q1, q2 = (float(np.mean(error**2)) for error in errors)
-    if not np.isfinite(q1 + q2) or level <= 0:
-        return 0.0
-    return 0.5 * len(errors[0]) * (q1 / level + math.log(level) - 1 - math.log(max(q2, level)))
-
-
-def _fitted(
-    problem: Problem, whole: Sequence[Evidence], found: Fit, one: Neighbour, attempts: Sequence[Attempt], count: int
-) -> _Taken | None:
+def _fitted(at_hand: Standing, one: Neighbour, attempts: Sequence[Attempt], count: int) -> _Taken | None:
     """A set fitted; None where it cannot be simulated, or what it adds does not pay on blocks left out."""
+    problem, found = at_hand.problem, at_hand.fit
     kept = [effect for place, effect in enumerate(found.effects) if place not in one.dropped]
     added = [attempts[i] for i in one.added]
     # what shows in a brief passage alone is judged in blocks as short
@@ -235,13 +183,10 @@ def _fitted(
             starts += [_restarted(problem, kept, *order) for order in (added, added[::-1])]
         nearest = min((start for start in starts if start), key=lambda start: _error(own, start), default=[])
         result = fit(own, nearest, iterations=JOINT_ITERATIONS)
-        before = found if own is problem else fit(own, found.effects, iterations=0)
-        odds = log_odds(own, before, result, count)
-        if has_play(found.effects) and not has_play(result.effects):
-            # what the play could not predict is to be predicted again
-            taken = _Taken(replace(own, evidence=tuple(whole)), result, name, odds)
-            taken = replace(taken, fit=fit(taken.problem, result.effects, iterations=JOINT_ITERATIONS))
-            return replace(taken, odds=-_odds_between(taken, _Taken(own, before, name, 0.0), count))
+        again = regained(own, result.effects)
+        if again is not own:  # what the play could not predict is to be predicted again
+            own, result = again, fit(again, result.effects, iterations=JOINT_ITERATIONS)
+        odds = odds_between(at_hand, Standing(own, result), count)
         if one.added and not one.dropped and not compared(own, name, result, found.effects).comparison.pays:
             return None
     except InputError:

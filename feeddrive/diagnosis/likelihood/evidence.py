@@ -51,6 +51,7 @@ class Evidence:
         thinning: every how many samples carry all that is in the band.
         floating: channels whose zero is not known, and taken out of every error.
         model_error: channel to the rms of what the model itself may miss; channels left out are predicted exactly.
+        lost: samples that would count, but that a free play of the plant leaves unpredictable, (n,); None for none.
     """
 
     recording: Recording
@@ -63,6 +64,7 @@ class Evidence:
     thinning: int
     floating: tuple[str, ...]
     model_error: dict[str, float]
+    lost: BoolArray | None = field(default=None, kw_only=True)
 
     @property
     def channels(self) -> tuple[str, ...]:
@@ -126,9 +128,28 @@ class Evidence:
         """Whether samples weigh as much in another evidence of this recording."""
         return True
 
+    @property
+    def whole(self) -> Self:
+        """The evidence with the samples again that a free play left unpredictable."""
+        return self if self.lost is None else replace(self, counted=self.counted | self.lost, lost=None)
+
     def where_predictable(self, predictable: BoolArray | FloatArray) -> Self:
-        """The evidence without the samples that cannot be predicted, (n,): false, or of weight 0."""
-        return replace(self, counted=self.counted & (predictable > 0))
+        """The whole evidence without the samples that cannot be predicted, (n,): false, or of weight 0."""
+        whole = self.whole
+        lost = whole.counted & ~(predictable > 0)
+        return replace(whole, counted=whole.counted & ~lost, lost=lost) if lost.any() else whole
+
+    def within(self, other: Self) -> Self:
+        """The evidence on the samples that another one of this recording has as well."""
+        gone = self.counted & ~other.counted
+        lost = gone if self.lost is None else gone | self.lost
+        return replace(self, counted=self.counted & other.counted, lost=lost) if gone.any() else self
+
+    @property
+    def where_lost(self) -> Self:
+        """The evidence on the samples alone that a free play left unpredictable."""
+        none = np.zeros(len(self.counted), dtype=bool)
+        return replace(self.whole, counted=none if self.lost is None else self.lost)
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,6 +186,21 @@ class AxisEvidence(Evidence):
         if predictable.dtype == np.bool_ or "table_position" not in self.measured:
             return kept
         return replace(kept, weights={"table_position": np.asarray(predictable, dtype=float)})
+
+    def within(self, other: Self) -> Self:
+        """The evidence on the samples that another one of this recording has as well, by the lesser of the weights."""
+        kept = super().within(other)
+        weights = {
+            name: np.minimum(kept.weights.get(name, 1.0), other.weights.get(name, 1.0))
+            for name in (*kept.weights, *other.weights)
+        }
+        return replace(kept, weights=weights) if weights and not self.weighs_as(other) else kept
+
+    @property
+    def whole(self) -> Self:
+        """The evidence with the samples again that a free play left unpredictable, all of one weight."""
+        whole = super().whole
+        return replace(whole, weights={}) if whole.weights else whole
 
     def weighs_as(self, other: Self) -> bool:
         """Whether samples weigh as much in another evidence of this recording."""

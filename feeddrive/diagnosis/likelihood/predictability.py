@@ -14,7 +14,7 @@ strokes. So the error is simulated as large as it is.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -22,7 +22,7 @@ from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
 from feeddrive.diagnosis.likelihood.band import white_noise
 from feeddrive.diagnosis.likelihood.evidence import AxisEvidence
-from feeddrive.effects.base import TransmissionEffect
+from feeddrive.effects.base import Effect, TransmissionEffect
 from feeddrive.plant.plant import Plant
 from feeddrive.recording.checks.flaws import quantisation_step
 from feeddrive.simulate.driven import MotorMotion, on_grid, simulate_driven
@@ -62,7 +62,7 @@ class Missed:
 
 def predictable_samples(plant: Plant, evidence: AxisEvidence) -> BoolArray:
     """Samples that the plant can predict, shape (n,); all of them where there is no free play."""
-    if not _has_play(plant):
+    if not has_play(plant.effects):
         return np.ones(len(evidence.recording), dtype=bool)
     missed = _missed(plant, evidence)
     return ~_lost(missed, evidence)
@@ -74,7 +74,7 @@ def weights_to_fit(plant: Plant, evidence: AxisEvidence) -> BoolArray | FloatArr
     At a contact the encoder's own error is magnified. What it then moves the table by is expected beside the noise of
     the scale: weighed as that alone, effects would be named for it.
     """
-    if not _has_play(plant):
+    if not has_play(plant.effects):
         return np.ones(len(evidence.recording), dtype=bool)
     missed = _missed(plant, evidence)
     lost, noise = _lost(missed, evidence), evidence.noise.get("table_position")
@@ -85,8 +85,9 @@ def weights_to_fit(plant: Plant, evidence: AxisEvidence) -> BoolArray | FloatArr
     return weights
 
 
-def _has_play(plant: Plant) -> bool:
-    return any(isinstance(effect, TransmissionEffect) and effect.has_play for effect in plant.effects)
+def has_play(effects: Sequence[Effect]) -> bool:
+    """Whether one of the effects is a free play."""
+    return any(isinstance(effect, TransmissionEffect) and effect.has_play for effect in effects)
 
 
 def _missed(plant: Plant, evidence: AxisEvidence) -> Missed:
