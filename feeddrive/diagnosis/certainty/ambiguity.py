@@ -24,6 +24,13 @@ from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging.judge import Judged
 from feeddrive.diagnosis.likelihood.coordinates import LOGARITHMIC
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
+from feeddrive.diagnosis.likelihood.set_evidence import (
+    Standing,
+    commonly_predicted,
+    excess_beyond,
+    regained,
+    same_samples,
+)
 from feeddrive.effects.base import Effect, number
 from feeddrive.effects.chain.stiffness_deviation import PARTS, StiffnessDeviation, parts_of
 from feeddrive.errors import InputError
@@ -232,13 +239,19 @@ def _in_place(found: Search, judged: Sequence[Judged], place: int, rival: Effect
         freed = given_back(freed, named)
         if _keys(freed) != _keys(problem):
             problem, effects = fitted_together(freed, said)
-        swapped = fit(problem, effects, iterations=ITERATIONS)
-        its = Residuals.of(problem, swapped, [(j.with_effects(problem, swapped.effects), j) for j in judged])
+        problem = regained(problem, effects)
+        swapped = there = fit(problem, effects, iterations=ITERATIONS)
+        beyond = 0.0
+        if not same_samples(problem, found.problem):  # without the free play of what was taken
+            there = fit(commonly_predicted(problem, found.problem), swapped.effects, iterations=ITERATIONS)
+            level = min(float(mine.fitted @ mine.fitted), there.squared_error) / max(len(mine.fitted), 1)
+            beyond = excess_beyond(Standing(problem, swapped), Standing(found.problem, found.fit), level)
+        its = Residuals.of(problem, there, [(j.with_effects(problem, there.effects), j) for j in judged])
     except InputError:
         return None
     if not np.all(np.isfinite(its.fitted)):
         return None
-    odds, distance = odds_and_distance(found.problem, judged, mine, its)
+    odds, distance = odds_and_distance(found.problem, judged, mine, its, beyond)
     ratio = float(np.linalg.norm(its.judged) / np.linalg.norm(mine.judged))
     return Rival(place, swapped, odds, distance, ratio, problem)
 

@@ -62,6 +62,7 @@ class Evidence:
         thinning: every how many samples carry all that is in the band.
         floating: channels whose zero is not known, and taken out of every error.
         model_error: channel to the rms of what the model itself may miss; channels left out are predicted exactly.
+        lost: samples that would count, but that a free play of the plant leaves unpredictable, (n,); None for none.
     """
 
     recording: Recording
@@ -74,6 +75,7 @@ class Evidence:
     thinning: int
     floating: tuple[str, ...]
     model_error: dict[str, float]
+    lost: BoolArray | None = field(default=None, kw_only=True)
 
     @property
     def channels(self) -> tuple[str, ...]:
@@ -133,9 +135,32 @@ class Evidence:
         """Rms of what the model itself may miss of a channel."""
         return self.model_error.get(name, 0.0)
 
-    def where_predictable(self, predictable: BoolArray) -> Self:
-        """The evidence without the samples that cannot be predicted."""
-        return replace(self, counted=self.counted & predictable)
+    def weighs_as(self, other: Self) -> bool:
+        """Whether samples weigh as much in another evidence of this recording."""
+        return True
+
+    @property
+    def whole(self) -> Self:
+        """The evidence with the samples again that a free play left unpredictable."""
+        return self if self.lost is None else replace(self, counted=self.counted | self.lost, lost=None)
+
+    def where_predictable(self, predictable: BoolArray | FloatArray) -> Self:
+        """The whole evidence without the samples that cannot be predicted, (n,): false, or of weight 0."""
+        whole = self.whole
+        lost = whole.counted & ~(predictable > 0)
+        return replace(whole, counted=whole.counted & ~lost, lost=lost) if lost.any() else whole
+
+    def within(self, other: Self) -> Self:
+        """The evidence on the samples that another one of this recording has as well."""
+        gone = self.counted & ~other.counted
+        lost = gone if self.lost is None else gone | self.lost
+        return replace(self, counted=self.counted & other.counted, lost=lost) if gone.any() else self
+
+    @property
+    def where_lost(self) -> Self:
+        """The evidence on the samples alone that a free play left unpredictable."""
+        none = np.zeros(len(self.counted), dtype=bool)
+        return replace(self.whole, counted=none if self.lost is None else self.lost)
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,6 +175,8 @@ class AxisEvidence(Evidence):
         gains: channel to the gain of each frequency of its whole series, where the encoder's error shows in it.
         added: channel to the rms in the band that the encoder's error adds to its noise; as `gains`.
         drawn: motions with the encoder's error once more; as `gains`.
+        weights: channel to the weight of every sample, (n,): noise over noise and what the encoder's error makes of a
+            free play there; channels left out are predicted alike everywhere.
         torque_rows: rows that the recorder writes a torque for, and the first row of one (`suspicion.logged_rows`);
             None where the torque is what the drive holds.
     """
@@ -162,6 +189,42 @@ class AxisEvidence(Evidence):
     added: dict[str, float] = field(default_factory=dict)
     drawn: tuple[MotorMotion, ...] = ()
     torque_rows: tuple[int, int] | None = None
+    weights: dict[str, FloatArray] = field(default_factory=dict)
+
+    def where_predictable(self, predictable: BoolArray | FloatArray) -> Self:
+        """The evidence without the samples of weight 0, the table position weighed at the others."""
+        kept = super().where_predictable(predictable)
+        if predictable.dtype == np.bool_ or "table_position" not in self.measured:
+            return kept
+        return replace(kept, weights={"table_position": np.asarray(predictable, dtype=float)})
+
+    def within(self, other: Self) -> Self:
+        """The evidence on the samples that another one of this recording has as well, by the lesser of the weights."""
+        kept = super().within(other)
+        weights = {
+            name: np.minimum(kept.weights.get(name, 1.0), other.weights.get(name, 1.0))
+            for name in (*kept.weights, *other.weights)
+        }
+        return replace(kept, weights=weights) if weights and not self.weighs_as(other) else kept
+
+    @property
+    def whole(self) -> Self:
+        """The evidence with the samples again that a free play left unpredictable, all of one weight."""
+        whole = super().whole
+        return replace(whole, weights={}) if whole.weights else whole
+
+    def weighs_as(self, other: Self) -> bool:
+        """Whether samples weigh as much in another evidence of this recording."""
+        mine, its = self.weights, other.weights
+        return mine.keys() == its.keys() and all(np.array_equal(mine[name], its[name]) for name in mine)
+
+    def without_open(self, name: str, part: FloatArray, rows: BoolArray) -> FloatArray:
+        """One channel over its noise and by its weights, (k,), without the zero of a scale."""
+        if name not in self.weights:
+            return super().without_open(name, part, rows)
+        weights = self.weights[name][rows]
+        weighed = weights * part / self.noise[name]
+        return weighed - weights * float(weights @ weighed / (weights @ weights)) if name in self.floating else weighed
 
     def in_band(self, series: FloatArray) -> FloatArray:
         """A series or columns, (n,), in the band of the comparison."""

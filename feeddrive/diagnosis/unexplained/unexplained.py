@@ -25,6 +25,7 @@ from feeddrive.diagnosis.likelihood.cross_validation import (
 )
 from feeddrive.diagnosis.likelihood.fit import Problem, fit
 from feeddrive.diagnosis.likelihood.folds import block_numbers
+from feeddrive.diagnosis.likelihood.set_evidence import regained
 from feeddrive.diagnosis.unexplained.analysis import Analysis
 from feeddrive.diagnosis.unexplained.carry import analyses_of, forms_of, joint_step, judged_with, tried, with_carried
 from feeddrive.diagnosis.unexplained.unexplained_result import Carried, Instead, Unexplained, rest_in_words
@@ -173,9 +174,11 @@ def without_stand_ins(found: Search, judged: Sequence[Judged]) -> Search:
         f"beside a table over {table.place.replace('_', ' ')}, which predicts data not fitted better, it does not pay"
     )
     names = {effect.name for effect in effects} - {effect.name for effect in kept}
+    problem = regained(found.problem, kept)
     return replace(
         found,
-        fit=fit(found.problem, kept, iterations=0),
+        problem=problem,
+        fit=fit(problem, kept, iterations=0),
         impossible={**found.impossible, **dict.fromkeys(names, reason)},
     )
 
