@@ -67,6 +67,11 @@ errors of what shows there alone, such as a damping at its resonance, grow by 5 
 DRAWS = 4
 """Errors that are drawn: with `SMOOTHED` neighbours on either side, a spectrum is known to a fifth."""
 
+SMALL = 0.1
+"""Share of the motion's power up to which an encoder's error is a small one: its square is a hundredth then, and what the
+plant makes of error and of motion is told apart. Beyond, the error's own spectrum is that of the plant that is asked for:
+where the declared one has no resonance and the true one has, all is error, and frequencies count for little."""
+
 SMOOTHED = 3, 0.1
 """Neighbouring frequencies on either side over which a spectrum is averaged: so many, and this share of the frequency.
 Rest and slow motion make an error of less than a hertz, which a window of fixed length would spread."""
@@ -167,6 +172,7 @@ def encoder_error(
     if not material:
         return None
     share = _share_of_error(expected, errors, sample_time)
+    gains = {name: gain / (1 + (share / SMALL) ** 2) for name, gain in gains.items()}
     unsure: dict[str, list[FloatArray]] = {name: [] for name in noise}
     for part in unsure_motions(expected, share, sample_time, band.edge):
         try:
