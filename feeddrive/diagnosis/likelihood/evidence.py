@@ -9,6 +9,7 @@ from typing import Self
 
 import numpy as np
 
+from feeddrive.diagnosis.calibration.calibration import Whitener, whitener
 from feeddrive.diagnosis.likelihood.band import END_CUT, Band, comparison_band, held, sensor_noise
 from feeddrive.diagnosis.likelihood.encoder_error import Weighing, encoder_error, expected_motion
 from feeddrive.diagnosis.likelihood.slow_rows import (
@@ -177,6 +178,7 @@ class AxisEvidence(Evidence):
         drawn: motions with the encoder's error once more; as `gains`.
         weights: channel to the weight of every sample, (n,): noise over noise and what the encoder's error makes of a
             free play there; channels left out are predicted alike everywhere.
+        unsure: channel to what motion that may not be makes of it, in the band, (n, k); as `gains`.
         torque_rows: rows that the recorder writes a torque for, and the first row of one (`suspicion.logged_rows`);
             None where the torque is what the drive holds.
     """
@@ -188,6 +190,7 @@ class AxisEvidence(Evidence):
     gains: dict[str, FloatArray] = field(default_factory=dict)
     added: dict[str, float] = field(default_factory=dict)
     drawn: tuple[MotorMotion, ...] = ()
+    unsure: dict[str, FloatArray] = field(default_factory=dict)
     torque_rows: tuple[int, int] | None = None
     weights: dict[str, FloatArray] = field(default_factory=dict)
 
@@ -229,6 +232,27 @@ class AxisEvidence(Evidence):
     def in_band(self, series: FloatArray) -> FloatArray:
         """A series or columns, (n,), in the band of the comparison."""
         return self.band.filter(series)
+
+    def weighted(self, series: dict[str, FloatArray], rows: BoolArray) -> FloatArray:
+        """Channels at some samples as any are, less what motion that is not known may make of them."""
+        weighted = super().weighted(series, rows)
+        if not self.unsure or not rows.any():
+            return weighted
+        key = rows.tobytes()
+        if key not in self._unsure:
+            count = next(iter(self.unsure.values())).shape[1]
+            columns = np.column_stack(
+                [
+                    super(AxisEvidence, self).weighted({n: c[:, i] for n, c in self.unsure.items()}, rows)
+                    for i in range(count)
+                ]
+            )
+            self._unsure[key] = whitener(columns, np.zeros(count), 1.0)
+        return self._unsure[key].applied(weighted)
+
+    @cached_property
+    def _unsure(self) -> dict[bytes, Whitener]:
+        return {}
 
     def known_to(self, name: str) -> float:
         """Rms of what sensor and encoder add to a channel in the band."""
@@ -272,8 +296,9 @@ class AxisEvidence(Evidence):
         measured = {**self.measured, name: scale * self.measured[name]}
         noise = {**self.noise, name: abs(scale) * self.noise[name]}
         added = {**self.added, name: abs(scale) * self.added[name]} if name in self.added else self.added
+        unsure = {**self.unsure, name: scale * self.unsure[name]} if self.unsure else {}
         recording = replace(self.recording, channels=channels)
-        return replace(self, recording=recording, measured=measured, noise=noise, added=added)
+        return replace(self, recording=recording, measured=measured, noise=noise, added=added, unsure=unsure)
 
 
 def prepare(recording: Recording, plant: Plant, share: float, hold: float | None = None) -> AxisEvidence:
@@ -347,6 +372,7 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
         encoder.gains if encoder is not None else {},
         encoder.added if encoder is not None else {},
         encoder.drawn if encoder is not None else (),
+        encoder.unsure if encoder is not None else {},
     )
 
 
