@@ -22,7 +22,7 @@ from feeddrive.diagnosis.certainty.same_by_law import twins_of
 from feeddrive.diagnosis.finding.attempt import Attempt
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging.judge import Judged
-from feeddrive.diagnosis.likelihood.coordinates import LOGARITHMIC
+from feeddrive.diagnosis.likelihood.coordinates import at_its_limit
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
 from feeddrive.diagnosis.likelihood.set_evidence import (
     Standing,
@@ -55,9 +55,6 @@ MOST_RIVALS = 4
 
 PLACED = ("inertia_deviation", "channel_delay", "stiffness_deviation")
 """Effects whose place is put to the question."""
-
-NEAR_END = 0.02
-"""Share of an end of a parameter's range within which it counts as standing there."""
 
 ITERATIONS = 12
 """Steps of that fit at most; it starts from values that were fitted in the round of the search, others with it."""
@@ -187,20 +184,6 @@ def _possible(effect: Effect, found: Search) -> tuple[str, ...]:
     if isinstance(effect, StiffnessDeviation):
         return parts_of(found.problem.plant.chain.values)
     return effect.places
-
-
-def at_its_limit(effect: Effect) -> bool:
-    """Whether a parameter that is known to a factor has run to an end of its range, where the law is another one.
-
-    A Stribeck velocity beyond all speeds is a level, growth within no time another lead, a mode above all frequencies
-    a mass. Such a rival says nothing that the simpler law does not.
-    """
-    for key, value in effect.values.items():
-        if (effect.name, key) in LOGARITHMIC and isinstance(value, float | int):
-            parameter = effect.parameter(key)
-            if value <= parameter.minimum * (1 + NEAR_END) or value >= parameter.maximum * (1 - NEAR_END):
-                return True
-    return False
 
 
 def _near(found: Search, place: int) -> list[Attempt]:

@@ -17,9 +17,11 @@ from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.finding.round import Round, one_round
 from feeddrive.diagnosis.finding.scene import scene_of
 from feeddrive.diagnosis.finding.sets import Neighbour, neighbours
+from feeddrive.diagnosis.finding.spring_law import LAWS, with_likelier_law
 from feeddrive.diagnosis.heat.heat_candidates import is_another
 from feeddrive.diagnosis.judging.result import Trial
 from feeddrive.diagnosis.likelihood.coordinates import write_coordinates
+from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between, regained, same_samples
 from feeddrive.effects.base import Effect
@@ -108,6 +110,7 @@ def search(
         progress(f"round {len(rounds) + 1}: {len(found.effects)} effects so far")
         now = one_round(scene_of(problem, found.effects), found, impossible, denied, len(rounds) + 1)
         taken, near = _likelier(problem, found, now)
+        taken = _of_likelier_law(taken, begun[0].evidence, now.count)
         rounds.append(tuple(attempt.for_the_record() for attempt in now.attempts))
         names = taken.name.split(" with ") if taken is not None else []
         trials += [_trial(len(rounds), attempt, attempt.name in names) for attempt in rounds[-1]]
@@ -161,6 +164,19 @@ def _likelier(problem: Problem, found: Fit, now: Round) -> tuple[_Taken | None, 
     best = _best((one for one in tried if one is not None and one.odds > 0), now.count)
     beside = [one for one in sets if not one.dropped and len(one.added) == 1 and one.speaks > 0]
     return best, tuple(Near(here[one.added[0]].name, one.gain, one.speaks) for one in beside)
+
+
+def _of_likelier_law(taken: _Taken | None, whole: Sequence[Evidence], count: int) -> _Taken | None:
+    """A likelier set with the likelier of free play and lost preload, where it adds one of them."""
+    names = taken.name.split(" with ") if taken is not None else []
+    if taken is None or not any(name in LAWS for name in names):
+        return taken
+    there = with_likelier_law(taken.problem, taken.fit, whole, count)
+    if there is None:
+        return taken
+    (law,) = [effect.name for effect in there.fit.effects if effect.name in LAWS]
+    name = " with ".join(law if one in LAWS else one for one in names)
+    return _Taken(there.problem, there.fit, name, taken.odds)
 
 
 def _best(likelier: Iterable[_Taken], count: int) -> _Taken | None:
