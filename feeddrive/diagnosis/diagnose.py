@@ -89,7 +89,8 @@ def diagnose(
     if not 0.2 <= split <= 0.95:
         raise InputError(f"--split is {split:g}", "", "use a share between 0.2 and 0.95, such as 0.75")
     allowed = budget or Budget()
-    recordings, validation = informative(plant, recordings), informative(plant, validation)
+    recordings = informative(plant, recordings, 1.0 if validation else split)
+    validation = informative(plant, validation)
     every = (*recordings, *validation)
     in_motion = shown(plant, recordings) is Shown.MOTION
     in_the_loop = simulate and in_motion

@@ -30,6 +30,7 @@ from feeddrive.diagnosis.likelihood.coordinates import (
     write_coordinates,
 )
 from feeddrive.diagnosis.likelihood.evidence import Evidence
+from feeddrive.diagnosis.likelihood.predictability import has_play
 from feeddrive.diagnosis.likelihood.predictor import Predictor
 from feeddrive.diagnosis.numbers.number_rows import MeasuredRows
 from feeddrive.effects.base import Effect
@@ -50,7 +51,8 @@ ENOUGH = 1e-4
 SEEN = 0.5
 """Move of all rows together, in deviations, from which a difference is believed where a prediction goes from cell to
 cell: the cells leave some hundredths. What declared values do as well is whitened away, and the step that is long
-enough for a prediction shows nothing but cells in what is left of it."""
+enough for a prediction shows nothing but cells in what is left of it. With free play it is the move of the median row:
+a table that bounces goes elsewhere however short the step, and of its rows the slope tells nothing."""
 
 STRAIGHT = 0.03
 """Bend of the prediction over a step, as a share of the step, below which the slope before it still holds after it."""
@@ -240,15 +242,17 @@ class Problem:
         if moved and (exact := self._exact_jacobian(effects, moved, vector)) is not None:
             return exact
         _, high = coordinate_ends(moved, self.plant)
-        coarse, longest = not self.predictor.smooth(self.plant), longest_steps(moved, self.plant)
+        bounces, longest = has_play(effects), longest_steps(moved, self.plant)
+        coarse = bounces or not self.predictor.smooth(self.plant)
+        short = COARSE if coarse else DIFFERENCE
         columns = []
         for i in range(len(vector)):
             step = np.zeros(len(vector))
-            step[i] = self.difference if vector[i] + self.difference <= high[i] else -self.difference
+            step[i] = short if vector[i] + short <= high[i] else -short
             moves = self._moves(effects, free, moved, vector + step, base)
-            size = float(np.linalg.norm(moves))
+            size = float(np.median(np.abs(moves)) if bounces else np.linalg.norm(moves))
             if coarse and size < SEEN:
-                far = min(longest[i], self.difference * SEEN / max(size, 1e-3 * SEEN))
+                far = min(longest[i], short * SEEN / max(size, 1e-3 * SEEN))
                 step[i] = far if vector[i] + far <= high[i] else -far
                 moves = self._moves(effects, free, moved, vector + step, base)
             columns.append(moves / step[i])

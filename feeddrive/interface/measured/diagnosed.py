@@ -15,10 +15,12 @@ from feeddrive.diagnosis.judging.result import Diagnosis
 from feeddrive.diagnosis.likelihood.outputs import diagnosis_json, diagnosis_record, write_outputs
 from feeddrive.diagnosis.numbers.measured_file import read_measured_numbers
 from feeddrive.diagnosis.plant_text import with_calibrated_values
+from feeddrive.diagnosis.preparation import informative
 from feeddrive.diagnosis.suspicion.quality import is_recorders, quality_lines
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError, quoted
 from feeddrive.interface.axis import Axis, axis_of_text
+from feeddrive.interface.measured.first_look import play_seen
 from feeddrive.interface.measured.reading import as_recording
 from feeddrive.interface.shown import Listing, Shown
 from feeddrive.plant.file.lumped_text import plant_text_with_effects
@@ -270,7 +272,9 @@ def diagnose(
         raise InputError("no recording is given", "recording", "give fd.read(...), or the path of a file")
     numbers = read_measured_numbers(Path(measured), axis.plant) if measured is not None else ()
     report = progress or (lambda _: None)
-    result, effects = find_what_lacks(axis.plant, fitted, judged, split, simulate, report, (), numbers, allowed)
+    fitted = list(informative(axis.plant, fitted, 1.0 if judged else split))
+    start = play_seen(axis.plant, fitted)
+    result, effects = find_what_lacks(axis.plant, fitted, judged, split, simulate, report, start, numbers, allowed)
     return Diagnosed(axis, result, tuple(effects))
 
 

@@ -33,6 +33,7 @@ from feeddrive.errors import InputError
 from feeddrive.files import find_plant, shipped_plants
 from feeddrive.interface.axis import load
 from feeddrive.interface.measured.diagnosed import Diagnosed, budget_of
+from feeddrive.interface.measured.first_look import play_seen
 from feeddrive.output_folder import finish_interrupted, output_folder, refuse_unusable, take_away
 from feeddrive.recording import Recording, read_recording
 from feeddrive.report.figures.figures import render_figures, save_figures
@@ -158,13 +159,15 @@ def diagnose_files(job: Job, progress: Callable[[str], None] = lambda _: None) -
     declared = _bytes(job.plant)
     axis = load(job.plant)  # refused before the recordings are read
     fitted, judged = ([_read(source) for source in sources] for sources in (job.recordings, job.validation))
-    fitted, judged = (list(informative(axis.plant, ones)) for ones in (fitted, judged))  # the rest is given back
+    fitted = list(informative(axis.plant, fitted, 1.0 if judged else job.split))  # the rest is given back
+    judged = list(informative(axis.plant, judged))
     if _bytes(job.plant) != declared:
         raise InputError("was changed while it was read", str(job.plant), "diagnose again")
     plant = axis.plant
     numbers = read_measured_numbers(job.measured, plant) if job.measured is not None else ()
     as_read = checksum(job.measured) if job.measured is not None else ""
-    asked = (job.split, job.simulate, progress, job.start, numbers, budget)
+    start = job.start or play_seen(plant, fitted)
+    asked = (job.split, job.simulate, progress, start, numbers, budget)
     result, effects = diagnose(plant, fitted, judged, *asked)
     if job.earlier is not None:
         since = changed_since(job.earlier.reported, result.effects)
