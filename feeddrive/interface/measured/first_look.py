@@ -12,6 +12,7 @@ import math
 from collections.abc import Sequence
 
 from feeddrive.diagnosis.finding.materiality import is_material
+from feeddrive.diagnosis.likelihood.tolerances import SURE
 from feeddrive.effects.base import Effect
 from feeddrive.effects.transmission.backlash import Backlash
 from feeddrive.errors import InputError
@@ -21,9 +22,6 @@ from feeddrive.recording.long.joined import is_joined
 from feeddrive.trend.pooling import pool
 from feeddrive.trend.regressors import TRAVEL, grid_for, linear_pass
 from feeddrive.trend.watched_quantities import prior_widths
-
-SURE = 3.0
-"""Standard deviations from which a play is asked first: one in a thousand by chance, which costs a search alone."""
 
 
 def play_seen(plant: Plant, recordings: Sequence[Recording]) -> tuple[Effect, ...]:

@@ -216,6 +216,10 @@ class Chain:
         """M for the chain values p with the table at `position` [m]."""
         raise NotImplementedError
 
+    def moving_mass(self, p: Values) -> Expression:
+        """All that moves with the table [kg]."""
+        return p["table_mass"]
+
     def damping(self, p: Values, position: Expression = 0.0) -> Matrix:
         """C for the chain values p with the table at `position` [m]."""
         springs = self.springs(p, position)
