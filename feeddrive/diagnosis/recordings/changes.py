@@ -14,14 +14,9 @@ from dataclasses import dataclass
 from scipy.special import ndtri
 
 from feeddrive.diagnosis.calibration.beyond import said_by_effects
-from feeddrive.diagnosis.likelihood.cross_validation import (
-    Comparison,
-    compare_left_out,
-    least_gain,
-    left_out_residual,
-)
+from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
-from feeddrive.diagnosis.likelihood.folds import block_numbers
+from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between
 from feeddrive.diagnosis.recordings.change_candidates import (
     Movable,
     Offer,
@@ -211,7 +206,4 @@ def _in_common(
 
 def _compared_fits(problem: Problem, without: Fit, having: Fit) -> Comparison:
     """What one fit brings over another on blocks left out."""
-    blocks = block_numbers(problem)
-    before = left_out_residual(problem, without, blocks)
-    after = left_out_residual(problem, having, blocks)
-    return compare_left_out(before, after, blocks, least_gain(problem, before, after))
+    return gain_between(Standing(problem, without), Standing(problem, having))
