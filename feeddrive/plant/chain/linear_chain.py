@@ -190,6 +190,10 @@ class Chain:
         """
         return self.values
 
+    def positions_on_screw(self) -> tuple[float, float]:
+        """Table positions [m] between which the nut is on the screw; any, where the chain does not know its ends."""
+        return -math.inf, math.inf
+
     def refuse_off_screw(self, position: float, where: str) -> None:
         """Refuse a table position [m] at which the nut would not be on the screw; any other chain takes all.
 
