@@ -163,7 +163,7 @@ def share_beyond(problem: Problem, judged: Sequence[Judged], refitted: Sequence[
     before, blocks = judged_residual(problem, lacking)
     after, _ = judged_residual(problem, having)
     seen = [j.evidence for j in judged]
-    alone = [] if has_play(refitted) else [(j, j.evidence.where_lost) for j in judged]
+    alone = [] if has_play(refitted) else [(j, j.evidence.whole.beside(j.evidence)) for j in judged]
     alone = [(j, lost) for j, lost in alone if lost.judged_rows.any()]
     if alone:
         errors, more = judged_residual(problem, [(j.with_effects(problem, refitted), lost) for j, lost in alone])

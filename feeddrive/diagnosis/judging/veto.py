@@ -123,7 +123,9 @@ def _first_denied(found: Search, judged: Sequence[Judged]) -> Denied | None:
     idle, worst = [_no_gain(found, i, share) for i, share in enumerate(shares)], _worst_channel(problem, judged)
     other = judged_changes(found, judged) if worst or any(idle) else None
     if other is not None and other.carries:
-        idle = ["" if carries else reason for reason, carries in zip(idle, other.carries, strict=True)]
+        # a recording in which the effect itself is another says nothing against it
+        stands = [carries or moved for carries, moved in zip(other.carries, other.other, strict=True)]
+        idle = ["" if stood else reason for reason, stood in zip(idle, stands, strict=True)]
         worst = _worst_channel(other.problem, other.allowed)
     at_end, around_none = ends_reached(problem, found.fit), sizes_around_none(problem, found.fit)
     denied = [

@@ -157,11 +157,9 @@ class Evidence:
         lost = gone if self.lost is None else gone | self.lost
         return replace(self, counted=self.counted & other.counted, lost=lost) if gone.any() else self
 
-    @property
-    def where_lost(self) -> Self:
-        """The evidence on the samples alone that a free play left unpredictable."""
-        none = np.zeros(len(self.counted), dtype=bool)
-        return replace(self.whole, counted=none if self.lost is None else self.lost)
+    def beside(self, other: Self) -> Self:
+        """The evidence on the samples alone that another one of this recording does not have."""
+        return replace(self, counted=self.counted & ~other.counted)
 
 
 @dataclass(frozen=True, eq=False)

@@ -193,11 +193,19 @@ def odds_between(first: Standing, second: Standing, count: int) -> float:
         return math.inf
 
 
-def gain_between(first: Standing, second: Standing) -> Comparison:
-    """What the second of two sets brings on blocks left out, each on the samples that it predicts."""
+def gain_between(first: Standing, second: Standing, in_folds: bool = True) -> Comparison:
+    """What the second of two sets brings, each on the samples that it predicts.
+
+    Args:
+        first: a set.
+        second: another.
+        in_folds: on blocks left out; else as fitted, where a free play leaves too few blocks to leave one out.
+    """
     blocks, others = block_numbers(first.problem), block_numbers(second.problem)
-    without = left_out_residual(first.problem, first.fit, blocks)
-    errors = left_out_residual(second.problem, second.fit, others)
+    without, errors = first.fit.residual, second.fit.residual
+    if in_folds:
+        without = left_out_residual(first.problem, first.fit, blocks)
+        errors = left_out_residual(second.problem, second.fit, others)
     if same_samples(first.problem, second.problem):
         return compare_left_out(without, errors, others, least_gain(second.problem, without, errors))
     inside, its = _inside(first.problem, second.problem), _inside(second.problem, first.problem)

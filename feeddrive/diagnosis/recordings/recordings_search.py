@@ -21,7 +21,7 @@ from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between, same_samples
 from feeddrive.diagnosis.recordings.change_candidates import levels
 from feeddrive.diagnosis.recordings.change_words import FACTORS
-from feeddrive.diagnosis.recordings.changes import Changes, find_changes
+from feeddrive.diagnosis.recordings.changes import UNEXPLAINED, Changes, find_changes
 from feeddrive.diagnosis.recordings.recordings import (
     RecordingPredictor,
     RecordingShift,
@@ -29,9 +29,6 @@ from feeddrive.diagnosis.recordings.recordings import (
     without_shifts,
 )
 from feeddrive.effects.base import Effect, listed, number
-
-UNEXPLAINED = 1.3
-"""Weighted squared error per sample beyond which much is left; noise alone gives one."""
 
 SAME = 0.01
 """Relative difference of squared errors that counts as none."""
