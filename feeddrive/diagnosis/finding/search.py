@@ -10,8 +10,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from feeddrive.diagnosis.calibration.beyond import beyond_tolerance, without_effects
-from feeddrive.diagnosis.calibration.calibrate import calibrated, recalibrated
+from feeddrive.diagnosis.calibration.calibrate import at_declared, calibrated, recalibrated
+from feeddrive.diagnosis.calibration.known import TOLERANCE
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, Attempt, compared, started
 from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.finding.round import Round, one_round
@@ -233,11 +236,20 @@ def _error(problem: Problem, effects: Sequence[Effect]) -> float:
 
 
 def _refitted(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
-    """Declared values and effects fitted in turn, with new slopes of the values."""
+    """Declared values and effects fitted in turn, with new slopes of the values.
+
+    Values that have gone beyond their tolerances may have stood in for what was missing: they begin as declared as well.
+    """
     if problem.calibration is None:
         return problem, found if not found.held else fit(problem, found.effects, iterations=0)
-    problem = recalibrated(problem, found.effects)
-    return problem, fit(problem, found.effects, iterations=JOINT_ITERATIONS)
+    there = recalibrated(problem, found.effects)
+    result = there, fit(there, found.effects, iterations=JOINT_ITERATIONS)
+    assert there.calibration is not None
+    if np.max(np.abs(there.calibration.coordinates), initial=0.0) > TOLERANCE:
+        anew = recalibrated(at_declared(problem), found.effects)
+        other = anew, fit(anew, found.effects, iterations=JOINT_ITERATIONS)
+        result = min(result, other, key=lambda one: one[1].squared_error)
+    return result
 
 
 def _trial(number: int, attempt: Attempt, taken: bool) -> Trial:

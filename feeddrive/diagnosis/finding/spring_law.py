@@ -22,7 +22,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from feeddrive.diagnosis.calibration.calibrate import ENOUGH, moved, recalibrated
+from feeddrive.diagnosis.calibration.calibrate import ENOUGH, at_declared, moved, recalibrated
 from feeddrive.diagnosis.certainty.imitations import imitations_of
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, with_predictable
 from feeddrive.diagnosis.finding.scene import scene_of
@@ -82,10 +82,7 @@ def from_declared(
     problem: Problem, effects: Sequence[Effect], place: int, law: Effect, whole: Sequence[Evidence]
 ) -> Standing | None:
     """A set with a law of the spring at one place, fitted from the declared values on; None where it has no fit."""
-    known = problem.calibration
-    if known is not None:
-        problem = replace(problem, calibration=replace(known, coordinates=np.zeros(len(known.values))))
-    there = replace(problem, evidence=tuple(whole))
+    there = replace(at_declared(problem), evidence=tuple(whole))
     rest = [effect for i, effect in enumerate(effects) if i != place]
     (candidate,) = [one for one in problem.predictor.candidates if one.name == law.name]
     try:
