@@ -52,6 +52,10 @@ PLACED = ("inertia_deviation", "channel_delay", "stiffness_deviation")
 NEAR_END = 0.02
 """Share of an end of a parameter's range within which it counts as standing there."""
 
+PASSES = 2
+"""Times that a rival and declared values are fitted in turn: what a rival that is as good is behind by, two remove; of
+one that is not the odds alone are asked, and nothing of its values is reported."""
+
 ITERATIONS = 12
 """Steps of that fit at most; it starts from values that were fitted in the round of the search, others with it."""
 
@@ -228,7 +232,7 @@ def _in_place(found: Search, judged: Sequence[Judged], place: int, rival: Effect
         freed, said = said_by_effects(problem, effects)
         freed = given_back(freed, named)
         if _keys(freed) != _keys(problem):
-            problem, effects = fitted_together(freed, said)
+            problem, effects = fitted_together(freed, said, PASSES)
         swapped = fit(problem, effects, iterations=ITERATIONS)
         its = Residuals.of(problem, swapped, [(j.with_effects(problem, swapped.effects), j) for j in judged])
     except InputError:

@@ -35,7 +35,7 @@ from feeddrive.effects.base import Effect
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray
 
-PLACES = frozenset({"zero", "centre"})
+PLACES = frozenset({"centre"})
 """Coordinates that are places on the axis: one some hundred strokes away is no place, and the law there is another."""
 
 DISCREPANCY = 2e-4
