@@ -18,7 +18,7 @@ from feeddrive.plant.plant import Plant
 from feeddrive.plant.structure import parameter_symbols, parameter_values
 from feeddrive.recording import Recording
 from tests.generator.profile import setpoint_and_chirp, train_profile, validate_profile
-from tests.generator.screw_elements import GRAVITY, Drive, Friction, Planted, Recorder, drive_of, record
+from tests.generator.screw_elements import Drive, Friction, Planted, Recorder, drive_of, record
 
 SAMPLE = 5e-4
 MARGIN = 0.05
@@ -66,8 +66,6 @@ def made(name: str, seconds: float, validate: bool, seed: int, changes: tuple[tu
             planted = replace(planted, **{key: value})
         else:
             recorder = replace(recorder, **{key: value})
-    if friction.weight:  # it hangs: what is carried beyond the declared mass does as well
-        friction = replace(friction, weight=friction.weight + GRAVITY * (drive.table - drive_of(path).table))
     assert plant.stroke is not None
     low, high = plant.stroke
     axis = SimpleNamespace(

@@ -26,7 +26,6 @@ friction_coefficient = 0.004    # as seal_drag, load and smoothing_velocity: may
 Effects that follow from what a plant file says of table and guide: weight, counterbalance, friction of carriages.
 
 F = m g sin(inclination) - counterbalance                 constant_force, positive resists + motion
-F = (mass carried - m) g sin(inclination)                 see `feeddrive.plant.hanging_mass`
 guide_friction of `carriages` ball carriages              see `feeddrive.plant.file.guide_section`
 """
 
@@ -45,7 +44,6 @@ from feeddrive.parts.guide.guide_geometry import GUIDE_VALUES, HSR_20R, HSR_30R,
 from feeddrive.parts.guide.guide_rating import Carriages, RatedCarriage, RollingCarriage, rated_friction
 from feeddrive.plant.file.drive_sections import placed
 from feeddrive.plant.file.effect_sections import next_label
-from feeddrive.plant.hanging_mass import HangingMass
 from feeddrive.schema.table import Table
 from feeddrive.units.quantity import format_quantity, parse
 
@@ -239,8 +237,7 @@ def _weight(top: Table) -> list[tuple[Effect, str]]:
     origin = "computed from mass and inclination"
     if held:
         origin += f", less the counterbalance of {format_quantity(abs(held), 'N')}"
-    more = HangingMass.of(fall=GRAVITY * math.sin(angle), weighed=table.quantity("mass", "kg", "table_mass"))
-    return [(ConstantForce.of(force=weight - held), origin), (more, origin)]
+    return [(ConstantForce.of(force=weight - held), origin)]
 
 
 def _guide(top: Table, before: Sequence[Effect]) -> list[tuple[Effect, str]]:
