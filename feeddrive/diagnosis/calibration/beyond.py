@@ -52,11 +52,17 @@ def beyond_tolerance(problem: Problem, found: Fit) -> tuple[Problem, Effect] | N
     return freed, together[-1]
 
 
-def fitted_together(problem: Problem, effects: Sequence[Effect]) -> tuple[Problem, list[Effect]]:
-    """Effects and declared values fitted in turn until neither moves: alike, each bends what the other is told by."""
+def fitted_together(problem: Problem, effects: Sequence[Effect], passes: int = PASSES) -> tuple[Problem, list[Effect]]:
+    """Effects and declared values fitted in turn until neither moves: alike, each bends what the other is told by.
+
+    Args:
+        problem: with the values to begin from.
+        effects: beside them.
+        passes: at most; values that the recordings hardly tell apart never come to rest.
+    """
     if problem.calibration is None:  # all declared values are exact
         return problem, [*fit(problem, effects).effects]
-    for _ in range(PASSES):
+    for _ in range(passes):
         before = problem = recalibrated(problem, effects)
         effects = fit(problem, effects).effects
         problem = problem.settled(effects)

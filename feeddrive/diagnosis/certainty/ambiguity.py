@@ -56,6 +56,10 @@ MOST_RIVALS = 4
 PLACED = ("inertia_deviation", "channel_delay", "stiffness_deviation")
 """Effects whose place is put to the question."""
 
+PASSES = 2
+"""Times that a rival and declared values are fitted in turn: what a rival that is as good is behind by, two remove; of
+one that is not the odds alone are asked, and nothing of its values is reported."""
+
 ITERATIONS = 12
 """Steps of that fit at most; it starts from values that were fitted in the round of the search, others with it."""
 
@@ -221,7 +225,7 @@ def _in_place(found: Search, judged: Sequence[Judged], place: int, rival: Effect
         freed, said = said_by_effects(problem, effects)
         freed = given_back(freed, named)
         if _keys(freed) != _keys(problem):
-            problem, effects = fitted_together(freed, said)
+            problem, effects = fitted_together(freed, said, PASSES)
         problem = regained(problem, effects)
         swapped = there = fit(problem, effects, iterations=ITERATIONS)
         beyond = 0.0

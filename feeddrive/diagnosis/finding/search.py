@@ -238,7 +238,7 @@ def _error(problem: Problem, effects: Sequence[Effect]) -> float:
 def _refitted(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
     """Declared values and effects fitted in turn, with new slopes of the values.
 
-    Values that have gone beyond their tolerances may have stood in for what was missing: they begin as declared as well.
+    Values gone beyond their tolerances may have stood in for what was missing: they begin as declared as well.
     """
     if problem.calibration is None:
         return problem, found if not found.held else fit(problem, found.effects, iterations=0)

@@ -3,8 +3,8 @@
 An effect that the search took is not reported as found where
 
 - a value of it ran to the end of what is physical: the end is no estimate;
-- it does not lower the error on the judged data by more than its scatter; where they could hardly show it, the
-  gain on blocks left out of the fit must be three times its scatter instead;
+- it does not lower the error on the judged data; where they could hardly show it, or it lowers it by no more than the
+  gain's scatter, the gain on blocks left out of the fit must be three times its scatter instead;
 - the intervals of all its sizes hold the absent effect (no amplitude, a factor of one);
 - a channel is predicted worse with what was found than as declared, by more than the scatter of its rms, and this
   effect worsens it most.
@@ -174,7 +174,7 @@ def _no_gain(found: Search, place: int, share: Share) -> str:
     comparison = share.comparison
     if share.carries:
         return ""
-    if share.shows:
+    if share.shows and not share.is_open:
         scatter = max(comparison.standard_error, comparison.least)
         gain = percent(comparison.gain, 2)
         return f"on the judged data it lowers the squared error by {gain}, scatter {percent(scatter, 2)}"

@@ -61,7 +61,7 @@ from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import BoolArray, FloatArray
 
-PLACES = frozenset({"zero", "centre"})
+PLACES = frozenset({"centre"})
 """Coordinates that are places on the axis: one some hundred strokes away is no place, and the law there is another."""
 
 TINY = 1e-9
