@@ -27,11 +27,15 @@ from collections.abc import Iterator
 import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
 
-from feeddrive.typing import FloatArray
+from feeddrive.typing import ComplexArray, FloatArray
 
 SPACING = 2 ** (1 / 3)
 """Ratio of the frequencies of two nodes. A resonance of a loop that is damped by a quarter turns the sensitivity by
 a radian over half an octave; what is straight over a third of one follows that."""
+
+HALF = 0.5
+"""Share ρ from which a motion is left out: less is missed without it than with it. Left in, it would shake the load, and
+friction that turns with it is none in the mean."""
 
 LEAST = 1e-3
 """Share ρ from which a frequency has a node: what is less, a recording of some thousand independent values does not
@@ -50,20 +54,38 @@ def unsure_motions(angle: FloatArray, share: FloatArray, sample_time: float, edg
     Yields:
         Angle [rad], (n,).
     """
-    count = len(angle)
-    size = next_fast_len(2 * count, real=True)
-    frequency = np.fft.rfftfreq(size, sample_time)
-    shares = np.interp(frequency, np.fft.rfftfreq(count, sample_time), share)
+    frequency, spectrum = _turned(angle, sample_time)
+    shares = np.interp(frequency, np.fft.rfftfreq(len(angle), sample_time), share)
     seen = frequency[(shares >= LEAST) & (frequency <= edge)]
     if not len(seen):
         return
-    # without the stroke, which a transform would take for a jump where the series begins again
-    difference = (2 * np.sin(np.pi * frequency * sample_time)) ** 2
-    spectrum = rfft(np.concatenate([[0.0], np.diff(angle, 2), [0.0]]), size)
-    spectrum = -spectrum * shares / np.where(difference > 0, difference, 1.0)
     first = max(seen[0], frequency[1])
     place = np.log(np.maximum(frequency, frequency[1]) / first) / math.log(SPACING)
     for node in range(math.ceil(math.log(edge / first) / math.log(SPACING)) + 2):
         hat = np.clip(1 - np.abs(place - node), 0.0, None)
         for phase in (1.0, 1j):
-            yield irfft(spectrum * hat * phase, size)[:count]
+            yield irfft(spectrum * shares * hat * phase)[: len(angle)]
+
+
+def without_share(angle: FloatArray, share: FloatArray, sample_time: float) -> FloatArray:
+    """A motion without what is not told of it: (1 - ρ) of it where the error is less than the rest, none elsewhere.
+
+    Args:
+        angle: expected motion of the motor [rad], (n,), at rest at its ends.
+        share: ρ at the frequencies of n samples, (n // 2 + 1,).
+        sample_time: [s].
+    """
+    frequency, spectrum = _turned(angle, sample_time)
+    shares = np.interp(frequency, np.fft.rfftfreq(len(angle), sample_time), share)
+    lost: FloatArray = irfft(spectrum * np.where(shares < HALF, shares, 1.0))[: len(angle)]
+    return angle - lost
+
+
+def _turned(angle: FloatArray, sample_time: float) -> tuple[FloatArray, ComplexArray]:
+    """Frequencies [Hz] and spectrum of a motion, twice as long: without the stroke, which would jump at the end."""
+    size = next_fast_len(2 * len(angle), real=True)
+    size += size % 2  # irfft takes an even length
+    frequency = np.fft.rfftfreq(size, sample_time)
+    difference = (2 * np.sin(np.pi * frequency * sample_time)) ** 2
+    spectrum = -rfft(np.concatenate([[0.0], np.diff(angle, 2), [0.0]]), size)
+    return frequency, spectrum / np.where(difference > 0, difference, 1.0)
