@@ -16,13 +16,15 @@ Interpolation, and Smoothing (1949)):
 | w, h | window, sample time |
 
 P is of one frequency, as the spectrum of a stroke falls fifty times from one to the next, and what is taken away is
-then N in the mean however steep it is (Stein, Ann. Statist. 9 (1981) 1135). The error that is left is nearly
-independent of the motion that is simulated, so that it draws values little towards none (Carroll et al., Measurement
-Error in Nonlinear Models (2006), chapter 4); what it does draw them by is `Calibration`'s to widen (`encoder_scores`).
-It adds to the residual what the declared plant makes of it: errors that the same encoder would make are drawn and
-simulated, and each channel is weighed, frequency by frequency, by the sensor's noise over both,
+then N in the mean however steep it is (Stein, Ann. Statist. 9 (1981) 1135). Of errors that the same encoder would make
+and that are drawn, the share ρ(f) of the power of that motion follows; so much is left out of it, and of what is
+uncertain still, every comparison is without (`unsure_motion`). The error that is left is nearly independent of the
+motion that is simulated, so that it draws values little towards none (Carroll et al., Measurement Error in Nonlinear
+Models (2006), chapter 4); what it does draw them by is `Calibration`'s to widen (`encoder_scores`). It adds to the
+residual what the declared plant makes of it: errors are drawn anew and simulated, and each channel is weighed,
+frequency by frequency, by the sensor's noise over both, and by how small an error of the motion it is,
 
-    gain(f) = 1 / √(1 + S_encoder(f) / S_sensor(f))
+    gain(f) = 1 / √(1 + S_encoder(f) / S_sensor(f)) / (1 + (ρ(f) / `SMALL`)²)
 """
 
 from __future__ import annotations
@@ -68,9 +70,10 @@ DRAWS = 4
 """Errors that are drawn: with `SMOOTHED` neighbours on either side, a spectrum is known to a fifth."""
 
 SMALL = 0.1
-"""Share of the motion's power up to which an encoder's error is a small one: its square is a hundredth then, and what the
-plant makes of error and of motion is told apart. Beyond, the error's own spectrum is that of the plant that is asked for:
-where the declared one has no resonance and the true one has, all is error, and frequencies count for little."""
+"""Share of the motion's power up to which an encoder's error is a small one: its square is a hundredth then, and what
+the plant makes of error and of motion is told apart. Beyond, the error's own spectrum is that of the plant that is
+asked for: where the declared one has no resonance and the true one has, all is error, and frequencies count for
+little."""
 
 SMOOTHED = 3, 0.1
 """Neighbouring frequencies on either side over which a spectrum is averaged: so many, and this share of the frequency.

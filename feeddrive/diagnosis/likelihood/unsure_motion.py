@@ -1,9 +1,9 @@
 """What of the expected motion is uncertain with the motion itself, and what the declared plant makes of that.
 
-The motion A that is expected (`encoder_error`) holds some of the steps' error still. What moved, frequency by frequency,
-is not A in the mean but
+The motion A that is expected (`encoder_error`) holds some of the steps' error still. What moved, frequency by
+frequency, is not A in the mean but
 
-    E[A_true | A] = (1 - κ(f) ρ(f)) A,   ρ = min(S_error / S_A, 1),   κ ~ N(0, 1) + i N(0, 1)
+    E[A_true | A] = (1 - κ(f) ρ(f)) A,   ρ = min(S_error / S_A, 1),   κ ~ N(1, 1) + i N(0, 1)
 
 | symbol | meaning | unit |
 |---|---|---|
@@ -11,12 +11,13 @@ is not A in the mean but
 | κ | straight between nodes, `SPACING` apart in log f | 1 |
 
 κ is nothing where the error is independent of A, one where it is independent of the motion (Carroll et al., Measurement
-Error in Nonlinear Models (2006), chapter 3: attenuation). Under a drive it is neither: the loop answers the steps, the motor
-moves with that, and κ is the sensitivity 1 / (1 + L) of the loop, complex, of size one, and up to two in a loop that rings
-(Forssell and Ljung, Automatica 35 (1999) 1215). A plant that answers the motor as a filter does (a further mode, a softer
-spring, another mass) lowers the error by what κ ρ takes from A, on blocks left out as well, as loop and encoder are the
-same there. So what the declared plant makes of ρ A around every node is a column that each comparison is without, as far as
-a deviation of one goes, at once and a quarter of a period later. Neither names nor declared values are told by it.
+Error in Nonlinear Models (2006), chapter 3: attenuation). Under a drive it is neither: the loop answers the steps, the
+motor moves with that, and κ is the sensitivity 1 / (1 + L) of the loop, complex, of size one, and up to two in a loop
+that rings (Forssell and Ljung, Automatica 35 (1999) 1215). A plant that answers the motor as a filter does (a further
+mode, a softer spring, another mass) lowers the error by what κ ρ takes from A, on blocks left out as well, as loop and
+encoder are the same there. So (1 - ρ) A is simulated, and what the declared plant makes of ρ A around every node is a
+column that each comparison is without, as far as a deviation of one goes, at once and a quarter of a period later.
+Neither names nor declared values are told by it.
 """
 
 from __future__ import annotations
@@ -34,8 +35,8 @@ SPACING = 2 ** (1 / 3)
 a radian over half an octave; what is straight over a third of one follows that."""
 
 HALF = 0.5
-"""Share ρ from which a motion is left out: less is missed without it than with it. Left in, it would shake the load, and
-friction that turns with it is none in the mean."""
+"""Share ρ from which a motion is left out: less is missed without it than with it. Left in, it would shake the load,
+and friction that turns with it is none in the mean."""
 
 LEAST = 1e-3
 """Share ρ from which a frequency has a node: what is less, a recording of some thousand independent values does not
