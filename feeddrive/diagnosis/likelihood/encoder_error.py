@@ -16,13 +16,15 @@ Interpolation, and Smoothing (1949)):
 | w, h | window, sample time |
 
 P is of one frequency, as the spectrum of a stroke falls fifty times from one to the next, and what is taken away is
-then N in the mean however steep it is (Stein, Ann. Statist. 9 (1981) 1135). The error that is left is nearly
-independent of the motion that is simulated, so that it draws values little towards none (Carroll et al., Measurement
-Error in Nonlinear Models (2006), chapter 4); what it does draw them by is `Calibration`'s to widen (`encoder_scores`).
-It adds to the residual what the declared plant makes of it: errors that the same encoder would make are drawn and
-simulated, and each channel is weighed, frequency by frequency, by the sensor's noise over both,
+then N in the mean however steep it is (Stein, Ann. Statist. 9 (1981) 1135). Of errors that the same encoder would make
+and that are drawn, the share ρ(f) of the power of that motion follows; so much is left out of it, and of what is
+uncertain still, every comparison is without (`unsure_motion`). The error that is left is nearly independent of the
+motion that is simulated, so that it draws values little towards none (Carroll et al., Measurement Error in Nonlinear
+Models (2006), chapter 4); what it does draw them by is `Calibration`'s to widen (`encoder_scores`). It adds to the
+residual what the declared plant makes of it: errors are drawn anew and simulated, and each channel is weighed,
+frequency by frequency, by the sensor's noise over both, and by how small an error of the motion it is,
 
-    gain(f) = 1 / √(1 + S_encoder(f) / S_sensor(f))
+    gain(f) = 1 / √(1 + S_encoder(f) / S_sensor(f)) / (1 + (ρ(f) / `SMALL`)²)
 """
 
 from __future__ import annotations
@@ -37,7 +39,7 @@ from scipy.ndimage import uniform_filter
 from scipy.signal.windows import hann
 
 from feeddrive.diagnosis.likelihood.band import END_CUT, Band
-from feeddrive.diagnosis.likelihood.unsure_motion import unsure_motions
+from feeddrive.diagnosis.likelihood.unsure_motion import unsure_motions, without_share
 from feeddrive.diagnosis.suspicion.torque_channel import scale_of
 from feeddrive.engine.step.linear_part import SimulationError
 from feeddrive.plant.plant import Plant
@@ -152,6 +154,9 @@ def encoder_error(
     time: FloatArray = np.arange(len(angle), dtype=np.float64) * sample_time
     expected = expected_motion(angle, step, sample_time)
     errors = [drawn_error(expected, step, sample_time, draw) for draw in range(DRAWS)]
+    share = _share_of_error(expected, errors, sample_time)
+    expected = without_share(expected, share, sample_time)
+    errors = [drawn_error(expected, step, sample_time, draw, share) for draw in range(DRAWS)]
     motion, *drawn = motor_motions(time, np.column_stack([expected, *(expected + left for left in errors)]))
     try:
         runs = [simulate_driven(plant, one) for one in (motion, *drawn)]
@@ -172,7 +177,6 @@ def encoder_error(
         gains[name] = 1 / np.sqrt(1 + np.interp(frequencies, frequency, over))
     if not material:
         return None
-    share = _share_of_error(expected, errors, sample_time)
     gains = {name: gain / (1 + (share / SMALL) ** 2) for name, gain in gains.items()}
     unsure: dict[str, list[FloatArray]] = {name: [] for name in noise}
     for part in unsure_motions(expected, share, sample_time, band.edge):
@@ -222,16 +226,18 @@ def _density(series: Sequence[FloatArray], sample_time: float) -> tuple[FloatArr
     return frequency, density
 
 
-def drawn_error(expected: FloatArray, step: float, sample_time: float, draw: int) -> FloatArray:
+def drawn_error(
+    expected: FloatArray, step: float, sample_time: float, draw: int, share: FloatArray | None = None
+) -> FloatArray:
     """The error that the expected motion would have if it were the true one, measured by the same encoder, (n,) [rad].
 
     Slow motion and rest make an error that is slow: it is drawn by measuring, not as white noise. Draws differ in where
-    the steps lie: `draw` is the seed of that.
+    the steps lie: `draw` is the seed of that. Where a share of the motion is left out (`without_share`), it is of both.
     """
     true = expected + step * np.random.default_rng(draw).uniform()
     measured = step * np.round(true / step)
-    drawn: FloatArray = expected_motion(measured, step, sample_time) - true
-    return drawn
+    seen = expected_motion(measured, step, sample_time)
+    return (seen if share is None else without_share(seen, share, sample_time)) - true
 
 
 def expected_motion(angle: FloatArray, step: float, sample_time: float) -> FloatArray:

@@ -237,19 +237,16 @@ class AxisEvidence(Evidence):
         if not self.unsure or not rows.any():
             return weighted
         key = rows.tobytes()
-        if key not in self._unsure:
+        if key not in self._sure:
             count = next(iter(self.unsure.values())).shape[1]
-            columns = np.column_stack(
-                [
-                    super(AxisEvidence, self).weighted({n: c[:, i] for n, c in self.unsure.items()}, rows)
-                    for i in range(count)
-                ]
-            )
-            self._unsure[key] = whitener(columns, np.zeros(count), 1.0)
-        return self._unsure[key].applied(weighted)
+            parts = [{name: columns[:, i] for name, columns in self.unsure.items()} for i in range(count)]
+            columns = np.column_stack([super(AxisEvidence, self).weighted(part, rows) for part in parts])
+            self._sure[key] = whitener(columns, np.zeros(count), 1.0)
+        return self._sure[key].applied(weighted)
 
     @cached_property
-    def _unsure(self) -> dict[bytes, Whitener]:
+    def _sure(self) -> dict[bytes, Whitener]:
+        """What takes away what motion that is not known may make of a channel, by the samples."""
         return {}
 
     def known_to(self, name: str) -> float:
