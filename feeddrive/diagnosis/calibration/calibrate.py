@@ -76,6 +76,14 @@ def recalibrated(problem: Problem, effects: Sequence[Effect], rough: bool = Fals
     return sloped.stepped(effects, sloped.unwhitened(effects) if len(numbers) else residual)
 
 
+def at_declared(problem: Problem) -> Problem:
+    """The problem with its declared values as they are declared, the slopes as they are."""
+    known = problem.calibration
+    if known is None:
+        return problem
+    return replace(problem, calibration=replace(known, coordinates=np.zeros(len(known.values))))
+
+
 def weighed_by_rest(problem: Problem, effects: Sequence[Effect]) -> Problem:
     """The problem with no channel weighed by more than what is left of it, its declared values fitted anew from there.
 
@@ -90,7 +98,7 @@ def weighed_by_rest(problem: Problem, effects: Sequence[Effect]) -> Problem:
     known = problem.calibration
     if known is None or not known.values:
         return problem
-    there = replace(problem, calibration=replace(known, coordinates=np.zeros(len(known.values))))
+    there = at_declared(problem)
     for _ in range(PASSES):
         before = there
         residual, first, evidence = replace(there, evidence=problem.evidence).unwhitened(effects), 0, []

@@ -22,7 +22,7 @@ from feeddrive.diagnosis.certainty.same_by_law import twins_of
 from feeddrive.diagnosis.finding.attempt import Attempt
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging.judge import Judged
-from feeddrive.diagnosis.likelihood.coordinates import LOGARITHMIC
+from feeddrive.diagnosis.likelihood.coordinates import at_its_limit
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
 from feeddrive.diagnosis.likelihood.set_evidence import (
     Standing,
@@ -56,8 +56,9 @@ MOST_RIVALS = 4
 PLACED = ("inertia_deviation", "channel_delay", "stiffness_deviation")
 """Effects whose place is put to the question."""
 
-NEAR_END = 0.02
-"""Share of an end of a parameter's range within which it counts as standing there."""
+PASSES = 2
+"""Times that a rival and declared values are fitted in turn: what a rival that is as good is behind by, two remove; of
+one that is not the odds alone are asked, and nothing of its values is reported."""
 
 ITERATIONS = 12
 """Steps of that fit at most; it starts from values that were fitted in the round of the search, others with it."""
@@ -102,8 +103,11 @@ def rivals_of(found: Search, judged: Sequence[Judged]) -> list[list[Rival]]:
         judged: recordings with the found effects in.
     """
     mine = Residuals.of(found.problem, found.fit, [(j.after, j) for j in judged])
-    result = []
+    result: list[list[Rival]] = []
     for place in range(len(found.fit.effects)):
+        if found.problem.budget.skips("which other names do as well as", found.fit.effects[place].name):
+            result.append([])
+            continue
         near = [attempt.fit.effects[-1] for attempt in _near(found, place)]
         like = [
             other for other in imitations_of(found.fit.effects[place], found.problem.plant) if _is_free(found, other)
@@ -186,20 +190,6 @@ def _possible(effect: Effect, found: Search) -> tuple[str, ...]:
     return effect.places
 
 
-def at_its_limit(effect: Effect) -> bool:
-    """Whether a parameter that is known to a factor has run to an end of its range, where the law is another one.
-
-    A Stribeck velocity beyond all speeds is a level, growth within no time another lead, a mode above all frequencies
-    a mass. Such a rival says nothing that the simpler law does not.
-    """
-    for key, value in effect.values.items():
-        if (effect.name, key) in LOGARITHMIC and isinstance(value, float | int):
-            parameter = effect.parameter(key)
-            if value <= parameter.minimum * (1 + NEAR_END) or value >= parameter.maximum * (1 - NEAR_END):
-                return True
-    return False
-
-
 def _near(found: Search, place: int) -> list[Attempt]:
     """Candidates that came near when the effect was taken, and those that its signature names, the best first."""
     effect = found.fit.effects[place]
@@ -235,7 +225,7 @@ def _in_place(found: Search, judged: Sequence[Judged], place: int, rival: Effect
         freed, said = said_by_effects(problem, effects)
         freed = given_back(freed, named)
         if _keys(freed) != _keys(problem):
-            problem, effects = fitted_together(freed, said)
+            problem, effects = fitted_together(freed, said, PASSES)
         problem = regained(problem, effects)
         swapped = there = fit(problem, effects, iterations=ITERATIONS)
         beyond = 0.0

@@ -131,6 +131,15 @@ class Share:
         return self.size > 3.0
 
     @property
+    def is_open(self) -> bool:
+        """Whether the judged data speak for the effect, and too little: its gain is within its standard error.
+
+        Where the effect predicts d standard deviations, that is what becomes of a real one in more than one of forty
+        cases up to d = 6 (its gain over its standard error scatters by one about d / 2).
+        """
+        return self.comparison.gain > 0 and self.size <= 6.0
+
+    @property
     def carries(self) -> bool:
         """Whether the effect lowers the squared error there, by more than its standard error and the model's own error.
 

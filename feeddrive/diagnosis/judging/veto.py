@@ -3,8 +3,8 @@
 An effect that the search took is not reported as found where
 
 - a value of it ran to the end of what is physical: the end is no estimate;
-- it does not lower the error on the judged data by more than its scatter; where they could hardly show it, the
-  gain on blocks left out of the fit must be three times its scatter instead;
+- it does not lower the error on the judged data; where they could hardly show it, or it lowers it by no more than the
+  gain's scatter, the gain on blocks left out of the fit must be three times its scatter instead;
 - the intervals of all its sizes hold the absent effect (no amplitude, a factor of one);
 - a channel is predicted worse with what was found than as declared, by more than the scatter of its rms, and this
   effect worsens it most.
@@ -24,7 +24,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.special import chdtri
 
-from feeddrive.diagnosis.calibration.beyond import SURE, without_effects
+from feeddrive.diagnosis.calibration.beyond import without_effects
 from feeddrive.diagnosis.calibration.calibrate import weighed_by_rest, with_kept
 from feeddrive.diagnosis.certainty.uncertainty import certainty
 from feeddrive.diagnosis.finding.search import Search
@@ -39,6 +39,7 @@ from feeddrive.diagnosis.likelihood.coordinates import (
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison, compare_left_out
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit, linear_step
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between, regained
+from feeddrive.diagnosis.likelihood.tolerances import SURE
 from feeddrive.diagnosis.recordings.compared import judged_changes
 from feeddrive.diagnosis.recordings.recordings import RecordingShift, is_shift, without_shifts
 from feeddrive.effects.base import ChainEffect, Effect
@@ -173,7 +174,7 @@ def _no_gain(found: Search, place: int, share: Share) -> str:
     comparison = share.comparison
     if share.carries:
         return ""
-    if share.shows:
+    if share.shows and not share.is_open:
         scatter = max(comparison.standard_error, comparison.least)
         gain = percent(comparison.gain, 2)
         return f"on the judged data it lowers the squared error by {gain}, scatter {percent(scatter, 2)}"

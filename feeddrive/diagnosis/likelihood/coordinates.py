@@ -14,6 +14,8 @@ import numpy as np
 from feeddrive.diagnosis.friction_at_port import declared_level, declared_viscous
 from feeddrive.effects.base import Effect, Value
 from feeddrive.effects.chain.inertia_deviation import InertiaDeviation, declared_inertia
+from feeddrive.effects.source.constant_force import ConstantForce
+from feeddrive.effects.source.position_spring import PositionSpring
 from feeddrive.effects.tabulated import Tabulated
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray, IntegerArray
@@ -108,7 +110,34 @@ class TwoHeats:
         return {self.key: whole * self.size, self.share: share}
 
 
-Coordinate = Linear | Logarithmic | Sine | TwoHeats
+@dataclass(frozen=True)
+class MiddleForce:
+    """Force of a spring in the middle m of the stroke, k (m - zero), in place of its zero, which may be far off.
+
+    The force on the table, k (x - m) + k (m - zero), is linear in it and in the stiffness, and where there is no more
+    than a constant force the stiffness alone is idle.
+    """
+
+    size: float
+    middle: float
+    key: str = "zero"
+
+    def read(self, effect: Effect) -> list[float]:
+        """Coordinates of the effect's values."""
+        return [_number(effect, "stiffness") * (self.middle - _number(effect, "zero")) / self.size]
+
+    def write(self, effect: Effect, coordinates: Sequence[float]) -> dict[str, Value]:
+        """Values of the coordinates."""
+        stiffness = _number(effect, "stiffness")
+        softest = math.copysign(max(abs(stiffness), SOFTEST), stiffness)
+        return {"zero": self.middle - coordinates[0] * self.size / softest}
+
+
+SOFTEST = 1e-9
+"""Stiffness [N/m] of a spring that is a force alone: its zero still is a number."""
+
+
+Coordinate = Linear | Logarithmic | Sine | TwoHeats | MiddleForce
 
 LOGARITHMIC = {
     ("stribeck", "velocity"),
@@ -146,7 +175,7 @@ FIXED = {
 }
 """Parameters that choose the form of a law; they are tried, not fitted."""
 
-FORM = {"centre", "order", "zero", "damping", "start"}
+FORM = {"centre", "order", "damping", "start"}
 """Linear parameters that choose the form of a law, not its size."""
 
 FACTORS = {"factor", "coulomb_factor", "viscous_factor", "ratio"}
@@ -156,9 +185,14 @@ GROWS_WITH = {("sensor_lag", "time_constant"): 1, ("heat_sink", "conductance"): 
 """Sizes known to a factor, and the power of them that the effect grows with: its slope over their logarithm is then the
 effect itself, and a step of one takes it away."""
 
-LEAST = {("drive_delay", "delay"): 0.0}
+LEAST = {("drive_delay", "delay"): 0.0, ("preload_loss", "ratio"): 0.1}
 """Ends of a search inside the physical range: a torque that acts before it is recorded is one recorded late, and that
-is `channel_delay`."""
+is `channel_delay`. Balls that touch without preload are as stiff as F^(1/3) (Hertz), up to the force F over two thirds
+of (F / F_p)^(1/3) of what they are under a preload F_p: a tenth at a three-hundredth of it, below the friction that a
+motion has to overcome. What is softer over a force that is seen does not touch, and that is `backlash`."""
+
+NEAR_END = 0.02
+"""Share of an end of a parameter's range within which it counts as standing there."""
 
 LEFT = 0.05
 """Least share of a declared mass or inertia that an effect may leave, as of a stiffness (`stiffness_deviation`)."""
@@ -170,6 +204,9 @@ def coordinates_of(effect: Effect, plant: Plant) -> list[Coordinate]:
         return [Sine(effect.parameter("amplitude").size), Linear("order", ORDER_SIZE)]
     if effect.name in TWO_HEATS:
         return [TWO_HEATS[effect.name]]
+    if isinstance(effect, PositionSpring):
+        force = ConstantForce.parameter("force").size
+        return [Linear("stiffness", effect.parameter("stiffness").size), MiddleForce(force, plant.middle)]
     if isinstance(effect, Tabulated):
         return [Linear(key, effect.parameter(key).size) for key in effect.tables]
     result: list[Coordinate] = []
@@ -248,7 +285,7 @@ def coordinate_ends(effects: Sequence[Effect], plant: Plant) -> tuple[FloatArray
 
 
 def _ends(effect: Effect, coordinate: Coordinate, plant: Plant) -> tuple[float, float]:
-    if isinstance(coordinate, Sine):
+    if isinstance(coordinate, Sine | MiddleForce):
         return -math.inf, math.inf
     if isinstance(coordinate, TwoHeats):
         return 0.0, math.inf
@@ -277,6 +314,21 @@ def _absent(coordinate: Coordinate) -> float:
     return 0.0
 
 
+def at_its_limit(effect: Effect) -> bool:
+    """Whether a parameter that is known to a factor has run to an end of its range, where the law is another one.
+
+    A Stribeck velocity beyond all speeds is a level, growth within no time another lead, a mode above all frequencies
+    a mass. Such a rival says nothing that the simpler law does not.
+    """
+    for key, value in effect.values.items():
+        if (effect.name, key) in LOGARITHMIC and isinstance(value, float | int):
+            parameter = effect.parameter(key)
+            least = LEAST.get((effect.name, key), parameter.minimum)
+            if value <= least * (1 + NEAR_END) or value >= parameter.maximum * (1 - NEAR_END):
+                return True
+    return False
+
+
 def write_coordinates(effects: Sequence[Effect], plant: Plant, vector: FloatArray) -> list[Effect]:
     """The effects with the values of the vector, each inside what is physical on the plant."""
     result, at = [], 0
@@ -286,7 +338,7 @@ def write_coordinates(effects: Sequence[Effect], plant: Plant, vector: FloatArra
             count = len(coordinate.read(effect))
             low, high = _ends(effect, coordinate, plant)
             inside = [min(max(float(c), low), high) for c in vector[at : at + count]]
-            changed = changed.with_values(**coordinate.write(effect, inside))
+            changed = changed.with_values(**coordinate.write(changed, inside))
             at += count
         result.append(changed)
     return result

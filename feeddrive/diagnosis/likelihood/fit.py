@@ -18,6 +18,7 @@ from typing import Any
 
 import numpy as np
 
+from feeddrive.diagnosis.budget import Budget
 from feeddrive.diagnosis.calibration.calibration import Calibration, Whitener, whitener
 from feeddrive.diagnosis.calibration.declared import with_values
 from feeddrive.diagnosis.likelihood.coordinates import (
@@ -108,6 +109,7 @@ class Problem:
         predictor: of their kind.
         calibration: of the declared values; None where all are taken as exact.
         numbers: measured beside the recordings; their rows stand behind those of all recordings.
+        budget: of time.
     """
 
     plant: Plant
@@ -115,6 +117,7 @@ class Problem:
     predictor: Predictor[Any]
     calibration: Calibration | None = None
     numbers: MeasuredRows = field(default_factory=MeasuredRows)
+    budget: Budget = field(default_factory=Budget, compare=False)
 
     def machine(self, effects: Sequence[Effect] = ()) -> Plant:
         """The plant with its declared values as calibrated, and further effects."""
@@ -304,7 +307,9 @@ def fit(
         return Fit(tuple(effects), at.residual, np.zeros((len(predicted), 0)), np.zeros(0), len(effects))
     jacobian, exact = problem.jacobian(at.effects, chosen, at.predicted), True
     damping = FREE
-    for _ in range(iterations):
+    for done in range(iterations):
+        if done and problem.budget.is_spent:
+            break
         if jacobian.shape[1] == 0 or not np.all(np.isfinite(jacobian)) or not np.isfinite(at.squared_error):
             break
         lower = _lower(problem, at, chosen, jacobian, damping)

@@ -35,8 +35,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.special import betaln
 
+from feeddrive.diagnosis.certainty.imitations import lost_motion
 from feeddrive.diagnosis.certainty.uncertainty import score_variances
-from feeddrive.diagnosis.likelihood.coordinates import Linear, absent_coordinates, coordinates_of
+from feeddrive.diagnosis.likelihood.coordinates import (
+    Linear,
+    absent_coordinates,
+    coordinates_of,
+    read_coordinates,
+    write_coordinates,
+)
 from feeddrive.diagnosis.likelihood.cross_validation import (
     Comparison,
     compare_left_out,
@@ -47,13 +54,18 @@ from feeddrive.diagnosis.likelihood.cross_validation import (
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
 from feeddrive.diagnosis.likelihood.folds import block_numbers
 from feeddrive.diagnosis.likelihood.predictability import has_play
-from feeddrive.effects.base import Effect
+from feeddrive.effects.base import Effect, number
+from feeddrive.effects.transmission.backlash import Backlash
+from feeddrive.effects.transmission.preload_loss import PreloadLoss
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import BoolArray, FloatArray
 
-PLACES = frozenset({"zero", "centre"})
+PLACES = frozenset({"centre"})
 """Coordinates that are places on the axis: one some hundred strokes away is no place, and the law there is another."""
+
+TINY = 1e-9
+"""In place of a width of nothing over its size [1]: no data tell a femtometre from none."""
 
 DISCREPANCY = 2e-4
 """Share of the squared residual that a law other than ours leaves along any one direction (variance). The luckiest of
@@ -80,9 +92,29 @@ def log_volume(
     middle = prior_middle(effects, plant)
     beyond = np.where(np.isnan(middle), 0.0, coordinates - middle)
     sized = int(np.sum(~np.isnan(middle)))
+    lost = _log_prior_of_lost_motion(effects, plant, coordinates)
     _, volume = np.linalg.slogdet(normal / variance + np.eye(len(normal)))
     # a Cauchy density over a normal one of the same scale is sqrt(2 / pi) at the middle
-    return float(0.5 * sized * np.log(2 / np.pi) - np.sum(np.log1p(beyond**2)) - 0.5 * volume)
+    return float(0.5 * sized * np.log(2 / np.pi) - np.sum(np.log1p(beyond**2)) - 0.5 * volume + lost)
+
+
+def _log_prior_of_lost_motion(effects: Sequence[Effect], plant: Plant, coordinates: FloatArray) -> float:
+    """What the prior says of the force F1 up to which preload is lost, for every effect that has one.
+
+    Where little is carried around zero force that law is a free play of width w = 2 F1 (1 - a) / (a k), so that a width
+    is as likely in one as in the other: p(log F1) = w p(w) at a given ratio a. A flat prior would call every small play
+    a softness.
+    """
+    total, at, width = 0.0, 0, Backlash.parameter("width").size
+    for effect in effects:
+        size = len(read_coordinates([effect], plant))
+        if isinstance(effect, PreloadLoss) and plant.chain.elastic:
+            (there,) = write_coordinates([effect], plant, coordinates[at : at + size])
+            lost = lost_motion(number(there.values["ratio"]), number(there.values["force"]), plant)
+            over = max(lost / width, TINY)
+            total += 0.5 * math.log(2 / math.pi) + math.log(over) - math.log1p(over**2)
+        at += size
+    return total
 
 
 def prior_middle(effects: Sequence[Effect], plant: Plant) -> FloatArray:

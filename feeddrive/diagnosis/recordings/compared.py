@@ -53,7 +53,8 @@ def compared_recordings(searched: Searched, judged: Sequence[Judged]) -> Compare
     """Differences between the fitted recordings, and of the judged ones from them."""
     found, own = searched.search, searched.changes
     names = recording_names([evidence.recording.name for evidence in found.problem.evidence])
-    others = judged_changes(found, judged)
+    left_out = found.problem.budget.skips("what differs in the recordings that are judged on")
+    others = None if left_out else judged_changes(found, judged)
     stated: tuple[ParameterChange, ...] = ()
     result = RecordingChanges()
     if own is not None:

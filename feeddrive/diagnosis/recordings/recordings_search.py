@@ -75,7 +75,7 @@ def search_recordings(
     best = _followed(problem, held if _plausible(held) else _nothing(problem), earlier, progress)
     assert best.changes is not None
     confirmed = _levels_of(problem, best.changes) == (_levels_of(problem, held) if _plausible(held) else set())
-    if confirmed or _explained(best):
+    if confirmed or _explained(best) or problem.budget.skips("effects first, and then what differs"):
         return best
     other = _nothing(problem) if _plausible(held) and held.targets else _levels_alone(problem, best.changes, earlier)
     return _better(best, _followed(problem, other, earlier, progress))
