@@ -27,6 +27,7 @@ from feeddrive.diagnosis.certainty.noise_colour import score_covariance
 from feeddrive.diagnosis.finding.attempt import Attempt
 from feeddrive.diagnosis.likelihood.coordinates import read_coordinates, write_coordinates
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
+from feeddrive.diagnosis.likelihood.predictability import has_play
 from feeddrive.diagnosis.likelihood.set_evidence import (
     DISCREPANCY,
     Standing,
@@ -147,6 +148,8 @@ def members_weighed(problem: Problem, found: Fit, count: int) -> tuple[Neighbour
 
 def _that_predicts_more(problem: Problem, found: Fit, place: int) -> Standing | None:
     """A set without its only free play, fitted to the samples that this left out; None for another member."""
+    if not has_play([found.effects[place]]):
+        return None
     rest = [effect for i, effect in enumerate(found.effects) if i != place]
     wide = regained(problem, rest)
     return Standing(wide, fit(wide, rest, iterations=ITERATIONS)) if wide is not problem else None
