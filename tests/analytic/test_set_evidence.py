@@ -40,7 +40,10 @@ def problem(columns: dict[str, FloatArray], measured: FloatArray) -> Any:
     def residual(effects: Sequence[Effect]) -> FloatArray:
         return measured - sum((columns[e.name] * coordinate(e) for e in effects), np.zeros(ROWS))
 
-    return SimpleNamespace(evidence=(evidence,), plant=PLANT, residual=residual, numbers=MeasuredRows())
+    predictor = SimpleNamespace(of_motion=True)
+    return SimpleNamespace(
+        evidence=(evidence,), plant=PLANT, residual=residual, numbers=MeasuredRows(), predictor=predictor
+    )  # fmt: skip
 
 
 def coordinate(effect: Effect) -> float:
@@ -151,3 +154,22 @@ def test_what_one_block_alone_shows_is_no_effect() -> None:
     measured = measured + np.where((np.arange(ROWS) >= 100) & (np.arange(ROWS) < 150), 6.0, 0.0)
     found = fitted((FIRST,), columns, measured)
     assert odds_of_members(problem(columns, measured), found, COUNT)[0] < 0
+
+
+@pytest.mark.parametrize(("large", "is_named"), [(THIRD, False), (SECOND, True)])
+def test_second_name_pays_beyond_what_the_form_of_the_first_may_leave(large: Effect, is_named: bool) -> None:
+    """A law that takes 30 times the noise may leave two hundredths of its size; a mere value leaves none."""
+    random = np.random.default_rng(11)
+    columns = {one.name: random.standard_normal(ROWS) for one in (FIRST, large)}
+    # 0.02 of the size of the first is 0.6 of the noise: an effect by itself
+    measured = random.standard_normal(ROWS) + 30.0 * columns[large.name] + 0.6 * columns[FIRST.name]
+    there = problem(columns, measured)
+    one, both = fitted([large], columns, measured), fitted([large, FIRST], columns, measured)
+    assert (log_odds(there, one, both, COUNT) > 0) == is_named
+    # the same is told by slopes
+    (odds,) = [
+        odds
+        for effect, odds in zip(both.effects, odds_of_members(there, both, COUNT), strict=True)
+        if effect.name == FIRST.name
+    ]
+    assert (odds > 0) == is_named
