@@ -99,3 +99,15 @@ def test_size_known_to_a_factor_is_one_step_from_none() -> None:
     # the softer the bristle, the more it does
     assert absent[0] == pytest.approx(np.log(5e6) + 1.0)
     assert np.isnan(absent[1:]).all()
+
+
+def test_spring_far_from_its_zero_is_fitted_by_its_force() -> None:
+    """A spring whose zero is far off is a force that changes a little, and is fitted as straight as one."""
+    spring = EFFECTS["position_spring"].of(stiffness=29.0, zero=BENCH.middle - 19.0)
+    at = read_coordinates([spring], BENCH)
+    force = float(EFFECTS["constant_force"].parameter("force").size)
+    assert at[1] == pytest.approx(29.0 * 19.0 / force)
+    # half the stiffness at the same force in the middle of the stroke, and half the force of the same spring
+    softer, nearer = (write_coordinates([spring], BENCH, at * factor)[0].values for factor in ([0.5, 1.0], [1.0, 0.5]))
+    assert softer == pytest.approx({"stiffness": 14.5, "zero": BENCH.middle - 38.0})
+    assert nearer == pytest.approx({"stiffness": 29.0, "zero": BENCH.middle - 9.5})

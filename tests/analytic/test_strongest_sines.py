@@ -39,6 +39,20 @@ def test_low_order_is_found_at_all_speeds() -> None:
     assert first.amplitude == pytest.approx(0.3, rel=0.1)
 
 
+def test_error_of_every_revolution_is_found_on_a_stroke_of_a_few() -> None:
+    # a stroke of 3.7 revolutions to and fro, and a lead that is off beside the error of every revolution
+    angle = 2 * np.pi * 3.7 * (0.5 - 0.5 * np.cos(2 * np.pi * STEP * np.arange(9000) / 2.0))
+    noise = np.random.default_rng(6).standard_normal(len(angle))
+    residual = 0.5 * np.sin(angle + 0.7) + 0.1 * angle + noise
+    speed = np.gradient(angle, STEP)
+    nearest = min(strongest_sines(angle, residual, speed, EDGE), key=lambda one: abs(one.order - 1))
+    assert nearest.order == pytest.approx(1.0, abs=0.03)  # an eighth of what 3.7 revolutions resolve
+    assert nearest.amplitude == pytest.approx(0.5, rel=0.15)
+    # of less than two periods nothing is told from a line
+    few = angle / 3
+    assert all(one.order > 1.6 for one in strongest_sines(few, residual, speed / 3, EDGE))
+
+
 def test_nothing_moves_and_nothing_is_left() -> None:
     rest = np.zeros(500)
     assert strongest_sines(rest, np.ones(500), rest, EDGE) == []

@@ -39,13 +39,13 @@ def friction_of(plant: Plant) -> Friction:
         motion = Motion(ca.SX(0.0), ca.SX(way), 0.0, force := ca.SX.sym("force"), plant.chain.radius)
         level = ca.Function("level", [force, symbols.vector], [friction_level(plant, symbols, Port.SCREW, motion)])
         columns.append(np.array([float(level(f, parameter_values(plant))) for f in forces]))
-    weight = sum(float(e.values["force"]) for e in plant.effects if e.name == "constant_force")
+    pulling = sum(float(e.values["force"]) for e in plant.effects if e.name == "constant_force")
     table = tuple(float(guide.get(key, 0.0)) for key in ("coulomb", "smoothing_velocity", "viscous", "film_force"))
     exponent = float(guide.get("film_exponent", 0.5))
     smoothing = {float(drag["smoothing_speed"]) for drag in drags}
     assert len(smoothing) == 1
     screw = (smoothing.pop(), sum(float(drag["viscous"]) for drag in drags))
-    return Friction((*table, exponent), screw, np.column_stack([forces, *columns]), weight)
+    return Friction((*table, exponent), screw, np.column_stack([forces, *columns]), pulling)
 
 
 @cache

@@ -13,16 +13,13 @@ from feeddrive.diagnosis.calibration.calibration import Calibration
 from feeddrive.diagnosis.calibration.declared import CalibratedValue, as_effect, calibrated_values
 from feeddrive.diagnosis.calibration.known import TOLERANCE, known_values
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
-from feeddrive.diagnosis.likelihood.tolerances import BEYOND
+from feeddrive.diagnosis.likelihood.set_evidence import regained
+from feeddrive.diagnosis.likelihood.tolerances import BEYOND, SURE
 from feeddrive.effects.base import Effect, Value, number
 from feeddrive.effects.chain.inertia_deviation import declared_inertia
 from feeddrive.effects.friction.friction_deviation import FrictionDeviation
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray
-
-SURE = 3.0
-"""Deviations by which no values within their tolerances may explain the recordings, and one beyond its does: one of 700
-by chance for each of a dozen values, where the truth is at the very end of a tolerance."""
 
 AGAINST = 2 * math.log(20.0)
 """Twice the logarithm of the odds from which a value is refused that is not the likeliest (as `ambiguity`)."""
@@ -55,11 +52,17 @@ def beyond_tolerance(problem: Problem, found: Fit) -> tuple[Problem, Effect] | N
     return freed, together[-1]
 
 
-def fitted_together(problem: Problem, effects: Sequence[Effect]) -> tuple[Problem, list[Effect]]:
-    """Effects and declared values fitted in turn until neither moves: alike, each bends what the other is told by."""
+def fitted_together(problem: Problem, effects: Sequence[Effect], passes: int = PASSES) -> tuple[Problem, list[Effect]]:
+    """Effects and declared values fitted in turn until neither moves: alike, each bends what the other is told by.
+
+    Args:
+        problem: with the values to begin from.
+        effects: beside them.
+        passes: at most; values that the recordings hardly tell apart never come to rest.
+    """
     if problem.calibration is None:  # all declared values are exact
         return problem, [*fit(problem, effects).effects]
-    for _ in range(PASSES):
+    for _ in range(passes):
         before = problem = recalibrated(problem, effects)
         effects = fit(problem, effects).effects
         problem = problem.settled(effects)
@@ -92,13 +95,15 @@ def given_back(problem: Problem, effect: Effect) -> Problem:
 def without_effects(problem: Problem, gone: Sequence[Effect], rest: Sequence[Effect]) -> Problem:
     """The problem once some effects are out of a set: declared values that they stated are fitted within tolerance.
 
-    Left as declared they would be exact, and what they are off by would go into whatever is in their place.
+    Left as declared they would be exact, and what they are off by would go into whatever is in their place. Samples
+    that a free play among them left unpredictable are to be predicted again.
 
     Args:
         problem: with the values that were fitted beside all effects.
         gone: effects that are out.
         rest: those that remain.
     """
+    problem = regained(problem, rest)
     known = problem.calibration
     for effect in gone:
         if not any(_is_same(effect, other) for other in rest):

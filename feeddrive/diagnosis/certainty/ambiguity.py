@@ -24,6 +24,13 @@ from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging.judge import Judged
 from feeddrive.diagnosis.likelihood.coordinates import at_its_limit
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
+from feeddrive.diagnosis.likelihood.set_evidence import (
+    Standing,
+    commonly_predicted,
+    excess_beyond,
+    regained,
+    same_samples,
+)
 from feeddrive.effects.base import Effect, number
 from feeddrive.effects.chain.stiffness_deviation import PARTS, StiffnessDeviation, parts_of
 from feeddrive.errors import InputError
@@ -48,6 +55,10 @@ MOST_RIVALS = 4
 
 PLACED = ("inertia_deviation", "channel_delay", "stiffness_deviation")
 """Effects whose place is put to the question."""
+
+PASSES = 2
+"""Times that a rival and declared values are fitted in turn: what a rival that is as good is behind by, two remove; of
+one that is not the odds alone are asked, and nothing of its values is reported."""
 
 ITERATIONS = 12
 """Steps of that fit at most; it starts from values that were fitted in the round of the search, others with it."""
@@ -92,8 +103,11 @@ def rivals_of(found: Search, judged: Sequence[Judged]) -> list[list[Rival]]:
         judged: recordings with the found effects in.
     """
     mine = Residuals.of(found.problem, found.fit, [(j.after, j) for j in judged])
-    result = []
+    result: list[list[Rival]] = []
     for place in range(len(found.fit.effects)):
+        if found.problem.budget.skips("which other names do as well as", found.fit.effects[place].name):
+            result.append([])
+            continue
         near = [attempt.fit.effects[-1] for attempt in _near(found, place)]
         like = [
             other for other in imitations_of(found.fit.effects[place], found.problem.plant) if _is_free(found, other)
@@ -211,14 +225,20 @@ def _in_place(found: Search, judged: Sequence[Judged], place: int, rival: Effect
         freed, said = said_by_effects(problem, effects)
         freed = given_back(freed, named)
         if _keys(freed) != _keys(problem):
-            problem, effects = fitted_together(freed, said)
-        swapped = fit(problem, effects, iterations=ITERATIONS)
-        its = Residuals.of(problem, swapped, [(j.with_effects(problem, swapped.effects), j) for j in judged])
+            problem, effects = fitted_together(freed, said, PASSES)
+        problem = regained(problem, effects)
+        swapped = there = fit(problem, effects, iterations=ITERATIONS)
+        beyond = 0.0
+        if not same_samples(problem, found.problem):  # without the free play of what was taken
+            there = fit(commonly_predicted(problem, found.problem), swapped.effects, iterations=ITERATIONS)
+            level = min(float(mine.fitted @ mine.fitted), there.squared_error) / max(len(mine.fitted), 1)
+            beyond = excess_beyond(Standing(problem, swapped), Standing(found.problem, found.fit), level)
+        its = Residuals.of(problem, there, [(j.with_effects(problem, there.effects), j) for j in judged])
     except InputError:
         return None
     if not np.all(np.isfinite(its.fitted)):
         return None
-    odds, distance = odds_and_distance(found.problem, judged, mine, its)
+    odds, distance = odds_and_distance(found.problem, judged, mine, its, beyond)
     ratio = float(np.linalg.norm(its.judged) / np.linalg.norm(mine.judged))
     return Rival(place, swapped, odds, distance, ratio, problem)
 

@@ -22,7 +22,11 @@ CANDIDATES: tuple[Candidate, ...] = (
     Candidate("coulomb_asymmetry", starts.plain(CoulombAsymmetry.of(delta_force=0.0)), needs.friction),
     Candidate("viscous_asymmetry", starts.plain(ViscousAsymmetry.of(delta_viscous=0.0)), needs.friction),
     Candidate("viscous_warmup", starts.viscous_warmup, needs.force_duration),
-    Candidate("load_dependent_friction", starts.plain(LoadDependentFriction.of(coefficient=0.0)), needs.screw_drag),
+    Candidate(
+        "load_dependent_friction",
+        starts.plain(LoadDependentFriction.of(coefficient=0.0)),
+        needs.screw_drag_directions,
+    ),
     Candidate("stribeck", starts.stribeck, needs.friction),
     Candidate("presliding", starts.presliding, needs.friction_reversals, scanned=True),
     Candidate("friction_vs_position", starts.over_position, needs.friction),

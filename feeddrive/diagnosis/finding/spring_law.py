@@ -11,7 +11,7 @@ begins at the declared values, with the samples that it predicts and slopes of i
 | symbol | meaning | unit |
 |---|---|---|
 | c, v | mean square of the better one on the samples of both, and its variance along their difference | 1 |
-| q | mean square of A on the m samples, asked nevertheless: it says how wide its error is, and pays for that | 1 |
+| q | mean square of A on the m samples, were it asked there: it says how wide its error is, and pays for that | 1 |
 """
 
 from __future__ import annotations

@@ -14,6 +14,8 @@ import numpy as np
 from feeddrive.diagnosis.friction_at_port import declared_level, declared_viscous
 from feeddrive.effects.base import Effect, Value
 from feeddrive.effects.chain.inertia_deviation import InertiaDeviation, declared_inertia
+from feeddrive.effects.source.constant_force import ConstantForce
+from feeddrive.effects.source.position_spring import PositionSpring
 from feeddrive.effects.tabulated import Tabulated
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray, IntegerArray
@@ -108,7 +110,34 @@ class TwoHeats:
         return {self.key: whole * self.size, self.share: share}
 
 
-Coordinate = Linear | Logarithmic | Sine | TwoHeats
+@dataclass(frozen=True)
+class MiddleForce:
+    """Force of a spring in the middle m of the stroke, k (m - zero), in place of its zero, which may be far off.
+
+    The force on the table, k (x - m) + k (m - zero), is linear in it and in the stiffness, and where there is no more
+    than a constant force the stiffness alone is idle.
+    """
+
+    size: float
+    middle: float
+    key: str = "zero"
+
+    def read(self, effect: Effect) -> list[float]:
+        """Coordinates of the effect's values."""
+        return [_number(effect, "stiffness") * (self.middle - _number(effect, "zero")) / self.size]
+
+    def write(self, effect: Effect, coordinates: Sequence[float]) -> dict[str, Value]:
+        """Values of the coordinates."""
+        stiffness = _number(effect, "stiffness")
+        softest = math.copysign(max(abs(stiffness), SOFTEST), stiffness)
+        return {"zero": self.middle - coordinates[0] * self.size / softest}
+
+
+SOFTEST = 1e-9
+"""Stiffness [N/m] of a spring that is a force alone: its zero still is a number."""
+
+
+Coordinate = Linear | Logarithmic | Sine | TwoHeats | MiddleForce
 
 LOGARITHMIC = {
     ("stribeck", "velocity"),
@@ -146,7 +175,7 @@ FIXED = {
 }
 """Parameters that choose the form of a law; they are tried, not fitted."""
 
-FORM = {"centre", "order", "zero", "damping", "start"}
+FORM = {"centre", "order", "damping", "start"}
 """Linear parameters that choose the form of a law, not its size."""
 
 FACTORS = {"factor", "coulomb_factor", "viscous_factor", "ratio"}
@@ -175,6 +204,9 @@ def coordinates_of(effect: Effect, plant: Plant) -> list[Coordinate]:
         return [Sine(effect.parameter("amplitude").size), Linear("order", ORDER_SIZE)]
     if effect.name in TWO_HEATS:
         return [TWO_HEATS[effect.name]]
+    if isinstance(effect, PositionSpring):
+        force = ConstantForce.parameter("force").size
+        return [Linear("stiffness", effect.parameter("stiffness").size), MiddleForce(force, plant.middle)]
     if isinstance(effect, Tabulated):
         return [Linear(key, effect.parameter(key).size) for key in effect.tables]
     result: list[Coordinate] = []
@@ -253,7 +285,7 @@ def coordinate_ends(effects: Sequence[Effect], plant: Plant) -> tuple[FloatArray
 
 
 def _ends(effect: Effect, coordinate: Coordinate, plant: Plant) -> tuple[float, float]:
-    if isinstance(coordinate, Sine):
+    if isinstance(coordinate, Sine | MiddleForce):
         return -math.inf, math.inf
     if isinstance(coordinate, TwoHeats):
         return 0.0, math.inf
@@ -306,7 +338,7 @@ def write_coordinates(effects: Sequence[Effect], plant: Plant, vector: FloatArra
             count = len(coordinate.read(effect))
             low, high = _ends(effect, coordinate, plant)
             inside = [min(max(float(c), low), high) for c in vector[at : at + count]]
-            changed = changed.with_values(**coordinate.write(effect, inside))
+            changed = changed.with_values(**coordinate.write(changed, inside))
             at += count
         result.append(changed)
     return result

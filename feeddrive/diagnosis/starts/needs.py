@@ -143,9 +143,7 @@ def screw_drag(scene: Scene) -> str:
     """What changes the drag of the screw needs a declared one, and a force that the chain knows."""
     if not declared_level(scene.plant, Port.SCREW):
         return "the plant declares no nut_drag or bearing_drag to act on"
-    if torque(scene):
-        return WITHOUT_TORQUE
-    return elastic(scene) or both_directions(scene)
+    return torque(scene) or elastic(scene)
 
 
 def both(first: Need, second: Need) -> Need:
@@ -161,5 +159,9 @@ def both(first: Need, second: Need) -> Need:
 torque_turns, torque_inertia = both(torque, turns), both(torque, inertia)
 force_stroke, force_duration = both(force, stroke), both(force, duration)
 scale_duration, screw_drag_turns = both(scale, duration), both(screw_drag, turns)
-friction_reversals = both(friction, reversals)
-"""Ripples, inertias, springs, warming friction, growth, ball passing, presliding."""
+screw_drag_directions, friction_reversals = both(screw_drag, both_directions), both(friction, reversals)
+"""Ripples, inertias, springs, warming friction, growth, ball passing, friction under load, presliding.
+
+A ripple of the drag shows in one direction as well: what little there is of the other tells it from one of the torque,
+and where there is none the two are alike, which the evidence says.
+"""

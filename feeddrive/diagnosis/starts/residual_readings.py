@@ -18,7 +18,13 @@ BINS_PER_TURN = 256
 """Angle bins per revolution; the highest order is a quarter of it."""
 
 LEAST_PERIODS = 5
-"""Periods in the travel below which a sine is a trend over the stroke."""
+"""Periods in the travel below which the periodogram takes a trend over the stroke for a sine, or a sine for one."""
+
+FEWEST_PERIODS = 2
+"""Periods in the travel from which a sine is told from a line over the stroke, once both are fitted together."""
+
+LONGEST_PERIOD = 2.0
+"""Revolutions of the longest period that is looked for beside a line: a longer one is a curve along the stroke."""
 
 OVERSAMPLING = 8
 """Zero padding, so that a peak is met to an eighth of the resolution."""
@@ -183,7 +189,7 @@ def strongest_sines(
     fastest, square = float(np.max(np.abs(speed), initial=0.0)), float(residual @ residual)
     if fastest == 0.0 or square == 0.0:
         return []
-    found, lowest, highest = [], 0.0, 2 * np.pi * edge / fastest
+    found, lowest, highest = _longest_sine(angle, residual), 0.0, 2 * np.pi * edge / fastest
     while lowest < BINS_PER_TURN / 4:
         slow = np.abs(speed) * highest <= 2 * np.pi * edge * (1 + 1e-9)
         if not slow.any():
@@ -194,3 +200,28 @@ def strongest_sines(
             found.append(Sine(order, amplitude, phase, 0.5 * amplitude**2 * len(left) / square))
         lowest, highest = highest, 2 * highest
     return sorted(found, key=lambda one: -one.share)[:count]
+
+
+def _longest_sine(angle: FloatArray, residual: FloatArray) -> list[Sine]:
+    """The sine of few periods in the travel that takes most of a residual beside a line; none where there is no room.
+
+    On a short stroke the error of every revolution has but some periods, which a periodogram cannot tell from a trend.
+    """
+    turns = float(np.ptp(angle)) / (2 * np.pi)
+    lowest, highest = max(FEWEST_PERIODS / turns, 1 / LONGEST_PERIOD), LEAST_PERIODS / turns
+    line = np.column_stack([np.ones(len(angle)), angle - np.mean(angle)])
+    square, by_line = float(residual @ residual), _taken(line, residual)[0]
+    best: list[Sine] = []
+    for order in np.arange(lowest, highest, 1 / (OVERSAMPLING * turns)):
+        taken, (a, b, *_) = _taken(np.column_stack([np.sin(order * angle), np.cos(order * angle), line]), residual)
+        if not best or (taken - by_line) / square > best[0].share:
+            share = (taken - by_line) / square
+            best = [Sine(float(order), float(np.hypot(a, b)), float(np.arctan2(b, a)), share)]
+    return best
+
+
+def _taken(columns: FloatArray, residual: FloatArray) -> tuple[float, FloatArray]:
+    """What columns take of the square of a residual, and their coefficients."""
+    coefficients = np.asarray(np.linalg.lstsq(columns, residual, rcond=None)[0], dtype=np.float64)
+    left = residual - columns @ coefficients
+    return float(residual @ residual - left @ left), coefficients

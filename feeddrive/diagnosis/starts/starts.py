@@ -14,9 +14,10 @@ from feeddrive.diagnosis.starts.residual_readings import (
     friction_over_position,
     residual_force,
     residual_forces,
+    sine_at,
     strongest_sines,
 )
-from feeddrive.effects.base import Effect, Port
+from feeddrive.effects.base import Effect, Port, number
 from feeddrive.effects.friction.friction_deviation import FrictionDeviation
 from feeddrive.effects.friction.friction_vs_position import FrictionVsPosition
 from feeddrive.effects.friction.presliding import Presliding
@@ -28,6 +29,7 @@ from feeddrive.effects.source.torque_ripple import TorqueRipple
 from feeddrive.effects.transmission.backlash import Backlash
 from feeddrive.effects.travel.lead_error_periodic import LeadErrorPeriodic
 from feeddrive.effects.travel.thermal_growth import ThermalGrowth
+from feeddrive.typing import FloatArray
 
 TABLE_NODES = 12
 """Nodes of a tabulated friction curve over the stroke."""
@@ -35,6 +37,9 @@ TABLE_NODES = 12
 LEAST_SINE = 0.001
 """Share of its channel's square that a sine must take away: a fifth of the gain that is asked of all channels together,
 since a sine of the whole recording misses what the band takes off it in fast strokes."""
+
+HARMONICS = (2, 3)
+"""Multiples of an order found that are tried beside it."""
 
 LEAST_CURVE = 0.01
 """Share of the residual force's square that must follow the position before a table is tried."""
@@ -89,8 +94,9 @@ def ripple(scene: Scene) -> list[list[Effect]]:
     at = scene.longest
     evidence, run = scene.problem.evidence[at], scene.runs[at]
     rows = evidence.fit_rows
-    residual = scene.residuals[at]["motor_torque"][rows]
-    sines = strongest_sines(run.motor_angle[rows], residual, run.motor_speed[rows], evidence.edge)
+    residual, angle = scene.residuals[at]["motor_torque"][rows], run.motor_angle[rows]
+    sines = strongest_sines(angle, residual, run.motor_speed[rows], evidence.edge)
+    sines += _harmonics(scene, TorqueRipple, angle, residual)
     return [[sine(TorqueRipple, one) for one in sines]] if sines else []
 
 
@@ -101,8 +107,9 @@ def lead_error(scene: Scene) -> list[list[Effect]]:
     if "table_position" not in scene.residuals[at]:
         return []
     rows = evidence.fit_rows
-    residual = scene.residuals[at]["table_position"][rows]
-    sines = strongest_sines(run.screw_angle[rows], residual - residual.mean(), run.screw_speed[rows], evidence.edge)
+    residual, angle = scene.residuals[at]["table_position"][rows], run.screw_angle[rows]
+    sines = strongest_sines(angle, residual - residual.mean(), run.screw_speed[rows], evidence.edge)
+    sines += _harmonics(scene, LeadErrorPeriodic, angle, residual)
     kept = [sine(LeadErrorPeriodic, one) for one in sines if one.share >= LEAST_SINE]
     return [kept] if kept else []
 
@@ -110,6 +117,16 @@ def lead_error(scene: Scene) -> list[list[Effect]]:
 def sine(kind: type[Effect], one: Sine) -> Effect:
     """An effect that is this sine."""
     return kind.of(amplitude=one.amplitude, order=one.order, phase=one.phase)
+
+
+def _harmonics(scene: Scene, kind: type[Effect], angle: FloatArray, residual: FloatArray) -> list[Sine]:
+    """Sines at multiples of the orders that were found: what repeats with an angle is seldom one sine."""
+    square, found = float(residual @ residual), []
+    orders = [number(effect.values["order"]) for effect in scene.found if effect.name == kind.name]
+    for order in [times * order for order in orders for times in HARMONICS]:
+        amplitude, phase = sine_at(angle, residual, order)
+        found.append(Sine(order, amplitude, phase, 0.5 * amplitude**2 * len(angle) / square if square > 0 else 0.0))
+    return found
 
 
 def over_position(scene: Scene) -> list[list[Effect]]:
@@ -142,10 +159,7 @@ def position_spring(scene: Scene) -> list[list[Effect]]:
     position = run.table_position[rows]
     slope, offset = np.polyfit(position, force, 1)
     zero = -offset / slope if slope else float(np.mean(position))
-    # far off the stroke a spring is a constant force; it starts where its force still changes
-    reach = 2 * float(np.ptp(position))
-    middle = float(np.mean(position))
-    return [[PositionSpring.of(stiffness=float(slope), zero=float(np.clip(zero, middle - reach, middle + reach)))]]
+    return [[PositionSpring.of(stiffness=float(slope), zero=float(zero))]]
 
 
 def thermal_growth(scene: Scene) -> list[list[Effect]]:
@@ -171,7 +185,9 @@ def ball_pass_ripple(scene: Scene) -> list[list[Effect]]:
     resisting = (torque * np.sign(speed))[moving]
     edge = scene.problem.evidence[at].edge
     sines = strongest_sines(angle, resisting - resisting.mean(), speed[moving], edge, count=1)
-    return [[sine(BallPassRipple, one)] for one in sines if one.share >= LEAST_SINE]
+    sines += _harmonics(scene, BallPassRipple, angle, resisting)
+    kept = [sine(BallPassRipple, one) for one in sines if one.share >= LEAST_SINE]
+    return [kept] if kept else []
 
 
 def _time_constants(scene: Scene) -> list[float]:

@@ -57,9 +57,8 @@ def preload_loss(scene: Scene) -> list[list[Effect]]:
     best = int(np.argmax(np.where(slopes > 0, shares, 0.0)))
     if slopes[best] <= 0 or shares[best] < LEAST_LAG:
         return []
-    start = PreloadLoss.of(
-        ratio=max(1 / (1 + float(slopes[best])), LEAST[PreloadLoss.name, "ratio"]), force=float(limits[best])
-    )
+    ratio = max(1 / (1 + float(slopes[best])), LEAST[PreloadLoss.name, "ratio"])
+    start = PreloadLoss.of(ratio=ratio, force=float(limits[best]))
     return [[start]] if is_material(start, scene.plant) else []
 
 

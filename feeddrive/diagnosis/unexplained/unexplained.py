@@ -4,7 +4,9 @@ Named effects may stand in for one of no name. A drag with the square of the vel
 friction, another Coulomb level and a Stribeck curve together; friction that sets in at a time looks like a little of
 anything. One tabulated term in the declared plant is held against all named effects together on the judged data. Does
 it do as well as two or more of them, that is reported. Does it do better, the named ones that do not pay beside it are
-dropped: a name is worse than none where it is wrong.
+dropped: a name is worse than none where it is wrong. A table over the variable of a law is that law drawn point by
+point, and nothing else than it: it denies no name that takes most of what it takes, but is carried beside it for the
+form that the law misses.
 """
 
 from __future__ import annotations
@@ -23,6 +25,7 @@ from feeddrive.diagnosis.likelihood.cross_validation import (
 )
 from feeddrive.diagnosis.likelihood.fit import Problem, fit
 from feeddrive.diagnosis.likelihood.folds import block_numbers
+from feeddrive.diagnosis.likelihood.set_evidence import regained
 from feeddrive.diagnosis.unexplained.analysis import Analysis
 from feeddrive.diagnosis.unexplained.carry import analyses_of, forms_of, joint_step, judged_with, tried, with_carried
 from feeddrive.diagnosis.unexplained.unexplained_result import Carried, Instead, Unexplained, rest_in_words
@@ -36,6 +39,17 @@ EVENT = 0.1
 
 FEWEST = 2
 """Named effects from which a table that does as well is reported."""
+
+CURVES = {
+    ("tabulated_force", "position"): ("position_spring",),
+    ("tabulated_force", "velocity"): ("stribeck", "viscous_asymmetry"),
+    ("tabulated_friction", "position"): ("friction_vs_position",),
+    ("tabulated_friction", "periodic_position"): ("ball_pass_ripple",),
+    ("tabulated_torque", "periodic_angle"): ("torque_ripple",),
+    ("tabulated_travel", "position"): ("lead_error_cumulative",),
+    ("tabulated_travel", "periodic_position"): ("lead_error_periodic",),
+}
+"""Tables by what they give and over what, and the laws that are such a curve."""
 
 ITERATIONS = 4
 """Steps of a fit of what is kept beside a table."""
@@ -77,6 +91,9 @@ def explain_rest(
             again = analyses_of(problem, (*effects, *own), with_carried(judged, *own), [channel])
             analysis = again[channel.name]
         for found, seen in zip(analysis.found, analysis.dependences, strict=True):
+            if problem.budget.skips("tables of what no name explains", f"{channel.name} over {found.term.variable}"):
+                reasons[channel.name].append(f"{seen.words}: not carried: there was no time to try")
+                continue
             table = tried(problem, effects, judged, carried, forms_of(found, first.values()), channel)
             if isinstance(table, Carried):
                 carried.append(table)
@@ -84,7 +101,8 @@ def explain_rest(
                 reasons[channel.name].append(f"{seen.words}: {table}")
     if len(carried) > 1:
         carried = _together(problem, effects, judged, carried)
-    other = table_against(problem, effects, judged, channels) if len(effects) >= FEWEST else None
+    asked = len(effects) >= FEWEST and not problem.budget.skips("a table in place of the names")
+    other = table_against(problem, effects, judged, channels) if asked else None
     left = {}
     for c in channels:
         instead = other if other is not None and other.as_good and other.carried.channel == c.name else None
@@ -148,20 +166,25 @@ def without_stand_ins(found: Search, judged: Sequence[Judged]) -> Search:
     effects = found.fit.effects
     if not effects or (len(effects) < FEWEST and not _is_left(found.problem, judged)):
         return found
+    if found.problem.budget.skips("a table in place of the names"):
+        return found
     rival = table_against(found.problem, effects, judged, channel_results(found.problem, judged))
     if rival is None or not rival.better:
         return found
     table = rival.carried.effect
-    kept = _needed_beside(found.problem, effects, table)
+    its_own = CURVES.get((table.name, table.place), ()) if rival.mostly else ()
+    kept = _needed_beside(found.problem, effects, table, its_own)
     if len(kept) == len(effects):
         return found
     reason = (
         f"beside a table over {table.place.replace('_', ' ')}, which predicts data not fitted better, it does not pay"
     )
     names = {effect.name for effect in effects} - {effect.name for effect in kept}
+    problem = regained(found.problem, kept)
     return replace(
         found,
-        fit=fit(found.problem, kept, iterations=0),
+        problem=problem,
+        fit=fit(problem, kept, iterations=0),
         impossible={**found.impossible, **dict.fromkeys(names, reason)},
     )
 
@@ -185,7 +208,11 @@ def table_against(
                 names_gain = compare_left_out(by_table, by_names, blocks)
                 as_good = names_gain.gain < max(LEAST_GAIN, 2 * names_gain.standard_error)
                 better = compare_left_out(by_names, by_table, blocks).pays
-                return Instead(table, tuple(effect.name for effect in effects), as_good, better)
+                declared, _ = judged_residual(problem, [(j.before, j.evidence) for j in judged])
+                squares = [float(one @ one) for one in (declared, by_names, by_table)]
+                # what another form takes beyond a law is less than what the law takes
+                mostly = squares[0] - squares[1] > squares[1] - squares[2]
+                return Instead(table, tuple(effect.name for effect in effects), as_good, better, mostly)
     return None
 
 
@@ -196,11 +223,18 @@ def _is_left(problem: Problem, judged: Sequence[Judged]) -> bool:
     return any(above_noise(views).is_left for views in views_of(problem, plants, names, True).values())
 
 
-def _needed_beside(problem: Problem, effects: Sequence[Effect], table: Tabulated) -> tuple[Effect, ...]:
-    """The named effects that still pay beside a table, all fitted together."""
+def _needed_beside(
+    problem: Problem, effects: Sequence[Effect], table: Tabulated, its_own: Sequence[str]
+) -> tuple[Effect, ...]:
+    """The named effects that still pay beside a table, all fitted together, or whose curve the table is."""
+    if all(effect.name in its_own for effect in effects):
+        return tuple(effects)
     kept = fit(problem, (*effects, table), iterations=ITERATIONS)
     blocks, place = block_numbers(problem), 0
     while place < len(kept.effects) - 1:
+        if kept.effects[place].name in its_own:
+            place += 1
+            continue
         rest = fit(problem, kept.effects[:place] + kept.effects[place + 1 :], iterations=ITERATIONS)
         without = left_out_residual(problem, rest, blocks)
         having = left_out_residual(problem, kept, blocks)

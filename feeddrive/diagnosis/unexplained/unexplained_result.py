@@ -191,12 +191,14 @@ class Instead:
         names: of the effects.
         as_good: whether the judged data do not speak for the named effects.
         better: whether they speak for the table by as much as is asked of an effect.
+        mostly: whether the named effects take more than half of what the table takes of the squared error.
     """
 
     carried: Carried
     names: tuple[str, ...]
     as_good: bool
     better: bool
+    mostly: bool
 
 
 @dataclass(frozen=True)
