@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Container, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -29,12 +29,12 @@ from feeddrive.diagnosis.finding.scene import scene_of
 from feeddrive.diagnosis.likelihood.coordinates import at_its_limit
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
-from feeddrive.diagnosis.likelihood.set_evidence import log_odds, variance_along
+from feeddrive.diagnosis.likelihood.set_evidence import Standing, log_odds, same_samples, variance_along
 from feeddrive.effects.base import Effect, number
 from feeddrive.effects.transmission.backlash import Backlash
 from feeddrive.effects.transmission.preload_loss import PreloadLoss
 from feeddrive.errors import InputError
-from feeddrive.typing import BoolArray
+from feeddrive.typing import FloatArray
 
 LAWS = (Backlash.name, PreloadLoss.name)
 
@@ -46,14 +46,6 @@ BEYOND = 10.0
 
 PASSES = 4
 """Times that samples, slopes and fit follow each other; from declared values each is near after two."""
-
-
-@dataclass(frozen=True)
-class Standing:
-    """A set of effects with the samples that it predicts and its own declared values, to which it is fitted."""
-
-    problem: Problem
-    fit: Fit
 
 
 def with_likelier_law(
@@ -116,7 +108,7 @@ def _settled(problem: Problem, effects: Sequence[Effect], whole: Sequence[Eviden
             problem = recalibrated(with_predictable(replace(problem, evidence=tuple(whole)), effects), effects)
             result = Standing(problem, fit(problem, effects, iterations=JOINT_ITERATIONS))
             effects = result.fit.effects
-            if _same_samples(before, problem) and (
+            if same_samples(before, problem) and (
                 problem.calibration is None or np.max(np.abs(moved(before, problem)), initial=0.0) < ENOUGH
             ):
                 break
@@ -157,7 +149,7 @@ def odds_between(first: Standing, second: Standing, count: int) -> float:
     """
     one, other = _within(first, second), _within(second, first)
     odds = log_odds(other.problem, one.fit, other.fit, count)
-    if not math.isfinite(odds) or _same_samples(first.problem, second.problem):
+    if not math.isfinite(odds) or same_samples(first.problem, second.problem):
         return odds
     left = min((one.fit, other.fit), key=lambda fitted: fitted.squared_error)
     level = left.squared_error / len(left.residual)
@@ -168,15 +160,15 @@ def odds_between(first: Standing, second: Standing, count: int) -> float:
 def _within(one: Standing, other: Standing) -> Standing:
     """A set on the samples that another predicts as well."""
     pairs = zip(one.problem.evidence, other.problem.evidence, strict=True)
-    problem = replace(one.problem, evidence=tuple(a.where_predictable(b.counted) for a, b in pairs))
-    if _same_samples(one.problem, problem):
+    problem = replace(one.problem, evidence=tuple(a.within(b) for a, b in pairs))
+    if same_samples(one.problem, problem):
         return one
     return Standing(problem, fit(problem, one.fit.effects, iterations=JOINT_ITERATIONS))
 
 
 def _beyond(one: Standing, other: Standing, level: float) -> float:
     """Squared error that a set spares on the samples that it alone predicts, the other saying how wide its error is."""
-    alone = [a.counted & ~b.counted for a, b in zip(one.problem.evidence, other.problem.evidence, strict=True)]
+    alone = tuple(a.beside(b) for a, b in zip(one.problem.evidence, other.problem.evidence, strict=True))
     errors = [_errors_at(standing, alone) for standing in (one, other)]
     if not len(errors[0]) or level <= 0:
         return 0.0
@@ -185,15 +177,10 @@ def _beyond(one: Standing, other: Standing, level: float) -> float:
     return len(errors[0]) * (1 + math.log(wide)) * level - squares[0] if math.isfinite(wide) else 0.0
 
 
-def _errors_at(one: Standing, samples: Sequence[BoolArray]) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+def _errors_at(one: Standing, samples: tuple[Evidence, ...]) -> FloatArray:
     """Error of a set over the noise at samples that it may not predict, (m,)."""
-    pairs = zip(one.problem.evidence, samples, strict=True)
-    there = replace(one.problem, evidence=tuple(replace(e, counted=rows) for e, rows in pairs))
+    there = replace(one.problem, evidence=samples)
     if not any(e.fit_rows.any() for e in there.evidence):
         return np.zeros(0)
     error = there.unwhitened(one.fit.effects)
     return error[: len(error) - len(there.numbers)]
-
-
-def _same_samples(one: Problem, other: Problem) -> bool:
-    return all(np.array_equal(a.counted, b.counted) for a, b in zip(one.evidence, other.evidence, strict=True))
