@@ -201,7 +201,8 @@ def _share_of_error(expected: FloatArray, errors: Sequence[FloatArray], sample_t
     frequency, power = _density([np.diff(expected, 2)], sample_time)
     _, wrong = _density([np.diff(error, 2) for error in errors], sample_time)
     share = np.minimum(wrong / np.where(power > 0, power, np.inf), 1.0)
-    return np.interp(np.fft.rfftfreq(len(expected), sample_time), frequency, share)
+    found: FloatArray = np.interp(np.fft.rfftfreq(len(expected), sample_time), frequency, share)
+    return found
 
 
 def _per_newton_metre(recording: Recording, torque: FloatArray, band: Band) -> float:
