@@ -200,7 +200,8 @@ def _share_of_error(expected: FloatArray, errors: Sequence[FloatArray], sample_t
     """ρ of `unsure_motion`: power of the drawn errors over that of the expected motion, (n // 2 + 1,)."""
     frequency, power = _density([np.diff(expected, 2)], sample_time)
     _, wrong = _density([np.diff(error, 2) for error in errors], sample_time)
-    share = np.minimum(wrong / np.where(power > 0, power, np.inf), 1.0)
+    # slower than what is sure, the second difference is nothing, and its neighbours' errors would be all of it
+    share = np.where(frequency < SURE_MOTION, 0.0, np.minimum(wrong / np.where(power > 0, power, np.inf), 1.0))
     return np.asarray(np.interp(np.fft.rfftfreq(len(expected), sample_time), frequency, share))
 
 
