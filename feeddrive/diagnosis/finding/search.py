@@ -7,7 +7,7 @@ all effects together, and the likeliest of them is taken if what it adds also lo
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Container, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,7 +20,7 @@ from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.finding.round import Round, one_round
 from feeddrive.diagnosis.finding.scene import scene_of
 from feeddrive.diagnosis.finding.sets import Neighbour, neighbours
-from feeddrive.diagnosis.finding.spring_law import LAWS, with_likelier_law
+from feeddrive.diagnosis.finding.spring_law import LAWS, soft_everywhere, with_likelier_law
 from feeddrive.diagnosis.heat.heat_candidates import is_another
 from feeddrive.diagnosis.judging.result import Trial
 from feeddrive.diagnosis.likelihood.coordinates import write_coordinates
@@ -113,19 +113,22 @@ def search(
         progress(f"round {len(rounds) + 1}: {len(found.effects)} effects so far")
         now = one_round(scene_of(problem, found.effects), found, impossible, denied, len(rounds) + 1)
         taken, near = _likelier(problem, found, now)
-        taken = _of_likelier_law(taken, begun[0].evidence, now.count)
+        taken = _of_likelier_law(taken, begun[0].evidence, now.count, denied)
         rounds.append(tuple(attempt.for_the_record() for attempt in now.attempts))
         names = taken.name.split(" with ") if taken is not None else []
         trials += [_trial(len(rounds), attempt, attempt.name in names) for attempt in rounds[-1]]
         others = [effect for effect in found.effects if is_another(effect)] if taken is None else []
+        others += soft_everywhere(problem, found) if taken is None else []
         if others:  # the search goes on with the name that the law has run to
             denied |= dict.fromkeys((effect.name for effect in others), ANOTHER)
             impossible |= denied
-            found = fit(problem, [one for one in found.effects if not any(one is other for other in others)])
-            continue
+            rest = [one for one in found.effects if not any(one is other for other in others)]
+            problem, found = _refitted(problem, fit(problem, rest))
         if taken is None:
             left_out = problem.budget.skips("declared values beyond their tolerances")
             beyond = None if left_out else beyond_tolerance(problem, found)
+            if beyond is None and others:
+                continue
             if beyond is None:
                 break
             problem, effect = beyond
@@ -170,12 +173,14 @@ def _likelier(problem: Problem, found: Fit, now: Round) -> tuple[_Taken | None, 
     return best, tuple(Near(here[one.added[0]].name, one.gain, one.speaks) for one in beside)
 
 
-def _of_likelier_law(taken: _Taken | None, whole: Sequence[Evidence], count: int) -> _Taken | None:
+def _of_likelier_law(
+    taken: _Taken | None, whole: Sequence[Evidence], count: int, denied: Container[str]
+) -> _Taken | None:
     """A likelier set with the likelier of free play and lost preload, where it adds one of them."""
     names = taken.name.split(" with ") if taken is not None else []
     if taken is None or not any(name in LAWS for name in names):
         return taken
-    there = with_likelier_law(taken.problem, taken.fit, whole, count)
+    there = with_likelier_law(taken.problem, taken.fit, whole, count, denied)
     if there is None:
         return taken
     (law,) = [effect.name for effect in there.fit.effects if effect.name in LAWS]

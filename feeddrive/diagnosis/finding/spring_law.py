@@ -10,7 +10,7 @@ sets that predict different samples (`likelihood.set_evidence`).
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -22,19 +22,27 @@ from feeddrive.diagnosis.finding.scene import scene_of
 from feeddrive.diagnosis.likelihood.coordinates import at_its_limit
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
-from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between, same_samples
-from feeddrive.effects.base import Effect
+from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between, same_samples, variance_along
+from feeddrive.effects.base import Effect, number
 from feeddrive.effects.transmission.backlash import Backlash
 from feeddrive.effects.transmission.preload_loss import PreloadLoss
 from feeddrive.errors import InputError
 
 LAWS = (Backlash.name, PreloadLoss.name)
 
+TOLD = math.log(20.0)
+"""Logarithm of the odds, by the samples alone, from which the force of a lost preload is told: as names are."""
+
+BEYOND = 10.0
+"""Force over the greatest that is transmitted, beyond which no preload is regained in a recording."""
+
 PASSES = 4
 """Times that samples, slopes and fit follow each other; from declared values each is near after two."""
 
 
-def with_likelier_law(problem: Problem, fitted: Fit, whole: Sequence[Evidence], count: int) -> Standing | None:
+def with_likelier_law(
+    problem: Problem, fitted: Fit, whole: Sequence[Evidence], count: int, denied: Container[str] = ()
+) -> Standing | None:
     """The likelier of the sets with either law in the place of the one that a set has; None where it has none.
 
     Lost preload at the end of its range is free play, and stands for itself only where there is no fit of that.
@@ -44,6 +52,7 @@ def with_likelier_law(problem: Problem, fitted: Fit, whole: Sequence[Evidence], 
         fitted: the set.
         whole: the recordings with all samples.
         count: candidates and starts that were tried.
+        denied: names that are not asked for.
     """
     places = [i for i, effect in enumerate(fitted.effects) if effect.name in LAWS]
     if len(places) != 1:
@@ -52,6 +61,7 @@ def with_likelier_law(problem: Problem, fitted: Fit, whole: Sequence[Evidence], 
     others = [
         from_declared(problem, fitted.effects, place, start, whole)
         for start in (law, *imitations_of(law, problem.plant))
+        if start.name not in denied
     ]
     able = [one for one in (_settled(problem, fitted.effects, whole), *others) if one is not None]
     inside = [one for one in able if not at_its_limit(one.fit.effects[place])]
@@ -97,3 +107,25 @@ def _settled(problem: Problem, effects: Sequence[Effect], whole: Sequence[Eviden
     except InputError:
         return None
     return result if result is not None and math.isfinite(result.fit.squared_error) else None
+
+
+def soft_everywhere(problem: Problem, found: Fit) -> list[Effect]:
+    """Lost preload of a set, where a spring as soft under every force would do: that is `stiffness_deviation`.
+
+    Its force then is a start that no data have moved, for those beyond it were hardly met.
+    """
+    result: list[Effect] = []
+    for place, effect in enumerate(found.effects):
+        if not isinstance(effect, PreloadLoss) or at_its_limit(effect):
+            continue
+        greatest = max(float(np.max(np.abs(run.force))) for run in scene_of(problem, found.effects).runs)
+        beyond = effect.with_values(force=BEYOND * max(greatest, number(effect.values["force"])))
+        soft = fit(problem, [*found.effects[:place], beyond, *found.effects[place + 1 :]], iterations=JOINT_ITERATIONS)
+        excess = soft.squared_error - found.squared_error
+        if excess < 2 * TOLD * variance_along(problem, min(found, soft, key=_square), found, soft):
+            result.append(effect)
+    return result
+
+
+def _square(one: Fit) -> float:
+    return one.squared_error
