@@ -3,15 +3,8 @@
 The two say nearly the same of most recordings, and neither is straight in the declared values: values that were fitted
 while the law was missing have gone to stand in for it, some of them several deviations away, and a play of the right
 width is then worse than a softness fitted there. A play is chaotic besides, and predicts fewer samples. So each law
-begins at the declared values, with the samples that it predicts and slopes of its own, and the two are compared by
-
-    log E(B) - log E(A)   on the samples of both, each beside its own declared values
-    + (m (1 + log max(q / c, 1)) c - |r_B|^2) / 2 v   on the m samples that B alone predicts; and the other way round
-
-| symbol | meaning | unit |
-|---|---|---|
-| c, v | mean square of the better one on the samples of both, and its variance along their difference | 1 |
-| q | mean square of A on the m samples, were it asked there: it says how wide its error is, and pays for that | 1 |
+begins at the declared values, with the samples that it predicts and slopes of its own, and the two are compared as any
+sets that predict different samples (`likelihood.set_evidence`).
 """
 
 from __future__ import annotations
@@ -29,12 +22,11 @@ from feeddrive.diagnosis.finding.scene import scene_of
 from feeddrive.diagnosis.likelihood.coordinates import at_its_limit
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
-from feeddrive.diagnosis.likelihood.set_evidence import Standing, log_odds, same_samples, variance_along
+from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between, same_samples, variance_along
 from feeddrive.effects.base import Effect, number
 from feeddrive.effects.transmission.backlash import Backlash
 from feeddrive.effects.transmission.preload_loss import PreloadLoss
 from feeddrive.errors import InputError
-from feeddrive.typing import FloatArray
 
 LAWS = (Backlash.name, PreloadLoss.name)
 
@@ -137,50 +129,3 @@ def soft_everywhere(problem: Problem, found: Fit) -> list[Effect]:
 
 def _square(one: Fit) -> float:
     return one.squared_error
-
-
-def odds_between(first: Standing, second: Standing, count: int) -> float:
-    """Logarithm of the odds for the second of two sets, each on the samples that it predicts.
-
-    Args:
-        first: a set.
-        second: another.
-        count: candidates and starts that were tried.
-    """
-    one, other = _within(first, second), _within(second, first)
-    odds = log_odds(other.problem, one.fit, other.fit, count)
-    if not math.isfinite(odds) or same_samples(first.problem, second.problem):
-        return odds
-    left = min((one.fit, other.fit), key=lambda fitted: fitted.squared_error)
-    level = left.squared_error / len(left.residual)
-    excess = _beyond(second, first, level) - _beyond(first, second, level)
-    return odds + 0.5 * excess / variance_along(other.problem, left, one.fit, other.fit)
-
-
-def _within(one: Standing, other: Standing) -> Standing:
-    """A set on the samples that another predicts as well."""
-    pairs = zip(one.problem.evidence, other.problem.evidence, strict=True)
-    problem = replace(one.problem, evidence=tuple(a.within(b) for a, b in pairs))
-    if same_samples(one.problem, problem):
-        return one
-    return Standing(problem, fit(problem, one.fit.effects, iterations=JOINT_ITERATIONS))
-
-
-def _beyond(one: Standing, other: Standing, level: float) -> float:
-    """Squared error that a set spares on the samples that it alone predicts, the other saying how wide its error is."""
-    alone = tuple(a.beside(b) for a, b in zip(one.problem.evidence, other.problem.evidence, strict=True))
-    errors = [_errors_at(standing, alone) for standing in (one, other)]
-    if not len(errors[0]) or level <= 0:
-        return 0.0
-    squares = [float(error @ error) for error in errors]
-    wide = max(squares[1] / len(errors[1]) / level, 1.0)
-    return len(errors[0]) * (1 + math.log(wide)) * level - squares[0] if math.isfinite(wide) else 0.0
-
-
-def _errors_at(one: Standing, samples: tuple[Evidence, ...]) -> FloatArray:
-    """Error of a set over the noise at samples that it may not predict, (m,)."""
-    there = replace(one.problem, evidence=samples)
-    if not any(e.fit_rows.any() for e in there.evidence):
-        return np.zeros(0)
-    error = there.unwhitened(one.fit.effects)
-    return error[: len(error) - len(there.numbers)]
