@@ -222,6 +222,6 @@ def _longest_sine(angle: FloatArray, residual: FloatArray) -> list[Sine]:
 
 def _taken(columns: FloatArray, residual: FloatArray) -> tuple[float, FloatArray]:
     """What columns take of the square of a residual, and their coefficients."""
-    coefficients = np.linalg.lstsq(columns, residual, rcond=None)[0]
+    coefficients = np.asarray(np.linalg.lstsq(columns, residual, rcond=None)[0], dtype=np.float64)
     left = residual - columns @ coefficients
     return float(residual @ residual - left @ left), coefficients
