@@ -30,7 +30,7 @@ _HOMES = {
     "Fleet": "interface.measured.fleet",
     "HeatSummary": "interface.machine.heat_summary",
     "InputError": "errors",
-    "Inspected": "interface.measured.inspection",
+    "Inspected": "interface.measured.inspected",
     "Iso230": "interface.measured.iso230",
     "Keys": "interface.keys",
     "Life": "interface.machine.check",

@@ -1,7 +1,7 @@
 """C code compiled into a shared library and kept: where a compiler is found, slow loops run in it.
 
 The cache is written atomically, so that processes that start together do not meet half a file, and pruned
-(`library_cache`); where the home is read-only a temporary folder of the same person serves. Nothing is compiled when a
+(`compiled_cache`); where the home is read-only a temporary folder of the same person serves. Nothing is compiled when a
 module is imported.
 """
 
@@ -21,8 +21,8 @@ from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
 
+from feeddrive.compiled_cache import prune_once, used
 from feeddrive.errors import ValidityWarning
-from feeddrive.library_cache import prune_once, used
 
 FLAGS = ("-O3", "-ffp-contract=off", "-fPIC", "-shared")
 """No fused or reordered arithmetic: the same numbers on every computer."""

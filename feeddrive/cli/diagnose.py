@@ -56,6 +56,10 @@ def command(
     controller: Annotated[
         str | None, typer.Option("--controller", help="Controller file of a frequency response of the speed loop.")
     ] = None,
+    budget: Annotated[
+        str | None,
+        typer.Option("--budget", help='Time that it may take, "60 s"; it ends with the best found so far.'),
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print diagnosis.json instead of the summary.")] = False,
 ) -> None:
     """Find what a machine's model lacks, from recordings of it, and report the error before and after."""
@@ -67,7 +71,7 @@ def command(
     if controller is not None:
         what = "is for a frequency response, and recordings over time are given"
         raise InputError(what, "--controller", "leave it out; declare the controller in the plant file for --simulate")
-    options = Options(out, tuple(validate or ()), split, mapping, decimal, simulate, measured)
+    options = Options(out, tuple(validate or ()), split, mapping, decimal, simulate, measured, budget)
     job = first_job(arguments, options) if earlier is None else continued_job(arguments, earlier, options)
     diagnose_and_print(job, as_json)
 

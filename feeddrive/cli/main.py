@@ -8,6 +8,7 @@ invoked, so that `feeddrive --help` answers at once.
 from __future__ import annotations
 
 import errno
+import gc
 import os
 import sys
 import traceback
@@ -17,6 +18,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import wraps
 from importlib import import_module
+from types import ModuleType
 from typing import Annotated, Any
 
 import typer
@@ -105,7 +107,7 @@ def load(name: str) -> Any:
     Raises:
         ModuleNotFoundError: the command's module is not there.
     """
-    module = import_module(f"feeddrive.cli.{COMMANDS[name].module}")
+    module = _imported(f"feeddrive.cli.{COMMANDS[name].module}")
     single = typer.Typer(add_completion=False, rich_markup_mode=None)
     single.command(name)(module.command)
     made = get_command(single)
@@ -124,6 +126,19 @@ def load(name: str) -> Any:
 
     made.callback = command
     return made
+
+
+def _imported(name: str) -> ModuleType:
+    """A module of this folder. What an import makes is there to stay: garbage is not sought in it, then or ever."""
+    first, collected = name not in sys.modules, gc.isenabled()
+    gc.disable()
+    try:
+        return import_module(name)
+    finally:
+        if first:
+            gc.freeze()
+        if collected:
+            gc.enable()
 
 
 def application() -> Any:

@@ -10,7 +10,8 @@ import typer
 
 from feeddrive.cli.output import JsonOption, deliver, parts_of, tables_of
 from feeddrive.errors import InputError
-from feeddrive.interface.measured.inspection import inspect, refuse_ending
+from feeddrive.interface.measured.inspected import refuse_ending
+from feeddrive.interface.measured.inspection import inspect
 from feeddrive.interface.shown import Listing
 
 

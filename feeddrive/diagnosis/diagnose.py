@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feeddrive.blas_threads import one_thread
+from feeddrive.diagnosis.budget import Budget
 from feeddrive.diagnosis.calibration.calibrate import calibrated
 from feeddrive.diagnosis.calibration.calibrated_result import calibrated_results, known_together
 from feeddrive.diagnosis.certainty.ambiguity import Rival, ambiguous_sets, other_places, rivals_of
@@ -64,6 +65,7 @@ def diagnose(
     progress: Progress = lambda text: None,
     start: Sequence[Effect] = (),
     measured: Sequence[MeasuredNumber] = (),
+    budget: Budget | None = None,
 ) -> tuple[Diagnosis, tuple[Effect, ...]]:
     """Find what the plant lacks.
 
@@ -76,6 +78,7 @@ def diagnose(
         progress: called with a line that says what is going on.
         start: effects found earlier, asked again before others are searched.
         measured: numbers (a stiffness, a frequency, a drag torque, a lost motion) beside recordings of motion.
+        budget: of time; as long as it takes if None.
 
     Returns:
         The diagnosis, and the effects to add to the plant: the named ones, then tables of what no name explains.
@@ -85,7 +88,9 @@ def diagnose(
     """
     if not 0.2 <= split <= 0.95:
         raise InputError(f"--split is {split:g}", "", "use a share between 0.2 and 0.95, such as 0.75")
-    recordings, validation = informative(plant, recordings), informative(plant, validation)
+    allowed = budget or Budget()
+    recordings = informative(plant, recordings, 1.0 if validation else split)
+    validation = informative(plant, validation)
     every = (*recordings, *validation)
     in_motion = shown(plant, recordings) is Shown.MOTION
     in_the_loop = simulate and in_motion
@@ -98,7 +103,7 @@ def diagnose(
 
     def begin(files: Files, hold: float | None, numbers: Sequence[MeasuredNumber]) -> _Begun:
         problem, judged, notes = prepared(plant, *files, split, hold)
-        problem = replace(problem, numbers=MeasuredRows(tuple(numbers)))
+        problem = replace(problem, numbers=MeasuredRows(tuple(numbers)), budget=allowed)
         refuse_ungiven(problem.numbers, plant)
         refuse_faulty(problem, (*problem.evidence, *judged))
         held = held_for if declared is None else declared_sentence
@@ -115,6 +120,8 @@ def diagnose(
         found = settled.searched.search
         spans = intervals(found.problem, found.fit, certainty(found.problem, found.fit))
         hold = hold_of(found.fit.effects, spans, every)
+        if hold is not None and allowed.skips("a torque that is logged more slowly than the drive holds it"):
+            hold = None
         if hold is not None:
             progress("the torque is logged more slowly than the drive holds it: again")
             begun = begin(begun.files, hold, measured)
@@ -135,6 +142,7 @@ def _reported(
     recordings, validation = begun.files
     searched, judged, refinement = settled.searched, settled.judged, settled.refinement
     found = searched.search
+    budget = begun.problem.budget
     progress("looking at what is left")
     alike = ambiguous_sets(found, settled.rivals)
     rest = explain_rest(found.problem, found.fit.effects, judged, channel_results(found.problem, judged))
@@ -144,6 +152,8 @@ def _reported(
     count = len(without_shifts(found.fit.effects))
     shares = [share_of(found.problem, judged, found.fit.effects, i) for i in range(count)]
     progress("looking for what would settle doubts")
+    no_time = budget.skips("which experiment settles a doubt")
+    experiments = () if no_time else next_experiments(found, settled.rivals, spans)
     result = Diagnosis(
         plant=plant.name,
         fit=_stamps(recordings),
@@ -169,7 +179,7 @@ def _reported(
         measured=_numbers_met(found, doubted),
         kept=kept_of(found, known),
         alike=alike,
-        next_experiments=next_experiments(found, settled.rivals, spans),
+        next_experiments=experiments,
         correlation=correlation(found.problem, found.fit, known),
         notes=(
             *begun.notes,
@@ -178,7 +188,9 @@ def _reported(
             *last_state(searched),
             *_notes(begun.problem.evidence, begun.judged, found),
             *refinement.notes,
+            *((budget.sentence,) if budget.sentence else ()),
         ),
+        untried=budget.sentence,
     )
     return result, (*effects, *rest.effects)
 
@@ -227,6 +239,8 @@ class _Settled:
 
 def _settled(begun: _Begun, simulate: bool, progress: Progress, start: Sequence[Effect]) -> _Settled:
     searched, evidence = search_recordings(begun.problem, progress, start), begun.judged
+    budget = begun.problem.budget
+    budget.end_of_search()
     found = searched.search
     progress("judging on data not fitted")
     judged, rehomed = _judged(found, evidence)
@@ -238,7 +252,8 @@ def _settled(begun: _Begun, simulate: bool, progress: Progress, start: Sequence[
         return _judged(other, evidence)[0]
 
     kept, judged = without_denied(found, judged, judge)
-    if kept is not found and not any(is_shift(effect) for effect in kept.fit.effects):
+    again_asked = kept is not found and not any(is_shift(effect) for effect in kept.fit.effects)
+    if again_asked and not budget.skips("a search without the names that are denied"):
         progress("searching again without the names that are denied")
         again = search(kept.problem, progress, kept)
         if len(again.fit.effects) > len(kept.fit.effects):
@@ -256,7 +271,7 @@ def _settled(begun: _Begun, simulate: bool, progress: Progress, start: Sequence[
     found, judged = not_worse_than_declared(found, judged, judge)
     judged, rehomed = _judged(found, evidence)
     refinement = Refinement(found, (judged, rehomed))
-    if simulate:
+    if simulate and not budget.skips("the simulated loop"):
         progress("simulating the closed loop, and refining in simulation")
         refinement = refined(found, refinement.outcome, lambda other: _judged(other, evidence))
         found, (judged, rehomed) = refinement.found, refinement.outcome
@@ -270,7 +285,8 @@ def _without_fault(
 
     A fault is read from slopes, so that what is left of it in the mended recordings is mended as well.
     """
-    fault = suspected(settled.searched.search)
+    budget = begun.problem.budget
+    fault = None if budget.skips("whether it is the recorder") else suspected(settled.searched.search)
     if fault is None:
         return begun, settled
     left: Suspect | None = fault

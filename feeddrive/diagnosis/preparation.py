@@ -47,11 +47,17 @@ Prepared = tuple[Problem, list[Evidence], tuple[str, ...]]
 """The problem, what is judged, and remarks."""
 
 
-def informative(plant: Plant, recordings: Sequence[Recording]) -> tuple[Recording, ...]:
-    """The recordings; of long ones of motion what is informative, with what they say as a whole as notes."""
+def informative(plant: Plant, recordings: Sequence[Recording], split: float = 1.0) -> tuple[Recording, ...]:
+    """The recordings; of long ones of motion what is informative, with what they say as a whole as notes.
+
+    Args:
+        plant: as declared.
+        recordings: as read, or as this function gave them.
+        split: share of what is kept of a long one that is fitted.
+    """
     if shown(plant, recordings) is not Shown.MOTION:
         return tuple(recordings)
-    return tuple(shortened(one, plant.chain.motor_radius) for one in recordings)
+    return tuple(shortened(one, plant.chain.motor_radius, split) for one in recordings)
 
 
 def prepared(

@@ -95,8 +95,8 @@ class Motion:
     `time` counts from the start of the recording [s]. `force` is what the nut transmits to the table [N], positive when
     it pushes the table along +; it is handed to friction at the screw and at the table, and 0 where it is not defined
     (elsewhere, and in a rigid structure: an effect that reads it says so by `reads_force`). `radius` is the travel of
-    the nut per angle of the screw, lead / 2 pi [m/rad], handed out with the force at the screw. `mass` is that of the
-    table with all that it carries [kg], handed to sources at the table.
+    the nut per angle of the screw, lead / 2 pi [m/rad], handed out with the force at the screw. `mass` is all that
+    moves with the table [kg], handed out at the table.
     """
 
     position: Expression

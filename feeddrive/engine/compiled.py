@@ -35,6 +35,8 @@ def source_of(program: Program) -> str:
     functions = _RESULT_CHECK.sub("", _NULL_CHECK.sub(r"\2", generator.dump()))
     functions = _FUNCTION.sub("static inline casadi_real casadi_", functions)
     sizes = "".join(f"#define {name} {size}\n" for name, size in program.sizes.items())
+    reads_input = any(row >= program.sizes["N_STATES"] for row in program.step.read)
+    sizes += f"#define READS_INPUT {int(reads_input)}\n"
     sizes += f"#define READ {{{', '.join(str(row) for row in (*program.step.read, 0))}}}\n"
     return "".join([*_texts(BEFORE), functions, sizes, *_texts(BEHIND)])
 

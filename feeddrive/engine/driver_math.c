@@ -13,8 +13,15 @@ static inline double quick_fmod(double x, double y) {
   return x - trunc(x / y) * y;
 }
 
-static inline double quick_fmax(double x, double y) { return (x > y || x != x) ? x : y; }
-static inline double quick_fmin(double x, double y) { return (x < y || x != x) ? x : y; }
+/* The larger is taken without a jump, which nobody could foretell; that there is no number can be. */
+static inline double quick_fmax(double x, double y) {
+  double most = x > y ? x : y;
+  return x != x ? x : most;
+}
+static inline double quick_fmin(double x, double y) {
+  double least = x < y ? x : y;
+  return x != x ? x : least;
+}
 
 #define exp quick_exp
 #define fmod quick_fmod

@@ -78,9 +78,10 @@ static void free_end(in memory, in input, in node, double *end) {
 }
 
 static void begin(in memory, in held, double place, in fixed, solved_step *step) {
-  double h = fixed[SPAN], given[2][N_HELD < 3 ? 3 : N_HELD]; /* held inputs, or the motion of a driven motor */
+  double h = fixed[SPAN], given[2][N_HELD < 3 ? 3 : N_HELD] = {{0}}; /* held inputs, or the motion of a driven motor */
   double *base = step->base, *guess = step->guess;
   (void)held, (void)place;
+#if READS_INPUT
   for (int n = 0; n < 2; ++n) {
 #if DRIVEN
     double share = fixed[SPAN + 1];
@@ -89,6 +90,7 @@ static void begin(in memory, in held, double place, in fixed, solved_step *step)
     for (int k = 0; k < N_HELD; ++k) given[n][k] = step->input[k];
 #endif
   }
+#endif
   free_end(memory, step->input, fixed + NODE, step->end);
   for (int k = 0; k < N_READ; ++k) {
     int row = read_rows[k], held_row = row - N_STATES;

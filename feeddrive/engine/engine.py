@@ -30,7 +30,6 @@ from feeddrive.engine.program import (
 )
 from feeddrive.engine.step.linear_part import Linear, SimulationError, linear_part
 from feeddrive.engine.step.step_constants import step_constants
-from feeddrive.plant.chain.chain import DistributedScrew
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.structure import parameter_values
 from feeddrive.typing import FloatArray
@@ -157,7 +156,7 @@ def _task(program: Program, plant: Plant, feed: Feed, table: _Table) -> Task:
 def _cells(plant: Plant) -> tuple[int, int]:
     """First cell and number of cells of the positions that the chain allows; one where it does not vary."""
     chain = plant.chain.without_modes
-    if not isinstance(chain, DistributedScrew):
+    if not chain.varies:
         return 0, 1
     least, greatest = chain.positions_on_screw()
     first, last = math.floor(least / CELL) + 1, math.ceil(greatest / CELL) - 1  # references inside, where masses are

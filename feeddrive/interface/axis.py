@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from feeddrive.effects.base import Effect
+from feeddrive.effects.source.weight import GRAVITY
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant, write_text_atomically
 from feeddrive.interface.machine.check import Check, Life, UsedLife
@@ -27,7 +28,6 @@ from feeddrive.plant.analysis.rated_life import rated_life
 from feeddrive.plant.analysis.stiffness_budget import stiffness_budget
 from feeddrive.plant.analysis.summary import summarise
 from feeddrive.plant.file.declared_check import check_declared
-from feeddrive.plant.file.guide_section import GRAVITY
 from feeddrive.plant.file.lumped_text import plant_text_with_effects
 from feeddrive.plant.file.plant_file import plant_from_entries
 from feeddrive.plant.file.plant_schema import plant_table

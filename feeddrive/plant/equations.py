@@ -110,7 +110,8 @@ def effect_forces(
         transmitted = nut.force
     for port, row in rows.items():
         at_nut = transmitted if port in (Port.SCREW, Port.TABLE) else 0.0
-        motion = Motion(ca.mtimes(row, q), ca.mtimes(row, rate), time, at_nut, p["lead"] / (2 * math.pi))
+        mass = plant.chain.moving_mass(p) if port is Port.TABLE else 0.0
+        motion = Motion(ca.mtimes(row, q), ca.mtimes(row, rate), time, at_nut, p["lead"] / (2 * math.pi), mass)
         force, port_rates = resisting_force(plant, symbols, port, motion, z)
         total -= row.T * force
         rates += port_rates

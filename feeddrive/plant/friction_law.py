@@ -8,11 +8,9 @@ of level times shape.
 
 from __future__ import annotations
 
-from dataclasses import replace
-
-from feeddrive.effects.base import BristleEffect, ChainEffect, FrictionEffect, Motion, Port, SourceEffect
+from feeddrive.effects.base import BristleEffect, FrictionEffect, Motion, Port, SourceEffect
 from feeddrive.plant.plant import Plant
-from feeddrive.plant.structure import Symbols, chain_symbols
+from feeddrive.plant.structure import Symbols
 from feeddrive.typing import Expression
 
 
@@ -82,18 +80,10 @@ def bristle_energy(plant: Plant, symbols: Symbols, port: Port, z: Expression) ->
 def source_force(plant: Plant, symbols: Symbols, port: Port, motion: Motion) -> Expression:
     """Sum of the sources of a port, positive when it resists + motion [N, or N m at a shaft]."""
     force: Expression = 0.0
-    carrying = replace(motion, mass=mass_on_table(plant, symbols)) if port is Port.TABLE else motion
     for effect in plant.effects:
         if isinstance(effect, SourceEffect) and effect.port == port:
-            force += effect.force(carrying, symbols.effects[effect.label])
+            force += effect.force(motion, symbols.effects[effect.label])
     return force
-
-
-def mass_on_table(plant: Plant, symbols: Symbols) -> Expression:
-    """Mass of the table with payloads and with what swings on it [kg]."""
-    p = chain_symbols(plant, symbols)
-    swinging = [e.label for e in plant.effects if isinstance(e, ChainEffect) and e.adds_coordinate]
-    return sum((p[f"{label}.mass"] for label in swinging), p["table_mass"])
 
 
 def friction_level(plant: Plant, symbols: Symbols, port: Port, motion: Motion) -> Expression:

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from feeddrive.errors import InputError
 from feeddrive.recording.channels import channel_unit
 from feeddrive.recording.checks.flaws import Flaw
-from feeddrive.typing import FloatArray
+from feeddrive.typing import BoolArray, FloatArray
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -29,6 +29,7 @@ class Recording:
         sha256: checksum of the file as it was read; empty if there is none.
         notes: what was found on reading: quantisation, saturation, separator, clock drift.
         flaws: samples that are not what the machine did; bad and held ones are filled, clipped ones are not.
+        kept_apart: samples that are kept for judging, (n,), where a long recording was cut so; None where time tells.
 
     Raises:
         InputError: a channel that is not as long as the time, or a sample time that is not positive.
@@ -42,6 +43,7 @@ class Recording:
     sha256: str = ""
     notes: tuple[str, ...] = ()
     flaws: tuple[Flaw, ...] = ()
+    kept_apart: BoolArray | None = None
 
     def __post_init__(self) -> None:
         for channel, samples in self.channels.items():
@@ -128,4 +130,5 @@ class Recording:
             raise InputError(f"no sample from {start:g} s to {stop:g} s", self.name, f"it covers {span}")
         kept = {channel: samples[first:last] for channel, samples in self.channels.items()}
         flaws = tuple(part for part in (one.between(int(first), int(last)) for one in self.flaws) if part.rows.size)
-        return replace(self, time=self.time[first:last], channels=kept, flaws=flaws)
+        apart = None if self.kept_apart is None else self.kept_apart[first:last]
+        return replace(self, time=self.time[first:last], channels=kept, flaws=flaws, kept_apart=apart)

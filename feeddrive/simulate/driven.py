@@ -122,12 +122,18 @@ def motor_motion(time: FloatArray, angle: FloatArray, substeps: int | None = Non
     Returns:
         The motion.
     """
+    return motor_motions(time, angle[:, None], substeps)[0]
+
+
+def motor_motions(time: FloatArray, angles: FloatArray, substeps: int | None = None) -> list[MotorMotion]:
+    """Several motions at the same times, (n, k): their splines have one matrix, and one set of basis functions."""
     # about the start of the record, so that the spline's conditioning does not depend on the clock
-    spline = make_interp_spline(time - time[0], angle, k=5)
+    spline = make_interp_spline(time - time[0], angles, k=5)
     if substeps is None:
         substeps = max(1, math.ceil((time[1] - time[0]) / GRID - 1e-6))
     fine = np.linspace(0.0, time[-1] - time[0], (len(time) - 1) * substeps + 1)
-    return MotorMotion(fine, spline(fine), spline(fine, 1), spline(fine, 2), substeps)
+    angle, speed, acceleration = (np.ascontiguousarray(spline(fine, order).T) for order in range(3))
+    return [MotorMotion(fine, *each, substeps) for each in zip(angle, speed, acceleration, strict=True)]
 
 
 def simulate_driven(plant: Plant, motion: MotorMotion, tolerance: float = TOLERANCE) -> LoadMotion:

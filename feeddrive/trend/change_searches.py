@@ -15,7 +15,8 @@ from feeddrive.recording import Recording
 from feeddrive.trend.checkpoint import Checkpoint, Entry
 from feeddrive.trend.events import Event
 from feeddrive.trend.folder import Source, opened, sources
-from feeddrive.trend.watch import Options, Trend
+from feeddrive.trend.new_files import Options
+from feeddrive.trend.watch import Trend
 
 
 def searched_events(

@@ -43,6 +43,7 @@ class Pooled:
         channel: of which.
         values: (n, p); not a number where a recording does not show a term.
         variance: relative, 1 for the usual recording, (n, p).
+        deviation: of the values [SI], (n, p).
         declared: medians of what the plant's own prediction has, (p,).
         slow_force: median [N].
         places: of the maps [m], (k,).
@@ -53,6 +54,7 @@ class Pooled:
     channel: str
     values: FloatArray
     variance: FloatArray
+    deviation: FloatArray
     declared: FloatArray
     slow_force: float
     places: FloatArray
@@ -77,7 +79,7 @@ def pool(passes: Sequence[Pass], grid: Grid, widths: Mapping[str, float]) -> Poo
     noise = [_rest(one, beta, count, low, hats) for one in passes]
     usual = float(np.sqrt(INFLATION) * np.median(noise)) if noise else 0.0
     prior = np.diag([max(usual, 1e-300) / widths[name] for name in names])
-    values, variance = np.empty((len(passes), count)), np.empty((len(passes), count))
+    values, variance, deviation = (np.empty((len(passes), count)) for _ in range(3))
     wide = np.array([widths[name] for name in names])
     for i, one in enumerate(passes):
         rows, right = _own_rows(one, beta, count, low, hats)
@@ -85,15 +87,14 @@ def pool(passes: Sequence[Pass], grid: Grid, widths: Mapping[str, float]) -> Poo
         solved = np.linalg.lstsq(stacked, np.concatenate([right, np.zeros(count + 1)]), rcond=None)[0]
         values[i] = solved[:count]
         inverse = np.linalg.pinv(stacked.T @ stacked)[:count, :count]
-        spread = usual * np.sqrt(np.diag(inverse))
-        variance[i] = np.diag(inverse)
-        values[i, spread > SHOWN * wide] = np.nan
+        variance[i], deviation[i] = np.diag(inverse), usual * np.sqrt(np.diag(inverse))
+        values[i, deviation[i] > SHOWN * wide] = np.nan
     typical = np.median(variance, axis=0)
     declared = np.median([one.declared for one in passes], axis=0)
     force = float(np.median([one.slow_force for one in passes]))
     return Pooled(
-        passes[0].channel, values, np.maximum(1.0, variance / typical), declared, force, places, beta.reshape(2, -1),
-        np.array(noise),
+        passes[0].channel, values, np.maximum(1.0, variance / typical), deviation, declared, force, places,
+        beta.reshape(2, -1), np.array(noise),
     )  # fmt: skip
 
 

@@ -8,8 +8,11 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
+from feeddrive.report.figures.figure_trend import with_steps
 from feeddrive.trend.change_points import ASSERTED, Course, course_of
 from feeddrive.trend.series_evidence import JUMP, ODD, SETTLING, SLOPE, Atom, Series, Timeline, noise_of
+from feeddrive.trend.watch import _course
+from feeddrive.typing import FloatArray
 
 COUNT = 120
 
@@ -128,3 +131,26 @@ def test_uneven_days_and_poor_recordings() -> None:
     values = np.sqrt(variance) * random.standard_normal(COUNT) + 6 * (np.arange(COUNT) >= 70)
     (one,) = course_of(Series(Timeline(time, variance), values / values.std()), 10).found
     assert one.atom.kind == JUMP and one.dates[0] <= time[70] <= one.dates[1]
+
+
+def test_jump_is_drawn_where_it_is() -> None:
+    """A recording a day: the line keeps its value until the day of the jump, on a slope as well."""
+    times: FloatArray = np.arange(6.0)
+    line = 2.0 * times + np.where(times >= 3, 5.0, 0.0)
+    at, drawn, band = with_steps(times, line, np.full(6, 0.1), [(3.0, 5.0)])
+    np.testing.assert_array_equal(at, [0, 1, 2, 3, 3, 4, 5])
+    np.testing.assert_allclose(drawn, [0, 2, 4, 6, 11, 13, 15])
+    assert len(band) == 7
+    untouched = with_steps(times, line, np.full(6, 0.1), [])
+    np.testing.assert_array_equal(untouched[0], times)
+
+
+def test_jump_among_averaged_recordings_is_no_ramp() -> None:
+    """Twelve hundred recordings are averaged by two or three; each still lies before the jump or behind it."""
+    random = np.random.default_rng(11)
+    times = np.arange(1200.0)
+    values = 0.05 * random.standard_normal(1200) + (times >= 600)
+    found = _course(times, values, np.ones(1200), 1, {})
+    (jump,) = found.found
+    np.testing.assert_allclose(found.fitted, np.where(times >= jump.atom.date, 1.0, 0.0), atol=0.02)
+    assert abs(jump.atom.date - 600) <= 3  # as coarse as the averages

@@ -11,14 +11,17 @@ import pytest
 
 import feeddrive as fd
 from feeddrive.diagnosis.likelihood.evidence import prepare
+from feeddrive.diagnosis.preparation import informative
 from feeddrive.diagnosis.suspicion.quality import flawed
+from feeddrive.interface.measured.first_look import play_seen
 from feeddrive.recording.checks.flaws import BAD, JOINED, flaw
 from feeddrive.recording.long import joined
-from feeddrive.recording.long.joined import informative_windows
+from feeddrive.recording.long.windows import informative_windows
 from feeddrive.trend.pooling import pool
 from feeddrive.trend.regressors import TRAVEL, grid_for, linear_pass
 from feeddrive.trend.watched_quantities import prior_widths
 from tests.recovery import trend_machine as machine
+from tests.recovery.long_production import blocks
 
 RADIUS = machine.LEAD / (2 * math.pi)
 STEP = 2e-3
@@ -55,7 +58,7 @@ def test_short_recording_is_as_it_was() -> None:
 
 
 def test_what_stands_still_tells_nothing(long_one: fd.Recording) -> None:
-    stretches = informative_windows(long_one, 60.0)
+    stretches, _ = informative_windows(long_one, 60.0)
     assert sum(last - first for first, last in stretches) == 30_000
     inside = sum(max(0, min(last, 150_000) - max(first, 30_000)) for first, last in stretches)
     assert inside <= 10.0 / STEP  # one window for the level at rest at most
@@ -86,7 +89,7 @@ def test_bridges_are_motions_that_the_drive_could_make(long_one: fd.Recording) -
 
 
 def test_flaws_stay_at_their_samples(long_one: fd.Recording) -> None:
-    first, last = informative_windows(long_one, 60.0)[-1]
+    first, last = informative_windows(long_one, 60.0)[0][-1]
     row = (first + last) // 2
     marked = replace(long_one, flaws=(flaw("motor_torque", BAD, [row], long_one["motor_torque"]),))
     found = joined.shortened(marked, RADIUS)
@@ -125,6 +128,59 @@ def test_play_of_the_whole_is_found_in_what_is_kept(long_one: fd.Recording, tmp_
     assert travel.rows < 30_000
     play = pool([travel], grid, prior_widths(axis.plant)).values[0, TRAVEL.index("play")]
     assert play == pytest.approx(6e-6, abs=0.1e-6)
+
+
+@pytest.fixture(scope="module")
+def production() -> fd.Recording:
+    """Forty minutes of production at 1 kHz with 6 µm of play, warming up."""
+    time, torque, angle, table = np.concatenate(list(blocks(2 / 3, 7, 6e-6))).T
+    return fd.Recording.from_arrays(time=time, motor_torque=torque, motor_angle=angle, table_position=table)
+
+
+def test_what_is_judged_lies_where_it_is_fitted(production: fd.Recording, monkeypatch: pytest.MonkeyPatch) -> None:
+    """In place, direction and time: by time alone a third of it lies where nothing was fitted."""
+    monkeypatch.setattr(joined, "KEPT_ROWS", 60_000)
+    found = joined.shortened(production, RADIUS, 0.75)
+    assert found.kept_apart is not None
+    own = np.setdiff1d(np.arange(len(found)), next(one for one in found.flaws if one.kind == JOINED).rows)
+    x = RADIUS * found["motor_angle"][own]
+    moves = np.concatenate([[0.0], np.diff(x)])
+    # 40 mm: a tenth of the lead map's shortest half wave; 10 µm/s is rest
+    cells = 2 * (x // 0.04).astype(int) + (moves > 0)
+    cells = np.where(np.abs(moves) > 1e-8, cells, -1)
+
+    def beyond(judged: np.ndarray) -> float:
+        """Share of the moving judged rows whose cell has no fitted row."""
+        there = np.isin(cells[judged & (cells >= 0)], cells[~judged])
+        return 1.0 - float(np.mean(there))
+
+    judged = found.kept_apart[own]
+    assert np.mean(judged) == pytest.approx(0.25, abs=0.07)
+    assert beyond(judged) < 0.05 < 0.2 < beyond(np.arange(len(own)) > 0.75 * len(own))
+    times = found.time[own]
+    assert np.ptp(times[judged]) > 0.5 * np.ptp(times)
+
+
+def test_judged_pieces_stay_what_they_are_in_a_part(production: fd.Recording) -> None:
+    found = joined.shortened(production, RADIUS, 0.75)
+    assert found.kept_apart is not None
+    part = found.between(float(found.time[1000]), float(found.time[50_000]))
+    assert part.kept_apart is not None
+    np.testing.assert_array_equal(part.kept_apart, found.kept_apart[1000:50_000])
+    assert joined.shortened(production, RADIUS).kept_apart is None  # judged on another recording
+
+
+@pytest.mark.parametrize("play", [6e-6, 0.0])
+def test_first_look_sees_a_play_beside_maps(play: float, tmp_path: Path) -> None:
+    """A lead map of 4 µm that is declared nowhere stands beside it; a machine without play gives no start."""
+    axis = machine_of(tmp_path)
+    rows = np.concatenate(list(blocks(2 / 3, 8, play)))
+    time, torque, angle, table = rows.T
+    recording = fd.Recording.from_arrays(time=time, motor_torque=torque, motor_angle=angle, table_position=table)
+    found = play_seen(axis.plant, informative(axis.plant, [recording], 0.75))
+    assert [one.name for one in found] == (["backlash"] if play else [])
+    if play:  # a start: the fit goes on from within a fifth
+        assert found[0].values["width"] == pytest.approx(play, rel=0.2)
 
 
 def test_noise_of_the_sensors_is_that_of_recorded_rows(long_one: fd.Recording, tmp_path: Path) -> None:

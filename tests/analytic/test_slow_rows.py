@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from feeddrive.diagnosis.likelihood.band import comparison_band
+from feeddrive.diagnosis.likelihood.band import END_CUT, comparison_band
 from feeddrive.diagnosis.likelihood.evidence import prepare
 from feeddrive.diagnosis.likelihood.slow_rows import is_slow, known_motion, refuse_unknown_motion, sentence
 from feeddrive.diagnosis.suspicion.logged import declared_hold
 from feeddrive.errors import InputError
-from feeddrive.plant.analysis.modes import braked_modes
+from feeddrive.plant.analysis.modes import braked_modes, lag_per_acceleration
 from feeddrive.plant.chain.chain import ThreeInertias
 from feeddrive.plant.plant import DeclaredCascade, Plant
 from feeddrive.recording import Recording
@@ -128,3 +128,21 @@ def test_rows_are_left_out_while_the_load_rings_after_motion_that_is_not_known()
     assert gone[0] == pytest.approx(gone[1], rel=0.3)  # so many time constants either way
     soft = Plant("axis", ThreeInertias({**BENCH.values, "axial_stiffness": 5e7, "torsional_damping": 3.0}))
     assert known_motion(made, soft, comparison_band(soft, 250.0))[1530:].all()  # the slow mode is seen as it is
+
+
+def test_a_channel_without_noise_is_compared_as_far_as_its_rows_tell_the_motion() -> None:
+    """A simulation has no noise of a sensor; its motion between rows is known to the error of the second difference."""
+    step, time = 1e-3, np.arange(8000) * 1e-3
+    past = (time - 4.0) / 0.03
+    angle = 3.0 * time + np.exp(-(past**2))  # constant speed, and one short bump
+    table = BENCH.motor_radius * angle + 5e-5 * np.sin(time)
+    exact = Recording("simulated", time, {"motor_angle": angle, "table_position": table}, step)
+    acceleration = (4 * past**2 - 2) / 0.03**2 * np.exp(-(past**2))
+    missed = np.diff(angle, 2) / step**2 - acceleration[1:-1]
+    inside = (time >= END_CUT) & (time <= time[-1] - END_CUT)
+    expected = lag_per_acceleration(PLANT) * np.sqrt(np.mean(missed[inside[1:-1]] ** 2))
+    found = prepare(exact, PLANT, 1.0).noise["table_position"]
+    assert found == pytest.approx(expected, rel=0.01)  # the next term of the series is (h / 0.03 s)^2
+    noisy = table + 1e-10 * np.random.default_rng(3).standard_normal(len(table))
+    measured = replace(exact, channels={"motor_angle": angle, "table_position": noisy})
+    assert prepare(measured, PLANT, 1.0).noise["table_position"] < 1e-10 < found

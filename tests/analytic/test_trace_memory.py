@@ -77,10 +77,54 @@ def _edge_json() -> Iterator[str]:
     yield "]" + rest[rest.rindex("]") + 1 :]
 
 
+def _scope() -> Iterator[str]:
+    head = traces.tncscope(rows=1).replace("%COUNT=1\r", f"%COUNT={ROWS}\r").split("\r\n")
+    yield "\r\n".join(head[:-2]) + "\r\n"
+    for first in range(0, ROWS, BLOCK):
+        time = 3e-3 * np.arange(first, first + BLOCK)
+        place, speed, _ = traces.motion(time)
+        rows = np.column_stack([time * 1e6, place, place + speed / 50.0, 60.0 * speed, traces.current(time)]).tolist()
+        yield "".join(" " + "; ".join(f"{cell:.9e}" for cell in row) + "; \r\n" for row in rows)
+
+
+def _halscope(begin: str, row: str) -> Callable[[], Iterator[str]]:
+    def parts() -> Iterator[str]:
+        yield begin
+        for first in range(0, ROWS, BLOCK):
+            place, speed, _ = traces.motion(1e-3 * np.arange(first, first + BLOCK))
+            yield "".join(row % (a, a + b / 50) for a, b in zip(place.tolist(), speed.tolist(), strict=True))
+
+    return parts
+
+
+def _operate() -> Iterator[str]:
+    whole, _ = traces.sinumerik_trace(rows=10)
+    head = whole[: whole.index("<rec ")]
+    yield (
+        head.replace("0.004000", "0.002000")
+        .replace('datapointCount="10"', f'datapointCount="{ROWS}"')
+        .replace('datapointCount="4"', f'datapointCount="{ROWS}"')
+    )
+    for first in range(0, ROWS, BLOCK):
+        time = 2e-3 * np.arange(first, first + BLOCK)
+        place, speed, _ = traces.motion(time)
+        rows = np.column_stack([time, traces.current(time), place, 60.0 * speed]).tolist()
+        yield "".join('<rec time="{:.6f}" f1="{:.6f}" f2="{:.6f}" f3="{:.6f}"/>\n'.format(*row) for row in rows)
+    yield whole[whole.rindex("</dataFrame>") :]
+
+
+_OLD = _halscope(
+    "Sampling period is 1000000 nSec \n\n", "joint.0.pos-fb %+.14f joint.0.pos-cmd %+.14f \n"
+)  # fmt: skip
+_NEW = _halscope("# Sampling period is 1000000 ns\njoint.0.pos-fb;joint.0.pos-cmd\n", "%.14f;%.14f\n")
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("name", "parts"), [("a.csv", _twincat), ("a_hfdata.csv", _edge_table), ("a.json", _edge_json)]
-)
+    ("name", "parts"),
+    [("a.csv", _twincat), ("a_hfdata.csv", _edge_table), ("a.json", _edge_json), ("a.sco", _scope),
+     ("a.xml", _operate), ("old.log", _OLD), ("new.log", _NEW)],
+)  # fmt: skip
 def test_large_trace_is_read_in_two_and_a_half_times_the_file(
     name: str, parts: Callable[[], Iterator[str]], tmp_path: Path
 ) -> None:

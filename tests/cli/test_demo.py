@@ -27,6 +27,6 @@ def test_demo_finds_what_was_planted(tmp_path: Path, capsys: pytest.CaptureFixtu
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     printed = re.search(r"```text\n(The declared plant lacks: .*?)```", readme, re.DOTALL)
     assert printed is not None
-    for claim in ("2.1002 µm", "37.99 N", "160.06 mm"):
+    for claim in ("2.100 µm", "37.99 N", "160.1 mm"):
         assert claim in printed[1] and claim in said
     assert (tmp_path / "report.html").is_file()

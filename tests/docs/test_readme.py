@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import shlex
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -70,3 +71,11 @@ def test_every_relative_link_and_figure_exists(text: str) -> None:
     relative = [target for target in targets if not re.match(r"[a-z]+:|#", target)]
     absent = [target for target in relative if not (ROOT / target.split("#")[0]).exists()]
     assert absent == []
+
+
+def test_the_python_of_the_readme_runs(text: str) -> None:
+    """A reader pastes it first; it ends in a diagnosis that finds nothing, as nothing was planted."""
+    (block,) = re.findall(r"^```python\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+    names: dict[str, Any] = {}
+    exec(compile(block, "README.md", "exec"), names)
+    assert list(names["found"].effects) == []

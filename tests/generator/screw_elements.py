@@ -46,7 +46,8 @@ class Drive:
     to screw; a stiffness of infinity is rigid. ratio: motor turns per screw turn. length, stub: of the
     screw from the near bearing to its end, and out to the coupling [m]. axial, torsional: rigidity EA, GJ [N, N m^2].
     mass, inertia: per length [kg/m, kg m]. near, far, nut: axial stiffness [N/m]. table: [kg]. first: nut where the
-    table is at 0 [m]. tau: C = tau K [s].
+    table is at 0 [m]. fall: acceleration of fall against + [m/s^2]. held: counterbalance, along + [N].
+    tau: C = tau K [s].
     """
 
     lead: float
@@ -64,6 +65,8 @@ class Drive:
     nut: float
     table: float
     first: float
+    fall: float = 0.0
+    held: float = 0.0
     tau: float = 0.0
     elements: int = ELEMENTS
 
@@ -109,6 +112,7 @@ def drive_of(path: Path) -> Drive:
     near = quantity(entries["bearing"]["near"]["axial_stiffness"])
     far = quantity(entries["bearing"]["far"]["axial_stiffness"]) if "far" in entries["bearing"] else 0.0
     area = math.pi * diameter**2 / 4
+    inclined = quantity(table.get("inclination", 0.0))
     drive = Drive(
         lead=quantity(screw["lead"]),
         rotor=quantity(motor["rotor_inertia"]),
@@ -125,6 +129,8 @@ def drive_of(path: Path) -> Drive:
         nut=stiffness,
         table=quantity(table["mass"]),
         first=quantity(table.get("first_nut_position", 0.0)),
+        fall=GRAVITY * math.sin(inclined),
+        held=math.copysign(quantity(table.get("counterbalance", 0.0)), inclined),
     )
     ends = table["stroke"]["value"] if isinstance(table["stroke"], dict) else table["stroke"]
     low, high = (quantity(end) for end in ends)
@@ -285,7 +291,8 @@ def record(
     gains = np.array([how.position_gain, how.bandwidth * inertia, 1 / how.integral_time, how.torque_limit, how.encoder])
     numbers = np.array([
         drive.radius, drive.ratio, drive.axial, drive.torsional, drive.nut, drive.table, drive.first, drive.tau,
-        *friction.table, *friction.screw, friction.force, *friction.stribeck, *friction.bump,
+        *friction.table, *friction.screw, friction.force + drive.fall * drive.table - drive.held,
+        *friction.stribeck, *friction.bump,
         what.backlash, *what.lead_error,
     ])  # fmt: skip
     torque, angle, position = _run(

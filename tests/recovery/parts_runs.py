@@ -18,7 +18,7 @@ from feeddrive.plant.plant import Plant
 from feeddrive.plant.structure import parameter_symbols, parameter_values
 from feeddrive.recording import Recording
 from tests.generator.profile import setpoint_and_chirp, train_profile, validate_profile
-from tests.generator.screw_elements import GRAVITY, Drive, Friction, Planted, Recorder, drive_of, record
+from tests.generator.screw_elements import Drive, Friction, Planted, Recorder, drive_of, record
 
 SAMPLE = 5e-4
 MARGIN = 0.05
@@ -39,13 +39,13 @@ def friction_of(plant: Plant) -> Friction:
         motion = Motion(ca.SX(0.0), ca.SX(way), 0.0, force := ca.SX.sym("force"), plant.chain.radius)
         level = ca.Function("level", [force, symbols.vector], [friction_level(plant, symbols, Port.SCREW, motion)])
         columns.append(np.array([float(level(f, parameter_values(plant))) for f in forces]))
-    weight = sum(float(e.values["force"]) for e in plant.effects if e.name == "constant_force")
+    pulling = sum(float(e.values["force"]) for e in plant.effects if e.name == "constant_force")
     table = tuple(float(guide.get(key, 0.0)) for key in ("coulomb", "smoothing_velocity", "viscous", "film_force"))
     exponent = float(guide.get("film_exponent", 0.5))
     smoothing = {float(drag["smoothing_speed"]) for drag in drags}
     assert len(smoothing) == 1
     screw = (smoothing.pop(), sum(float(drag["viscous"]) for drag in drags))
-    return Friction((*table, exponent), screw, np.column_stack([forces, *columns]), weight)
+    return Friction((*table, exponent), screw, np.column_stack([forces, *columns]), pulling)
 
 
 @cache
@@ -66,8 +66,6 @@ def made(name: str, seconds: float, validate: bool, seed: int, changes: tuple[tu
             planted = replace(planted, **{key: value})
         else:
             recorder = replace(recorder, **{key: value})
-    if friction.weight:  # it hangs: what is carried beyond the declared mass does as well
-        friction = replace(friction, weight=friction.weight + GRAVITY * (drive.table - drive_of(path).table))
     assert plant.stroke is not None
     low, high = plant.stroke
     axis = SimpleNamespace(

@@ -8,10 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from feeddrive.diagnosis.calibration.calibrate import calibrated
 from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging.judge import Judged, prepared_for_judging
-from feeddrive.diagnosis.judging.veto import ends_reached, without_denied, worse_by
+from feeddrive.diagnosis.judging.veto import ends_reached, not_worse_than_declared, without_denied, worse_by
 from feeddrive.diagnosis.likelihood.coordinates import read_coordinates, write_coordinates
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.fit import fit
@@ -25,6 +26,7 @@ from feeddrive.effects.source.torque_ripple import TorqueRipple
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
+from tests.recovery import trend_machine as machine
 from tests.recovery.rigid_runs import COULOMB, LEAD, MASS, NOISE, PLANT, SMOOTH, STEP, VISCOUS, Truth, rigid_run
 
 RIPPLE, BOGUS = (
@@ -122,3 +124,26 @@ def test_diagnosis_lists_what_was_denied_as_refused(rigid: Plant, tmp_path: Path
     result, _ = diagnose(rigid, [rigid_run("a", Truth(ripple=0.01))], [rigid_run("b", Truth(ripple=0.01), slow=1.3)])
     assert [effect.name for effect in result.effects] == ["torque_ripple"]
     assert all(effect.carries for effect in result.effects)
+
+
+def test_torque_is_not_given_up_for_a_lead_map_that_no_name_explains(tmp_path: Path) -> None:
+    """4 µm against 20 nm of noise pull friction and stiffness, until the torque is worse than as declared."""
+    (tmp_path / "plant.toml").write_text(machine.PLANT, encoding="utf-8")
+    plant = read_plant(tmp_path / "plant.toml")
+    one, other = (machine.recording(machine.State(seed=seed, start=1.3 * seed), name=f"{seed}") for seed in range(2))
+    problem, evidence, _ = prepared(plant, [one], [other], 0.75)
+    problem = calibrated(problem)
+    found = Search(problem, fit(problem, ()), (), (), {})
+
+    def judge(search: Search) -> list[Judged]:
+        settled = search.problem.settled(search.fit.effects)
+        after = settled.machine(search.fit.effects)
+        return [prepared_for_judging(settled, one, plant, after) for one in evidence]
+
+    judged = judge(found)
+    assert worse_by(problem, judged, "motor_torque") > 0
+    kept, again = not_worse_than_declared(found, judged, judge)
+    assert all(worse_by(kept.problem, again, name) < 0 for name in ("motor_torque", "table_position"))
+    # weighed by what is left of each channel, not given up: fitted values are nearer than the declared ones
+    assert kept.problem.calibration is not None and kept.problem.calibration.values
+    assert not_worse_than_declared(kept, again, judge)[0] is kept

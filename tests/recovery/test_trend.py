@@ -15,8 +15,9 @@ import pytest
 
 import feeddrive as fd
 from feeddrive.trend.checkpoint import USED, Checkpoint, Entry
+from feeddrive.trend.new_files import Options
 from feeddrive.trend.regressors import grid_for, linear_pass
-from feeddrive.trend.watch import Options, Trend, trend_of
+from feeddrive.trend.watch import Trend, trend_of
 from tests.recovery import trend_machine as machine
 from tests.recovery.trend_files import write_recording
 

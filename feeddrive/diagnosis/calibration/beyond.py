@@ -13,16 +13,13 @@ from feeddrive.diagnosis.calibration.calibration import Calibration
 from feeddrive.diagnosis.calibration.declared import CalibratedValue, as_effect, calibrated_values
 from feeddrive.diagnosis.calibration.known import TOLERANCE, known_values
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
-from feeddrive.diagnosis.likelihood.tolerances import BEYOND
+from feeddrive.diagnosis.likelihood.set_evidence import regained
+from feeddrive.diagnosis.likelihood.tolerances import BEYOND, SURE
 from feeddrive.effects.base import Effect, Value, number
 from feeddrive.effects.chain.inertia_deviation import declared_inertia
 from feeddrive.effects.friction.friction_deviation import FrictionDeviation
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray
-
-SURE = 3.0
-"""Deviations by which no values within their tolerances may explain the recordings, and one beyond its does: one of 700
-by chance for each of a dozen values, where the truth is at the very end of a tolerance."""
 
 AGAINST = 2 * math.log(20.0)
 """Twice the logarithm of the odds from which a value is refused that is not the likeliest (as `ambiguity`)."""
@@ -98,13 +95,15 @@ def given_back(problem: Problem, effect: Effect) -> Problem:
 def without_effects(problem: Problem, gone: Sequence[Effect], rest: Sequence[Effect]) -> Problem:
     """The problem once some effects are out of a set: declared values that they stated are fitted within tolerance.
 
-    Left as declared they would be exact, and what they are off by would go into whatever is in their place.
+    Left as declared they would be exact, and what they are off by would go into whatever is in their place. Samples
+    that a free play among them left unpredictable are to be predicted again.
 
     Args:
         problem: with the values that were fitted beside all effects.
         gone: effects that are out.
         rest: those that remain.
     """
+    problem = regained(problem, rest)
     known = problem.calibration
     for effect in gone:
         if not any(_is_same(effect, other) for other in rest):
@@ -145,11 +144,12 @@ def _is_said_by(value: CalibratedValue, effect: Effect) -> bool:
 
 
 def _joined(one: Effect, other: Effect) -> Effect:
-    """Two deviations of a declared value as one: factors multiply, masses and inertias add."""
+    """Two deviations of a declared value as one, in its range: factors multiply, masses and inertias add."""
     joined: dict[str, Value] = {}
     for key in other.values:
         first, second = number(one.values[key]), number(other.values[key])
-        joined[key] = first * second if key.endswith("factor") else first + second
+        ends, value = one.parameter(key), first * second if key.endswith("factor") else first + second
+        joined[key] = min(max(value, ends.minimum), ends.maximum)
     return one.with_values(**joined)
 
 

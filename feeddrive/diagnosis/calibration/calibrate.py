@@ -14,6 +14,7 @@ from feeddrive.diagnosis.calibration.known import known_values
 from feeddrive.diagnosis.certainty.noise_colour import score_covariance
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem
+from feeddrive.diagnosis.likelihood.predictability import has_play
 from feeddrive.effects.base import Effect
 from feeddrive.recording import Recording
 from feeddrive.typing import FloatArray
@@ -22,7 +23,7 @@ STEP = 1e-3
 """Change of the logarithm of a value from which its slope is taken; ten times that of a coordinate of size one."""
 
 LONG = 30 * STEP
-"""Change of the logarithm where a prediction goes from cell to cell (`fit.COARSE`)."""
+"""Change of the logarithm where a prediction goes from cell to cell, or a table bounces (`fit.COARSE`)."""
 
 ENOUGH = 0.1
 """Move of a value over its deviation that needs no new slopes: it moves the evidence by a two-hundredth."""
@@ -75,6 +76,14 @@ def recalibrated(problem: Problem, effects: Sequence[Effect], rough: bool = Fals
     return sloped.stepped(effects, sloped.unwhitened(effects) if len(numbers) else residual)
 
 
+def at_declared(problem: Problem) -> Problem:
+    """The problem with its declared values as they are declared, the slopes as they are."""
+    known = problem.calibration
+    if known is None:
+        return problem
+    return replace(problem, calibration=replace(known, coordinates=np.zeros(len(known.values))))
+
+
 def weighed_by_rest(problem: Problem, effects: Sequence[Effect]) -> Problem:
     """The problem with no channel weighed by more than what is left of it, its declared values fitted anew from there.
 
@@ -89,7 +98,7 @@ def weighed_by_rest(problem: Problem, effects: Sequence[Effect]) -> Problem:
     known = problem.calibration
     if known is None or not known.values:
         return problem
-    there = replace(problem, calibration=replace(known, coordinates=np.zeros(len(known.values))))
+    there = at_declared(problem)
     for _ in range(PASSES):
         before = there
         residual, first, evidence = replace(there, evidence=problem.evidence).unwhitened(effects), 0, []
@@ -147,7 +156,7 @@ def slopes_of(
         there = replace(problem, calibration=replace(known, coordinates=coordinates)).machine(effects)
         return problem.predictor.predict(there, evidence)
 
-    smooth, base = problem.predictor.smooth(problem.plant), at(0, 0.0)
+    smooth, base = problem.predictor.smooth(problem.plant) and not has_play(effects), at(0, 0.0)
     slopes = {name: np.empty((len(base[name]), len(known.values))) for name in evidence.channels}
     for i, value in enumerate(known.values):
         step = (STEP if smooth else LONG) / value.deviation

@@ -22,8 +22,15 @@ from feeddrive.diagnosis.certainty.same_by_law import twins_of
 from feeddrive.diagnosis.finding.attempt import Attempt
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging.judge import Judged
-from feeddrive.diagnosis.likelihood.coordinates import LOGARITHMIC
+from feeddrive.diagnosis.likelihood.coordinates import at_its_limit
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
+from feeddrive.diagnosis.likelihood.set_evidence import (
+    Standing,
+    commonly_predicted,
+    excess_beyond,
+    regained,
+    same_samples,
+)
 from feeddrive.effects.base import Effect, number
 from feeddrive.effects.chain.stiffness_deviation import PARTS, StiffnessDeviation, parts_of
 from feeddrive.errors import InputError
@@ -48,9 +55,6 @@ MOST_RIVALS = 4
 
 PLACED = ("inertia_deviation", "channel_delay", "stiffness_deviation")
 """Effects whose place is put to the question."""
-
-NEAR_END = 0.02
-"""Share of an end of a parameter's range within which it counts as standing there."""
 
 PASSES = 2
 """Times that a rival and declared values are fitted in turn: what a rival that is as good is behind by, two remove; of
@@ -99,8 +103,11 @@ def rivals_of(found: Search, judged: Sequence[Judged]) -> list[list[Rival]]:
         judged: recordings with the found effects in.
     """
     mine = Residuals.of(found.problem, found.fit, [(j.after, j) for j in judged])
-    result = []
+    result: list[list[Rival]] = []
     for place in range(len(found.fit.effects)):
+        if found.problem.budget.skips("which other names do as well as", found.fit.effects[place].name):
+            result.append([])
+            continue
         near = [attempt.fit.effects[-1] for attempt in _near(found, place)]
         like = [
             other for other in imitations_of(found.fit.effects[place], found.problem.plant) if _is_free(found, other)
@@ -183,20 +190,6 @@ def _possible(effect: Effect, found: Search) -> tuple[str, ...]:
     return effect.places
 
 
-def at_its_limit(effect: Effect) -> bool:
-    """Whether a parameter that is known to a factor has run to an end of its range, where the law is another one.
-
-    A Stribeck velocity beyond all speeds is a level, growth within no time another lead, a mode above all frequencies
-    a mass. Such a rival says nothing that the simpler law does not.
-    """
-    for key, value in effect.values.items():
-        if (effect.name, key) in LOGARITHMIC and isinstance(value, float | int):
-            parameter = effect.parameter(key)
-            if value <= parameter.minimum * (1 + NEAR_END) or value >= parameter.maximum * (1 - NEAR_END):
-                return True
-    return False
-
-
 def _near(found: Search, place: int) -> list[Attempt]:
     """Candidates that came near when the effect was taken, and those that its signature names, the best first."""
     effect = found.fit.effects[place]
@@ -233,13 +226,19 @@ def _in_place(found: Search, judged: Sequence[Judged], place: int, rival: Effect
         freed = given_back(freed, named)
         if _keys(freed) != _keys(problem):
             problem, effects = fitted_together(freed, said, PASSES)
-        swapped = fit(problem, effects, iterations=ITERATIONS)
-        its = Residuals.of(problem, swapped, [(j.with_effects(problem, swapped.effects), j) for j in judged])
+        problem = regained(problem, effects)
+        swapped = there = fit(problem, effects, iterations=ITERATIONS)
+        beyond = 0.0
+        if not same_samples(problem, found.problem):  # without the free play of what was taken
+            there = fit(commonly_predicted(problem, found.problem), swapped.effects, iterations=ITERATIONS)
+            level = min(float(mine.fitted @ mine.fitted), there.squared_error) / max(len(mine.fitted), 1)
+            beyond = excess_beyond(Standing(problem, swapped), Standing(found.problem, found.fit), level)
+        its = Residuals.of(problem, there, [(j.with_effects(problem, there.effects), j) for j in judged])
     except InputError:
         return None
     if not np.all(np.isfinite(its.fitted)):
         return None
-    odds, distance = odds_and_distance(found.problem, judged, mine, its)
+    odds, distance = odds_and_distance(found.problem, judged, mine, its, beyond)
     ratio = float(np.linalg.norm(its.judged) / np.linalg.norm(mine.judged))
     return Rival(place, swapped, odds, distance, ratio, problem)
 

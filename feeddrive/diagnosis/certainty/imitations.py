@@ -1,6 +1,6 @@
 """Effects that become another one where they are small, started from that one's values.
 
-    backlash w  ->  preload_loss with F1 = k (w / 2) a / (1 - a)
+    backlash w  <->  preload_loss with w = 2 F1 (1 - a) / (a k)
 
 Both let the table lag by w / 2 once the transmitted force has passed F1. Where the recordings never dwell at forces
 below F1 the two are one; a search that starts at forces which can be seen does not come upon this one.
@@ -14,14 +14,14 @@ below F1 the two are one; a search that starts at forces which can be seen does 
 
 from __future__ import annotations
 
-from feeddrive.effects.base import Effect
+from feeddrive.effects.base import Effect, number
 from feeddrive.effects.transmission.backlash import Backlash
 from feeddrive.effects.transmission.preload_loss import PreloadLoss
 from feeddrive.plant.analysis.stiffness_budget import nut_stiffness
 from feeddrive.plant.plant import Plant
 
-SOFTENED = 0.1
-"""Ratio a of the start: far from both ends of its range, 0.01 (free play) and 1 (no loss)."""
+SOFTENED = 0.3
+"""Ratio a of the start: far, as a factor, from both ends of its search, 0.1 (free play) and 1 (no loss)."""
 
 
 def imitations_of(effect: Effect, plant: Plant) -> tuple[Effect, ...]:
@@ -31,10 +31,22 @@ def imitations_of(effect: Effect, plant: Plant) -> tuple[Effect, ...]:
         effect: found.
         plant: as declared.
     """
-    if not isinstance(effect, Backlash) or not plant.chain.elastic:
+    if not plant.chain.elastic:
         return ()
-    width = effect.values["width"]
-    if not isinstance(width, float) or width <= 0:
+    if isinstance(effect, PreloadLoss):
+        width = lost_motion(number(effect.values["ratio"]), number(effect.values["force"]), plant)
+        return (Backlash.of(width=min(width, Backlash.parameter("width").maximum)),) if width > 0 else ()
+    if not isinstance(effect, Backlash) or number(effect.values["width"]) <= 0:
         return ()
-    stiffness = nut_stiffness(plant)
-    return (PreloadLoss.of(ratio=SOFTENED, force=0.5 * width * stiffness * SOFTENED / (1 - SOFTENED)),)
+    force = 0.5 * number(effect.values["width"]) * nut_stiffness(plant) * SOFTENED / (1 - SOFTENED)
+    return (PreloadLoss.of(ratio=SOFTENED, force=force),)
+
+
+def lost_motion(ratio: float, force: float, plant: Plant) -> float:
+    """Way w [m] that a table lags behind more, from one direction to the other, where preload is lost.
+
+    Args:
+        ratio, force: a and F1 [N].
+        plant: elastic, whose nut's spring it is.
+    """
+    return 2 * force * (1 - ratio) / (ratio * nut_stiffness(plant))

@@ -8,10 +8,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from feeddrive.diagnosis.certainty.ambiguity import AGAINST, Rival, at_its_limit
+from feeddrive.diagnosis.certainty.ambiguity import AGAINST, Rival
 from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.finding.search import Search
-from feeddrive.diagnosis.likelihood.coordinates import read_coordinates
+from feeddrive.diagnosis.likelihood.coordinates import at_its_limit, read_coordinates
 from feeddrive.diagnosis.likelihood.fit import Problem, fit
 from feeddrive.diagnosis.recordings.recordings import is_shift
 from feeddrive.effects.base import Effect

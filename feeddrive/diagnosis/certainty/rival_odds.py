@@ -52,7 +52,7 @@ def _thinned_error(problem: Problem, plant: Plant, judged: Judged) -> FloatArray
 
 
 def odds_and_distance(
-    problem: Problem, judged: Sequence[Judged], mine: Residuals, its: Residuals
+    problem: Problem, judged: Sequence[Judged], mine: Residuals, its: Residuals, beyond: float = 0.0
 ) -> tuple[float, float]:
     """Lambda and distance of a rival from what was taken, fitted and judged samples together.
 
@@ -60,13 +60,15 @@ def odds_and_distance(
         problem: fitted recordings.
         judged: judged recordings.
         mine: of what was taken.
-        its: of the rival.
+        its: of the rival, on the same samples.
+        beyond: squared error of the rival less that of what was taken on fitted samples that one of them alone
+            predicts (`set_evidence.excess_beyond`).
     """
     parts = (
         (list(problem.evidence), [e.fit_rows for e in problem.evidence], mine.fitted, its.fitted),
         ([j.evidence for j in judged], [j.evidence.judged_rows for j in judged], mine.judged, its.judged),
     )
-    excess, square, scatter = 0.0, 0.0, 0.0
+    excess, square, scatter = beyond, 0.0, 0.0
     for evidence, rows, left, other in parts:
         difference = other - left
         excess += float(other @ other - left @ left)

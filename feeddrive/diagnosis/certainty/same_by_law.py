@@ -1,7 +1,7 @@
 """Effects that say the same of these recordings by their laws alone, whatever the noise: named without a trial.
 
     drive_delay d = channel_delay d of motor_angle               where no table position is recorded
-    payload m = inertia_deviation m r^2, at motor or screw       in a rigid structure
+    payload m = inertia_deviation m r^2, at motor or screw       in a rigid structure that moves level
     constant_force F = channel_offset F r of the torque          where nothing is declared to hang or pull
     lead_error_cumulative s = channel_gain 1 + s of the scale    beyond what any class of screw misses
 
@@ -22,6 +22,7 @@ from dataclasses import dataclass
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.suspicion.quality import read_otherwise
 from feeddrive.effects.base import Effect
+from feeddrive.effects.source.weight import Weight
 from feeddrive.plant.plant import Plant
 
 
@@ -44,7 +45,7 @@ def twins_of(effect: Effect, plant: Plant, evidence: Sequence[Evidence]) -> tupl
     if effect.name == "drive_delay" and not any("table_position" in e.channels for e in evidence):
         reason = "without a table position a torque that acts late is a motor angle that is recorded late"
         return (Twin("channel_delay", f"{reason}; record the table position to tell them apart"),)
-    if effect.name == "payload" and not plant.chain.elastic:
+    if effect.name == "payload" and not plant.chain.elastic and not plant.effects_of(Weight):
         reason = "in a rigid structure an inertia of motor or screw is a mass on the table"
         mend = 'use structure = "three_inertias" and record the table position to tell them apart'
         return (Twin("inertia_deviation", f"{reason}; {mend}"),)

@@ -17,7 +17,8 @@ from feeddrive.diagnosis.likelihood.cross_validation import (
 )
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit, linear_step
 from feeddrive.diagnosis.likelihood.folds import FOLDS, block_numbers
-from feeddrive.effects.base import Effect, TransmissionEffect
+from feeddrive.diagnosis.likelihood.predictability import has_play
+from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 from feeddrive.typing import FloatArray
 
@@ -89,7 +90,7 @@ def started(scene: Scene, candidate: Candidate) -> list[Attempt]:
 
 def _best_start(scene: Scene, candidate: Candidate, starts: Sequence[Effect]) -> Attempt:
     before = scene.found
-    problem = with_predictable(scene.problem, (*before, starts[0])) if _jumps(starts[0]) else scene.problem
+    problem = with_predictable(scene.problem, (*before, starts[0])) if has_play(starts[:1]) else scene.problem
     problem = with_short_blocks(problem) if candidate.brief else problem
     free = [False] * len(before) + [True]
     start = starts[0]
@@ -129,13 +130,9 @@ def _usable(scene: Scene, problem: Problem, name: str, result: Fit) -> Attempt:
         raise InputError(f"{name} could not be simulated", name)
     if not problem.possible(result.effects):
         raise InputError(f"{name} would have friction push the axis", name)
-    if _jumps(result.effects[-1]):
+    if has_play(result.effects[-1:]):
         problem = with_predictable(scene.problem, result.effects)
     return compared(problem, name, result, scene.found)
-
-
-def _jumps(effect: Effect) -> bool:
-    return isinstance(effect, TransmissionEffect) and effect.has_play
 
 
 def _one_linear_step(fitted: Fit) -> Fit:

@@ -7,7 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 from feeddrive.diagnosis.finding.attempt import PROMISE, Attempt, refined, started
-from feeddrive.diagnosis.finding.scene import Scene
+from feeddrive.diagnosis.finding.scene import Candidate, Scene
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem
 from feeddrive.effects.base import Effect
 
@@ -30,8 +30,16 @@ class Round:
     count: int
 
 
-def one_round(scene: Scene, found: Fit, impossible: dict[str, str], denied: Mapping[str, str]) -> Round:
+def one_round(
+    scene: Scene, found: Fit, impossible: dict[str, str], denied: Mapping[str, str], number: int = 1
+) -> Round:
     """All candidates but those denied, each fitted as far as it promises; why others are impossible is noted."""
+    budget = scene.problem.budget
+
+    def begun(candidate: Candidate) -> list[Attempt]:
+        left_out = budget.skips(f"in round {number} of the search", candidate.name)
+        return [] if left_out else started(scene, candidate)
+
     ready = []
     for candidate in scene.problem.predictor.candidates:
         if candidate.name in denied or _already(candidate.name, found.effects):
@@ -42,7 +50,7 @@ def one_round(scene: Scene, found: Fit, impossible: dict[str, str], denied: Mapp
         else:
             ready.append(candidate)
     with ThreadPoolExecutor(WORKERS) as pool:
-        groups = list(pool.map(lambda candidate: started(scene, candidate), ready))
+        groups = list(pool.map(begun, ready))
         attempts = _promising_refined(scene, [attempt for group in groups for attempt in group], pool)
     return Round(tuple(_best_per_place(attempts)), max(2, sum(attempt.starts for attempt in attempts)))
 
@@ -62,7 +70,7 @@ def _promising_refined(scene: Scene, attempts: list[Attempt], pool: ThreadPoolEx
     """The attempts, the best first, those fitted that promise a fair part of the best."""
     waiting = sorted(attempts, key=lambda attempt: -attempt.comparison.gain)
     done: list[Attempt] = []
-    while waiting:
+    while waiting and not scene.problem.budget.is_spent:
         best = max((attempt.comparison.gain for attempt in done), default=0.0)
         if waiting[0].comparison.gain <= max(PROMISE, FAIR_PART * best):
             break

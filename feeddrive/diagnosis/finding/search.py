@@ -10,18 +10,23 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from feeddrive.diagnosis.calibration.beyond import beyond_tolerance, without_effects
-from feeddrive.diagnosis.calibration.calibrate import calibrated, recalibrated
+from feeddrive.diagnosis.calibration.calibrate import at_declared, calibrated, recalibrated
+from feeddrive.diagnosis.calibration.known import TOLERANCE
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, Attempt, compared, started
 from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.finding.round import Round, one_round
 from feeddrive.diagnosis.finding.scene import scene_of
 from feeddrive.diagnosis.finding.sets import Neighbour, neighbours
+from feeddrive.diagnosis.finding.spring_law import LAWS, with_likelier_law
 from feeddrive.diagnosis.heat.heat_candidates import is_another
 from feeddrive.diagnosis.judging.result import Trial
 from feeddrive.diagnosis.likelihood.coordinates import write_coordinates
+from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
-from feeddrive.diagnosis.likelihood.set_evidence import log_odds
+from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between, regained, same_samples
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 
@@ -74,11 +79,9 @@ class Near:
 
 
 @dataclass(frozen=True)
-class _Taken:
+class _Taken(Standing):
     """A likelier set: its recordings and fit, what was added, and by how much it is likelier."""
 
-    problem: Problem
-    fit: Fit
     name: str
     odds: float
 
@@ -106,10 +109,11 @@ def search(
     impossible: dict[str, str] = {**denied}
     met: set[tuple[str, ...]] = set()
     near: tuple[Near, ...] = ()
-    while len(rounds) < MOST_ROUNDS:
+    while len(rounds) < MOST_ROUNDS and not (rounds and problem.budget.skips("further rounds of the search")):
         progress(f"round {len(rounds) + 1}: {len(found.effects)} effects so far")
-        now = one_round(scene_of(problem, found.effects), found, impossible, denied)
+        now = one_round(scene_of(problem, found.effects), found, impossible, denied, len(rounds) + 1)
         taken, near = _likelier(problem, found, now)
+        taken = _of_likelier_law(taken, begun[0].evidence, now.count)
         rounds.append(tuple(attempt.for_the_record() for attempt in now.attempts))
         names = taken.name.split(" with ") if taken is not None else []
         trials += [_trial(len(rounds), attempt, attempt.name in names) for attempt in rounds[-1]]
@@ -120,7 +124,8 @@ def search(
             found = fit(problem, [one for one in found.effects if not any(one is other for other in others)])
             continue
         if taken is None:
-            beyond = beyond_tolerance(problem, found)
+            left_out = problem.budget.skips("declared values beyond their tolerances")
+            beyond = None if left_out else beyond_tolerance(problem, found)
             if beyond is None:
                 break
             problem, effect = beyond
@@ -146,40 +151,50 @@ def search(
 
 def _likelier(problem: Problem, found: Fit, now: Round) -> tuple[_Taken | None, tuple[Near, ...]]:
     """The likeliest of the sets near one, fitted, None where none is likelier; and what comes near beside it."""
-    here = [attempt for attempt in now.attempts if len(attempt.fit.residual) == len(found.residual)]
+    here = [attempt for attempt in now.attempts if same_samples(attempt.problem, problem)]
     sets = neighbours(problem, found, here, now.count)
     able = [one for one in sets if one.gain > 0]
     chosen = [one for one in able if one.is_next][:FITTED] + [one for one in able[:1] if not one.is_next]
-    tried = [_fitted(problem, found, one, here, now.count) for one in chosen]
+    at_hand = Standing(problem, found)
+    tried: list[_Taken | None] = []
+    for one in chosen:  # the likeliest in any case
+        if not tried or not problem.budget.skips("sets of effects that came near"):
+            tried.append(_fitted(at_hand, one, here, now.count))
     for attempt in now.attempts:
-        if len(attempt.fit.residual) != len(found.residual):  # some samples tell nothing of it: compared on the others
+        if not same_samples(attempt.problem, problem):  # some samples tell less of it: compared on the others
             there = fit(attempt.problem, found.effects, iterations=0)
             away = neighbours(attempt.problem, there, [attempt], now.count)
-            tried += [
-                _fitted(attempt.problem, there, one, [attempt], now.count)
-                for one in away[:1]
-                if one.gain > 0 and one.added
-            ]
+            tried += [_fitted(at_hand, one, [attempt], now.count) for one in away[:1] if one.gain > 0 and one.added]
     best = _best((one for one in tried if one is not None and one.odds > 0), now.count)
     beside = [one for one in sets if not one.dropped and len(one.added) == 1 and one.speaks > 0]
     return best, tuple(Near(here[one.added[0]].name, one.gain, one.speaks) for one in beside)
+
+
+def _of_likelier_law(taken: _Taken | None, whole: Sequence[Evidence], count: int) -> _Taken | None:
+    """A likelier set with the likelier of free play and lost preload, where it adds one of them."""
+    names = taken.name.split(" with ") if taken is not None else []
+    if taken is None or not any(name in LAWS for name in names):
+        return taken
+    there = with_likelier_law(taken.problem, taken.fit, whole, count)
+    if there is None:
+        return taken
+    (law,) = [effect.name for effect in there.fit.effects if effect.name in LAWS]
+    name = " with ".join(law if one in LAWS else one for one in names)
+    return _Taken(there.problem, there.fit, name, taken.odds)
 
 
 def _best(likelier: Iterable[_Taken], count: int) -> _Taken | None:
     """The likeliest of sets, compared with each other: all may be far ahead of the set at hand."""
     best: _Taken | None = None
     for one in sorted(likelier, key=lambda one: len(one.fit.coordinates)):
-        if best is None:
-            best = one
-        elif len(one.fit.residual) != len(best.fit.residual):  # on other samples
-            best = max(best, one, key=lambda one: one.odds)
-        elif log_odds(one.problem, best.fit, one.fit, count) > 0:
+        if best is None or odds_between(best, one, count) > 0:
             best = one
     return best
 
 
-def _fitted(problem: Problem, found: Fit, one: Neighbour, attempts: Sequence[Attempt], count: int) -> _Taken | None:
+def _fitted(at_hand: Standing, one: Neighbour, attempts: Sequence[Attempt], count: int) -> _Taken | None:
     """A set fitted; None where it cannot be simulated, or what it adds does not pay on blocks left out."""
+    problem, found = at_hand.problem, at_hand.fit
     kept = [effect for place, effect in enumerate(found.effects) if place not in one.dropped]
     added = [attempts[i] for i in one.added]
     # what shows in a brief passage alone is judged in blocks as short
@@ -191,8 +206,10 @@ def _fitted(problem: Problem, found: Fit, one: Neighbour, attempts: Sequence[Att
             starts += [_restarted(problem, kept, *order) for order in (added, added[::-1])]
         nearest = min((start for start in starts if start), key=lambda start: _error(own, start), default=[])
         result = fit(own, nearest, iterations=JOINT_ITERATIONS)
-        before = found if own is problem else fit(own, found.effects, iterations=0)
-        odds = log_odds(own, before, result, count)
+        again = regained(own, result.effects)
+        if again is not own:  # what the play could not predict is to be predicted again
+            own, result = again, fit(again, result.effects, iterations=JOINT_ITERATIONS)
+        odds = odds_between(at_hand, Standing(own, result), count)
         if one.added and not one.dropped and not compared(own, name, result, found.effects).comparison.pays:
             return None
     except InputError:
@@ -219,11 +236,20 @@ def _error(problem: Problem, effects: Sequence[Effect]) -> float:
 
 
 def _refitted(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
-    """Declared values and effects fitted in turn, with new slopes of the values."""
+    """Declared values and effects fitted in turn, with new slopes of the values.
+
+    Values gone beyond their tolerances may have stood in for what was missing: they begin as declared as well.
+    """
     if problem.calibration is None:
         return problem, found if not found.held else fit(problem, found.effects, iterations=0)
-    problem = recalibrated(problem, found.effects)
-    return problem, fit(problem, found.effects, iterations=JOINT_ITERATIONS)
+    there = recalibrated(problem, found.effects)
+    result = there, fit(there, found.effects, iterations=JOINT_ITERATIONS)
+    assert there.calibration is not None
+    if np.max(np.abs(there.calibration.coordinates), initial=0.0) > TOLERANCE:
+        anew = recalibrated(at_declared(problem), found.effects)
+        other = anew, fit(anew, found.effects, iterations=JOINT_ITERATIONS)
+        result = min(result, other, key=lambda one: one[1].squared_error)
+    return result
 
 
 def _trial(number: int, attempt: Attempt, taken: bool) -> Trial:

@@ -27,11 +27,15 @@ from feeddrive.diagnosis.certainty.noise_colour import score_covariance
 from feeddrive.diagnosis.finding.attempt import Attempt
 from feeddrive.diagnosis.likelihood.coordinates import read_coordinates, write_coordinates
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
+from feeddrive.diagnosis.likelihood.predictability import has_play
 from feeddrive.diagnosis.likelihood.set_evidence import (
     DISCREPANCY,
+    Standing,
     log_odds,
     log_prior_of_size,
     log_volume,
+    odds_between,
+    regained,
     taken_by_laws,
 )
 from feeddrive.effects.base import Effect
@@ -131,8 +135,25 @@ def members_weighed(problem: Problem, found: Fit, count: int) -> tuple[Neighbour
         count: candidates that were tried.
     """
     columns = _Columns(problem, found, (), count)
-    nothing = [columns.weighed((place,), ()) for place in range(len(found.effects))]
-    return tuple(columns.weighed_closely(one) for one in nothing)
+    result = []
+    for place in range(len(found.effects)):
+        other = _that_predicts_more(problem, found, place)
+        if other is None:
+            result.append(columns.weighed_closely(columns.weighed((place,), ())))
+        else:
+            gain = odds_between(Standing(problem, found), other, count)
+            price = log_prior_of_size(len(found.effects) - 1, count) - log_prior_of_size(len(found.effects), count)
+            result.append(Neighbour((place,), (), gain, min(gain - price, 0.0), other.fit.effects))
+    return tuple(result)
+
+
+def _that_predicts_more(problem: Problem, found: Fit, place: int) -> Standing | None:
+    """A set without its only free play, fitted to the samples that this left out; None for another member."""
+    if not has_play([found.effects[place]]):
+        return None
+    rest = [effect for i, effect in enumerate(found.effects) if i != place]
+    wide = regained(problem, rest)
+    return Standing(wide, fit(wide, rest, iterations=ITERATIONS)) if wide is not problem else None
 
 
 def odds_of_members(problem: Problem, found: Fit, count: int) -> tuple[float, ...]:
@@ -140,8 +161,8 @@ def odds_of_members(problem: Problem, found: Fit, count: int) -> tuple[float, ..
     return tuple(-one.gain for one in members_weighed(problem, found, count))
 
 
-def needed_members(problem: Problem, found: Fit, may_go: Callable[[Effect], bool]) -> Fit:
-    """The fit without the members that the data are likelier without, the least needed first.
+def needed_members(problem: Problem, found: Fit, may_go: Callable[[Effect], bool]) -> Standing:
+    """The set without the members that the data are likelier without, the least needed first.
 
     Args:
         problem: recordings.
@@ -153,12 +174,13 @@ def needed_members(problem: Problem, found: Fit, may_go: Callable[[Effect], bool
     able = [place for place, effect in enumerate(found.effects) if may_go(effect)]
     for one in sorted((columns.weighed((place,), ()) for place in able), key=lambda one: -one.gain):
         rest = [effect for place, effect in enumerate(found.effects) if place not in one.dropped]
-        without = fit(problem, rest, iterations=ITERATIONS)
-        if log_odds(problem, found, without, count) > 0:
-            return needed_members(problem, without, may_go)
+        wide = regained(problem, rest)
+        without = Standing(wide, fit(wide, rest, iterations=ITERATIONS))
+        if odds_between(Standing(problem, found), without, count) > 0:
+            return needed_members(without.problem, without.fit, may_go)
         if one.gain < -SURE:
             break
-    return found
+    return Standing(problem, found)
 
 
 class _Columns:

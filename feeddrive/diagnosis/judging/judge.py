@@ -16,6 +16,8 @@ from feeddrive.diagnosis.likelihood.cross_validation import (
 )
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.fit import Problem, fit
+from feeddrive.diagnosis.likelihood.predictability import has_play
+from feeddrive.diagnosis.likelihood.set_evidence import declining, regained
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
@@ -153,11 +155,15 @@ class Share:
 def share_of(problem: Problem, judged: Sequence[Judged], effects: Sequence[Effect], index: int) -> Share:
     """What the effect at `index` explains, all other effects refitted without it."""
     rest = [*effects[:index], *effects[index + 1 :]]
+    problem = regained(problem, rest)
     return share_beyond(problem, judged, fit(problem, rest, iterations=2).effects if rest else ())
 
 
 def share_beyond(problem: Problem, judged: Sequence[Judged], refitted: Sequence[Effect]) -> Share:
-    """What the plants after explain beyond a plant with these effects, which lacks one of theirs."""
+    """What the plants after explain beyond a plant with these effects, which lacks one of theirs.
+
+    Samples that only that plant predicts, as it lacks a free play, count by what the plants after say of them.
+    """
     lacking = [(j.with_effects(problem, refitted), j.evidence) for j in judged]
     having = [(j.after, j.evidence) for j in judged]
     explains = {
@@ -165,7 +171,17 @@ def share_beyond(problem: Problem, judged: Sequence[Judged], refitted: Sequence[
     }
     before, blocks = judged_residual(problem, lacking)
     after, _ = judged_residual(problem, having)
-    rows = model_error_rows([j.evidence for j in judged], [j.evidence.judged_rows for j in judged])
+    seen = [j.evidence for j in judged]
+    alone = [] if has_play(refitted) else [(j, j.evidence.whole.beside(j.evidence)) for j in judged]
+    alone = [(j, lost) for j, lost in alone if lost.judged_rows.any()]
+    if alone:
+        errors, more = judged_residual(problem, [(j.with_effects(problem, refitted), lost) for j, lost in alone])
+        own, _ = judged_residual(problem, [(j.after, lost) for j, lost in alone])
+        declines = declining(errors, own, float(np.mean(after**2)))
+        before, after = np.concatenate([before, errors]), np.concatenate([after, declines])
+        blocks = np.concatenate([blocks, int(blocks.max()) + 1 + more])
+        seen += [lost for _, lost in alone]
+    rows = model_error_rows(seen, [e.judged_rows for e in seen])
     comparison = compare_left_out(before, after, blocks, gain_of_model_error(rows, before, after))
     # of a difference d the chance part of the gain scatters by 2 |d|, so this is |d|
     predicted, chance = float(np.sum((before - after) ** 2)), comparison.standard_error * float(before @ before)

@@ -204,6 +204,7 @@ class Diagnosis:
     possible: tuple[PossibleEffect, ...] = ()
     measured: tuple[NumberResult, ...] = ()
     quality: tuple[Quality, ...] = ()
+    untried: str = ""
 
     @property
     def nothing_missing(self) -> bool:

@@ -24,7 +24,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.special import chdtri
 
-from feeddrive.diagnosis.calibration.beyond import SURE, without_effects
+from feeddrive.diagnosis.calibration.beyond import without_effects
 from feeddrive.diagnosis.calibration.calibrate import weighed_by_rest, with_kept
 from feeddrive.diagnosis.certainty.uncertainty import certainty
 from feeddrive.diagnosis.finding.search import Search
@@ -36,9 +36,10 @@ from feeddrive.diagnosis.likelihood.coordinates import (
     read_coordinates,
     write_coordinates,
 )
-from feeddrive.diagnosis.likelihood.cross_validation import Comparison, compare_left_out, left_out_residual
+from feeddrive.diagnosis.likelihood.cross_validation import Comparison, compare_left_out
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit, linear_step
-from feeddrive.diagnosis.likelihood.folds import block_numbers
+from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between, regained
+from feeddrive.diagnosis.likelihood.tolerances import SURE
 from feeddrive.diagnosis.recordings.compared import judged_changes
 from feeddrive.diagnosis.recordings.recordings import RecordingShift, is_shift, without_shifts
 from feeddrive.effects.base import ChainEffect, Effect
@@ -122,7 +123,9 @@ def _first_denied(found: Search, judged: Sequence[Judged]) -> Denied | None:
     idle, worst = [_no_gain(found, i, share) for i, share in enumerate(shares)], _worst_channel(problem, judged)
     other = judged_changes(found, judged) if worst or any(idle) else None
     if other is not None and other.carries:
-        idle = ["" if carries else reason for reason, carries in zip(idle, other.carries, strict=True)]
+        # a recording in which the effect itself is another says nothing against it
+        stands = [carries or moved for carries, moved in zip(other.carries, other.other, strict=True)]
+        idle = ["" if stood else reason for reason, stood in zip(idle, stands, strict=True)]
         worst = _worst_channel(other.problem, other.allowed)
     at_end, around_none = ends_reached(problem, found.fit), sizes_around_none(problem, found.fit)
     denied = [
@@ -141,6 +144,8 @@ def _share(found: Search, judged: Sequence[Judged], place: int) -> Share:
     """What an effect explains; where that is much, the others are moved by one linear step only, not refitted."""
     problem, effects = found.problem, found.fit.effects
     rest = (*effects[:place], *effects[place + 1 :])
+    if regained(problem, rest) is not problem:  # one step from samples that a free play predicts leads nowhere
+        return share_of(problem, judged, effects, place)
     counts = [len(read_coordinates([effect], problem.plant)) for effect in effects]
     columns = slice(sum(counts[:place]), sum(counts[: place + 1]))
     step = linear_step(np.delete(found.fit.jacobian, columns, axis=1), problem.residual(rest))
@@ -185,10 +190,9 @@ def _no_gain(found: Search, place: int, share: Share) -> str:
 def _left_out_gain(found: Search, place: int) -> Comparison:
     """What an effect brings on blocks left out of the fit, the others refitted without it."""
     problem, effects = found.problem, found.fit.effects
-    rest = fit(problem, [*effects[:place], *effects[place + 1 :]], iterations=2)
-    blocks = block_numbers(problem)
-    without, having = (left_out_residual(problem, one, blocks) for one in (rest, found.fit))
-    return compare_left_out(without, having, blocks)
+    rest = [*effects[:place], *effects[place + 1 :]]
+    wide = regained(problem, rest)
+    return gain_between(Standing(wide, fit(wide, rest, iterations=2)), Standing(problem, found.fit))
 
 
 def ends_reached(problem: Problem, fitted: Fit) -> list[str]:

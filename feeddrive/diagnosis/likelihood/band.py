@@ -29,6 +29,10 @@ SHARE_OF_ANTIRESONANCE = 0.42
 END_CUT = 0.5
 """Left out at each end of a recording [s]: start-up of the simulated load side and of the filter."""
 
+ENDS = 15
+"""Samples that a series is continued by at either end before it is filtered, three times as many as the filter has
+coefficients (the default of `sosfiltfilt`)."""
+
 NOISE_BLOCK = 0.25
 """Length of the blocks from which the sensor noise is read [s]."""
 
@@ -46,8 +50,20 @@ class Band:
     sample_rate: float
 
     def filter(self, series: FloatArray) -> FloatArray:
-        """The series in the band, zero phase; shape (n,) or (n, k)."""
-        filtered: FloatArray = signal.sosfiltfilt(_sections(self.edge, self.sample_rate), series, axis=0)
+        """The series in the band, zero phase; shape (n,) or (n, k).
+
+        One series is filtered as `sosfiltfilt` does, number by number, without its tests and copies (a third of its
+        time).
+        """
+        sections, rested = _sections(self.edge, self.sample_rate)
+        if series.ndim > 1 or len(series) <= ENDS:
+            whole: FloatArray = signal.sosfiltfilt(sections, series, axis=0)
+            return whole
+        mirrored = 2 * series[0] - series[ENDS:0:-1], series, 2 * series[-1] - series[-2 : -ENDS - 2 : -1]
+        forward = np.concatenate(mirrored)
+        forward, _ = signal.sosfilt(sections, forward, zi=rested * forward[0])
+        backward, _ = signal.sosfilt(sections, forward[::-1], zi=rested * forward[-1])
+        filtered: FloatArray = backward[-ENDS - 1 : ENDS - 1 : -1]
         return filtered
 
     @property
@@ -64,9 +80,13 @@ class Band:
 
 
 @lru_cache(maxsize=16)
-def _sections(edge: float, sample_rate: float) -> FloatArray:
-    """Second-order sections of the filter, (2, 6); to design it takes as long as to filter ten thousand samples."""
-    return np.asarray(signal.butter(4, edge, fs=sample_rate, output="sos"))
+def _sections(edge: float, sample_rate: float) -> tuple[FloatArray, FloatArray]:
+    """Second-order sections of the filter, (2, 6), and their states after a step of one, (2, 2).
+
+    To design it takes as long as to filter ten thousand samples.
+    """
+    sections = np.asarray(signal.butter(4, edge, fs=sample_rate, output="sos"))
+    return sections, signal.sosfilt_zi(sections)
 
 
 def comparison_band(plant: Plant, sample_rate: float) -> Band:

@@ -185,9 +185,14 @@ GROWS_WITH = {("sensor_lag", "time_constant"): 1, ("heat_sink", "conductance"): 
 """Sizes known to a factor, and the power of them that the effect grows with: its slope over their logarithm is then the
 effect itself, and a step of one takes it away."""
 
-LEAST = {("drive_delay", "delay"): 0.0}
+LEAST = {("drive_delay", "delay"): 0.0, ("preload_loss", "ratio"): 0.1}
 """Ends of a search inside the physical range: a torque that acts before it is recorded is one recorded late, and that
-is `channel_delay`."""
+is `channel_delay`. Balls that touch without preload are as stiff as F^(1/3) (Hertz), up to the force F over two thirds
+of (F / F_p)^(1/3) of what they are under a preload F_p: a tenth at a three-hundredth of it, below the friction that a
+motion has to overcome. What is softer over a force that is seen does not touch, and that is `backlash`."""
+
+NEAR_END = 0.02
+"""Share of an end of a parameter's range within which it counts as standing there."""
 
 LEFT = 0.05
 """Least share of a declared mass or inertia that an effect may leave, as of a stiffness (`stiffness_deviation`)."""
@@ -307,6 +312,21 @@ def _absent(coordinate: Coordinate) -> float:
     if isinstance(coordinate, Linear):
         return math.nan if coordinate.key in FORM else float(coordinate.key in FACTORS) / coordinate.size
     return 0.0
+
+
+def at_its_limit(effect: Effect) -> bool:
+    """Whether a parameter that is known to a factor has run to an end of its range, where the law is another one.
+
+    A Stribeck velocity beyond all speeds is a level, growth within no time another lead, a mode above all frequencies
+    a mass. Such a rival says nothing that the simpler law does not.
+    """
+    for key, value in effect.values.items():
+        if (effect.name, key) in LOGARITHMIC and isinstance(value, float | int):
+            parameter = effect.parameter(key)
+            least = LEAST.get((effect.name, key), parameter.minimum)
+            if value <= least * (1 + NEAR_END) or value >= parameter.maximum * (1 - NEAR_END):
+                return True
+    return False
 
 
 def write_coordinates(effects: Sequence[Effect], plant: Plant, vector: FloatArray) -> list[Effect]:

@@ -16,13 +16,15 @@ Interpolation, and Smoothing (1949)):
 | w, h | window, sample time |
 
 P is of one frequency, as the spectrum of a stroke falls fifty times from one to the next, and what is taken away is
-then N in the mean however steep it is (Stein, Ann. Statist. 9 (1981) 1135). The error that is left is nearly
-independent of the motion that is simulated, so that it draws values little towards none (Carroll et al., Measurement
-Error in Nonlinear Models (2006), chapter 4); what it does draw them by is `Calibration`'s to widen (`encoder_scores`).
-It adds to the residual what the declared plant makes of it: errors that the same encoder would make are drawn and
-simulated, and each channel is weighed, frequency by frequency, by the sensor's noise over both,
+then N in the mean however steep it is (Stein, Ann. Statist. 9 (1981) 1135). Of errors that the same encoder would make
+and that are drawn, the share ρ(f) of the power of that motion follows; so much is left out of it, and of what is
+uncertain still, every comparison is without (`unsure_motion`). The error that is left is nearly independent of the
+motion that is simulated, so that it draws values little towards none (Carroll et al., Measurement Error in Nonlinear
+Models (2006), chapter 4); what it does draw them by is `Calibration`'s to widen (`encoder_scores`). It adds to the
+residual what the declared plant makes of it: errors are drawn anew and simulated, and each channel is weighed,
+frequency by frequency, by the sensor's noise over both, and by how small an error of the motion it is,
 
-    gain(f) = 1 / √(1 + S_encoder(f) / S_sensor(f))
+    gain(f) = 1 / √(1 + S_encoder(f) / S_sensor(f)) / (1 + (ρ(f) / `SMALL`)²)
 """
 
 from __future__ import annotations
@@ -37,12 +39,13 @@ from scipy.ndimage import uniform_filter
 from scipy.signal.windows import hann
 
 from feeddrive.diagnosis.likelihood.band import END_CUT, Band
+from feeddrive.diagnosis.likelihood.unsure_motion import unsure_motions, without_share
 from feeddrive.diagnosis.suspicion.torque_channel import scale_of
 from feeddrive.engine.step.linear_part import SimulationError
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 from feeddrive.recording.checks.flaws import quantisation_step
-from feeddrive.simulate.driven import MotorMotion, motor_motion, simulate_driven
+from feeddrive.simulate.driven import LoadMotion, MotorMotion, motor_motion, motor_motions, simulate_driven
 from feeddrive.typing import ComplexArray, FloatArray
 
 WINDOW = 0.128
@@ -66,6 +69,12 @@ errors of what shows there alone, such as a damping at its resonance, grow by 5 
 DRAWS = 4
 """Errors that are drawn: with `SMOOTHED` neighbours on either side, a spectrum is known to a fifth."""
 
+SMALL = 0.1
+"""Share of the motion's power up to which an encoder's error is a small one: its square is a hundredth then, and what
+the plant makes of error and of motion is told apart. Beyond, the error's own spectrum is that of the plant that is
+asked for: where the declared one has no resonance and the true one has, all is error, and frequencies count for
+little."""
+
 SMOOTHED = 3, 0.1
 """Neighbouring frequencies on either side over which a spectrum is averaged: so many, and this share of the frequency.
 Rest and slow motion make an error of less than a hertz, which a window of fixed length would spread."""
@@ -80,12 +89,14 @@ class EncoderError:
         drawn: motions that would be expected if that were the true one, measured by the same encoder.
         gains: channel to the gain at each frequency of its whole series, (n // 2 + 1,).
         added: channel to the rms of what the encoder's error makes of it, in the band [SI].
+        unsure: channel to what the plant makes of motion that may not be, in the band, (n, k) [SI] (`unsure_motion`).
     """
 
     motion: MotorMotion
     drawn: tuple[MotorMotion, ...]
     gains: dict[str, FloatArray]
     added: dict[str, float]
+    unsure: dict[str, FloatArray]
 
 
 @dataclass(frozen=True)
@@ -143,24 +154,60 @@ def encoder_error(
     time: FloatArray = np.arange(len(angle), dtype=np.float64) * sample_time
     expected = expected_motion(angle, step, sample_time)
     errors = [drawn_error(expected, step, sample_time, draw) for draw in range(DRAWS)]
-    motion, *drawn = (motor_motion(time, expected + left) for left in (np.zeros(len(angle)), *errors))
+    share = _share_of_error(expected, errors, sample_time)
+    expected = without_share(expected, share, sample_time)
+    errors = [drawn_error(expected, step, sample_time, draw, share) for draw in range(DRAWS)]
+    motion, *drawn = motor_motions(time, np.column_stack([expected, *(expected + left for left in errors)]))
     try:
         runs = [simulate_driven(plant, one) for one in (motion, *drawn)]
     except SimulationError:
         return None
     inner = slice(round(END_CUT / sample_time), -round(END_CUT / sample_time))
     frequencies = np.fft.rfftfreq(len(angle), sample_time)
-    gains, added, material = {}, {}, False
+    gains, added, units, material = {}, {}, {}, False
     for name in noise:
-        true, *others = (run.torque if name == "motor_torque" else run.table_position for run in runs)
+        true, *others = (_answer(run, name) for run in runs)
         unit = _per_newton_metre(recording, true, band) if proportional and name == "motor_torque" else 1.0
+        units[name] = unit
         made = [unit * (other - true) for other in others]
         added[name] = float(np.sqrt(np.mean([np.var(band.filter(error)[inner]) for error in made])))
         frequency, density = _density([error[inner] for error in made], sample_time)
         over = density / (2 * sample_time * (noise[name] / band.noise_gain) ** 2)
         material = material or bool(np.any(over[frequency <= band.edge] > MATERIAL))
         gains[name] = 1 / np.sqrt(1 + np.interp(frequencies, frequency, over))
-    return EncoderError(motion, tuple(drawn), gains, added) if material else None
+    if not material:
+        return None
+    gains = {name: gain / (1 + (share / SMALL) ** 2) for name, gain in gains.items()}
+    unsure: dict[str, list[FloatArray]] = {name: [] for name in noise}
+    for part in unsure_motions(expected, share, sample_time, band.edge):
+        try:
+            run = simulate_driven(plant, motor_motion(time, expected + part))
+        except SimulationError:
+            continue
+        for name, columns in unsure.items():
+            columns.append(units[name] * band.filter(_answer(run, name) - _answer(runs[0], name)))
+    return EncoderError(
+        motion, tuple(drawn), gains, added, {name: np.column_stack(c) for name, c in unsure.items() if c}
+    )
+
+
+def _answer(run: LoadMotion, name: str) -> FloatArray:
+    """What a driven run says of a channel."""
+    return run.torque if name == "motor_torque" else run.table_position
+
+
+def _share_of_error(expected: FloatArray, errors: Sequence[FloatArray], sample_time: float) -> FloatArray:
+    """ρ of `unsure_motion`: power of the drawn errors over that of the expected motion, (n // 2 + 1,).
+
+    Below two periods a `WINDOW` the error is white, as the steps are, and its acceleration falls with the fourth power of
+    the frequency; that of strokes does not, but stands in lines, between which a ratio of densities says nothing.
+    """
+    frequency, power = _density([np.diff(expected, 2)], sample_time)
+    _, wrong = _density([np.diff(error, 2) for error in errors], sample_time)
+    share = np.minimum(wrong / np.where(power > 0, power, np.inf), 1.0)
+    asked, told = np.fft.rfftfreq(len(expected), sample_time), 2 / WINDOW
+    slower = np.minimum(asked / told, 1.0) ** 4
+    return np.asarray(np.interp(np.maximum(asked, told), frequency, share) * slower)
 
 
 def _per_newton_metre(recording: Recording, torque: FloatArray, band: Band) -> float:
@@ -185,16 +232,18 @@ def _density(series: Sequence[FloatArray], sample_time: float) -> tuple[FloatArr
     return frequency, density
 
 
-def drawn_error(expected: FloatArray, step: float, sample_time: float, draw: int) -> FloatArray:
+def drawn_error(
+    expected: FloatArray, step: float, sample_time: float, draw: int, share: FloatArray | None = None
+) -> FloatArray:
     """The error that the expected motion would have if it were the true one, measured by the same encoder, (n,) [rad].
 
     Slow motion and rest make an error that is slow: it is drawn by measuring, not as white noise. Draws differ in where
-    the steps lie: `draw` is the seed of that.
+    the steps lie: `draw` is the seed of that. Where a share of the motion is left out (`without_share`), it is of both.
     """
     true = expected + step * np.random.default_rng(draw).uniform()
     measured = step * np.round(true / step)
-    drawn: FloatArray = expected_motion(measured, step, sample_time) - true
-    return drawn
+    seen = expected_motion(measured, step, sample_time)
+    return (seen if share is None else without_share(seen, share, sample_time)) - true
 
 
 def expected_motion(angle: FloatArray, step: float, sample_time: float) -> FloatArray:

@@ -9,21 +9,33 @@ from typing import Self
 
 import numpy as np
 
+from feeddrive.diagnosis.calibration.calibration import Whitener, whitener
 from feeddrive.diagnosis.likelihood.band import END_CUT, Band, comparison_band, held, sensor_noise
-from feeddrive.diagnosis.likelihood.encoder_error import Weighing, encoder_error
-from feeddrive.diagnosis.likelihood.slow_rows import is_slow, known_motion, refuse_unknown_motion, sentence
+from feeddrive.diagnosis.likelihood.encoder_error import Weighing, encoder_error, expected_motion
+from feeddrive.diagnosis.likelihood.slow_rows import (
+    is_slow,
+    known_motion,
+    missed_between_rows,
+    refuse_unknown_motion,
+    sentence,
+)
 from feeddrive.diagnosis.suspicion.channel_timing import lagging
 from feeddrive.diagnosis.suspicion.flawed_rows import refuse_little_left, sound_rows, without_copied_position
 from feeddrive.diagnosis.suspicion.torque_channel import with_torque
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
+from feeddrive.recording.checks.flaws import quantisation_step
 from feeddrive.recording.long.joined import clock, recorded
 from feeddrive.simulate.driven import MotorMotion, motor_motion
 from feeddrive.typing import BoolArray, FloatArray
 
 PREDICTED = ("motor_torque", "table_position")
 """Channels that are predicted from the measured motor motion."""
+
+NO_SENSOR = 2.0**-32
+"""Noise over the range of a channel below which no sensor made it: the finest encoders count 2^32 steps. A simulation
+without noise is compared as far as its rows tell the motion between them."""
 
 SHORTEST = 3.0
 """Shortest recording [s] that leaves something between the cut ends."""
@@ -51,6 +63,7 @@ class Evidence:
         thinning: every how many samples carry all that is in the band.
         floating: channels whose zero is not known, and taken out of every error.
         model_error: channel to the rms of what the model itself may miss; channels left out are predicted exactly.
+        lost: samples that would count, but that a free play of the plant leaves unpredictable, (n,); None for none.
     """
 
     recording: Recording
@@ -63,6 +76,7 @@ class Evidence:
     thinning: int
     floating: tuple[str, ...]
     model_error: dict[str, float]
+    lost: BoolArray | None = field(default=None, kw_only=True)
 
     @property
     def channels(self) -> tuple[str, ...]:
@@ -122,9 +136,30 @@ class Evidence:
         """Rms of what the model itself may miss of a channel."""
         return self.model_error.get(name, 0.0)
 
-    def where_predictable(self, predictable: BoolArray) -> Self:
-        """The evidence without the samples that cannot be predicted."""
-        return replace(self, counted=self.counted & predictable)
+    def weighs_as(self, other: Self) -> bool:
+        """Whether samples weigh as much in another evidence of this recording."""
+        return True
+
+    @property
+    def whole(self) -> Self:
+        """The evidence with the samples again that a free play left unpredictable."""
+        return self if self.lost is None else replace(self, counted=self.counted | self.lost, lost=None)
+
+    def where_predictable(self, predictable: BoolArray | FloatArray) -> Self:
+        """The whole evidence without the samples that cannot be predicted, (n,): false, or of weight 0."""
+        whole = self.whole
+        lost = whole.counted & ~(predictable > 0)
+        return replace(whole, counted=whole.counted & ~lost, lost=lost) if lost.any() else whole
+
+    def within(self, other: Self) -> Self:
+        """The evidence on the samples that another one of this recording has as well."""
+        gone = self.counted & ~other.counted
+        lost = gone if self.lost is None else gone | self.lost
+        return replace(self, counted=self.counted & other.counted, lost=lost) if gone.any() else self
+
+    def beside(self, other: Self) -> Self:
+        """The evidence on the samples alone that another one of this recording does not have."""
+        return replace(self, counted=self.counted & ~other.counted)
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,6 +174,9 @@ class AxisEvidence(Evidence):
         gains: channel to the gain of each frequency of its whole series, where the encoder's error shows in it.
         added: channel to the rms in the band that the encoder's error adds to its noise; as `gains`.
         drawn: motions with the encoder's error once more; as `gains`.
+        weights: channel to the weight of every sample, (n,): noise over noise and what the encoder's error makes of a
+            free play there; channels left out are predicted alike everywhere.
+        unsure: channel to what motion that may not be makes of it, in the band, (n, k); as `gains`.
         torque_rows: rows that the recorder writes a torque for, and the first row of one (`suspicion.logged_rows`);
             None where the torque is what the drive holds.
     """
@@ -150,11 +188,66 @@ class AxisEvidence(Evidence):
     gains: dict[str, FloatArray] = field(default_factory=dict)
     added: dict[str, float] = field(default_factory=dict)
     drawn: tuple[MotorMotion, ...] = ()
+    unsure: dict[str, FloatArray] = field(default_factory=dict)
     torque_rows: tuple[int, int] | None = None
+    weights: dict[str, FloatArray] = field(default_factory=dict)
+
+    def where_predictable(self, predictable: BoolArray | FloatArray) -> Self:
+        """The evidence without the samples of weight 0, the table position weighed at the others."""
+        kept = super().where_predictable(predictable)
+        if predictable.dtype == np.bool_ or "table_position" not in self.measured:
+            return kept
+        return replace(kept, weights={"table_position": np.asarray(predictable, dtype=float)})
+
+    def within(self, other: Self) -> Self:
+        """The evidence on the samples that another one of this recording has as well, by the lesser of the weights."""
+        kept = super().within(other)
+        weights = {
+            name: np.minimum(kept.weights.get(name, 1.0), other.weights.get(name, 1.0))
+            for name in (*kept.weights, *other.weights)
+        }
+        return replace(kept, weights=weights) if weights and not self.weighs_as(other) else kept
+
+    @property
+    def whole(self) -> Self:
+        """The evidence with the samples again that a free play left unpredictable, all of one weight."""
+        whole = super().whole
+        return replace(whole, weights={}) if whole.weights else whole
+
+    def weighs_as(self, other: Self) -> bool:
+        """Whether samples weigh as much in another evidence of this recording."""
+        mine, its = self.weights, other.weights
+        return mine.keys() == its.keys() and all(np.array_equal(mine[name], its[name]) for name in mine)
+
+    def without_open(self, name: str, part: FloatArray, rows: BoolArray) -> FloatArray:
+        """One channel over its noise and by its weights, (k,), without the zero of a scale."""
+        if name not in self.weights:
+            return super().without_open(name, part, rows)
+        weights = self.weights[name][rows]
+        weighed = weights * part / self.noise[name]
+        return weighed - weights * float(weights @ weighed / (weights @ weights)) if name in self.floating else weighed
 
     def in_band(self, series: FloatArray) -> FloatArray:
         """A series or columns, (n,), in the band of the comparison."""
         return self.band.filter(series)
+
+    def weighted(self, series: dict[str, FloatArray], rows: BoolArray) -> FloatArray:
+        """Channels at some samples as any are, less what motion that is not known may make of them."""
+        weighted = super().weighted(series, rows)
+        if not self.unsure or not rows.any():
+            return weighted
+        key = rows.tobytes()
+        if key not in self._sure:
+            count = next(iter(self.unsure.values())).shape[1]
+            parts = [{name: columns[:, i] for name, columns in self.unsure.items()} for i in range(count)]
+            columns = np.column_stack([super(AxisEvidence, self).weighted(part, rows) for part in parts])
+            self._sure[key] = whitener(columns, np.zeros(count), 1.0)
+        return self._sure[key].applied(weighted)
+
+    @cached_property
+    def _sure(self) -> dict[bytes, Whitener]:
+        """What takes away what motion that is not known may make of a channel, by the samples."""
+        return {}
 
     def known_to(self, name: str) -> float:
         """Rms of what sensor and encoder add to a channel in the band."""
@@ -178,6 +271,14 @@ class AxisEvidence(Evidence):
         """The plant with its nut where it stood: simulated positions count from the zero of the motor angle."""
         return _placed(plant, self.zero)
 
+    def at_other_times(self, recording: Recording) -> AxisEvidence:
+        """The evidence as it is where the same rows have other times: what changes is the motion between them."""
+        angle, sample_time = recording["motor_angle"], recording.sample_time
+        if self.gains:
+            angle = expected_motion(angle, quantisation_step(angle), sample_time)
+        motion = motor_motion(_from_zero(recording), angle).timed(clock(recording))
+        return replace(self, recording=recording, motion=motion)
+
     @property
     def motion_speed(self) -> FloatArray:
         """Speed of the motor [rad/s], (n,)."""
@@ -190,12 +291,13 @@ class AxisEvidence(Evidence):
         measured = {**self.measured, name: scale * self.measured[name]}
         noise = {**self.noise, name: abs(scale) * self.noise[name]}
         added = {**self.added, name: abs(scale) * self.added[name]} if name in self.added else self.added
+        unsure = {**self.unsure, name: scale * self.unsure[name]} if self.unsure else {}
         recording = replace(self.recording, channels=channels)
-        return replace(self, recording=recording, measured=measured, noise=noise, added=added)
+        return replace(self, recording=recording, measured=measured, noise=noise, added=added, unsure=unsure)
 
 
 def prepare(recording: Recording, plant: Plant, share: float, hold: float | None = None) -> AxisEvidence:
-    """Evidence of a recording, its first `share` fitted and the rest judged.
+    """Evidence of a recording, its first `share` fitted and the rest judged, or what was kept apart of it for that.
 
     Args:
         recording: with a torque, a current or the table position beside the motor angle.
@@ -217,7 +319,7 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
         raise InputError(f"the recording lasts {recording.duration:.3g} s, too short to compare", recording.name, mend)
     rate = 1 / recording.sample_time
     band = comparison_band(plant, rate)
-    time: FloatArray = np.arange(len(recording), dtype=np.float64) * recording.sample_time
+    time = _from_zero(recording)
     raw = {name: recording[name] for name in measured_names}
     slow = is_slow(recording)
     acting = dict(raw)
@@ -241,6 +343,9 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
         sensed["motor_torque"] = raw["motor_torque"] - recording["injected_torque"]
     own = recorded(recording)
     noise = {name: sensor_noise(series[own], band) for name, series in sensed.items()}
+    for name, series in sensed.items():
+        if noise[name] < NO_SENSOR * float(np.ptp(series)):
+            noise[name] = math.hypot(noise[name], missed_between_rows(recording, plant, counted).get(name, 0.0))
     zero = _zero_of_angle(recording, plant)
     encoder = encoder_error(_placed(plant, zero), recording, band, noise, bool(scaled_from))
     motion = encoder.motion if encoder is not None else motor_motion(time, recording["motor_angle"])
@@ -249,7 +354,7 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
         {name: band.filter(series) for name, series in acting.items()},
         noise,
         counted,
-        time < share * time[-1] if share < 1 else np.ones(len(time), dtype=bool),
+        _fitted(recording, share),
         band.edge,
         BLOCK,
         band.thinning,
@@ -262,7 +367,25 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
         encoder.gains if encoder is not None else {},
         encoder.added if encoder is not None else {},
         encoder.drawn if encoder is not None else (),
+        encoder.unsure if encoder is not None else {},
     )
+
+
+def _from_zero(recording: Recording) -> FloatArray:
+    """Times of the rows from the first on [s], (n,), as many periods of the clock as there are rows between."""
+    time: FloatArray = np.arange(len(recording), dtype=np.float64) * recording.sample_time
+    return time
+
+
+def _fitted(recording: Recording, share: float) -> BoolArray:
+    """Samples that are fitted, (n,)."""
+    if share >= 1 or share <= 0:
+        return np.full(len(recording), share >= 1)
+    if recording.kept_apart is not None:
+        return ~recording.kept_apart
+    time = np.arange(len(recording)) * recording.sample_time
+    found: BoolArray = time < share * time[-1]
+    return found
 
 
 def _placed(plant: Plant, zero: float) -> Plant:

@@ -18,6 +18,7 @@ from typing import Any
 
 import numpy as np
 
+from feeddrive.diagnosis.budget import Budget
 from feeddrive.diagnosis.calibration.calibration import Calibration, Whitener, whitener
 from feeddrive.diagnosis.calibration.declared import with_values
 from feeddrive.diagnosis.likelihood.coordinates import (
@@ -29,6 +30,7 @@ from feeddrive.diagnosis.likelihood.coordinates import (
     write_coordinates,
 )
 from feeddrive.diagnosis.likelihood.evidence import Evidence
+from feeddrive.diagnosis.likelihood.predictability import has_play
 from feeddrive.diagnosis.likelihood.predictor import Predictor
 from feeddrive.diagnosis.numbers.number_rows import MeasuredRows
 from feeddrive.effects.base import Effect
@@ -49,7 +51,8 @@ ENOUGH = 1e-4
 SEEN = 0.5
 """Move of all rows together, in deviations, from which a difference is believed where a prediction goes from cell to
 cell: the cells leave some hundredths. What declared values do as well is whitened away, and the step that is long
-enough for a prediction shows nothing but cells in what is left of it."""
+enough for a prediction shows nothing but cells in what is left of it. With free play it is the move of the median row:
+a table that bounces goes elsewhere however short the step, and of its rows the slope tells nothing."""
 
 STRAIGHT = 0.03
 """Bend of the prediction over a step, as a share of the step, below which the slope before it still holds after it."""
@@ -106,6 +109,7 @@ class Problem:
         predictor: of their kind.
         calibration: of the declared values; None where all are taken as exact.
         numbers: measured beside the recordings; their rows stand behind those of all recordings.
+        budget: of time.
     """
 
     plant: Plant
@@ -113,6 +117,7 @@ class Problem:
     predictor: Predictor[Any]
     calibration: Calibration | None = None
     numbers: MeasuredRows = field(default_factory=MeasuredRows)
+    budget: Budget = field(default_factory=Budget, compare=False)
 
     def machine(self, effects: Sequence[Effect] = ()) -> Plant:
         """The plant with its declared values as calibrated, and further effects."""
@@ -237,15 +242,17 @@ class Problem:
         if moved and (exact := self._exact_jacobian(effects, moved, vector)) is not None:
             return exact
         _, high = coordinate_ends(moved, self.plant)
-        coarse, longest = not self.predictor.smooth(self.plant), longest_steps(moved, self.plant)
+        bounces, longest = has_play(effects), longest_steps(moved, self.plant)
+        coarse = bounces or not self.predictor.smooth(self.plant)
+        short = COARSE if coarse else DIFFERENCE
         columns = []
         for i in range(len(vector)):
             step = np.zeros(len(vector))
-            step[i] = self.difference if vector[i] + self.difference <= high[i] else -self.difference
+            step[i] = short if vector[i] + short <= high[i] else -short
             moves = self._moves(effects, free, moved, vector + step, base)
-            size = float(np.linalg.norm(moves))
+            size = float(np.median(np.abs(moves)) if bounces else np.linalg.norm(moves))
             if coarse and size < SEEN:
-                far = min(longest[i], self.difference * SEEN / max(size, 1e-3 * SEEN))
+                far = min(longest[i], short * SEEN / max(size, 1e-3 * SEEN))
                 step[i] = far if vector[i] + far <= high[i] else -far
                 moves = self._moves(effects, free, moved, vector + step, base)
             columns.append(moves / step[i])
@@ -300,7 +307,9 @@ def fit(
         return Fit(tuple(effects), at.residual, np.zeros((len(predicted), 0)), np.zeros(0), len(effects))
     jacobian, exact = problem.jacobian(at.effects, chosen, at.predicted), True
     damping = FREE
-    for _ in range(iterations):
+    for done in range(iterations):
+        if done and problem.budget.is_spent:
+            break
         if jacobian.shape[1] == 0 or not np.all(np.isfinite(jacobian)) or not np.isfinite(at.squared_error):
             break
         lower = _lower(problem, at, chosen, jacobian, damping)

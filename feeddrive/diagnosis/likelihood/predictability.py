@@ -1,115 +1,134 @@
-"""Which samples of a recording can be predicted at all, and which of them a fit can learn from.
+"""Which samples of a recording can be predicted at all, and how much a fit can learn from each.
 
 With free play the load side can be chaotic: under a torque chirp, an angle error far below the encoder's step moves the
-table by micrometres. The rule looks at that directly: the same plant is driven by the measured motion and by one that
-differs by a tiny noise, and stretches where the difference grows are left out.
+table by micrometres. The rule looks at that directly: the same plant is driven by the measured motion and by motions
+that differ from it as the true one may, by the encoder's own error, and stretches where the table then goes elsewhere
+are left out.
+
+The size of that error matters. A table that flies from flank to flank is never further off than the play is wide, and
+once it has settled on a flank all that went before is forgotten: a tiny error that grows ten-million-fold on the way
+says no more than one of the encoder's size that grows a hundredfold, and scaled up it would outlast the flight by
+strokes. So the error is simulated as large as it is.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
 from feeddrive.diagnosis.likelihood.band import white_noise
 from feeddrive.diagnosis.likelihood.evidence import AxisEvidence
-from feeddrive.effects.base import TransmissionEffect
+from feeddrive.effects.base import Effect, TransmissionEffect
 from feeddrive.plant.plant import Plant
 from feeddrive.recording.checks.flaws import quantisation_step
-from feeddrive.simulate.driven import on_grid, simulate_driven
+from feeddrive.simulate.driven import MotorMotion, on_grid, simulate_driven
 from feeddrive.typing import BoolArray, FloatArray
 
 TINY_ANGLE = 1e-9
-"""Rms of the noise put on the motor angle [rad]; a thousandth of a 22-bit encoder's step."""
+"""Least error of a motor angle [rad], a thousandth of a 22-bit step: no motion between rows is known better."""
 
 AMPLIFICATION = 30.0
-"""Growth of that noise, in the band, beyond which a stretch is chaotic; a linear load side stays below about five."""
-
-WINDOW = 0.5
-"""Length of the stretches that are judged [s]."""
-
+"""Growth of the encoder's error, in the band, beyond which it is chaotic; a linear load side stays below about five."""
 
 CONTACT = 0.1
-"""Length of the stretches that are fitted or not [s]: a contact and what it sets ringing."""
+"""Time [s] for which what came after a contact is not believed: of a few motions some come together by chance."""
+
+REACH = 1.0
+"""Periods of the band's edge on either side over which an error is averaged: the filter carries it no further."""
 
 LINEAR = 3.0
-"""Growth that does not keep a stretch from being fitted; without free play it is about one."""
+"""Growth that is no sign of free play; without it, it is about one."""
 
 DRAWS = 2
 """Motions that differ; by one alone a contact may by chance not be moved."""
 
 
+@dataclass(frozen=True)
+class Missed:
+    """What the encoder's error makes of a plant's table.
+
+    Attributes:
+        table: rms about each sample and over the draws, in the band [m], shape (n,).
+        cause: rms of the encoder's error, as a way of the table [m].
+    """
+
+    table: FloatArray
+    cause: float
+
+
 def predictable_samples(plant: Plant, evidence: AxisEvidence) -> BoolArray:
     """Samples that the plant can predict, shape (n,); all of them where there is no free play."""
-    n = len(evidence.recording)
-    if not _has_play(plant):
-        return np.ones(n, dtype=bool)
-    return _predictable(_growth(plant, evidence), evidence)
+    if not has_play(plant.effects):
+        return np.ones(len(evidence.recording), dtype=bool)
+    missed = _missed(plant, evidence)
+    return ~_lost(missed, evidence)
 
 
-def samples_to_fit(plant: Plant, evidence: AxisEvidence) -> BoolArray:
-    """Samples that the plant can predict and that tell of the plant, shape (n,).
+def weights_to_fit(plant: Plant, evidence: AxisEvidence) -> BoolArray | FloatArray:
+    """Weights of the samples of the table position, shape (n,): 0 where it cannot be predicted.
 
-    At a contact the encoder's own noise is magnified. Where it moves the table by more than the noise of the scale,
-    what is missed is the encoder's, and effects would be named for it.
+    At a contact the encoder's own error is magnified. What it then moves the table by is expected beside the noise of
+    the scale: weighed as that alone, effects would be named for it.
     """
-    n = len(evidence.recording)
-    if not _has_play(plant):
-        return np.ones(n, dtype=bool)
-    growth = _growth(plant, evidence)
-    lost = _over_stretches(growth, evidence, CONTACT) > _limit(plant, evidence)
-    # a contact at the edge of a stretch rings on into the next, and the filter carries it into the one before
-    after, before = np.roll(lost, 1), np.roll(lost, -1)
-    after[0] = before[-1] = False
-    return _predictable(growth, evidence) & ~_at_samples(lost | after | before, evidence, CONTACT)
+    if not has_play(plant.effects):
+        return np.ones(len(evidence.recording), dtype=bool)
+    missed = _missed(plant, evidence)
+    lost, noise = _lost(missed, evidence), evidence.noise.get("table_position")
+    if noise is None or (not lost.any() and np.max(missed.table) <= LINEAR * missed.cause):
+        return ~lost
+    beyond = np.maximum(missed.table**2 - (LINEAR * missed.cause) ** 2, 0.0)
+    weights: FloatArray = np.where(lost, 0.0, noise / np.sqrt(noise**2 + beyond))
+    return weights
 
 
-def _has_play(plant: Plant) -> bool:
-    return any(isinstance(effect, TransmissionEffect) and effect.has_play for effect in plant.effects)
+def has_play(effects: Sequence[Effect]) -> bool:
+    """Whether one of the effects is a free play."""
+    return any(isinstance(effect, TransmissionEffect) and effect.has_play for effect in effects)
 
 
-def _predictable(growth: FloatArray, evidence: AxisEvidence) -> BoolArray:
-    chaotic = _over_stretches(growth, evidence, WINDOW) > AMPLIFICATION
-    # what was shaken loose needs a moment to settle
-    chaotic[1:] |= chaotic[:-1].copy()
-    return ~_at_samples(chaotic, evidence, WINDOW)
-
-
-def _growth(plant: Plant, evidence: AxisEvidence) -> FloatArray:
-    """Motion of the table in the band over that of the encoder's noise that caused it, shape (n,)."""
-    generator = np.random.default_rng(20240501)
+def _missed(plant: Plant, evidence: AxisEvidence) -> Missed:
     plant = evidence.placed(plant)
-    motion = evidence.motion
-    base = simulate_driven(plant, motion).table_position.copy()  # not with all else that was simulated
-    squares = np.zeros(len(base))
+    radius, error = plant.chain.motor_radius, _encoder_error(evidence)
+    base, squares = _behind(plant, evidence.motion), np.zeros(len(evidence.recording))
+    for other in _other_motions(evidence, error):
+        squares += evidence.band.filter(_behind(plant, other) - base) ** 2 / DRAWS
+    about = 2 * round(REACH / (evidence.band.edge * evidence.recording.sample_time)) + 1
+    table = np.sqrt(np.maximum(uniform_filter1d(squares, about), 0.0))  # a running sum may end below zero
+    return Missed(table, error * radius)
+
+
+def _behind(plant: Plant, motion: MotorMotion) -> FloatArray:
+    """Way [m] of the table beyond that of the motor, (n,): a slow error of the motor is followed, and not magnified."""
+    run = simulate_driven(plant, motion)
+    behind: FloatArray = run.table_position - plant.chain.motor_radius * motion.angle[motion.samples]
+    return behind
+
+
+def _encoder_error(evidence: AxisEvidence) -> float:
+    """Rms of what noise and steps of the encoder add to a row [rad]."""
+    measured = evidence.recording["motor_angle"]
+    steps = quantisation_step(measured) / math.sqrt(12)
+    return max(math.hypot(white_noise(measured, evidence.band.sample_rate), steps), TINY_ANGLE)
+
+
+def _other_motions(evidence: AxisEvidence, error: float) -> Iterator[MotorMotion]:
+    """Motions that the motor may have made as well: with the encoder's error [rad] once more."""
+    if evidence.drawn:
+        yield from (replace(motion, time=evidence.motion.time) for motion in evidence.drawn[:DRAWS])
+        return
+    generator, motion = np.random.default_rng(20240501), evidence.motion
     for _ in range(DRAWS):
-        noise = on_grid(TINY_ANGLE * generator.standard_normal(len(base)), motion.substeps)
-        other = simulate_driven(plant, replace(motion, angle=motion.angle + noise)).table_position
-        squares += (evidence.band.filter(other - base) / (TINY_ANGLE * plant.chain.motor_radius)) ** 2 / DRAWS
-    return np.sqrt(squares)
+        drawn = error * generator.standard_normal(len(evidence.recording))
+        yield replace(motion, angle=motion.angle + on_grid(drawn, motion.substeps))
 
 
-def _limit(plant: Plant, evidence: AxisEvidence) -> float:
-    """Growth at which the encoder's noise moves the table as much as its scale's noise does."""
-    angle = evidence.recording["motor_angle"]
-    encoder = math.hypot(white_noise(angle, evidence.band.sample_rate), quantisation_step(angle) / math.sqrt(12))
-    scale = evidence.noise.get("table_position")
-    if scale is None or encoder == 0:
-        return AMPLIFICATION
-    return min(max(scale / (encoder * plant.chain.motor_radius), LINEAR), AMPLIFICATION)
-
-
-def _over_stretches(growth: FloatArray, evidence: AxisEvidence, seconds: float) -> FloatArray:
-    """Rms of every stretch."""
-    length = max(1, int(seconds / evidence.recording.sample_time))
-    padded = np.zeros(-(-len(growth) // length) * length)
-    padded[: len(growth)] = growth**2
-    rms: FloatArray = np.sqrt(padded.reshape(-1, length).mean(axis=1))
-    return rms
-
-
-def _at_samples(stretches: BoolArray, evidence: AxisEvidence, seconds: float) -> BoolArray:
-    """What holds for the stretches, at every sample."""
-    length = max(1, int(seconds / evidence.recording.sample_time))
-    return np.repeat(stretches, length)[: len(evidence.recording)]
+def _lost(missed: Missed, evidence: AxisEvidence) -> BoolArray:
+    """Samples of chaos, and those after them, shape (n,)."""
+    contact = max(1, round(CONTACT / evidence.recording.sample_time))
+    chaotic = missed.table > AMPLIFICATION * missed.cause
+    lost: BoolArray = maximum_filter1d(chaotic, contact, origin=(contact - 1) // 2)
+    return lost

@@ -11,7 +11,7 @@ from feeddrive.diagnosis.finding.candidates import CANDIDATES
 from feeddrive.diagnosis.finding.remembered import Remembered, effects_key
 from feeddrive.diagnosis.finding.scene import Candidate
 from feeddrive.diagnosis.likelihood.evidence import AxisEvidence
-from feeddrive.diagnosis.likelihood.predictability import predictable_samples, samples_to_fit
+from feeddrive.diagnosis.likelihood.predictability import predictable_samples, weights_to_fit
 from feeddrive.diagnosis.likelihood.predictor import Predictor
 from feeddrive.diagnosis.suspicion.channel_timing import lag_of, lagging, repeated
 from feeddrive.diagnosis.suspicion.torque_channel import scale_of, scale_sentence
@@ -109,9 +109,9 @@ class AxisPredictor(Predictor[AxisEvidence]):
         """Samples without chaos."""
         return predictable_samples(plant, evidence)
 
-    def to_fit(self, plant: Plant, evidence: AxisEvidence) -> BoolArray:
-        """Samples without chaos, and without contacts that the encoder's noise moves."""
-        return samples_to_fit(plant, evidence)
+    def to_fit(self, plant: Plant, evidence: AxisEvidence) -> BoolArray | FloatArray:
+        """Samples without chaos, weighed by what the encoder's error makes of contacts."""
+        return weights_to_fit(plant, evidence)
 
     def variables(self, plant: Plant, evidence: AxisEvidence) -> dict[str, FloatArray]:
         """Motion that a residual may depend on."""

@@ -81,6 +81,6 @@ class Predictor(ABC, Generic[E]):
         """Samples that can be predicted at all, (n,)."""
         return evidence.counted | True
 
-    def to_fit(self, plant: Plant, evidence: E) -> BoolArray:
-        """Samples that a fit can learn from, (n,)."""
+    def to_fit(self, plant: Plant, evidence: E) -> BoolArray | FloatArray:
+        """Samples that a fit can learn from, or their weights, (n,)."""
         return self.predictable(plant, evidence)

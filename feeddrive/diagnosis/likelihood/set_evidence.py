@@ -16,7 +16,13 @@
 | δ | `DISCREPANCY` | 1 |
 | K | candidates and starts that were tried for one further effect | 1 |
 
-Two sets are compared on the same samples, with one c. Their discrepancy from the law is not known beforehand: Γ is that
+Two sets are compared on the same samples, with one c. Sets with a free play decline to predict some, and are compared
+with others on those that both predict; where only one, A, predicts, the other, B, says how large its error is at most,
+
+    |r_B|² = m c (1 + log max(q_B / c, 1))
+
+in place of the m squares of mean q_B: as likely as a normal distribution of that variance. A must do there as well as
+elsewhere, B pays for its freedom. Their discrepancy from the law is not known beforehand: Γ is that
 of what is left, so that a channel, a frequency or a kind of motion that the model reaches badly counts for little. A
 law of another form than ours leaves a share of what it does itself: what is no more than that is no second effect.
 Sources: MacKay, Neural Computation 4 (1992) 415 (Laplace); Scott and Berger, Ann. Statist. 38 (2010) 2587 (p(S)).
@@ -24,20 +30,40 @@ Sources: MacKay, Neural Computation 4 (1992) 415 (Laplace); Scott and Berger, An
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.special import betaln
 
+from feeddrive.diagnosis.certainty.imitations import lost_motion
 from feeddrive.diagnosis.certainty.uncertainty import score_variances
-from feeddrive.diagnosis.likelihood.coordinates import Linear, absent_coordinates, coordinates_of
-from feeddrive.diagnosis.likelihood.cross_validation import model_error_rows
-from feeddrive.diagnosis.likelihood.fit import Fit, Problem
-from feeddrive.effects.base import Effect
+from feeddrive.diagnosis.likelihood.coordinates import (
+    Linear,
+    absent_coordinates,
+    coordinates_of,
+    read_coordinates,
+    write_coordinates,
+)
+from feeddrive.diagnosis.likelihood.cross_validation import (
+    Comparison,
+    compare_left_out,
+    least_gain,
+    left_out_residual,
+    model_error_rows,
+)
+from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
+from feeddrive.diagnosis.likelihood.folds import block_numbers
+from feeddrive.diagnosis.likelihood.predictability import has_play
+from feeddrive.effects.base import Effect, number
 from feeddrive.effects.catalogue import EFFECTS
+from feeddrive.effects.transmission.backlash import Backlash
+from feeddrive.effects.transmission.preload_loss import PreloadLoss
+from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
-from feeddrive.typing import FloatArray
+from feeddrive.typing import BoolArray, FloatArray
 
 PLACES = frozenset({"centre"})
 """Coordinates that are places on the axis: one some hundred strokes away is no place, and the law there is another."""
@@ -47,6 +73,9 @@ FORMLESS = frozenset({
     "channel_delay",
 })  # fmt: skip
 """Effects that are values of the machine and its recorder: there is no other form of them."""
+
+TINY = 1e-9
+"""In place of a width of nothing over its size [1]: no data tell a femtometre from none."""
 
 DISCREPANCY = 2e-4
 """Share of the squared residual, and of the square that a law takes, that a law other than ours leaves along any one
@@ -74,9 +103,29 @@ def log_volume(
     middle = prior_middle(effects, plant)
     beyond = np.where(np.isnan(middle), 0.0, coordinates - middle)
     sized = int(np.sum(~np.isnan(middle)))
+    lost = _log_prior_of_lost_motion(effects, plant, coordinates)
     _, volume = np.linalg.slogdet(normal / variance + np.eye(len(normal)))
     # a Cauchy density over a normal one of the same scale is sqrt(2 / pi) at the middle
-    return float(0.5 * sized * np.log(2 / np.pi) - np.sum(np.log1p(beyond**2)) - 0.5 * volume)
+    return float(0.5 * sized * np.log(2 / np.pi) - np.sum(np.log1p(beyond**2)) - 0.5 * volume + lost)
+
+
+def _log_prior_of_lost_motion(effects: Sequence[Effect], plant: Plant, coordinates: FloatArray) -> float:
+    """What the prior says of the force F1 up to which preload is lost, for every effect that has one.
+
+    Where little is carried around zero force that law is a free play of width w = 2 F1 (1 - a) / (a k), so that a width
+    is as likely in one as in the other: p(log F1) = w p(w) at a given ratio a. A flat prior would call every small play
+    a softness.
+    """
+    total, at, width = 0.0, 0, Backlash.parameter("width").size
+    for effect in effects:
+        size = len(read_coordinates([effect], plant))
+        if isinstance(effect, PreloadLoss) and plant.chain.elastic:
+            (there,) = write_coordinates([effect], plant, coordinates[at : at + size])
+            lost = lost_motion(number(there.values["ratio"]), number(there.values["force"]), plant)
+            over = max(lost / width, TINY)
+            total += 0.5 * math.log(2 / math.pi) + math.log(over) - math.log1p(over**2)
+        at += size
+    return total
 
 
 def prior_middle(effects: Sequence[Effect], plant: Plant) -> FloatArray:
@@ -90,7 +139,7 @@ def prior_middle(effects: Sequence[Effect], plant: Plant) -> FloatArray:
     return np.where(np.isnan(absent) & np.array(placed, dtype=bool), 0.0, absent)
 
 
-def log_odds(problem: Problem, first: Fit, second: Fit, count: int) -> float:
+def log_odds(problem: Problem, first: Fit, second: Fit, count: int, beyond: float = 0.0) -> float:
     """Logarithm of the odds for the second of two sets, all of whose effects are fitted to the same samples.
 
     Args:
@@ -98,8 +147,9 @@ def log_odds(problem: Problem, first: Fit, second: Fit, count: int) -> float:
         first: a set.
         second: another.
         count: candidates and starts that were tried.
+        beyond: squared error of the first less that of the second on samples that one of them alone predicts.
     """
-    excess = first.squared_error - second.squared_error
+    excess = first.squared_error - second.squared_error + beyond
     if not np.isfinite(excess):
         return float("inf") if excess > 0 else float("-inf")
     variance = variance_along(problem, min((first, second), key=lambda one: one.squared_error), first, second)
@@ -144,3 +194,135 @@ def variance_along(problem: Problem, left: Fit, first: Fit, second: Fit) -> floa
     noise = float(score_variances(problem, left.residual, difference[:, None])[0])
     missed = float(model @ difference**2) / 1.96**2
     return (noise + missed) / square + DISCREPANCY * left.squared_error
+
+
+@dataclass(frozen=True)
+class Standing:
+    """A set of effects with the samples that it predicts, to which it is fitted."""
+
+    problem: Problem
+    fit: Fit
+
+
+ITERATIONS = 4
+"""Steps of a set that was fitted to more samples, on those that another predicts as well."""
+
+
+def odds_between(first: Standing, second: Standing, count: int) -> float:
+    """Logarithm of the odds for the second of two sets, each on the samples that it predicts.
+
+    Args:
+        first: a set.
+        second: another.
+        count: candidates and starts that were tried.
+    """
+    if same_samples(first.problem, second.problem):
+        return log_odds(second.problem, first.fit, second.fit, count)
+    common = commonly_predicted(first.problem, second.problem)
+    try:
+        there = fitted_there(first, common), fitted_there(second, common)
+        return log_odds(common, *there, count, excess_beyond(first, second, _level(*there)))
+    except InputError:  # the first cannot be simulated with what suits the common samples best
+        return math.inf
+
+
+def gain_between(first: Standing, second: Standing, in_folds: bool = True) -> Comparison:
+    """What the second of two sets brings, each on the samples that it predicts.
+
+    Args:
+        first: a set.
+        second: another.
+        in_folds: on blocks left out; else as fitted, where a free play leaves too few blocks to leave one out.
+    """
+    blocks, others = block_numbers(first.problem), block_numbers(second.problem)
+    without, errors = first.fit.residual, second.fit.residual
+    if in_folds:
+        without = left_out_residual(first.problem, first.fit, blocks)
+        errors = left_out_residual(second.problem, second.fit, others)
+    if same_samples(first.problem, second.problem):
+        return compare_left_out(without, errors, others, least_gain(second.problem, without, errors))
+    inside, its = _inside(first.problem, second.problem), _inside(second.problem, first.problem)
+    before, after = without[inside], errors[its]
+    least = least_gain(commonly_predicted(first.problem, second.problem), before, after)
+    level = min(float(before @ before), float(after @ after)) / max(len(before), 1)
+    without, errors = without[~inside], errors[~its]
+    first_declines = declining(errors, second.problem.residual(first.fit.effects)[~its], level)
+    second_declines = declining(without, first.problem.residual(second.fit.effects)[~inside], level)
+    return compare_left_out(
+        np.concatenate([before, without, first_declines]),
+        np.concatenate([after, second_declines, errors]),
+        np.concatenate([others[its], blocks[~inside], others[~its]]),
+        least,
+    )
+
+
+def excess_beyond(first: Standing, second: Standing, level: float) -> float:
+    """Squared error of the first set less that of the second on samples that one of them alone predicts.
+
+    Args:
+        first: a set.
+        second: another.
+        level: c, mean square on the samples that both predict.
+    """
+    total = 0.0
+    for sign, able, other in ((1, first, second), (-1, second, first)):
+        alone = ~_inside(able.problem, other.problem)
+        if alone.any():
+            error = able.fit.residual[alone]
+            declines = declining(error, able.problem.residual(other.fit.effects)[alone], level)
+            total += sign * float(error @ error - declines @ declines)
+    return total
+
+
+def declining(error: FloatArray, own: FloatArray, level: float) -> FloatArray:
+    """The residual, (m,), that is as likely as what a set says of samples that it declines to predict.
+
+    Args:
+        error: of another set that predicts them, (m,).
+        own: of the set itself, if it is asked nevertheless, (m,).
+        level: c, mean square on the samples that both predict.
+    """
+    if not len(own):
+        return own
+    square = float(np.mean(own**2))
+    beyond = math.log(square / level) if level > 0 and np.isfinite(square) and square > level else 0.0
+    return np.copysign(math.sqrt(level * (1 + beyond)), error)
+
+
+def same_samples(one: Problem, other: Problem) -> bool:
+    """Whether two problems, of the same recordings, weigh the same samples alike."""
+    return all(
+        a is b or (np.array_equal(a.fit_rows, b.fit_rows) and a.weighs_as(b))
+        for a, b in zip(one.evidence, other.evidence, strict=True)
+    )
+
+
+def regained(problem: Problem, effects: Sequence[Effect]) -> Problem:
+    """The problem with the samples again that a free play left unpredictable, where none of these effects is one."""
+    if has_play(effects) or all(e.whole is e for e in problem.evidence):
+        return problem
+    return replace(problem, evidence=tuple(e.whole for e in problem.evidence))
+
+
+def commonly_predicted(first: Problem, second: Problem) -> Problem:
+    """The second of two problems on the samples of both; weighed as in the one that weighs a sample less."""
+    pairs = zip(first.evidence, second.evidence, strict=True)
+    return replace(second, evidence=tuple(b.within(a) for a, b in pairs))
+
+
+def fitted_there(one: Standing, common: Problem) -> Fit:
+    """A set fitted to fewer samples."""
+    return one.fit if same_samples(one.problem, common) else fit(common, one.fit.effects, iterations=ITERATIONS)
+
+
+def _level(*fits: Fit) -> float:
+    return min(one.squared_error / max(len(one.residual), 1) for one in fits)
+
+
+def _inside(problem: Problem, other: Problem) -> BoolArray:
+    """Which rows of the residual of a problem another one has as well, (m,)."""
+    parts = []
+    for mine, its in zip(problem.evidence, other.evidence, strict=True):
+        parts += [its.fit_rows[mine.thinned(mine.fit_rows)]] * len(mine.channels)
+    parts.append(np.ones(len(problem.numbers), dtype=bool))
+    return np.concatenate(parts)

@@ -78,6 +78,22 @@ def known_motion(recording: Recording, plant: Plant, band: Band) -> BoolArray:
     return ~np.asarray(binary_dilation(unknown, iterations=reach))
 
 
+def missed_between_rows(recording: Recording, plant: Plant, counted: BoolArray) -> dict[str, float]:
+    """Rms of what the motion between rows, which is not known, makes of each channel: delta T and delta x above.
+
+    Args:
+        recording: with a motor angle.
+        plant: whose inertia and stiffness apply.
+        counted: rows that are compared, (n,).
+    """
+    fourth = np.diff(recording["motor_angle"], 4)[counted[2:-2]]
+    missed = float(np.sqrt(np.mean(fourth**2))) / (12 * recording.sample_time**2)
+    made = {"motor_torque": inertia_at_motor(plant) * missed}
+    if plant.chain.elastic:
+        made["table_position"] = lag_per_acceleration(plant) * missed
+    return made
+
+
 def _ringing(over_noise: FloatArray, plant: Plant, recording: Recording) -> BoolArray:
     """Rows at which modes that the rows show as slower ones still answer motion that is not known, (n,).
 

@@ -34,6 +34,11 @@ WIDEST = math.log(4.0)
 BEYOND = WIDEST / 1.96
 """Standard deviation of the logarithm of a value beyond its tolerance."""
 
+SURE = 3.0
+"""Deviations that are more than chance: one of 400 either way, one of 700 one way. So far beyond their tolerances
+declared values are called other than declared, a measured number is contradicted and a recorder is suspected, and so
+many of its own scatter a gain must reach where several were tried."""
+
 ASSERTED = 20 / 21
 """Odds of 20 to 1 (Royall, Statistical Evidence (1997), section 1.6)."""
 

@@ -30,12 +30,9 @@ import numpy as np
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.likelihood.fit import Problem, fit, linear_step
 from feeddrive.diagnosis.likelihood.set_evidence import log_prior_of_size, log_volume
-from feeddrive.diagnosis.likelihood.tolerances import BEYOND
+from feeddrive.diagnosis.likelihood.tolerances import BEYOND, SURE
 from feeddrive.diagnosis.numbers.measured_file import MeasuredNumber
 from feeddrive.units.quantity import format_quantity
-
-SURE = 3.0
-"""Deviations from which a number is asked: by chance one of 400, and the answer costs a search."""
 
 
 def most_doubtful(found: Search) -> int | None:

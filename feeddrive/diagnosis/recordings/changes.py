@@ -11,17 +11,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
 from scipy.special import ndtri
 
 from feeddrive.diagnosis.calibration.beyond import said_by_effects
-from feeddrive.diagnosis.likelihood.cross_validation import (
-    Comparison,
-    compare_left_out,
-    least_gain,
-    left_out_residual,
-)
+from feeddrive.diagnosis.finding.attempt import SCANNED_ITERATIONS, with_predictable
+from feeddrive.diagnosis.likelihood.coordinates import read_coordinates
+from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
-from feeddrive.diagnosis.likelihood.folds import block_numbers
+from feeddrive.diagnosis.likelihood.predictability import has_play
+from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between
 from feeddrive.diagnosis.recordings.change_candidates import (
     Movable,
     Offer,
@@ -31,8 +30,15 @@ from feeddrive.diagnosis.recordings.change_candidates import (
     offers,
 )
 from feeddrive.diagnosis.recordings.change_result import CommonTrial
-from feeddrive.diagnosis.recordings.recordings import RecordingShift, Target, is_shift, without_shifts
+from feeddrive.diagnosis.recordings.recordings import (
+    RecordingPredictor,
+    RecordingShift,
+    Target,
+    is_shift,
+    without_shifts,
+)
 from feeddrive.effects.base import Effect
+from feeddrive.effects.base import number as number_of
 from feeddrive.effects.friction.friction_deviation import FrictionDeviation
 from feeddrive.units.quantity import percent
 
@@ -44,6 +50,12 @@ FALSE_ALARMS = 0.05
 
 OFFERS = 2
 """Parameters that are fitted before the recordings are taken to share the rest."""
+
+UNEXPLAINED = 1.3
+"""Weighted squared error per sample beyond which much is left; noise alone gives one."""
+
+LAGS = (2.0, 1.4, 0.7, 3.0)
+"""Differences of a free play that are tried, over the rms of what the table lags: half of one, either way, at rest."""
 
 MOST_CHANGES = 6
 """Parameters that may differ; a machine on which more did is another machine."""
@@ -81,7 +93,7 @@ def find_changes(problem: Problem, effects: Sequence[Effect], recordings: Sequen
     if not recordings:
         return Changes(problem, common, (), ())
     ranked: dict[Target, Offer] = {}
-    wide, current, kept = _forward(problem, common, recordings, ranked)
+    wide, current, kept = _forward(problem, effects, common, recordings, ranked)
     while kept:
         worst = _worst(wide, current, kept, recordings, len(ranked))
         if not worst:
@@ -94,11 +106,22 @@ def find_changes(problem: Problem, effects: Sequence[Effect], recordings: Sequen
 
 
 def _forward(
-    problem: Problem, common: Fit, recordings: Sequence[int], ranked: dict[Target, Offer]
+    problem: Problem, given: Sequence[Effect], common: Fit, recordings: Sequence[int], ranked: dict[Target, Offer]
 ) -> tuple[Problem, Fit, list[Target]]:
     """Parameters that pay when set free, the likeliest first; what each brings is noted in `ranked`."""
     taken: list[Target] = []
     current = common
+    for one in movables(given, problem):
+        apart = _play_apart(problem, given, one, recordings) if has_play([given[one.effect]]) else None
+        if apart is None:
+            continue
+        comparison = gain_between(Standing(problem, common), apart, in_folds=False)
+        ranked[one.target] = one, comparison
+        if _pays(comparison, len(common.coordinates)) and _material(apart.problem, apart.fit, one.target, recordings):
+            taken.append(one.target)
+            problem, current = apart.problem, apart.fit
+    if taken and current.squared_error < UNEXPLAINED * len(current.residual):
+        return problem, current, taken
     while len(taken) < MOST_CHANGES:
         effects = [*current.effects, *levels(problem, current.effects)]
         asked, together = said_by_effects(problem, effects)
@@ -121,6 +144,44 @@ def _forward(
         else:
             break
     return problem, current, taken
+
+
+def _play_apart(problem: Problem, given: Sequence[Effect], one: Movable, recordings: Sequence[int]) -> Standing | None:
+    """The set with a free play of its own in some recordings; None where no other play suits them better.
+
+    A screw that is worn is no step away from a new one: a play that is far too small leaves the table's lag to every
+    other effect, so that a fit in common is neither machine, and linear steps from there lead to neither. So widths are
+    tried about that lag, as the search does it, the other effects being as they were found.
+    """
+    effect, predictor, plant = given[one.effect], problem.predictor, problem.machine(given)
+    assert isinstance(predictor, RecordingPredictor)
+    lag = dict.fromkeys(recordings, 0.0)
+    for e in problem.evidence:
+        if (number := predictor.numbers[e.recording]) in lag and "table_position" in e.channels:
+            error = e.measured["table_position"] - predictor.predict(plant, e)["table_position"]
+            lag[number] = float(np.std(error[e.fit_rows]))
+    if not any(lag.values()):
+        return None
+
+    def moved(times: float) -> list[Effect]:
+        shifts = []
+        for number, shift in zip(recordings, one.shifts(recordings), strict=True):
+            width = max(0.0, number_of(effect.values["width"]) + times * lag[number])
+            other = effect.with_values(width=min(width, effect.parameter("width").maximum))
+            by = read_coordinates([other], problem.plant) - read_coordinates([effect], problem.plant)
+            shifts.append(shift.with_values(shift=tuple(by.tolist())))
+        return [*given, *shifts]
+
+    own = with_predictable(problem, moved(LAGS[0]))
+    starts = [moved(times) for times in (0.0, *LAGS, *(-times for times in LAGS))]
+    start = min(starts, key=lambda effects: fit(own, effects, error_only=True).squared_error)
+    if start is starts[0]:
+        return None
+    own = with_predictable(problem, start)
+    free = [False] * len(given) + [True] * len(recordings)
+    tried = fit(own, start, free, SCANNED_ITERATIONS)
+    own = with_predictable(problem, tried.effects)
+    return Standing(own, fit(own, tried.effects, iterations=JOINT_STEPS))
 
 
 def _partners(one: Target, other: Target) -> bool:
@@ -152,7 +213,10 @@ def _worst(
     for group in groups:
         # what is left out keeps its level in common, so that only the difference is judged
         removed = [effect for effect in shifted.effects if not _belongs(effect, group, recordings)]
-        compared.append((_compared_fits(problem, fit(problem, removed, iterations=JOINT_STEPS), shifted), group))
+        own = _as_predicted(problem, removed, group)
+        without = Standing(own, fit(own, removed, iterations=JOINT_STEPS))
+        in_folds = own is problem  # else a free play leaves too few blocks
+        compared.append((gain_between(without, Standing(problem, shifted), in_folds), group))
     comparison, group = min(compared, key=lambda pair: pair[0].gain)
     return [] if _pays(comparison, tried) else group
 
@@ -190,7 +254,7 @@ def _set_free(
         shared = fit(problem, effects, iterations=JOINT_STEPS)
     shifts = [shift for one in group for shift in one.shifts(recordings)]
     wider = fit(problem, [*shared.effects, *shifts], iterations=JOINT_STEPS)
-    return problem, wider, _compared_fits(problem, shared, wider)
+    return problem, wider, gain_between(Standing(problem, shared), Standing(problem, wider))
 
 
 def _in_common(
@@ -206,12 +270,11 @@ def _in_common(
     places = {(one.name, one.port, one.place) for one in before} | {(t.name, t.port, t.place) for t in moved}
     kept = [effect for effect in kept if is_shift(effect) or (effect.name, effect.port, effect.place) in places]
     problem, _ = said_by_effects(problem, kept)
+    problem = _as_predicted(problem, kept, [one.target for one in kept if isinstance(one, RecordingShift)])
     return problem, fit(problem, kept, iterations=JOINT_STEPS)
 
 
-def _compared_fits(problem: Problem, without: Fit, having: Fit) -> Comparison:
-    """What one fit brings over another on blocks left out."""
-    blocks = block_numbers(problem)
-    before = left_out_residual(problem, without, blocks)
-    after = left_out_residual(problem, having, blocks)
-    return compare_left_out(before, after, blocks, least_gain(problem, before, after))
+def _as_predicted(problem: Problem, effects: Sequence[Effect], targets: Sequence[Target]) -> Problem:
+    """The problem on the samples that a set predicts in which a free play differs by recording, or no longer does."""
+    plays = [effect for effect in effects if has_play([effect])]
+    return with_predictable(problem, effects) if any(t.meets(e) for t in targets for e in plays) else problem

@@ -16,9 +16,10 @@ import numpy as np
 from feeddrive.diagnosis.calibration.calibrate import with_recordings
 from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.finding.search import Search
-from feeddrive.diagnosis.judging.judge import Judged, error_series, judged_channels, share_of
+from feeddrive.diagnosis.judging.judge import Judged, error_series, judged_channels, prepared_for_judging, share_of
 from feeddrive.diagnosis.judging.result import EffectResult
 from feeddrive.diagnosis.likelihood.fit import Problem
+from feeddrive.diagnosis.likelihood.set_evidence import declining
 from feeddrive.diagnosis.recordings.change_report import (
     Question,
     neutral_somewhere,
@@ -52,7 +53,8 @@ def compared_recordings(searched: Searched, judged: Sequence[Judged]) -> Compare
     """Differences between the fitted recordings, and of the judged ones from them."""
     found, own = searched.search, searched.changes
     names = recording_names([evidence.recording.name for evidence in found.problem.evidence])
-    others = judged_changes(found, judged)
+    left_out = found.problem.budget.skips("what differs in the recordings that are judged on")
+    others = None if left_out else judged_changes(found, judged)
     stated: tuple[ParameterChange, ...] = ()
     result = RecordingChanges()
     if own is not None:
@@ -141,6 +143,7 @@ class JudgedChanges:
         changes: as fitted, with what was tried.
         stated: the clear ones.
         carries: whether each effect of the machine carries with them allowed for; empty where nothing differs.
+        other: whether a value of each effect differs itself.
         explains: channel to the share of the squared error after that the differences are.
         problem: whose predictor knows the differences.
         allowed: the judged recordings with the differences in the plant after.
@@ -149,6 +152,7 @@ class JudgedChanges:
     changes: Changes
     stated: tuple[ParameterChange, ...]
     carries: tuple[bool, ...]
+    other: tuple[bool, ...]
     explains: dict[str, float]
     problem: Problem
     allowed: tuple[Judged, ...]
@@ -170,7 +174,7 @@ def judged_changes(found: Search, judged: Sequence[Judged]) -> JudgedChanges | N
     first = len(found.problem.evidence)
     changes = find_changes(problem, found.fit.effects, range(first, first + len(apart)))
     if not changes.targets:
-        return JudgedChanges(changes, (), (), {}, problem, tuple(judged))
+        return JudgedChanges(changes, (), (), (), {}, problem, tuple(judged))
     problem = changes.problem
     names = [evidence.recording.name for evidence in found.problem.evidence]
     against = names[-1] if len(names) == 1 or len(set(names)) < len(names) else f"{names[-1]}, the last one fitted"
@@ -181,12 +185,16 @@ def judged_changes(found: Search, judged: Sequence[Judged]) -> JudgedChanges | N
     stated = parameter_changes(problem, changes, questions)
     rehomed = {one.evidence.recording.name for one in apart if one.shift}
     stated = tuple(one for one in stated if not (one.parameter == "phase" and one.recording in rehomed))
-    allowed = [Judged(j.evidence, j.before, problem.machine(changes.fit.effects)) for j in judged]
+    there = problem.machine(changes.fit.effects)
+    allowed = [prepared_for_judging(problem, j.evidence.whole, j.before, there) for j in judged]
     carrying = replace(problem, evidence=found.problem.evidence)
     count = len(without_shifts(found.fit.effects))
     numbers = [question.here for question in questions]
     carries = tuple(_carries(carrying, judged, changes.fit.effects, i, numbers) for i in range(count))
-    return JudgedChanges(changes, stated, carries, _explained(carrying, judged, allowed), carrying, tuple(allowed))
+    other = tuple(any(t.meets(e) for t in changes.targets) for e in found.fit.effects[:count])
+    return JudgedChanges(
+        changes, stated, carries, other, _explained(carrying, judged, allowed), carrying, tuple(allowed)
+    )
 
 
 def _carries(
@@ -200,16 +208,28 @@ def _carries(
         if not (isinstance(effect, RecordingShift) and effect.recording in numbers and effect.target.meets(mine))
     ]
     plant = problem.machine(own)
-    return bool(share_of(problem, [Judged(j.evidence, j.before, plant) for j in judged], own, index).carries)
+    there = [prepared_for_judging(problem, j.evidence.whole, j.before, plant) for j in judged]
+    return bool(share_of(problem, there, own, index).carries)
 
 
 def _explained(problem: Problem, judged: Sequence[Judged], allowed: Sequence[Judged]) -> dict[str, float]:
     """Channel to 1 - (rms with the differences / rms without)^2 on the judged data."""
     result = {}
     for name in judged_channels(judged):
-        squares = []
-        for group in (judged, allowed):
-            errors = [error_series(problem, j.after, j.evidence)[name] for j in group if name in j.evidence.channels]
-            squares.append(sum(float(np.nansum(error**2)) for error in errors))
+        pairs = [(j, a) for j, a in zip(judged, allowed, strict=True) if name in a.evidence.channels]
+        without, having = [], []
+        for j, a in pairs:
+            both = a.evidence.within(j.evidence)
+            before, after = (error_series(problem, plant, both)[name][both.judged_rows] for plant in (j.after, a.after))
+            alone = j.evidence.beside(a.evidence)
+            if alone.judged_rows.any():  # which the machine with the differences does not predict
+                its, own = (
+                    error_series(problem, plant, alone)[name][alone.judged_rows] for plant in (j.after, a.after)
+                )
+                before = np.concatenate([before, its])
+                after = np.concatenate([after, declining(its, own, float(np.mean(after**2)))])
+            without.append(before)
+            having.append(after)
+        squares = [float(np.sum(np.concatenate(errors) ** 2)) for errors in (without, having)]
         result[name] = 1 - squares[1] / squares[0] if squares[0] > 0 else 0.0
     return result

@@ -179,8 +179,8 @@ class RecordingPredictor(Predictor[Any]):
         """Samples that can be predicted."""
         return self.inner.predictable(self.machine(plant, evidence), evidence)
 
-    def to_fit(self, plant: Plant, evidence: Any) -> BoolArray:
-        """Samples that a fit can learn from."""
+    def to_fit(self, plant: Plant, evidence: Any) -> BoolArray | FloatArray:
+        """Samples that a fit can learn from, or their weights."""
         return self.inner.to_fit(self.machine(plant, evidence), evidence)
 
 

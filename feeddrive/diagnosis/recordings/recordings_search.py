@@ -18,9 +18,10 @@ from feeddrive.diagnosis.finding.search import Search, search
 from feeddrive.diagnosis.finding.sets import needed_members
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
+from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between, same_samples
 from feeddrive.diagnosis.recordings.change_candidates import levels
 from feeddrive.diagnosis.recordings.change_words import FACTORS
-from feeddrive.diagnosis.recordings.changes import Changes, find_changes
+from feeddrive.diagnosis.recordings.changes import UNEXPLAINED, Changes, find_changes
 from feeddrive.diagnosis.recordings.recordings import (
     RecordingPredictor,
     RecordingShift,
@@ -28,9 +29,6 @@ from feeddrive.diagnosis.recordings.recordings import (
     without_shifts,
 )
 from feeddrive.effects.base import Effect, listed, number
-
-UNEXPLAINED = 1.3
-"""Weighted squared error per sample beyond which much is left; noise alone gives one."""
 
 SAME = 0.01
 """Relative difference of squared errors that counts as none."""
@@ -77,7 +75,7 @@ def search_recordings(
     best = _followed(problem, held if _plausible(held) else _nothing(problem), earlier, progress)
     assert best.changes is not None
     confirmed = _levels_of(problem, best.changes) == (_levels_of(problem, held) if _plausible(held) else set())
-    if confirmed or _explained(best):
+    if confirmed or _explained(best) or problem.budget.skips("effects first, and then what differs"):
         return best
     other = _nothing(problem) if _plausible(held) and held.targets else _levels_alone(problem, best.changes, earlier)
     return _better(best, _followed(problem, other, earlier, progress))
@@ -90,9 +88,9 @@ def _followed(problem: Problem, held: Changes, earlier: Sequence[int], progress:
     changes = find_changes(found.problem, found.fit.effects, earlier)
     if changes.targets:
         # the other declared values as they are most likely beside what differs
-        effects = _still_needed(changes.problem, changes.fit).effects
-        recalibrated_problem = recalibrated(changes.problem, effects)
-        changes = replace(changes, problem=recalibrated_problem, fit=fit(recalibrated_problem, effects))
+        needed = _still_needed(changes.problem, changes.fit)
+        again = recalibrated(needed.problem, needed.fit.effects)
+        changes = replace(changes, problem=again, fit=fit(again, needed.fit.effects))
     return Searched(replace(found, problem=changes.problem, fit=changes.fit), changes)
 
 
@@ -102,16 +100,18 @@ def _continued(problem: Problem, start: Sequence[Effect], progress: Callable[[st
     problem = with_predictable(problem, start)
     earlier = range(len(problem.evidence) - 1)
     again = find_changes(problem, fit(problem, start).effects, earlier)
-    again = replace(again, fit=_still_needed(problem, again.fit))
-    more = _searched(problem, again, progress)
+    needed = _still_needed(problem, again.fit)
+    again = replace(again, problem=needed.problem, fit=needed.fit)
+    more = _searched(needed.problem, again, progress)
     effects = (*without_shifts(again.fit.effects), *more.fit.effects)
     changes = find_changes(more.problem, effects, earlier)
-    together = _still_needed(changes.problem, fit(changes.problem, changes.fit.effects))
-    return Searched(replace(more, problem=changes.problem, fit=together), replace(changes, fit=together))
+    needed = _still_needed(changes.problem, fit(changes.problem, changes.fit.effects))
+    changes = replace(changes, problem=needed.problem, fit=needed.fit)
+    return Searched(replace(more, problem=changes.problem, fit=changes.fit), changes)
 
 
-def _still_needed(problem: Problem, found: Fit) -> Fit:
-    """The fit without effects that no longer pay; what differs by recording stays, and what it belongs to."""
+def _still_needed(problem: Problem, found: Fit) -> Standing:
+    """The set without effects that no longer pay; what differs by recording stays, and what it belongs to."""
     shifts = [effect for effect in found.effects if isinstance(effect, RecordingShift)]
 
     def may_go(effect: Effect) -> bool:
@@ -121,7 +121,13 @@ def _still_needed(problem: Problem, found: Fit) -> Fit:
 
 
 def _better(first: Searched, second: Searched) -> Searched:
-    """The one with the lower error at the same samples; the one with fewer unknowns where that is a tie."""
+    """The one with the lower error at the same samples; the one with fewer unknowns where that is a tie.
+
+    Where they predict different samples, the likelier.
+    """
+    a, b = (Standing(one.search.problem, one.search.fit) for one in (first, second))
+    if not same_samples(a.problem, b.problem):
+        return second if odds_between(a, b, len(a.problem.predictor.candidates)) > 0 else first
     errors = [one.search.fit.squared_error / len(one.search.fit.residual) for one in (first, second)]
     if abs(errors[0] - errors[1]) > SAME * min(errors):
         return first if errors[0] < errors[1] else second

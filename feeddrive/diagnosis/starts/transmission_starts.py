@@ -15,6 +15,7 @@ import numpy as np
 
 from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.finding.scene import Scene
+from feeddrive.diagnosis.likelihood.coordinates import LEAST
 from feeddrive.effects.base import Effect
 from feeddrive.effects.chain.stiffness_deviation import StiffnessDeviation, parts_of
 from feeddrive.effects.transmission.preload_loss import PreloadLoss
@@ -56,7 +57,8 @@ def preload_loss(scene: Scene) -> list[list[Effect]]:
     best = int(np.argmax(np.where(slopes > 0, shares, 0.0)))
     if slopes[best] <= 0 or shares[best] < LEAST_LAG:
         return []
-    start = PreloadLoss.of(ratio=max(1 / (1 + float(slopes[best])), 0.02), force=float(limits[best]))
+    ratio = max(1 / (1 + float(slopes[best])), LEAST[PreloadLoss.name, "ratio"])
+    start = PreloadLoss.of(ratio=ratio, force=float(limits[best]))
     return [[start]] if is_material(start, scene.plant) else []
 
 

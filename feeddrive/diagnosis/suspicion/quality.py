@@ -22,6 +22,7 @@ from typing import Any
 
 from feeddrive.effects.base import Effect, number
 from feeddrive.effects.source.constant_force import ConstantForce
+from feeddrive.effects.source.weight import Weight
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 from feeddrive.recording.checks.flaws import JOINED, sentence
@@ -106,7 +107,7 @@ def read_otherwise(effects: Sequence[Effect], plant: Plant) -> tuple[Quality, ..
     """What the recorder may have done instead of, or as, an effect that was found."""
     if not plant.has_motion:
         return ()
-    hangs = any(isinstance(effect, ConstantForce) for effect in plant.effects)
+    hangs = any(isinstance(effect, ConstantForce | Weight) for effect in plant.effects)
     found = []
     for effect in effects:
         match effect.name:

@@ -25,7 +25,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from feeddrive.diagnosis.calibration.beyond import SURE as BEYOND_SURELY
 from feeddrive.diagnosis.calibration.calibrate import calibrated, calibrated_list
 from feeddrive.diagnosis.calibration.known import known_values
 from feeddrive.diagnosis.certainty.noise_colour import score_covariance
@@ -40,12 +39,12 @@ from feeddrive.diagnosis.likelihood.cross_validation import (
     left_out_residual,
     prior_of,
 )
-from feeddrive.diagnosis.likelihood.evidence import AxisEvidence, prepare
+from feeddrive.diagnosis.likelihood.evidence import AxisEvidence
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit, linear_step
 from feeddrive.diagnosis.likelihood.folds import block_numbers
+from feeddrive.diagnosis.likelihood.tolerances import SURE
 from feeddrive.diagnosis.recordings.recordings import is_shift
 from feeddrive.diagnosis.suspicion.quality import Quality
-from feeddrive.errors import InputError
 from feeddrive.recording import Recording
 from feeddrive.typing import FloatArray
 
@@ -59,9 +58,6 @@ STEP = 1e-3
 
 SAME_ERROR = 1.05
 """Ratio of squared errors per sample from which a fault leaves less than what was found without it (`round.TIE`)."""
-
-SURE = 3.0
-"""Deviations from none: one of 400 by chance, two suspects asked twice."""
 
 
 NOT_ASKED = Comparison(0.0, 0.0, 0.0)
@@ -118,7 +114,7 @@ def beyond_its_constant(problem: Problem, found: Fit) -> tuple[Quality, ...]:
     if known is None:
         return ()
     for place, one in enumerate(calibrated_list(problem, found)):
-        if one.value.key == "torque_constant" and known.least() - known.least(place) > BEYOND_SURELY**2:
+        if one.value.key == "torque_constant" and known.least() - known.least(place) > SURE**2:
             declared = one.value.declared
             return (scaled(declared / one.number, (declared / one.ci95[1], declared / one.ci95[0])),)
     return ()
@@ -208,12 +204,7 @@ def _clock_column(problem: Problem, found: Fit) -> FloatArray | None:
     plant, parts = problem.machine(found.effects), []
     for e in problem.evidence:
         assert isinstance(e, AxisEvidence)
-        try:
-            other = prepare(Suspect(CLOCK, STEP).mended(e.recording), problem.plant, 1.0)
-        except InputError:
-            return None
-        # the same rows pass the same filter: what changes is the motion between them
-        other = replace(e, recording=other.recording, motion=other.motion)
+        other = e.at_other_times(Suspect(CLOCK, STEP).mended(e.recording))
         rows = e.thinned(e.fit_rows)
         here, there = (e.weighted(problem.predictor.predict(plant, one), rows) for one in (e, other))
         parts.append((there - here) / STEP)

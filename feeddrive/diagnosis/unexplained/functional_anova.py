@@ -24,14 +24,12 @@ import numpy as np
 
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison, compare_left_out, prior_information
 from feeddrive.diagnosis.likelihood.folds import FOLDS
+from feeddrive.diagnosis.likelihood.tolerances import SURE
 from feeddrive.diagnosis.unexplained.terms import Term
 from feeddrive.typing import FloatArray, IntegerArray
 
 MOST_TERMS = 4
 """Terms at most: what needs more is not read by a person."""
-
-SURE = 3.0
-"""Gain over its standard error that is asked for: some sixty terms are tried a round."""
 
 TIE = 0.05
 """Share of the squared error by which a simpler term may be worse, if the difference is within twice its scatter."""

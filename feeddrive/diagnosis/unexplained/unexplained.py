@@ -25,6 +25,7 @@ from feeddrive.diagnosis.likelihood.cross_validation import (
 )
 from feeddrive.diagnosis.likelihood.fit import Problem, fit
 from feeddrive.diagnosis.likelihood.folds import block_numbers
+from feeddrive.diagnosis.likelihood.set_evidence import regained
 from feeddrive.diagnosis.unexplained.analysis import Analysis
 from feeddrive.diagnosis.unexplained.carry import analyses_of, forms_of, joint_step, judged_with, tried, with_carried
 from feeddrive.diagnosis.unexplained.unexplained_result import Carried, Instead, Unexplained, rest_in_words
@@ -90,6 +91,9 @@ def explain_rest(
             again = analyses_of(problem, (*effects, *own), with_carried(judged, *own), [channel])
             analysis = again[channel.name]
         for found, seen in zip(analysis.found, analysis.dependences, strict=True):
+            if problem.budget.skips("tables of what no name explains", f"{channel.name} over {found.term.variable}"):
+                reasons[channel.name].append(f"{seen.words}: not carried: there was no time to try")
+                continue
             table = tried(problem, effects, judged, carried, forms_of(found, first.values()), channel)
             if isinstance(table, Carried):
                 carried.append(table)
@@ -97,7 +101,8 @@ def explain_rest(
                 reasons[channel.name].append(f"{seen.words}: {table}")
     if len(carried) > 1:
         carried = _together(problem, effects, judged, carried)
-    other = table_against(problem, effects, judged, channels) if len(effects) >= FEWEST else None
+    asked = len(effects) >= FEWEST and not problem.budget.skips("a table in place of the names")
+    other = table_against(problem, effects, judged, channels) if asked else None
     left = {}
     for c in channels:
         instead = other if other is not None and other.as_good and other.carried.channel == c.name else None
@@ -161,6 +166,8 @@ def without_stand_ins(found: Search, judged: Sequence[Judged]) -> Search:
     effects = found.fit.effects
     if not effects or (len(effects) < FEWEST and not _is_left(found.problem, judged)):
         return found
+    if found.problem.budget.skips("a table in place of the names"):
+        return found
     rival = table_against(found.problem, effects, judged, channel_results(found.problem, judged))
     if rival is None or not rival.better:
         return found
@@ -173,9 +180,11 @@ def without_stand_ins(found: Search, judged: Sequence[Judged]) -> Search:
         f"beside a table over {table.place.replace('_', ' ')}, which predicts data not fitted better, it does not pay"
     )
     names = {effect.name for effect in effects} - {effect.name for effect in kept}
+    problem = regained(found.problem, kept)
     return replace(
         found,
-        fit=fit(found.problem, kept, iterations=0),
+        problem=problem,
+        fit=fit(problem, kept, iterations=0),
         impossible={**found.impossible, **dict.fromkeys(names, reason)},
     )
 

@@ -9,15 +9,18 @@ from typing import TYPE_CHECKING, Any, cast
 
 from feeddrive.bench_page.page import bench_of_diagnosis
 from feeddrive.compensation.actions import Actions, actions
+from feeddrive.diagnosis.budget import Budget
 from feeddrive.diagnosis.diagnose import diagnose as find_what_lacks
 from feeddrive.diagnosis.judging.result import Diagnosis
 from feeddrive.diagnosis.likelihood.outputs import diagnosis_json, diagnosis_record, write_outputs
 from feeddrive.diagnosis.numbers.measured_file import read_measured_numbers
 from feeddrive.diagnosis.plant_text import with_calibrated_values
+from feeddrive.diagnosis.preparation import informative
 from feeddrive.diagnosis.suspicion.quality import is_recorders, quality_lines
 from feeddrive.effects.base import Effect
-from feeddrive.errors import InputError
+from feeddrive.errors import InputError, quoted
 from feeddrive.interface.axis import Axis, axis_of_text
+from feeddrive.interface.measured.first_look import play_seen
 from feeddrive.interface.measured.reading import as_recording
 from feeddrive.interface.shown import Listing, Shown
 from feeddrive.plant.file.lumped_text import plant_text_with_effects
@@ -28,6 +31,7 @@ from feeddrive.report.pages.sections import calibrated_lines, measured_lines
 from feeddrive.report.words.number_text import error_text, share_text
 from feeddrive.report.words.parameters import parameter_text
 from feeddrive.report.words.verdict import verdict_sentences
+from feeddrive.units.quantity import parse
 
 if TYPE_CHECKING:
     from feeddrive.interface.compensating import Compensation
@@ -244,6 +248,7 @@ def diagnose(
     split: float = 0.75,
     simulate: bool = False,
     measured: str | Path | None = None,
+    budget: str | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> Diagnosed:
     """Find what an axis lacks.
@@ -255,18 +260,40 @@ def diagnose(
         split: share that is fitted then.
         simulate: also simulate the closed loop where a controller is declared.
         measured: TOML file of numbers that were measured beside, `[[measured]]`: a stiffness, a natural frequency.
+        budget: time that it may take, such as "60 s"; it ends with the best found so far and says what was not tried.
         progress: called with a word for what is being done.
 
     Raises:
         InputError: a recording that cannot be used, or an axis that does not declare what it holds.
     """
+    allowed = budget_of(budget, "budget")
     fitted, judged = _several(recording, "recording"), _several(validate, "validate")
     if not fitted:
         raise InputError("no recording is given", "recording", "give fd.read(...), or the path of a file")
     numbers = read_measured_numbers(Path(measured), axis.plant) if measured is not None else ()
     report = progress or (lambda _: None)
-    result, effects = find_what_lacks(axis.plant, fitted, judged, split, simulate, report, (), numbers)
+    fitted = list(informative(axis.plant, fitted, 1.0 if judged else split))
+    start = play_seen(axis.plant, fitted)
+    result, effects = find_what_lacks(axis.plant, fitted, judged, split, simulate, report, start, numbers, allowed)
     return Diagnosed(axis, result, tuple(effects))
+
+
+def budget_of(text: str | None, where: str) -> Budget:
+    """The time that a diagnosis may take, from now on.
+
+    Args:
+        text: such as "60 s" or "2 min"; as long as it takes if None.
+        where: for the message.
+
+    Raises:
+        InputError: no time, or none at all.
+    """
+    if text is None:
+        return Budget()
+    seconds = parse(text, "s", where)
+    if seconds <= 0:
+        raise InputError(f"{quoted(text)} leaves no time", where, 'write a time such as "60 s"')
+    return Budget(seconds)
 
 
 def _several(given: Given | Sequence[Given] | None, where: str) -> list[Recording]:

@@ -32,7 +32,8 @@ from feeddrive.effects.tabulated import Tabulated
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant, shipped_plants
 from feeddrive.interface.axis import load
-from feeddrive.interface.measured.diagnosed import Diagnosed
+from feeddrive.interface.measured.diagnosed import Diagnosed, budget_of
+from feeddrive.interface.measured.first_look import play_seen
 from feeddrive.output_folder import finish_interrupted, output_folder, refuse_unusable, take_away
 from feeddrive.recording import Recording, read_recording
 from feeddrive.report.figures.figures import render_figures, save_figures
@@ -56,6 +57,7 @@ class Options:
     decimal: str | None = None
     simulate: bool = False
     measured: Path | None = None
+    budget: str | None = None
 
 
 @dataclass(frozen=True)
@@ -80,6 +82,7 @@ class Job:
     start: tuple[Effect, ...] = ()
     earlier: Earlier | None = None
     measured: Path | None = None
+    budget: str | None = None
 
 
 def first_job(arguments: Sequence[str], options: Options) -> Job:
@@ -96,7 +99,9 @@ def first_job(arguments: Sequence[str], options: Options) -> Job:
     fitted = tuple(_source(Path(name), options) for name in arguments[1:])
     judged = tuple(_source(path, options) for path in options.validate)
     plant = find_plant(arguments[0])
-    return Job(plant, fitted, judged, options.out, split, options.simulate, measured=options.measured)
+    return Job(
+        plant, fitted, judged, options.out, split, options.simulate, measured=options.measured, budget=options.budget
+    )
 
 
 def continued_job(arguments: Sequence[str], folder: Path, options: Options) -> Job:
@@ -131,6 +136,7 @@ def continued_job(arguments: Sequence[str], folder: Path, options: Options) -> J
         tuple(effect for effect in earlier.effects if not isinstance(effect, Tabulated)),
         earlier,
         options.measured or (earlier.measured.path if earlier.measured is not None else None),
+        options.budget,
     )
 
 
@@ -147,18 +153,22 @@ def diagnose_files(job: Job, progress: Callable[[str], None] = lambda _: None) -
     for source in (*job.recordings, *job.validation):
         if source.decimal not in DECIMAL_SIGNS:
             raise InputError(f"--decimal is {source.decimal!r}", "", "use '.' or ','")
+    budget = budget_of(job.budget, "--budget")
     refuse_unusable(job.out)
     runs_of(job.out)  # refused now if it cannot be read, and not when all is done
     declared = _bytes(job.plant)
     axis = load(job.plant)  # refused before the recordings are read
     fitted, judged = ([_read(source) for source in sources] for sources in (job.recordings, job.validation))
-    fitted, judged = (list(informative(axis.plant, ones)) for ones in (fitted, judged))  # the rest is given back
+    fitted = list(informative(axis.plant, fitted, 1.0 if judged else job.split))  # the rest is given back
+    judged = list(informative(axis.plant, judged))
     if _bytes(job.plant) != declared:
         raise InputError("was changed while it was read", str(job.plant), "diagnose again")
     plant = axis.plant
     numbers = read_measured_numbers(job.measured, plant) if job.measured is not None else ()
     as_read = checksum(job.measured) if job.measured is not None else ""
-    result, effects = diagnose(plant, fitted, judged, job.split, job.simulate, progress, job.start, numbers)
+    start = job.start or play_seen(plant, fitted)
+    asked = (job.split, job.simulate, progress, start, numbers, budget)
+    result, effects = diagnose(plant, fitted, judged, *asked)
     if job.earlier is not None:
         since = changed_since(job.earlier.reported, result.effects)
         result = replace(result, kept=replace(result.kept, since=since))
@@ -191,6 +201,7 @@ def _command(job: Job) -> str:
     words += ["--map", str(first.mapping)] if first.mapping is not None else []
     words += ["--decimal", first.decimal] if first.decimal is not None else []
     words += ["--measured", str(job.measured)] if job.measured is not None else []
+    words += ["--budget", job.budget] if job.budget is not None else []
     words += [] if job.validation else ["--split", f"{job.split:g}"]
     return shlex.join([*words, *(["--simulate"] if job.simulate else []), "--out", str(job.out)])
 

@@ -20,7 +20,8 @@ from feeddrive.trend.checkpoint import USED, save_checkpoint
 from feeddrive.trend.events import Event
 from feeddrive.trend.folder import read_moment
 from feeddrive.trend.limits import Limit
-from feeddrive.trend.watch import Options, Trend, follow
+from feeddrive.trend.new_files import Options
+from feeddrive.trend.watch import Trend, follow
 
 if TYPE_CHECKING:
     from feeddrive.report.figures.drawing import ReportFigure

@@ -8,7 +8,7 @@ import casadi as ca
 import numpy as np
 
 from feeddrive.effects.transmission.stiffness_vs_position import StiffnessVsPosition
-from feeddrive.plant.analysis.modes import braked_modes, free_modes, inertia_at_motor
+from feeddrive.plant.analysis.modes import inertia_at_motor
 from feeddrive.plant.analysis.stiffness_budget import static_stiffness, stiffness_budget
 from feeddrive.plant.chain.chain import ThreeInertias
 from feeddrive.plant.chain.resolution import resolved_modes
@@ -37,8 +37,6 @@ class Compared:
 
 def first_modes(plant: Plant, position: float) -> FloatArray:
     """First anti-resonance and first resonance [Hz], shape (2,)."""
-    if isinstance(plant.chain, ThreeInertias):
-        return np.array([braked_modes(plant).frequencies[0], free_modes(plant).frequencies[1]])
     found = resolved_modes(plant, position, 1)
     return np.array([found.braked.frequencies[0], found.free.frequencies[1]])
 

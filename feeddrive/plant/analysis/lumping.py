@@ -51,8 +51,7 @@ from pathlib import Path
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from feeddrive.effects.base import ChainEffect, Effect, number
-from feeddrive.effects.source.constant_force import ConstantForce
+from feeddrive.effects.base import ChainEffect, Effect
 from feeddrive.effects.transmission.preload_loss import PreloadLoss
 from feeddrive.effects.transmission.stiffness_vs_position import StiffnessVsPosition
 from feeddrive.errors import InputError
@@ -63,7 +62,6 @@ from feeddrive.plant.chain.chain import ThreeInertias
 from feeddrive.plant.chain.drive_values import without_brake
 from feeddrive.plant.file.lumped_text import lumped_text
 from feeddrive.plant.file.plant_file import plant_from_entries
-from feeddrive.plant.hanging_mass import HangingMass
 from feeddrive.plant.passive_friction import top_speed
 from feeddrive.plant.plant import Plant
 from feeddrive.schema.toml_text import parse_toml
@@ -242,24 +240,13 @@ def _effects(
         if isinstance(effect, ChainEffect) and not effect.adds_coordinate:
             continue
         made = _on_axial_spring(effect, nut, values["axial_stiffness"])
-        if isinstance(effect, HangingMass):  # a file of three inertias says no inclination
-            made = _further_weight(plant, effect, values["table_mass"])
-            if made.values["force"] == 0:
-                continue
         sources = dict.fromkeys(plant.origins.get(f"{effect.label}.{key}", "") for key in effect.values)
         remark = "; ".join(source for source in sources if source)
-        if made is not effect and not isinstance(effect, HangingMass):
+        if made is not effect:
             remark = f"of the nut's spring, converted to the axial one; {remark}".rstrip("; ")
         kept.append(made)
         remarks.append(remark)
     return tuple(kept), tuple(remarks)
-
-
-def _further_weight(plant: Plant, hanging: HangingMass, mass: float) -> ConstantForce:
-    """Weight of what the table carries beyond the declared mass."""
-    swinging = [number(e.values["mass"]) for e in plant.effects if isinstance(e, ChainEffect) and e.adds_coordinate]
-    beyond = mass + sum(swinging) - number(hanging.values["weighed"])
-    return ConstantForce.of(force=number(hanging.values["fall"]) * beyond)
 
 
 def _on_axial_spring(effect: Effect, nut: float, axial: float) -> Effect:

@@ -6,13 +6,16 @@ A rule that breaks is a warning and no error: machines run that break some of th
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from enum import Enum
 from typing import cast
 
 import numpy as np
 
+from feeddrive.effects.base import Motion
 from feeddrive.effects.source.constant_force import ConstantForce
+from feeddrive.effects.source.weight import Weight
 from feeddrive.plant.analysis.mode_map import mode_map
 from feeddrive.plant.analysis.screw_limits import buckling_force, critical_speed
 from feeddrive.plant.analysis.steady import steady_motions
@@ -188,13 +191,15 @@ def _motor_speed(plant: Plant) -> Finding:
 def _brake(plant: Plant) -> list[Finding]:
     """Nothing where no weight pulls."""
     rule = "torque of the weight at the motor"
-    pulls = [cast(float, effect.values["force"]) for effect in plant.effects if isinstance(effect, ConstantForce)]
+    mass = float(plant.chain.moving_mass(plant.chain_values()))
+    pulling = [effect for effect in plant.effects if isinstance(effect, ConstantForce | Weight)]
+    pulls = [effect.force(Motion(0.0, 0.0, mass=mass), cast(Mapping[str, float], effect.values)) for effect in pulling]
     limit = _data(plant, "brake.holding_torque")
     if not pulls:
         return []
     if limit is None:
         return [_unknown(rule, "needs brake.holding_torque")]
-    torque = abs(sum(pulls)) * plant.chain.motor_radius
+    torque = abs(math.fsum(pulls)) * plant.chain.motor_radius
     return [_at_most(rule, torque, limit, "N m", "brake.holding_torque; losses not counted")]
 
 

@@ -181,7 +181,6 @@ first_nut_position | table.first_nut_position | m | >= 0 | nut from the near bea
             raise InputError(what, where, f"choose a position from {ends}")
 
     def positions_on_screw(self) -> tuple[float, float]:
-        """Table positions [m] between which the nut lies between the bearing at the motor's end and the far one."""
         first = self.nut_at_zero
         return -first, min(self.values["bearing_distance"], self.values["screw_length"]) - first
 

@@ -190,6 +190,10 @@ class Chain:
         """
         return self.values
 
+    def positions_on_screw(self) -> tuple[float, float]:
+        """Table positions [m] between which the nut is on the screw; any, where the chain does not know its ends."""
+        return -math.inf, math.inf
+
     def refuse_off_screw(self, position: float, where: str) -> None:
         """Refuse a table position [m] at which the nut would not be on the screw; any other chain takes all.
 
@@ -215,6 +219,10 @@ class Chain:
     def mass(self, p: Values, position: Expression = 0.0) -> Matrix:
         """M for the chain values p with the table at `position` [m]."""
         raise NotImplementedError
+
+    def moving_mass(self, p: Values) -> Expression:
+        """All that moves with the table [kg]."""
+        return p["table_mass"]
 
     def damping(self, p: Values, position: Expression = 0.0) -> Matrix:
         """C for the chain values p with the table at `position` [m]."""

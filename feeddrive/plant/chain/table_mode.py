@@ -94,6 +94,9 @@ class TableMode(Chain):
             matrix[i][j] += own
         return matrix
 
+    def moving_mass(self, p: Values) -> Expression:
+        return self.carrier.moving_mass(p) + p[f"{self.label}.mass"]
+
     def motor(self, p: Values) -> Row:
         return self._widened(self.carrier.motor(p))
 

@@ -14,8 +14,9 @@ from feeddrive.schema.section import Section
 
 _SENSORS = (
     '{ channel = "motor_torque", kind = "current", at = "motor" }',
-    '{ channel = "motor_angle", kind = "encoder", at = "motor" }',
-    '{ channel = "table_position", kind = "scale", at = "table" }',
+    '{ channel = "motor_angle", kind = "encoder", at = "motor",'
+    ' resolution = { value = "6e-6 rad", source = "guess: 20 bit" } }',
+    '{ channel = "table_position", kind = "scale", at = "table", resolution = { value = "10 nm", source = "guess" } }',
 )
 _ORDER = (
     "motor", "coupling", "ball_screw", "support", "bearing.near", "bearing.far", "nut", "table", "guide", "damping",

@@ -25,8 +25,7 @@ friction_coefficient = 0.004    # as seal_drag, load and smoothing_velocity: may
 
 Effects that follow from what a plant file says of table and guide: weight, counterbalance, friction of carriages.
 
-F = m g sin(inclination) - counterbalance                 constant_force, positive resists + motion
-F = (mass carried - m) g sin(inclination)                 see `feeddrive.plant.hanging_mass`
+F = M g sin(inclination) - counterbalance                 weight, positive resists + motion
 guide_friction of `carriages` ball carriages              see `feeddrive.plant.file.guide_section`
 """
 
@@ -37,7 +36,7 @@ from collections.abc import Mapping, Sequence
 
 from feeddrive.effects.base import Effect
 from feeddrive.effects.friction.guide_friction import GuideFriction, guide_effect
-from feeddrive.effects.source.constant_force import ConstantForce
+from feeddrive.effects.source.weight import GRAVITY, Weight
 from feeddrive.errors import InputError
 from feeddrive.parts.catalogue.part_files import CataloguePart, catalogue, nearest_names
 from feeddrive.parts.guide.guide_coefficients import SET_A, SET_B
@@ -45,7 +44,6 @@ from feeddrive.parts.guide.guide_geometry import GUIDE_VALUES, HSR_20R, HSR_30R,
 from feeddrive.parts.guide.guide_rating import Carriages, RatedCarriage, RollingCarriage, rated_friction
 from feeddrive.plant.file.drive_sections import placed
 from feeddrive.plant.file.effect_sections import next_label
-from feeddrive.plant.hanging_mass import HangingMass
 from feeddrive.schema.table import Table
 from feeddrive.units.quantity import format_quantity, parse
 
@@ -196,9 +194,6 @@ def _load(top: Table, gravity: float, count: int) -> float:
     return table.quantity("mass", "kg", "table_mass") * gravity * math.cos(angle) / count
 
 
-GRAVITY = 9.80665
-"""Standard acceleration of fall [m/s^2]."""
-
 WEIGHT_KEYS = ("inclination", "counterbalance")
 
 
@@ -232,15 +227,9 @@ def _weight(top: Table) -> list[tuple[Effect, str]]:
     if abs(angle) > math.pi / 2 + 1e-9:
         mend = "write -90 deg to 90 deg, positive where the + direction points up"
         raise InputError(f"{math.degrees(angle):g} deg is not an inclination", table.place("inclination"), mend)
-    weight = table.quantity("mass", "kg", "table_mass") * GRAVITY * math.sin(angle)
-    held = 0.0
-    if "counterbalance" in table.entries:
-        held = math.copysign(table.quantity("counterbalance", "N", "table.counterbalance"), angle)
-    origin = "computed from mass and inclination"
-    if held:
-        origin += f", less the counterbalance of {format_quantity(abs(held), 'N')}"
-    more = HangingMass.of(fall=GRAVITY * math.sin(angle), weighed=table.quantity("mass", "kg", "table_mass"))
-    return [(ConstantForce.of(force=weight - held), origin), (more, origin)]
+    held = table.quantity("counterbalance", "N", "table.counterbalance") if "counterbalance" in table.entries else 0.0
+    inside = math.copysign(min(abs(angle), math.pi / 2), angle)
+    return [(Weight.of(inclination=inside, counterbalance=held), "declared with the table")]
 
 
 def _guide(top: Table, before: Sequence[Effect]) -> list[tuple[Effect, str]]:

@@ -8,6 +8,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from feeddrive.effects.base import Effect, Value
+from feeddrive.effects.catalogue import EFFECTS
+from feeddrive.effects.source.weight import Weight
 from feeddrive.errors import InputError
 from feeddrive.plant.chain.chain import ThreeInertias
 from feeddrive.plant.file.ratings import RATINGS
@@ -66,7 +68,7 @@ def _written(value: Value, unit: str) -> str:
     return repr(number) if unit == "1" else f'"{number!r} {unit}"'
 
 
-_SHOWN = {"N/m": (1e-6, "N/µm"), "m": (1e3, "mm")}
+_SHOWN = {"N/m": (1e-6, "N/µm"), "m": (1e3, "mm"), "rad": (180 / math.pi, "deg")}
 """Units in which the files of this project write a value."""
 
 _SECTIONS = ("motor", "ball_screw", "transmission", "table")
@@ -85,7 +87,7 @@ def lumped_text(
     Args:
         plant: the machine, for what is carried over as it is: limits, ratings, stroke, sensors, controller.
         values: of the chain of three inertias, SI.
-        effects, remarks: what acts on it, and a comment for each.
+        effects, remarks: what acts on it, and a comment for each; what a section declares is not written twice.
         heading: lines of the comment at the top.
         missed: channel to the rms of what three inertias miss of it.
     """
@@ -105,7 +107,8 @@ def lumped_text(
         for key, value in (("resolution", sensor.resolution), ("model_error", missed.get(sensor.channel, 0.0))):
             lines += [f"{key} = {_text(f'{value!r} {unit}')}"] if value else []
     lines += _controller(plant)
-    return plant_text_with_effects("\n".join(lines) + "\n", effects, remarks)
+    written = [(effect, remark) for effect, remark in zip(effects, remarks, strict=True) if effect.name in EFFECTS]
+    return plant_text_with_effects("\n".join(lines) + "\n", [e for e, _ in written], [r for _, r in written])
 
 
 def _section(plant: Plant, section: str, values: Mapping[str, float]) -> list[str]:
@@ -123,6 +126,8 @@ def _section(plant: Plant, section: str, values: Mapping[str, float]) -> list[st
         lines.append(f"torque_factor = {1 / declared_gain(plant):.6g}")
     if section == "table" and plant.stroke is not None:
         lines.append(f"stroke = [{', '.join(_quantity(end, 'm') for end in plant.stroke)}]")
+    for effect in plant.effects_of(Weight) if section == "table" else ():
+        lines += [f"{p.key} = {_quantity(float(effect.values[p.key]), p.unit)}" for p in effect.parameters]  # type: ignore[arg-type]
     for rating in RATINGS.get(section, ()):
         datum = plant.data.get(f"{section}.{rating.key}")
         if datum is not None:

@@ -46,7 +46,7 @@ computed, and a value of the chain that is written takes the place of the comput
     [table]
     stroke = ["0 mm", "500 mm"]      # least and greatest table position
     first_nut_position = "150 mm"    # nut from the bearing at the motor's end where the table is at 0
-    inclination = "90 deg"           # of the + direction above the horizontal: weight as constant_force
+    inclination = "90 deg"           # of the + direction above the horizontal: the weight acts
     counterbalance = "1200 N"        # against the weight
     [damping]                        # in place of the dampers
     ratio = 0.02                     # at `frequency`, or at the first mode with the motor free

@@ -17,9 +17,10 @@ from itertools import pairwise
 import numpy as np
 
 from feeddrive.errors import InputError
+from feeddrive.recording.traces.lines import Lines
 from feeddrive.recording.traces.naming import axis_in
 from feeddrive.recording.traces.trace import Signal, Trace, clean, number_rows, unique_names
-from feeddrive.typing import FloatArray
+from feeddrive.typing import FloatArray, IntegerArray
 
 NAME, SAMPLER = "halscope log", "halsampler output"
 _PERIOD = re.compile(r"\s*(?:#\s*)?Sampling period is\s+(\d{1,12})\s*n", re.IGNORECASE)
@@ -50,7 +51,7 @@ def read(text: str, where: str) -> Trace:
     Raises:
         InputError: no names, rows that do not fit them.
     """
-    lines = text.lstrip("\ufeff").split("\n")
+    lines = Lines(text.lstrip("\ufeff"))
     match = _PERIOD.match(lines[0])
     period = int(match[1]) * 1e-9 if match else 0.0
     if not period > 0.0:
@@ -69,7 +70,7 @@ def read(text: str, where: str) -> Trace:
     return Trace(NAME, signals, notes)
 
 
-def _new(lines: list[str], where: str) -> tuple[list[str], FloatArray, tuple[str, ...]]:
+def _new(lines: Lines, where: str) -> tuple[list[str], FloatArray, tuple[str, ...]]:
     """Read names and values divided by semicolons."""
     at = next((i for i, line in enumerate(lines) if line.strip() and not line.lstrip().startswith("#")), None)
     if at is None:
@@ -93,7 +94,7 @@ def _new(lines: list[str], where: str) -> tuple[list[str], FloatArray, tuple[str
     return names, values, notes
 
 
-def _old(lines: list[str], where: str) -> tuple[list[str], FloatArray, tuple[str, ...]]:
+def _old(lines: Lines, where: str) -> tuple[list[str], FloatArray, tuple[str, ...]]:
     """Read rows in which names and values alternate; a name may come twice, and the decimal sign is the locale's."""
     at = next((i for i in range(1, len(lines)) if lines[i].strip()), None)
     if at is None:
@@ -143,16 +144,17 @@ def read_sampler(text: str, where: str, sample_time: float | None, columns: tupl
     Raises:
         InputError: rows of different lengths, columns that do not fit, sample numbers that run back.
     """
-    lines = text.lstrip("\ufeff").split("\n")
+    lines = Lines(text.lstrip("\ufeff"))
     losses: list[int] = []
-    kept: list[str] = []
-    rows: list[int] = []
-    for number, line in enumerate(lines, start=1):
-        if line.strip().lower() == _OVERRUN:
-            losses.append(len(kept))
-        elif line.strip():
-            kept.append(line)
-            rows.append(number)
+    odd: list[int] = []  # lines that hold no numbers
+    for number, line in enumerate(lines):
+        word = line.strip().lower()
+        losses += [number - len(odd)] if word == _OVERRUN else []
+        odd += [number] if word in ("", _OVERRUN) else []
+    first = odd[0] if odd else len(lines)
+    at_end = first + len(odd) == len(lines)  # blank lines alone, as any file has
+    kept = lines[:first] if at_end else [line for line in lines if line.strip().lower() not in ("", _OVERRUN)]
+    rows = np.setdiff1d(np.arange(len(lines)), odd) + 1
     cells = kept[0].replace(",", ".").split()
     values, notes = number_rows(
         kept,
@@ -192,7 +194,7 @@ def _columns(columns: tuple[str, ...], width: int, numbered: bool, where: str) -
     return unique_names([clean(name) for name in columns])
 
 
-def _losses(losses: list[int], place: FloatArray, rows: list[int], numbered: bool) -> tuple[str, ...]:
+def _losses(losses: list[int], place: FloatArray, rows: IntegerArray, numbered: bool) -> tuple[str, ...]:
     if not losses:
         return ()
     row = rows[losses[0]] if losses[0] < len(rows) else rows[-1]

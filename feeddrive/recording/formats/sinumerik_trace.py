@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator
+from array import array
 from dataclasses import dataclass
 from xml.etree.ElementTree import Element
 
@@ -53,7 +53,8 @@ def read(text: str, where: str) -> Trace:
     Raises:
         InputError: not whole XML, no data, values that are no numbers or do not lie on the signal's grid.
     """
-    root = parse_xml(text, where)
+    records = _Records(where)
+    root = parse_xml(text, where, records.takes)
     frames = [element for element in root.iter() if _tag(element) == "dataFrame"]
     if not frames:
         raise InputError("the trace holds no data", where, "save it with its data at the control")
@@ -70,10 +71,10 @@ def read(text: str, where: str) -> Trace:
         raise InputError("two signals have one id", where, "save the trace again at the control")
     if not declared:
         raise InputError("the trace names no signal", where, "save it with its data at the control")
-    times, values = _present(frame, {one.id for one in declared}, where)
-    if not any(times.values()):
+    times, values = records.present({one.id for one in declared})
+    if not any(map(len, times.values())):
         raise InputError("no signal of the trace has a value", where, "save it with its data at the control")
-    end = max(stamps[-1] for stamps in times.values() if stamps)
+    end = max(stamps[-1] for stamps in times.values() if len(stamps))
     for header in (one for one in frame.iter() if _tag(one) == "frameHeader"):
         stop = _number(header.get("stopInc", "0"), f"{where}, frameHeader")
         end = max(end, stop) if math.isfinite(stop) else end
@@ -81,10 +82,10 @@ def read(text: str, where: str) -> Trace:
     finest = sorted({one.interval for one in declared if one.interval > 0.0})[:1]
     names = unique_names([one.name for one in declared])
     for name, one in zip(names, declared, strict=True):
-        if not times[one.id]:
+        if not len(times[one.id]):
             notes.append(f"{name} has no value in the file and is left out")
             continue
-        stamps = np.array(times[one.id])
+        stamps = times[one.id]
         index, step = _grid(stamps, [one.interval, *finest])
         if index is None:
             notes.append(f"values of {name} do not lie on its grid of {one.interval * 1e3:g} ms; it is left out")
@@ -121,37 +122,84 @@ def _declared(element: Element, where: str) -> _Declared:
                      int(points) if points.isdigit() and len(points) < 12 else 0, kind)  # fmt: skip
 
 
-def _present(frame: Element, ids: set[str], where: str) -> tuple[dict[str, list[float]], dict[str, list[float]]]:
-    """Return times and values that are written, by the id of their signal."""
-    times: dict[str, list[float]] = {id_: [] for id_ in ids}
-    values: dict[str, list[float]] = {id_: [] for id_ in ids}
-    kinds = {id_.rstrip("0123456789") for id_ in ids}
-    before = -math.inf
-    for number, record in enumerate(_records(frame), start=1):
-        place = f"{where}, record {number}"
-        at = _number(record.get("time", ""), place)
-        if not at >= before or not math.isfinite(at):
-            raise InputError("the time does not increase", place, "save the trace again at the control")
-        before = at
-        for key, written in record.items():
-            if key in times:
+class _Records:
+    """Times and values that the records of the first frame hold, by the id of their signal.
+
+    A record is taken as it is parsed, sixteen bytes a value. Faults are kept until it is known which ids are signals.
+    """
+
+    def __init__(self, where: str) -> None:
+        self._where = where
+        self._frame = 0  # of which number it is, and how deep in it
+        self._inside = False
+        self._number, self._before = 0, -math.inf
+        self._first: dict[str, int] = {}
+        self._times: dict[str, array[float]] = {}
+        self._values: dict[str, array[float]] = {}
+        self._faults: dict[str, tuple[int, InputError]] = {}
+
+    def takes(self, event: str, tag: str, attributes: dict[str, str]) -> bool:
+        """Take a record of the first frame."""
+        plain = tag.rsplit("}", 1)[-1]
+        if plain == "dataFrame":
+            self._frame += event == "start"
+            self._inside = event == "start" and self._frame == 1
+        if plain != "rec" or event == "end":
+            return False
+        if self._inside and "time" not in self._faults:
+            self._take(attributes)
+        return True
+
+    def _take(self, attributes: dict[str, str]) -> None:
+        self._number += 1
+        place = f"{self._where}, record {self._number}"
+        try:
+            at = _number(attributes.get("time", ""), place)
+            if not at >= self._before or not math.isfinite(at):
+                raise InputError("the time does not increase", place, "save the trace again at the control")
+        except InputError as error:
+            self._faults["time"] = self._number, error
+            return
+        self._before = at
+        for key, written in attributes.items():
+            if key == "time" or key in self._faults:
+                continue
+            if key not in self._first:
+                self._first[key] = self._number
+                self._times[key], self._values[key] = array("d"), array("d")
+            try:
                 value = _number(written, place)
-                if times[key] and times[key][-1] == at:
+                if self._times[key] and self._times[key][-1] == at:
                     raise InputError(
                         f'"{key}" has two values at one time', place, "save the trace again at the control"
                     )
-                if value < _NOTHING:
-                    times[key].append(at)
-                    values[key].append(value)
-            elif key != "time" and key.rstrip("0123456789") in kinds:
-                raise InputError(f'a value of the unknown signal "{key}"', place, "save the trace again at the control")
-    if before == -math.inf:
-        raise InputError("the trace holds no record", where, "save it with its data at the control")
-    return times, values
+            except InputError as error:
+                self._faults[key] = self._number, error
+                continue
+            if value < _NOTHING:
+                self._times[key].append(at)
+                self._values[key].append(value)
 
+    def present(self, ids: set[str]) -> tuple[dict[str, FloatArray], dict[str, FloatArray]]:
+        """Return times [s] and values of the signals of these ids, (n,) each.
 
-def _records(frame: Element) -> Iterator[Element]:
-    return (element for element in frame.iter() if _tag(element) == "rec")
+        Raises:
+            InputError: a time that runs back, a value that is no number or of no signal; the first of them.
+        """
+        faults = [fault for key, fault in self._faults.items() if key in ids or key == "time"]
+        kinds = {id_.rstrip("0123456789") for id_ in ids}
+        for key, number in self._first.items():
+            if key not in ids and key.rstrip("0123456789") in kinds:
+                what, place = f'a value of the unknown signal "{key}"', f"{self._where}, record {number}"
+                faults.append((number, InputError(what, place, "save the trace again at the control")))
+        if faults:
+            raise min(faults, key=lambda fault: fault[0])[1]
+        if not self._number:
+            raise InputError("the trace holds no record", self._where, "save it with its data at the control")
+        of_id = [
+            {key: np.array(one.pop(key, ()), dtype=np.float64) for key in ids} for one in (self._times, self._values)
+        ]
+        return of_id[0], of_id[1]
 
 
 def _number(written: str, place: str) -> float:
@@ -180,7 +228,7 @@ def _grid(stamps: FloatArray, steps: list[float]) -> tuple[FloatArray | None, fl
 
 
 def _on_its_grid(
-    name: str, one: _Declared, stamps: FloatArray, step: float, values: list[float], end: float, where: str
+    name: str, one: _Declared, stamps: FloatArray, step: float, values: FloatArray, end: float, where: str
 ) -> tuple[Signal, int]:
     """Return a signal on its own grid, the last value held, and how many of its points are written."""
     index = np.round((stamps - stamps[0]) / step)
@@ -192,5 +240,5 @@ def _on_its_grid(
     last = np.searchsorted(index, np.arange(count), side="right") - 1
     time: FloatArray = np.round((stamps[0] + step * np.arange(count)) * 1e9) / 1e9
     axis = re.search(r"\[\s*u?\d+\s*,\s*(\d+)\s*\]", one.name)
-    held = np.array(values, dtype=np.float64)[last]
+    held = values[last]
     return Signal(name, time, held, "", axis[1] if axis else "", one.about, one.kind), len(values)

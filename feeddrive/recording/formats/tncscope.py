@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from feeddrive.errors import InputError
+from feeddrive.recording.traces.lines import Lines
 from feeddrive.recording.traces.trace import Signal, Trace, clean, number_rows, unique_names
 from feeddrive.typing import FloatArray
 
@@ -38,7 +39,7 @@ def read(text: str, where: str) -> Trace:
     Raises:
         InputError: no curves, no data, rows that do not fit the curves, a time that does not increase.
     """
-    lines = text.split("\n")
+    lines = Lines(text)
     curves, first, keys = _header(lines, where)
     columns = [_column(curve, where) for curve in curves]
     if sorted(columns) == list(range(3, len(curves) + 3)):  # counted with the time
@@ -72,7 +73,7 @@ def read(text: str, where: str) -> Trace:
     return Trace(NAME, signals, notes)
 
 
-def _header(lines: list[str], where: str) -> tuple[list[_Curve], int, dict[str, str]]:
+def _header(lines: Lines, where: str) -> tuple[list[_Curve], int, dict[str, str]]:
     """Return the curves, the index of the first row of data, and the keys of the recording."""
     curves: list[_Curve] = []
     keys: dict[str, str] = {}

@@ -1,20 +1,5 @@
 """A long recording as one recording of its informative stretches, with what the rest says as statistics.
 
-Windows are taken one after the other, each the one that narrows the terms of a machine most (D-optimal design):
-
-    next w = argmax log det(I + sum_(v taken) G_v + G_w),    G_w = sum over rows of z z'
-
-| symbol | meaning |
-|---|---|
-| z | 1, v, a; sign v times hats over position, over log speed and over the hour; x, 1 times hats over the hour |
-| v, a | speed and acceleration of the motor, of unit rms over the recording, as are all columns |
-| I | the prior: each term as well known as by one usual row |
-
-Reversals, strokes and constant speeds at new places, speeds and hours add to it; a repeated cycle and standstill do
-not. The gain of a window never grows by those taken before (log det is submodular), so that the greedy choice reaches
-63 % of the best at least (G. Nemhauser, L. Wolsey and M. Fisher, Mathematical Programming 14, 1978, theorem 4.2) and a
-window whose old gain is below another's new one need not be asked again.
-
 Between two stretches the motor is moved on by a motion that a drive could make, a polynomial of fifth degree that meets
 position, speed and acceleration at both ends, and the clock goes on over what is left out. Rows in between are flawed,
 and so are those behind until the machine has moved far enough to have forgotten where it came from.
@@ -22,102 +7,14 @@ and so are those behind until the machine has moved far enough to have forgotten
 
 from __future__ import annotations
 
-import heapq
 from dataclasses import replace
 
 import numpy as np
 
 from feeddrive.recording.checks.flaws import JOINED, Flaw, IndexArray, flaw
+from feeddrive.recording.long.windows import Rows, informative_windows
 from feeddrive.recording.recording import Recording
 from feeddrive.typing import BoolArray, FloatArray
-
-WINDOW = 10.0
-"""Length of a window [s]: some strokes, and ten times the second that is lost where two are joined."""
-
-ROWS = 100
-"""Rows of a window that are looked at, at random places: twice the terms."""
-
-BESIDE = 4
-"""Rows on either side that speed and acceleration are taken over: at 1 kHz all that a drive does below 60 Hz."""
-
-PLACES, SPEEDS, HOURS = 12, 8, 8
-"""Hats over the stroke, over three decades of speed, and over the time of the recording."""
-
-SEED = 3
-"""Seed of the places of the rows that are looked at, so that a recording is always cut in the same way."""
-
-
-def informative_windows(recording: Recording, seconds: float) -> list[tuple[int, int]]:
-    """First row and row after the last of each stretch, by time; windows side by side are one stretch.
-
-    Args:
-        recording: with a motor angle or a table position.
-        seconds: that are taken together.
-    """
-    position = recording["motor_angle" if "motor_angle" in recording else "table_position"]
-    length = round(WINDOW / recording.sample_time)
-    count = len(recording) // length
-    gram = _grams(position, recording.sample_time, length, count)
-    taken = sorted(_greedy(gram, max(1, round(seconds / WINDOW))))
-    stretches: list[tuple[int, int]] = []
-    for window in taken:
-        first, last = window * length, (window + 1) * length
-        if stretches and stretches[-1][1] == first:
-            stretches[-1] = stretches[-1][0], last
-        else:
-            stretches.append((first, last))
-    return stretches
-
-
-def _grams(position: FloatArray, sample_time: float, length: int, count: int) -> FloatArray:
-    """G of every window, (count, p, p)."""
-    random = np.random.default_rng(SEED)
-    looked_at = min(ROWS, length - 2 * BESIDE)
-    rows = np.sort(random.integers(BESIDE, length - BESIDE, (count, looked_at)), axis=1)
-    rows = rows + length * np.arange(count)[:, None]
-    before, here, after = (position[rows + shift] for shift in (-BESIDE, 0, BESIDE))
-    reach = BESIDE * sample_time
-    speed, acceleration = (after - before) / (2 * reach), (after - 2 * here + before) / reach**2
-    low, high = float(here.min()), float(here.max())
-    fastest = max(float(np.quantile(np.abs(speed), 0.99)), 1e-300)
-    moving = np.sign(speed) * (np.abs(speed) > 1e-3 * fastest)
-    slowness = np.log10(np.clip(np.abs(speed) / fastest, 1e-3, 1.0)) / 3 + 1
-    place, hour = (here - low) / max(high - low, 1e-300), rows / (length * count)
-    columns = np.concatenate([
-        np.stack([np.ones_like(here), speed, acceleration], axis=-1),
-        moving[..., None] * _hats(place, PLACES), moving[..., None] * _hats(slowness, SPEEDS),
-        moving[..., None] * _hats(hour, HOURS), _hats(hour, HOURS), (place[..., None] - 0.5) * _hats(hour, HOURS),
-    ], axis=-1)  # fmt: skip
-    size = np.sqrt(np.mean(columns**2, axis=(0, 1)))
-    columns = columns / np.where(size > 0, size, 1.0)
-    found: FloatArray = np.einsum("wri,wrj->wij", columns, columns, optimize=True)
-    return found
-
-
-def _hats(share: FloatArray, count: int) -> FloatArray:
-    """Hats over 0 to 1, (..., count)."""
-    found: FloatArray = np.clip(1 - np.abs(share[..., None] * (count - 1) - np.arange(count)), 0.0, None)
-    return found
-
-
-def _greedy(gram: FloatArray, most: int) -> list[int]:
-    """Numbers of the windows, the most telling first."""
-    known = np.eye(gram.shape[1])
-    base = 0.0
-    queue = [(-float(gain), window, 0) for window, gain in enumerate(np.linalg.slogdet(known + gram)[1])]
-    heapq.heapify(queue)
-    taken: list[int] = []
-    while queue and len(taken) < most:
-        _, window, asked = heapq.heappop(queue)
-        if asked < len(taken):  # its gain was less than this when others were not yet taken
-            again = float(np.linalg.slogdet(known + gram[window])[1]) - base
-            heapq.heappush(queue, (-again, window, len(taken)))
-            continue
-        taken.append(window)
-        known = known + gram[window]
-        base = float(np.linalg.slogdet(known)[1])
-    return taken
-
 
 LONGEST = 400_000
 """Rows up to which a recording is taken whole: seven minutes at 1 kHz."""
@@ -143,24 +40,31 @@ FITTED = 8
 """Rows that speed and acceleration at an end are taken from."""
 
 
-def shortened(recording: Recording, radius: float) -> Recording:
+def shortened(recording: Recording, radius: float, split: float = 1.0) -> Recording:
     """The recording, or where it is long what is informative of it and notes on the rest.
 
     Args:
         recording: with a motor angle or a table position.
         radius: travel per angle of the motor [m/rad].
+        split: share of what is kept that is fitted; the rest is kept apart for judging.
     """
     name = next((one for one in ("motor_angle", "table_position") if one in recording), None)
     if len(recording) <= LONGEST or name is None:
         return recording
     seconds = max(KEPT_ROWS * recording.sample_time, KEPT)
-    stretches = _ended_slowly(recording[name], informative_windows(recording, seconds), recording.sample_time)
-    return _joined(recording, name, stretches, radius if name == "motor_angle" else 1.0)
+    windows, judged = informative_windows(recording, seconds, split)
+    stretches = _ended_slowly(recording[name], windows, recording.sample_time)
+    return _joined(recording, name, stretches, judged, radius if name == "motor_angle" else 1.0)
+
+
+def is_joined(recording: Recording) -> bool:
+    """Tell whether a recording is what was kept of a long one."""
+    return any(one.kind == JOINED for one in recording.flaws)
 
 
 def clock(recording: Recording) -> FloatArray:
     """Time of the samples since the first, (n,) [s]: even, but where stretches are joined."""
-    if any(one.kind == JOINED for one in recording.flaws):
+    if is_joined(recording):
         since: FloatArray = recording.time - recording.time[0]
         return since
     return np.arange(len(recording), dtype=np.float64) * recording.sample_time
@@ -175,7 +79,7 @@ def recorded(recording: Recording) -> BoolArray:
     return found
 
 
-def _ended_slowly(position: FloatArray, windows: list[tuple[int, int]], sample_time: float) -> list[tuple[int, int]]:
+def _ended_slowly(position: FloatArray, windows: list[Rows], sample_time: float) -> list[Rows]:
     """The stretches with both ends moved inwards to where the motion is slowest nearby."""
     reach = round(SLOWEST_WITHIN / sample_time)
     found = []
@@ -186,12 +90,13 @@ def _ended_slowly(position: FloatArray, windows: list[tuple[int, int]], sample_t
     return found
 
 
-def _joined(recording: Recording, name: str, stretches: list[tuple[int, int]], radius: float) -> Recording:
+def _joined(recording: Recording, name: str, stretches: list[Rows], judged: list[Rows], radius: float) -> Recording:
     step, position = recording.sample_time, recording[name]
     low, high, fastest, hardest = _usual(position, step)
     parts: dict[str, list[FloatArray]] = {channel: [] for channel in ("time", *recording.channels)}
     flaws: list[Flaw] = []
     bridged: list[IndexArray] = []
+    apart: list[BoolArray] = []
     at = 0
     for number, (first, last) in enumerate(stretches):
         if number:
@@ -213,6 +118,10 @@ def _joined(recording: Recording, name: str, stretches: list[tuple[int, int]], r
             unknown = int(np.argmax(way > FORGOTTEN)) if np.any(way > FORGOTTEN) else last - first
             bridged.append(np.arange(at, at + len(bridge) + unknown))
             at += len(bridge)
+            apart.append(np.zeros(len(bridge), dtype=bool))
+        apart.append(np.zeros(last - first, dtype=bool))
+        for begin, end in judged:
+            apart[-1][max(begin - first, 0) : max(end - first, 0)] = True
         parts["time"].append(recording.time[first:last])
         for channel, samples in recording.channels.items():
             parts[channel].append(samples[first:last])
@@ -229,6 +138,7 @@ def _joined(recording: Recording, name: str, stretches: list[tuple[int, int]], r
         time=np.concatenate(parts["time"]),
         channels=channels,
         flaws=tuple(flaws),
+        kept_apart=np.concatenate(apart) if judged else None,
         notes=(*recording.notes, *remarks),
     )
 
@@ -283,9 +193,7 @@ def _between(
     return smooth
 
 
-def _remarks(
-    recording: Recording, name: str, stretches: list[tuple[int, int]], radius: float, fastest: float
-) -> tuple[str, ...]:
+def _remarks(recording: Recording, name: str, stretches: list[Rows], radius: float, fastest: float) -> tuple[str, ...]:
     """What was taken, and statistics of all of it."""
     step, position = recording.sample_time, recording[name]
     kept = sum(last - first for first, last in stretches) * step

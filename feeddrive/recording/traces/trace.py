@@ -95,7 +95,7 @@ def number_rows(
     gaps: bool = False,
     separator: str | None = "",
 ) -> tuple[FloatArray, tuple[str, ...]]:
-    """Return the numbers of lines, (rows, width), and remarks.
+    """Return the numbers of lines, (rows, width), each column in one piece, and remarks.
 
     Args:
         lines: rows of numbers; blank ones at the end are passed over.
@@ -115,19 +115,19 @@ def number_rows(
         last -= 1
     if not last:
         raise InputError("there is no row of numbers", where, "record again or name another file")
-    parts: list[FloatArray] = []
     notes: tuple[str, ...] = ()
-    whole = whole_rows(lines[:last], separator, width) if separator != "" else None
-    if whole is not None:
-        return whole, notes
+    numbers = np.empty((last, width), order="F")
     for start in range(0, last, _CHUNK):
-        rows = [split(line) for line in lines[start : min(start + _CHUNK, last)]]
-        if start + _CHUNK >= last and last > 1 and _fault(rows[-1], width, gaps):
-            rows.pop()
-            notes = ("the last row is cut short and left out",)
-        if rows:
-            parts.append(_numbers(rows, width, first_row + start, where, gaps))
-    return np.concatenate(parts), notes
+        part = lines[start : min(start + _CHUNK, last)]
+        whole = whole_rows(part, separator, width) if separator != "" else None
+        if whole is None:
+            rows = [split(line) for line in part]
+            if start + _CHUNK >= last and last > 1 and _fault(rows[-1], width, gaps):
+                rows.pop()
+                notes = ("the last row is cut short and left out",)
+            whole = _numbers(rows, width, first_row + start, where, gaps) if rows else np.empty((0, width))
+        numbers[start : start + len(whole)] = whole
+    return numbers[: last - len(notes)], notes
 
 
 def whole_rows(lines: Sequence[str], separator: str | None, width: int) -> FloatArray | None:

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import io
 import logging
+import re
 from dataclasses import dataclass
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from feeddrive.report.words.words import figure_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
     from matplotlib.figure import Figure
 
 MEASURED = "#222222"
@@ -66,8 +69,40 @@ def dress(axes: Axes, x_label: str, y_label: str, title: str = "") -> None:
         written = one.get_major_formatter()
         if hasattr(written, "set_useOffset"):  # a number of a scale is read off as it stands
             written.set_useOffset(False)
+        if one.get_scale() == "log":
+            _with_plain_powers(one)
     axes.grid(True, color="#e4e4e4", linewidth=0.6)
     axes.set_axisbelow(True)
+
+
+def _with_plain_powers(axis: Axis) -> None:
+    """Write the powers of ten of an axis as plain letters: to parse a formula takes as long as to draw a panel."""
+    usual, plain = _power_formatters()
+    if type(axis.get_major_formatter()) is usual:
+        axis.set_major_formatter(plain())
+    if type(axis.get_minor_formatter()) is usual:
+        axis.set_minor_formatter(plain())
+
+
+@cache
+def _power_formatters() -> tuple[type[Any], type[Any]]:
+    """Matplotlib's own formatter of a logarithmic axis, and one that says the same in plain letters."""
+    from matplotlib.ticker import LogFormatterSciNotation
+
+    class PlainPowers(LogFormatterSciNotation):
+        def __call__(self, x: float, pos: int | None = None) -> str:
+            return without_formula(super().__call__(x, pos))
+
+    return LogFormatterSciNotation, PlainPowers
+
+
+_RAISED = str.maketrans("-\N{MINUS SIGN}0123456789", "⁻⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def without_formula(label: str) -> str:
+    """A power of ten that is written as a formula, such as $\\mathdefault{6\\times10^{-4}}$, in plain letters."""
+    inner = re.sub(r"^\$\\mathdefault\{(.*)\}\$$", r"\1", label).replace(r"\times", " × ")
+    return re.sub(r"\^\{(.*?)\}", lambda power: power[1].translate(_RAISED), inner)
 
 
 def legend_above(axes: Axes, columns: int = 4) -> None:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from feeddrive.report.figures.drawing import AFTER, BEFORE, LEFT_OUT, MEASURED, NOISE, ReportFigure, dress, new_figure
 from feeddrive.report.words.number_text import scale_for_value
-from feeddrive.trend.series_evidence import ODD
+from feeddrive.trend.series_evidence import JUMP, ODD
 from feeddrive.trend.watch import Trend
 from feeddrive.trend.watched_quantities import Quantity
 from feeddrive.typing import FloatArray
@@ -66,9 +67,11 @@ def _panel(axes: Axes, trend: Trend, quantity: Quantity, times: FloatArray) -> N
     course, limit = trend.courses.get(quantity.name), trend.limits.get(quantity.name)
     per_day = float(times[-1] / trend.days[-1]) if trend.days[-1] > 0 else 1.0
     if course is not None and len(course.fitted) == here.sum():
-        line, band = factor * course.fitted, 1.96 * factor * course.band
-        axes.plot(times[here], line, color=AFTER, linewidth=1.2)
-        axes.fill_between(times[here], line - band, line + band, color=AFTER, alpha=0.2, linewidth=0)
+        jumps = [(per_day * one.atom.date, one.size) for one in course.found if one.atom.kind == JUMP]
+        at, line, band = with_steps(times[here], course.fitted, course.band, jumps)
+        line, band = factor * line, 1.96 * factor * band
+        axes.plot(at, line, color=AFTER, linewidth=1.2)
+        axes.fill_between(at, line - band, line + band, color=AFTER, alpha=0.2, linewidth=0)
     for one in course.found if course is not None else ():
         if one.atom.kind != ODD:
             axes.axvspan(*(per_day * day for day in one.dates), color=LEFT_OUT, zorder=0)
@@ -79,6 +82,24 @@ def _panel(axes: Axes, trend: Trend, quantity: Quantity, times: FloatArray) -> N
             if math.isfinite(edge) and low - 2 * (high - low) < factor * edge < high + 2 * (high - low):
                 axes.axhline(factor * edge, color=NOISE, linewidth=0.9)
     dress(axes, "", f"[{unit}]", quantity.words)
+
+
+def with_steps(
+    times: FloatArray, line: FloatArray, band: FloatArray, jumps: Sequence[tuple[float, float]]
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Times, line and band to draw, (m,), with the value before each jump where it begins: no ramp from there on.
+
+    Args:
+        times: of the recordings, (n,).
+        line, band: there, (n,).
+        jumps: time, which is that of the first recording after it, and size.
+    """
+    for date, size in sorted(jumps):
+        after = int(np.searchsorted(times, date))
+        if 0 < after < len(times):
+            times, before = np.insert(times, after, times[after]), line[after] - size
+            line, band = np.insert(line, after, before), np.insert(band, after, band[after])
+    return times, line, band
 
 
 def _maps(trend: Trend) -> list[ReportFigure]:

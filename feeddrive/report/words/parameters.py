@@ -18,6 +18,7 @@ from feeddrive.report.words.number_text import (
 from feeddrive.report.words.words import effect_words, headline_parameters, plain
 
 _LONGEST_LIST = 9
+_HEADLINE_DIGITS = 4
 _SIZES = {"width", "amplitude", "mass", "delay", "slope", "strain", "stiffness", "inertia", "power", "growth"}
 _SPEAKING = _SIZES | {"force", "delta_force", "delta_viscous", "conductance"}
 """Keys that go without saying beside the effect's name."""
@@ -53,8 +54,11 @@ def parameter_text(key: str, parameter: ParameterResult) -> ParameterText:
     return _number_text(key, parameter.value, parameter.unit, parameter.ci95)
 
 
-def _number_text(key: str, value: float, unit: str, ci95: object) -> ParameterText:
-    """Value with as many digits as the interval supports, three significant ones where there is no interval."""
+def _number_text(key: str, value: float, unit: str, ci95: object, most_digits: int | None = None) -> ParameterText:
+    """Value with as many digits as the interval supports, three significant ones where there is no interval.
+
+    Of at most `most_digits` significant ones the interval is left out where both of its ends are then the value's.
+    """
     ends = ci95 if isinstance(ci95, tuple) and len(ci95) == 2 and all(map(math.isfinite, ci95)) else None
     # A value of zero has no size of its own; the interval gives the unit.
     scale = _scale(key, value or max(map(abs, ends or (0.0,))), unit)
@@ -63,7 +67,10 @@ def _number_text(key: str, value: float, unit: str, ci95: object) -> ParameterTe
         return ParameterText(plain(key), with_unit(significant(shown), scale.unit), "")
     low, high = (end * scale.factor for end in ends)
     decimals = decimals_for(0.5 * abs(high - low))
-    interval = f"[{fixed(low, decimals)}, {fixed(high, decimals)}]"
+    if most_digits is not None and shown:
+        decimals = min(decimals, max(0, most_digits - 1 - math.floor(math.log10(abs(shown)))))
+    ends_text = fixed(low, decimals), fixed(high, decimals)
+    interval = "" if ends_text[0] == ends_text[1] else f"[{', '.join(ends_text)}]"
     return ParameterText(plain(key), with_unit(fixed(shown, decimals), scale.unit), interval)
 
 
@@ -91,5 +98,7 @@ def effect_sentence(effect: EffectResult) -> str:
 def _named(key: str, parameter: ParameterResult) -> str:
     """A parameter in a sentence; a size with a unit needs no name there unless it is one of several of its kind."""
     text = parameter_text(key, parameter)
+    if isinstance(parameter.value, float | int):
+        text = _number_text(key, parameter.value, parameter.unit, parameter.ci95, _HEADLINE_DIGITS)
     speaks = key in _SPEAKING and unit_name(parameter.unit) != "1"
     return text.sentence if speaks else f"{text.name} {text.sentence}"

@@ -20,7 +20,7 @@ def verdict_sentences(diagnosis: Diagnosis) -> list[str]:
     beside = f"Beside these it carries what no named effect explains: {tables}." if tables else ""
     stated = [one.statement for one in diagnosis.changes.changes]
     changed = f"Between the recordings changed: {'; '.join(stated)}." if stated else ""
-    found = [_main_finding(diagnosis), beside, changed]
+    found = [_main_finding(diagnosis), diagnosis.untried, beside, changed]
     sentences = [*found, _errors(diagnosis), *_above_noise(diagnosis)]
     return [sentence for sentence in sentences + _doubts(diagnosis) if sentence]
 
@@ -47,6 +47,8 @@ def _main_finding(diagnosis: Diagnosis) -> str:
     if diagnosis.changes.changes:
         return "No effect is missing in every recording, but the recordings differ."
     within = ", its values calibrated within their tolerances," if diagnosis.calibrated else ""
+    if diagnosis.untried:
+        return "Nothing was found that the declared plant lacks, as far as was tried."
     if all(is_noise(channel) for channel in diagnosis.channels):
         return f"Nothing is missing: the declared plant{within} explains the recording down to sensor noise."
     return "No known effect was found that the declared plant lacks, but it does not explain the recording fully."
@@ -79,7 +81,8 @@ def _above_noise(diagnosis: Diagnosis) -> list[str]:
     sentences = []
     for channel in diagnosis.channels:
         if channel.after.rms > 1.02 * channel.before.rms:
-            sentences.append(f"{_begin(plain(channel.name))} is predicted worse with the effects than without.")
+            than = "the effects than without" if diagnosis.effects else "the calibrated values than with the declared"
+            sentences.append(f"{_begin(plain(channel.name))} is predicted worse with {than}.")
         if noise_multiple(channel) > _NOISE_REACHED:
             sentences.append(_left(diagnosis, channel))
     return sentences
@@ -101,11 +104,7 @@ def _doubts(diagnosis: Diagnosis) -> list[str]:
         f"These data cannot tell apart: {joined([effect_words(name) for name in names])}."
         for names in diagnosis.ambiguous
     ]
-    for one in diagnosis.possible:
-        if not one.instead_of:
-            odds = odds_text(one.odds / (1 + one.odds))
-            possible = f"Possible beside these: {effect_words(one.name)} (odds {odds})"
-            sentences.append(f"{possible}; {one.settles} settles it.")
+    sentences += _possible(diagnosis)
     idle = [effect_words(effect.name) for effect in diagnosis.effects if not effect.carries]
     if idle:
         sentences.append(f"Not confirmed on data not fitted: {joined(idle)}.")
@@ -114,6 +113,17 @@ def _doubts(diagnosis: Diagnosis) -> list[str]:
         change = f"{share_text(run.before)} → {share_text(run.after)}"
         sentences.append(f"Closed-loop simulation error of {plain(run.channel)}, relative: {change}.")
     return sentences
+
+
+def _possible(diagnosis: Diagnosis) -> list[str]:
+    """Names that are not asserted, with their odds and what settles them; those that the same settles together."""
+    settled: dict[str, list[str]] = {}
+    for one in diagnosis.possible:
+        if not one.instead_of:
+            words = f"{effect_words(one.name)} (odds {odds_text(one.odds / (1 + one.odds))})"
+            settled.setdefault(one.settles, []).append(words)
+    beside = "Possible beside these" if diagnosis.effects else "Possible, and not asserted"
+    return [f"{beside}: {joined(names)}; {settles} settles it." for settles, names in settled.items()]
 
 
 def _begin(text: str) -> str:

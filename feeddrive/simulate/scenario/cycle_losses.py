@@ -149,7 +149,8 @@ def power_function(plant: Plant) -> ca.Function:
     given, bearings = ca.SX(0), ca.SX(0)
     for port, row in rows.items():
         force = pushed if port in (Port.SCREW, Port.TABLE) else 0.0
-        motion = Motion(ca.mtimes(row, q), ca.mtimes(row, rate), time, force, p["lead"] / (2 * np.pi))
+        mass = chain.moving_mass(p) if port is Port.TABLE else 0.0
+        motion = Motion(ca.mtimes(row, q), ca.mtimes(row, rate), time, force, p["lead"] / (2 * np.pi), mass)
         total, rates = resisting_force(plant, symbols, port, motion, z)
         sources, held = source_force(plant, symbols, port, motion), bristle_energy(plant, symbols, port, z)
         energy += held

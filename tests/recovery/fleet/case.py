@@ -124,8 +124,8 @@ class Case:
     def truth(self) -> dict[str, Any]:
         """What is to be found, as JSON holds it.
 
-        `may`: names that are true as well, though nothing is planted under them: values beyond their tolerance and
-        the weight of a mass that is off. Found or not, they count neither way.
+        `may`: names that are true as well, though nothing is planted under them: values beyond their tolerance. Found
+        or not, they count neither way.
         """
         m, sensors = self.declared, self.declared.axis.sensors
         return {
@@ -155,15 +155,12 @@ class Case:
         }
 
     def may_be_named(self) -> set[str]:
-        """Return names that a declared value beyond its tolerance, or its consequence, gives a right to."""
+        """Return names that a declared value beyond its tolerance gives a right to."""
         names = set()
         for key, factor in self.off.items():
             kind, name = BEYOND_NAMES.get(key, ("damping", ""))
             if name and abs(math.log(factor)) > math.log1p(TOLERANCES[kind]) - 1e-4:
                 names.add(name)
-        hangs = self.declared.axis.fall > 0.0
-        if hangs and ("table_mass" in self.off or any(one.effect.name == "payload" for one in self.planted)):
-            names.add("constant_force")
         return names
 
     def write(self, folder: Path) -> tuple[Path, Path, Path]:

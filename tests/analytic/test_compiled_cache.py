@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from feeddrive import compiler, library_cache
+from feeddrive import compiled_cache, compiler
+from feeddrive.compiled_cache import DAY, IN_USE, LONGEST_UNUSED, prune, used
 from feeddrive.compiler import cache_folders, compiled_library, find_compiler
-from feeddrive.library_cache import DAY, IN_USE, LONGEST_UNUSED, prune, used
 
 NOW = 2e9
 SOURCE = "int answer(void) { return 42; }"
@@ -35,7 +35,7 @@ def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     if find_compiler() is None:
         pytest.skip("no C compiler here")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    library_cache.prune_once.cache_clear()
+    compiled_cache.prune_once.cache_clear()
     return cache_folders()[0]
 
 
@@ -48,7 +48,7 @@ def test_what_nobody_has_used_for_long_goes(tmp_path: Path) -> None:
 
 
 def test_what_is_too_much_goes_the_longest_unused_first(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(library_cache, "MOST_BYTES", 25)
+    monkeypatch.setattr(compiled_cache, "MOST_BYTES", 25)
     for days in (4, 2, 3, 5):
         library(tmp_path, f"days_{days}", days * DAY)
     prune(tmp_path, NOW)
@@ -56,7 +56,7 @@ def test_what_is_too_much_goes_the_longest_unused_first(tmp_path: Path, monkeypa
 
 
 def test_what_is_in_use_stays_however_much_there_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(library_cache, "MOST_BYTES", 0)
+    monkeypatch.setattr(compiled_cache, "MOST_BYTES", 0)
     library(tmp_path, "now", 0.0)
     library(tmp_path, "today", IN_USE - 1)
     library(tmp_path, "yesterday", IN_USE + 1)
@@ -68,8 +68,8 @@ def test_what_another_marks_while_it_is_pruned_stays(tmp_path: Path, monkeypatch
     """Between the list of old ones and the deletion another process finds the library and is about to load it."""
     old = library(tmp_path, "old", LONGEST_UNUSED + 1)
     library(tmp_path, "older", LONGEST_UNUSED + 2)
-    listed = list(library_cache._libraries(tmp_path))
-    monkeypatch.setattr(library_cache, "_libraries", lambda folder: listed)
+    listed = list(compiled_cache._libraries(tmp_path))
+    monkeypatch.setattr(compiled_cache, "_libraries", lambda folder: listed)
     assert used(old)
     prune(tmp_path, NOW)
     assert names(tmp_path) == {"old.so"}
@@ -122,16 +122,16 @@ def test_one_that_is_deleted_before_it_is_loaded_is_made_again(cache: Path, monk
 
 PROGRAM = """
 import sys, threading, time
-from feeddrive import library_cache
+from feeddrive import compiled_cache
 from feeddrive.compiler import compiled_library, cache_folders
-library_cache.LONGEST_UNUSED = 0.2
+compiled_cache.LONGEST_UNUSED = 0.2
 (folder, _), end, deleted = cache_folders(), time.time() + 4.0, 0
 while time.time() < end:
     number = int(time.time() * 3) % 3  # each is used for a third of a second, then not for two of them
     before = len(list(folder.glob("*.so")))
     library = compiled_library(f"int answer(void) {{ return {number}; }}")
     assert library is not None and library.answer() == number, (number, library)
-    library_cache.prune(folder, time.time())
+    compiled_cache.prune(folder, time.time())
     deleted += before > len(list(folder.glob("*.so")))
 print(deleted)
 """

@@ -1,0 +1,71 @@
+"""What is computed the quick way gives the numbers of the plain way, bit for bit."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.signal import butter, sosfiltfilt
+
+from feeddrive.diagnosis.likelihood.band import Band
+from feeddrive.diagnosis.likelihood.evidence import prepare
+from feeddrive.files import find_plant
+from feeddrive.plant.file.plant_file import read_plant
+from feeddrive.recording import Recording
+from feeddrive.recording.files.reading import read_recording
+from feeddrive.report.figures.drawing import without_formula
+from feeddrive.simulate.driven import motor_motion, motor_motions
+
+
+@pytest.mark.parametrize("count", [2, 15, 16, 17, 4000])
+@pytest.mark.parametrize(("edge", "rate"), [(150.0, 2000.0), (25.0, 250.0), (3.0, 4000.0)])
+def test_one_series_in_the_band(edge: float, rate: float, count: int) -> None:
+    series = 3.0 + np.cumsum(np.random.default_rng(count).standard_normal(count))
+    band, sections = Band(edge, rate), butter(4, edge, fs=rate, output="sos")
+    if count <= 15:  # too short for the filter, as scipy says
+        with pytest.raises(ValueError, match="length"):
+            band.filter(series)
+        return
+    for one in (series, series[::-1]):
+        np.testing.assert_array_equal(band.filter(one), sosfiltfilt(sections, one))
+
+
+@pytest.mark.parametrize("substeps", [1, 3])
+def test_several_motions_at_once(substeps: int) -> None:
+    time = np.arange(3000) * 1e-3
+    angles = np.cumsum(np.random.default_rng(substeps).standard_normal((3000, 4)), axis=0)
+    for angle, found in zip(angles.T, motor_motions(time, angles, substeps), strict=True):
+        alone = motor_motion(time, angle, substeps)
+        for name in ("time", "angle", "speed", "acceleration"):
+            np.testing.assert_array_equal(getattr(found, name), getattr(alone, name))
+
+
+@pytest.mark.parametrize("bits", [14, 26])
+def test_rows_at_other_times_are_those_of_a_recording_with_such_times(bits: int) -> None:
+    """With steps that matter to the motion, and with steps that do not."""
+    recording = read_recording(Path(__file__).parents[1] / "data" / "bench" / "backlash_train.csv.gz")
+    step = 2 * math.pi / 2**bits
+    smooth = Band(150.0, 1 / recording.sample_time).filter(recording["motor_angle"])  # without the steps that it has
+    recording = recording.with_channels({"motor_angle": step * np.round(smooth / step)})
+    plant = read_plant(find_plant("bench_axis"))
+    evidence, other = prepare(recording, plant, 1.0), slower(recording)
+    assert bool(evidence.gains) == (bits == 14)
+    found, expected = evidence.at_other_times(other).motion, prepare(other, plant, 1.0).motion
+    for name in ("time", "angle", "speed", "acceleration"):
+        np.testing.assert_array_equal(getattr(found, name), getattr(expected, name))
+
+
+def slower(recording: Recording) -> Recording:
+    """The same rows, a thousandth further apart."""
+    return replace(recording, time=1.001 * recording.time, sample_time=1.001 * recording.sample_time)
+
+
+@pytest.mark.parametrize(
+    ("formula", "plain"),
+    [(r"$\mathdefault{10^{2}}$", "10²"), (r"$\mathdefault{6\times10^{-4}}$", "6 × 10⁻⁴"), ("", ""), ("0.5", "0.5")],
+)
+def test_powers_of_ten_in_plain_letters(formula: str, plain: str) -> None:
+    assert without_formula(formula) == plain

@@ -1,0 +1,109 @@
+"""Motion that an encoder does not tell: its parts, and what a plant gains that answers the motor as a filter does."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from feeddrive.diagnosis.calibration.calibrate import calibrated
+from feeddrive.diagnosis.likelihood.encoder_error import DRAWS, _share_of_error, drawn_error, expected_motion
+from feeddrive.diagnosis.likelihood.evidence import AxisEvidence
+from feeddrive.diagnosis.likelihood.fit import Problem
+from feeddrive.diagnosis.likelihood.unsure_motion import HALF, LEAST, unsure_motions, without_share
+from feeddrive.diagnosis.preparation import prepared
+from feeddrive.diagnosis.suspicion.logged import declared_hold
+from feeddrive.plant.file.plant_file import read_plant
+from feeddrive.recording import read_recording
+from feeddrive.simulate.driven import MotorMotion, motor_motion
+from feeddrive.typing import FloatArray
+from tests.recovery.fleet.case import case
+
+RATE, EDGE = 500.0, 50.0
+TIME = np.arange(4096) / RATE
+
+COARSE = 4667
+"""A machine as declared with 12 bits, of the fleet, at 500 Hz: beyond 20 Hz its encoder tells nothing of the motion."""
+
+
+def burst(hertz: float) -> FloatArray:
+    """A vibration that comes and goes, [rad]."""
+    return np.asarray(1e-3 * np.sin(2 * np.pi * hertz * TIME) * np.exp(-(((TIME - 4.1) / 0.8) ** 2)))
+
+
+def test_parts_add_up_to_the_share_of_the_motion() -> None:
+    angle, share = burst(20.0), np.full(len(TIME) // 2 + 1, 0.04)
+    parts = list(unsure_motions(angle, share, 1 / RATE, EDGE))
+    # nodes in thirds of an octave hold all of a line between them, once as it is and once a quarter of a period later
+    np.testing.assert_allclose(sum(parts[::2]), 0.04 * angle, atol=0.04e-3 * 0.01)
+    late = sum(parts[1::2])
+    assert abs(late @ angle) < 0.01 * np.linalg.norm(late) * np.linalg.norm(angle)
+    assert np.linalg.norm(late) == pytest.approx(0.04 * np.linalg.norm(angle), rel=0.01)
+
+
+def test_a_sure_motion_has_no_parts() -> None:
+    share = np.full(len(TIME) // 2 + 1, 0.5 * LEAST)
+    assert list(unsure_motions(burst(20.0), share, 1 / RATE, EDGE)) == []
+
+
+def test_what_is_more_error_than_motion_is_left_out() -> None:
+    angle, hertz = burst(10.0) + burst(30.0), np.fft.rfftfreq(len(TIME), 1 / RATE)
+    kept = without_share(angle, np.where(hertz > 20.0, HALF, 0.1), 1 / RATE)
+    np.testing.assert_allclose(kept, 0.9 * burst(10.0), atol=0.01e-3)
+
+
+def test_the_stroke_is_left_alone() -> None:
+    stroke = 40 * (1 - np.cos(2 * np.pi * np.clip((TIME - 2) / 4, 0, 1)))
+    share = np.where(np.fft.rfftfreq(len(TIME), 1 / RATE) > 15.0, 1.0, 0.0)
+    # begun and ended with a jump of acceleration, whose part beyond 15 Hz is a ten-thousandth of a radian
+    np.testing.assert_allclose(without_share(stroke, share, 1 / RATE), stroke, atol=5e-3)
+
+
+@pytest.fixture(scope="module")
+def problem(tmp_path_factory: pytest.TempPathFactory) -> Problem:
+    plant_file, fitted, judged = case(COARSE).write(tmp_path_factory.mktemp("coarse"))
+    plant, recordings = read_plant(plant_file), [read_recording(path) for path in (fitted, judged)]
+    return prepared(plant, recordings[:1], recordings[1:], 0.75, declared_hold(plant, recordings))[0]
+
+
+def test_a_plant_that_filters_the_motion_gains_nothing(problem: Problem) -> None:
+    """The true plant led by the motion, and by less of it: as by a mode, whose load does not follow a fast motor."""
+    (evidence,) = problem.evidence
+    assert isinstance(evidence, AxisEvidence)
+    rows, sample_time = evidence.thinned(evidence.fit_rows), evidence.recording.sample_time
+    hertz = np.fft.rfftfreq(len(rows), sample_time)
+
+    def error(motion: MotorMotion) -> float:
+        led = replace(evidence, motion=replace(motion, time=evidence.motion.time))
+        predicted = evidence.weighted(problem.predictor.predict(problem.plant, led), rows)
+        return float(np.sum((evidence.weighted(evidence.measured, rows) - predicted) ** 2))
+
+    angle, whole = evidence.motion.angle[evidence.motion.samples], error(evidence.motion)
+    for corner in (20.0, 25.0, 30.0, 36.0, 45.0):
+        slow = without_share(angle, np.minimum(HALF * (hertz / corner) ** 4, 1.0), sample_time)
+        less = error(motor_motion(np.arange(len(angle)) * sample_time, slow))
+        # ten is what three values cost; with the steps' error in the motion it is a thousand
+        assert 0.5 * (whole - less) < 10.0 * whole / (2 * rows.sum()), corner
+
+
+def test_declared_values_stay_where_nothing_is_other(problem: Problem) -> None:
+    known = calibrated(problem).calibration
+    assert known is not None
+    # a posterior mean beyond two deviations of its prior is one of twenty at most; damping went to ten
+    assert np.max(np.abs(known.coordinates)) < 2.0, dict(
+        zip([value.key for value in known.values], known.coordinates, strict=True)
+    )
+
+
+def test_strokes_at_constant_speed_are_told_by_a_fine_encoder() -> None:
+    """They move in lines of a spectrum; what is between them, or below them all, is as well known as anything."""
+    step, rows = 2 * np.pi / 2**17, 8334
+    strokes = 30.0 * np.abs((np.arange(rows) / RATE / 0.9) % 2 - 1)  # of 30 rad in 0.9 s, cut out of a long run
+    turning = np.hanning(123)[1:-1]
+    angle = np.convolve(np.pad(strokes, 60, mode="edge"), turning / np.sum(turning), mode="valid")
+    expected = expected_motion(step * np.round(angle / step), step, 1 / RATE)
+    errors = [drawn_error(expected, step, 1 / RATE, draw) for draw in range(DRAWS)]
+    share = _share_of_error(expected, errors, 1 / RATE)
+    left = without_share(expected, share, 1 / RATE) - angle
+    assert np.max(np.abs(left[250:-250])) < step  # half a second at either end is not compared

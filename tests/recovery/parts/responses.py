@@ -1,0 +1,191 @@
+"""Frequency responses of the machines of parts, from the matrices of finite elements, explained with the parts file.
+
+Command line: python -m tests.recovery.parts.responses [--machines M,..] [--what W,..] [--draw D] [--count N].
+
+Relative scatter of 2 % where a line is as large as the median, more below it, as a drive's sensor leaves it, and the
+coherence that belongs to it: it falls at anti-resonances.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+import time
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from feeddrive.diagnosis.responses.response_result import ResponseResult, diagnose_response, response_plant_text
+from feeddrive.files import find_plant
+from feeddrive.interface.axis import Axis, axis_of_text, load
+from feeddrive.plant.analysis.stiffness_budget import stiffness_budget
+from feeddrive.plant.chain.resolution import resolved_modes
+from feeddrive.recording.frequency_response import FrequencyResponse
+from feeddrive.servo.mechanics_response import Case as Point
+from tests.generator.screw_elements import Array, Drive, Friction, drive_of, frequencies, matrices
+from tests.recovery.parts.cases import MACHINES, PUBLISHED
+from tests.recovery.parts_runs import MARGIN, friction_of, softer
+
+LINES = np.arange(8.0, 700.0, 4.0)
+"""Frequencies [Hz]; a resonance damped by 2 % at 190 Hz is 8 Hz wide."""
+
+AVERAGES, SCATTER = 16, 0.02
+WHAT = ("nothing", "nut", "bearing", "coupling", "payload", "mode")
+PARTS = {"nut": "nut", "bearing": "near", "coupling": "coupling"}
+
+
+@dataclass(frozen=True)
+class ResponseCase:
+    """A machine with one thing planted, or none; the draw decides its size, the place, the speed and the scatter."""
+
+    machine: str
+    what: str
+    draw: int
+
+    @cached_property
+    def axis(self) -> Axis:
+        """The declared machine."""
+        return load(self.machine)
+
+    @cached_property
+    def drawn(self) -> tuple[Point, Drive, tuple[float, ...], np.random.Generator]:
+        """Operating point, drive as it is, what is planted (share, or mass [kg], frequency [Hz], damping), chance."""
+        random = np.random.default_rng([20261122, 77, self.draw, MACHINES.index(self.machine), WHAT.index(self.what)])
+        declared = drive_of(find_plant(self.machine))
+        assert self.axis.plant.stroke is not None
+        low, high = self.axis.plant.stroke
+        point = Point(float(random.uniform(low + MARGIN, high - MARGIN)), float(random.uniform(0.03, 0.08)))
+        if self.what == "nothing":
+            return point, declared, (), random
+        if self.what == "payload":
+            share = float(random.uniform(1.3, 1.8))
+            return point, replace(declared, table=share * declared.table), (share,), random
+        if self.what == "mode":
+            first = float(frequencies(declared, point.position, False, 1)[0])
+            mass, at = float(random.uniform(0.08, 0.2)) * declared.table, float(random.uniform(0.35, 0.8)) * first
+            return point, declared, (mass, at, float(random.uniform(0.015, 0.04))), random
+        share = float(random.uniform(0.45, 0.65))
+        return point, replace(declared, **dict(softer(declared, PARTS[self.what], share))), (share,), random
+
+    def response(self) -> FrequencyResponse:
+        """Motor speed over motor torque, as a drive measures it while the axis moves."""
+        point, drive, planted, random = self.drawn
+        mode = planted if self.what == "mode" else ()
+        exact = _exact(drive, friction_of(self.axis.plant), point, mode)
+        scatter = SCATTER * np.sqrt(np.maximum(1.0, np.median(np.abs(exact)) / np.abs(exact)))
+        error = scatter * (random.standard_normal(len(exact)) + 1j * random.standard_normal(len(exact)))
+        coherence = 1 / (1 + 2 * AVERAGES * scatter**2)
+        return FrequencyResponse("made", "motor_torque", "motor_speed", "", LINES, exact * np.exp(error), coherence)
+
+
+def _exact(drive: Drive, friction: Friction, point: Point, mode: Sequence[float]) -> Array:
+    """(rad/s)/(N m); friction as its slope at the speed, that of the screw at its nut's end of the first rotation."""
+    M, K = matrices(drive, point.position)
+    C = drive.tau * K
+    level, turning, viscous, film, exponent = friction.table
+
+    def guide(v: float) -> float:
+        return viscous * v + film * v**exponent + level * math.tanh(v / turning)
+
+    v, w = point.velocity, point.velocity / drive.radius
+    C[-1, -1] += (guide(1.001 * v) - guide(0.999 * v)) / (0.002 * v)
+    C[0, 0] += friction.screw[1] * (2 / 3) * w ** (-1 / 3)
+    if mode:
+        mass, frequency, damping = mode
+        M, C, K = (np.pad(matrix, ((0, 1), (0, 1))) for matrix in (M, C, K))
+        row, rate = np.zeros(len(M)), 2 * math.pi * frequency
+        row[-2:] = -1.0, 1.0
+        M[-1, -1] = mass
+        K += mass * rate**2 * np.outer(row, row)
+        C += 2 * damping * mass * rate * np.outer(row, row)
+    torque = np.eye(len(M))[:, 0] * drive.ratio**2
+    found: Array = np.array([s * np.linalg.solve(M * s**2 + C * s + K, torque)[0] for s in 2j * math.pi * LINES])
+    return found
+
+
+@dataclass(frozen=True)
+class Explained:
+    """A case with what was said of it."""
+
+    case: ResponseCase
+    result: ResponseResult
+    seconds: float
+
+    @property
+    def named(self) -> list[str]:
+        """What is asserted; a declared value by its key."""
+        return [one.parameters[0].key if one.name == "declared_value" else one.name for one in self.result.asserted]
+
+    @cached_property
+    def after(self) -> Axis:
+        """The machine as its file is after."""
+        return axis_of_text(response_plant_text(self.case.axis.text, self.result), self.case.axis.path)
+
+    @cached_property
+    def frequency_off(self) -> tuple[float, float]:
+        """First two frequencies, motor free, over those of the elements, less one; of the further mode: it alone."""
+        point, drive, planted, _ = self.case.drawn
+        if self.case.what == "mode":
+            told = [one for one in self.result.asserted if one.name == "structural_mode"]
+            off = told[0].parameters[1].value / planted[1] - 1 if told else math.nan
+            return off, off
+        found = resolved_modes(self.after.plant, point.position, 3).free.frequencies
+        first, second = found[found > 0][:2] / frequencies(drive, point.position, False, 2) - 1
+        return float(first), float(second)
+
+    @cached_property
+    def stiffness_off(self) -> float:
+        """Static stiffness at the table over that of the elements, less one."""
+        point, drive, _, _ = self.case.drawn
+        _, K = matrices(drive, point.position)
+        true = 1 / np.linalg.solve(K[1:, 1:], np.eye(len(K) - 1)[:, -1])[-1]
+        return float(stiffness_budget(self.after.plant, point.position).total / true - 1)
+
+    @property
+    def line(self) -> str:
+        """The case in a line."""
+        _, _, planted, _ = self.case.drawn
+        values = ", ".join(
+            f"{p.key} {p.value:.5g} [{p.interval[0]:.5g}, {p.interval[1]:.5g}]"
+            for one in self.result.asserted
+            for p in one.parameters
+        )
+        first, second = (100 * off for off in self.frequency_off)
+        given = ", ".join(f"{one:.5g}" for one in planted) or "nothing"
+        return (
+            f"{self.case.machine} {self.case.what} {self.case.draw}: planted {given}, named {self.named} {values} | "
+            f"frequencies {first:+.3f}, {second:+.3f} %, stiffness {100 * self.stiffness_off:+.2f} % | "
+            f"error {self.result.error_after:.4f}, scatter {self.result.scatter:.4f} | {self.seconds:.0f} s"
+        )
+
+
+def explained(case: ResponseCase) -> Explained:
+    """The case, diagnosed."""
+    axis, begun = case.axis, time.process_time()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        result = diagnose_response(axis.entries, axis.path, axis.plant, case.response(), case.drawn[0])
+    return Explained(case, result, time.process_time() - begun)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """One line a case."""
+    parser = argparse.ArgumentParser(prog="python -m tests.recovery.parts.responses", description=__doc__)
+    parser.add_argument("--machines", type=lambda text: text.split(","), default=[*MACHINES])
+    parser.add_argument("--what", type=lambda text: text.split(","), default=[*WHAT], help=", ".join(WHAT))
+    parser.add_argument("--draw", type=int, default=PUBLISHED, help=f"the first; below {PUBLISHED} for development")
+    parser.add_argument("--count", type=int, default=1, help="draws of each")
+    options = parser.parse_args(arguments)
+    for draw in range(options.draw, options.draw + options.count):
+        for what in options.what:
+            for machine in options.machines:
+                print(explained(ResponseCase(machine, what, draw)).line, flush=True)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
