@@ -178,6 +178,8 @@ ITERATIONS = 4
 def odds_between(first: Standing, second: Standing, count: int) -> float:
     """Logarithm of the odds for the second of two sets, each on the samples that it predicts.
 
+    Each stands beside its own declared values: what the others leave unsaid they say within the same tolerances.
+
     Args:
         first: a set.
         second: another.
@@ -187,7 +189,7 @@ def odds_between(first: Standing, second: Standing, count: int) -> float:
         return log_odds(second.problem, first.fit, second.fit, count)
     common = commonly_predicted(first.problem, second.problem)
     try:
-        there = fitted_there(first, common), fitted_there(second, common)
+        there = fitted_there(first, replace(first.problem, evidence=common.evidence)), fitted_there(second, common)
         return log_odds(common, *there, count, excess_beyond(first, second, _level(*there)))
     except InputError:  # the first cannot be simulated with what suits the common samples best
         return math.inf
@@ -236,7 +238,8 @@ def excess_beyond(first: Standing, second: Standing, level: float) -> float:
         alone = ~_inside(able.problem, other.problem)
         if alone.any():
             error = able.fit.residual[alone]
-            declines = declining(error, able.problem.residual(other.fit.effects)[alone], level)
+            asked = replace(other.problem, evidence=able.problem.evidence)
+            declines = declining(error, asked.residual(other.fit.effects)[alone], level)
             total += sign * float(error @ error - declines @ declines)
     return total
 
