@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +11,6 @@ from feeddrive.diagnosis.calibration.calibrate import calibrated
 from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.finding.spring_law import with_likelier_law
 from feeddrive.diagnosis.likelihood.fit import Problem, fit
-from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between
 from feeddrive.diagnosis.preparation import prepared
 from feeddrive.effects.base import number
 from feeddrive.effects.transmission.backlash import Backlash
@@ -39,20 +37,8 @@ def test_small_play_is_found_where_lost_preload_stood_in_for_it(problem: Problem
     (found,) = there.fit.effects
     assert isinstance(found, Backlash)
     assert number(found.values["width"]) == pytest.approx(0.952e-6, rel=0.05)
-    # every value is as declared: none is beyond its tolerance by what chance gives one of 700
-    assert np.max(np.abs(there.problem.calibration.coordinates)) < 3
-
-
-def test_set_that_declines_samples_pays_for_them(problem: Problem) -> None:
-    """On samples left out of one set, it says how large its error is: no worse there, it loses nothing."""
-    whole = Standing(problem, fit(problem, ()))
-    (evidence,) = problem.evidence
-    half = np.arange(len(evidence.counted)) % 400 < 200
-    fewer = dataclasses.replace(problem, evidence=(evidence.where_predictable(half),))
-    part = Standing(fewer, fit(fewer, ()))
-    # without a play this plant misses as much on either half: to decline one is neither better nor worse
-    assert abs(odds_between(whole, part, 40)) < 5
-    assert odds_between(whole, part, 40) == pytest.approx(-odds_between(part, whole, 40))
+    # nothing is left but noise, half as much again where a bounce is not known; the softness left three times it
+    assert there.fit.squared_error < 1.5 * len(there.fit.residual)
 
 
 @pytest.mark.slow
