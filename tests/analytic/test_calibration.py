@@ -139,3 +139,14 @@ def test_an_effect_within_the_tolerance_of_a_declared_value_is_no_lack_of_the_pl
     assert not is_within_tolerance(Payload.of(mass=1.01 * mass), plant)
     assert not is_within_tolerance(Payload.of(mass=-RIGID_MASS), plant)
     assert is_within_tolerance(ConstantForce.of(force=1.0), plant) is None
+
+
+def test_a_deviation_joined_with_a_declared_value_stays_in_its_range(tmp_path: Path) -> None:
+    """Both may be within theirs, and their product is not: a stiffness of 18 times the declared, which is 1.3 times."""
+    plant = plant_of(drawn_drive(5), tmp_path)
+    values = calibrated_values(plant)
+    stiffer = [np.log(1.3) / one.deviation if one.place == "nut" else 0.0 for one in values]
+    nut = StiffnessDeviation.of(None, "nut", factor=18.0)
+    problem, (joined,) = said_by_effects(beside(plant, np.array(stiffer)), [nut])
+    assert joined.values["factor"] == StiffnessDeviation.parameter("factor").maximum
+    problem.machine([joined])  # is a machine

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 from types import SimpleNamespace
 from typing import Any
 
@@ -14,7 +15,15 @@ from feeddrive.diagnosis.finding.attempt import Attempt
 from feeddrive.diagnosis.finding.sets import Neighbour, neighbours, odds_of_members
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, linear_step
-from feeddrive.diagnosis.likelihood.set_evidence import log_odds, log_prior_of_size, log_volume
+from feeddrive.diagnosis.likelihood.set_evidence import (
+    Standing,
+    declining,
+    gain_between,
+    log_odds,
+    log_prior_of_size,
+    log_volume,
+    odds_between,
+)
 from feeddrive.diagnosis.numbers.number_rows import MeasuredRows
 from feeddrive.effects.base import Effect
 from feeddrive.effects.chain.payload import Payload
@@ -40,7 +49,10 @@ def problem(columns: dict[str, FloatArray], measured: FloatArray) -> Any:
     def residual(effects: Sequence[Effect]) -> FloatArray:
         return measured - sum((columns[e.name] * coordinate(e) for e in effects), np.zeros(ROWS))
 
-    return SimpleNamespace(evidence=(evidence,), plant=PLANT, residual=residual, numbers=MeasuredRows())
+    predictor = SimpleNamespace(of_motion=True)
+    return SimpleNamespace(
+        evidence=(evidence,), plant=PLANT, residual=residual, numbers=MeasuredRows(), predictor=predictor
+    )  # fmt: skip
 
 
 def coordinate(effect: Effect) -> float:
@@ -151,3 +163,99 @@ def test_what_one_block_alone_shows_is_no_effect() -> None:
     measured = measured + np.where((np.arange(ROWS) >= 100) & (np.arange(ROWS) < 150), 6.0, 0.0)
     found = fitted((FIRST,), columns, measured)
     assert odds_of_members(problem(columns, measured), found, COUNT)[0] < 0
+
+
+def test_what_a_set_declines_to_predict_is_as_likely_as_a_normal_distribution_of_its_error() -> None:
+    level, own = 0.7, 5.0 * np.random.default_rng(1).standard_normal(200)
+    square, residual = float(np.mean(own**2)), declining(np.ones(200), own, level)
+    by_residual = -0.5 * np.sum(residual**2 / level + np.log(level))
+    by_its_error = -0.5 * np.sum(own**2 / square + np.log(square))
+    assert by_residual == pytest.approx(by_its_error, rel=1e-12)
+    better = declining(np.ones(200), 0.01 * own, level)  # it is believed no better there than elsewhere
+    assert better == pytest.approx(np.full(200, np.sqrt(level)))
+
+
+class Part:
+    """Evidence of a series of which some samples count."""
+
+    channels, recording, block = ("a",), SimpleNamespace(sample_time=0.01), 0.5
+    thinning, floating, model_error, edge = 1, (), {}, 50.0  # type: ignore[var-annotated]
+    motion_speed, noise = np.zeros(ROWS), {}  # type: ignore[var-annotated]
+
+    def __init__(self, counted: Any) -> None:
+        self.counted = self.fit_rows = counted
+
+    def thinned(self, rows: Any) -> Any:
+        return rows
+
+    def weighs_as(self, other: Part) -> bool:
+        return True
+
+    def within(self, other: Part) -> Part:
+        return Part(self.counted & other.counted)
+
+
+@dataclass
+class Made:
+    """A problem of one series."""
+
+    evidence: tuple[Part, ...]
+    residual: Callable[[Sequence[Effect]], FloatArray]
+    plant: Plant = PLANT
+    numbers: MeasuredRows = field(default_factory=MeasuredRows)
+    predictor: Any = field(default_factory=lambda: SimpleNamespace(chance=0.0, of_motion=True))
+    calibration: None = None
+
+
+def standing(fit: Fit, counted: Any, series: FloatArray) -> Standing:
+    """A set on some samples, whose own error is a series, there and on others that are asked for."""
+    made: Any = Made((Part(counted),), lambda effects: OWN[effects[0].name][counted])
+    return Standing(made, Fit(fit.effects, series[counted], fit.jacobian[counted], fit.coordinates))
+
+
+OWN: dict[str, FloatArray] = {}
+
+
+@pytest.mark.parametrize(("elsewhere", "wins"), [(1.0, False), (30.0, True)])
+def test_set_that_declines_wins_where_the_other_does_worse_there_than_elsewhere(
+    elsewhere: float, wins: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Two sets do alike on one half. On the other the first errs as elsewhere, or 30 times as much; the second declines
+    there, its own error being 20 times that of the other half."""
+    columns, _ = drawn(7)
+    generator, half = np.random.default_rng(8), np.arange(ROWS) < ROWS // 2
+    noise = generator.standard_normal(ROWS)
+    one, other = fitted((FIRST,), columns, noise), fitted((SECOND,), columns, noise)
+    OWN["payload"] = np.where(half, 1.0, elsewhere) * noise
+    OWN["constant_force"] = np.where(half, 1.0, 20.0) * noise
+    first = standing(one, np.ones(ROWS, dtype=bool), OWN["payload"])
+    second = standing(other, half, OWN["constant_force"])
+
+    def as_it_is(problem: Any, effects: Sequence[Effect], **_: Any) -> Fit:
+        slopes = one if effects[0].name == "payload" else other
+        return Fit(tuple(effects), slopes.residual[half], slopes.jacobian[half], slopes.coordinates)
+
+    monkeypatch.setattr("feeddrive.diagnosis.likelihood.set_evidence.fit", as_it_is)
+    odds = odds_between(first, second, COUNT)
+    assert (odds > 0) is wins
+    assert odds_between(second, first, COUNT) == pytest.approx(-odds, rel=1e-6)
+    assert gain_between(first, second, in_folds=False).pays is wins
+
+
+@pytest.mark.parametrize(("large", "is_named"), [(THIRD, False), (SECOND, True)])
+def test_second_name_pays_beyond_what_the_form_of_the_first_may_leave(large: Effect, is_named: bool) -> None:
+    """A law that takes 30 times the noise may leave two hundredths of its size; a mere value leaves none."""
+    random = np.random.default_rng(11)
+    columns = {one.name: random.standard_normal(ROWS) for one in (FIRST, large)}
+    # 0.02 of the size of the first is 0.6 of the noise: an effect by itself
+    measured = random.standard_normal(ROWS) + 30.0 * columns[large.name] + 0.6 * columns[FIRST.name]
+    there = problem(columns, measured)
+    one, both = fitted([large], columns, measured), fitted([large, FIRST], columns, measured)
+    assert (log_odds(there, one, both, COUNT) > 0) == is_named
+    # the same is told by slopes
+    (odds,) = [
+        odds
+        for effect, odds in zip(both.effects, odds_of_members(there, both, COUNT), strict=True)
+        if effect.name == FIRST.name
+    ]
+    assert (odds > 0) == is_named

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from feeddrive.diagnosis.calibration.calibrate import calibrated
+from feeddrive.diagnosis.likelihood.encoder_error import DRAWS, _share_of_error, drawn_error, expected_motion
 from feeddrive.diagnosis.likelihood.evidence import AxisEvidence
 from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.diagnosis.likelihood.unsure_motion import HALF, LEAST, unsure_motions, without_share
@@ -93,3 +94,16 @@ def test_declared_values_stay_where_nothing_is_other(problem: Problem) -> None:
     assert np.max(np.abs(known.coordinates)) < 2.0, dict(
         zip([value.key for value in known.values], known.coordinates, strict=True)
     )
+
+
+def test_strokes_at_constant_speed_are_told_by_a_fine_encoder() -> None:
+    """They move in lines of a spectrum; what is between them, or below them all, is as well known as anything."""
+    step, rows = 2 * np.pi / 2**17, 8334
+    strokes = 30.0 * np.abs((np.arange(rows) / RATE / 0.9) % 2 - 1)  # of 30 rad in 0.9 s, cut out of a long run
+    turning = np.hanning(123)[1:-1]
+    angle = np.convolve(np.pad(strokes, 60, mode="edge"), turning / np.sum(turning), mode="valid")
+    expected = expected_motion(step * np.round(angle / step), step, 1 / RATE)
+    errors = [drawn_error(expected, step, 1 / RATE, draw) for draw in range(DRAWS)]
+    share = _share_of_error(expected, errors, 1 / RATE)
+    left = without_share(expected, share, 1 / RATE) - angle
+    assert np.max(np.abs(left[250:-250])) < step  # half a second at either end is not compared

@@ -36,7 +36,8 @@ def test_small_play_is_found_where_lost_preload_stood_in_for_it(problem: Problem
     assert there is not None and there.problem.calibration is not None
     (found,) = there.fit.effects
     assert isinstance(found, Backlash)
-    assert number(found.values["width"]) == pytest.approx(0.952e-6, rel=0.05)
+    # half a step of the encoder, 17 bits to 15 mm
+    assert number(found.values["width"]) == pytest.approx(0.952e-6, abs=0.5 * 15e-3 / 2**17)
     # nothing is left but noise, half as much again where a bounce is not known; the softness left three times it
     assert there.fit.squared_error < 1.5 * len(there.fit.residual)
 

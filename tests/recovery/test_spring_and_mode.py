@@ -13,9 +13,11 @@ import pytest
 
 from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.finding.scene import scene_of
+from feeddrive.diagnosis.finding.spring_law import odds_between
 from feeddrive.diagnosis.likelihood.evidence import prepare
 from feeddrive.diagnosis.likelihood.fit import Problem, fit
 from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
+from feeddrive.diagnosis.likelihood.set_evidence import Standing
 from feeddrive.diagnosis.starts import mode, transmission_starts
 from feeddrive.effects.base import Effect
 from feeddrive.effects.catalogue import EFFECTS
@@ -121,6 +123,23 @@ def test_play_and_lost_preload_are_apart_by_orders_once_simulated(wrong: str, tr
     errors = {name: fit(problem, (in_the_package(both[name], "light"),), iterations=6) for name in (wrong, true)}
     assert errors[true].squared_error < 2 * len(errors[true].residual)
     assert errors[wrong].squared_error > 100 * errors[true].squared_error
+
+
+def test_laws_that_predict_other_samples_are_compared_on_those_of_both() -> None:
+    """Neither loses samples of both to what the other cannot predict, and the odds against are those for the other."""
+    declared = problem_of("bench", planted.Backlash(width=4e-6))
+    (evidence,) = declared.evidence
+    phase = np.linspace(0.0, 20.0, len(evidence.counted))
+    standings = []
+    for name, size, predictable in (
+        ("preload_loss", {"ratio": 0.3, "force": 60.0}, np.sin(phase) > -0.9),
+        ("backlash", {"width": 4e-6}, np.where(np.cos(phase) > -0.5, 0.8, 0.0)),  # weighed less where it magnifies
+    ):
+        problem = dataclasses.replace(declared, evidence=(evidence.where_predictable(predictable),))
+        standings.append(Standing(problem, fit(problem, (EFFECTS[name].of(**size),), iterations=4)))
+    for_play, against = odds_between(*standings, 40), odds_between(*standings[::-1], 40)
+    assert for_play == pytest.approx(-against, rel=1e-6)
+    assert for_play > 100
 
 
 def of_size(axis: str, name: str, share: float) -> Planted:

@@ -144,11 +144,12 @@ def _is_said_by(value: CalibratedValue, effect: Effect) -> bool:
 
 
 def _joined(one: Effect, other: Effect) -> Effect:
-    """Two deviations of a declared value as one: factors multiply, masses and inertias add."""
+    """Two deviations of a declared value as one, in its range: factors multiply, masses and inertias add."""
     joined: dict[str, Value] = {}
     for key in other.values:
         first, second = number(one.values[key]), number(other.values[key])
-        joined[key] = first * second if key.endswith("factor") else first + second
+        ends, value = one.parameter(key), first * second if key.endswith("factor") else first + second
+        joined[key] = min(max(value, ends.minimum), ends.maximum)
     return one.with_values(**joined)
 
 

@@ -27,6 +27,7 @@ from feeddrive.diagnosis.certainty.noise_colour import score_covariance
 from feeddrive.diagnosis.finding.attempt import Attempt
 from feeddrive.diagnosis.likelihood.coordinates import read_coordinates, write_coordinates
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
+from feeddrive.diagnosis.likelihood.predictability import has_play
 from feeddrive.diagnosis.likelihood.set_evidence import (
     DISCREPANCY,
     Standing,
@@ -35,6 +36,7 @@ from feeddrive.diagnosis.likelihood.set_evidence import (
     log_volume,
     odds_between,
     regained,
+    taken_by_laws,
 )
 from feeddrive.effects.base import Effect
 from feeddrive.typing import FloatArray, IntegerArray
@@ -147,6 +149,8 @@ def members_weighed(problem: Problem, found: Fit, count: int) -> tuple[Neighbour
 
 def _that_predicts_more(problem: Problem, found: Fit, place: int) -> Standing | None:
     """A set without its only free play, fitted to the samples that this left out; None for another member."""
+    if not has_play([found.effects[place]]):
+        return None
     rest = [effect for i, effect in enumerate(found.effects) if i != place]
     wide = regained(problem, rest)
     return Standing(wide, fit(wide, rest, iterations=ITERATIONS)) if wide is not problem else None
@@ -187,6 +191,7 @@ class _Columns:
 
     def __init__(self, problem: Problem, found: Fit, attempts: Sequence[Attempt], count: int) -> None:
         self.problem, self.found, self.count = problem, found, count
+        self.laws: dict[tuple[int, ...], float] = {}
         self.own = [attempt.fit for attempt in attempts]
         sizes = [len(read_coordinates([effect], problem.plant)) for effect in found.effects]
         self.member = np.cumsum([0, *sizes])
@@ -248,9 +253,17 @@ class _Columns:
         less = min(before, before - excess)
         if square <= 0 or less <= 0:
             return Neighbour(dropped, added, -np.inf)
-        variance = float(taken @ self.scatter @ taken) / square * less / before + DISCREPANCY * less
+        form = less + self._by_laws(dropped)
+        variance = float(taken @ self.scatter @ taken) / square * less / before + DISCREPANCY * form
         gain = self._gain(excess, variance, free, effects, coordinates)
         return Neighbour(dropped, added, gain, 0.5 * excess / max(variance, TINY))
+
+    def _by_laws(self, dropped: tuple[int, ...]) -> float:
+        """What the members that stay take of the squared error, those without a form aside."""
+        if dropped not in self.laws:
+            kept = [effect for place, effect in enumerate(self.found.effects) if place not in dropped]
+            self.laws[dropped] = taken_by_laws(self.problem, kept)
+        return self.laws[dropped]
 
     def _gain(
         self, excess: float, variance: float, free: IntegerArray, effects: Sequence[Effect], coordinates: FloatArray

@@ -197,11 +197,17 @@ def _answer(run: LoadMotion, name: str) -> FloatArray:
 
 
 def _share_of_error(expected: FloatArray, errors: Sequence[FloatArray], sample_time: float) -> FloatArray:
-    """ρ of `unsure_motion`: power of the drawn errors over that of the expected motion, (n // 2 + 1,)."""
+    """ρ of `unsure_motion`: power of the drawn errors over that of the expected motion, (n // 2 + 1,).
+
+    Below two periods a `WINDOW` the error is white, as the steps are, and its acceleration falls with the fourth power
+    of the frequency; that of strokes does not, but stands in lines, between which a ratio of densities says nothing.
+    """
     frequency, power = _density([np.diff(expected, 2)], sample_time)
     _, wrong = _density([np.diff(error, 2) for error in errors], sample_time)
     share = np.minimum(wrong / np.where(power > 0, power, np.inf), 1.0)
-    return np.asarray(np.interp(np.fft.rfftfreq(len(expected), sample_time), frequency, share))
+    asked, told = np.fft.rfftfreq(len(expected), sample_time), 2 / WINDOW
+    slower = np.minimum(asked / told, 1.0) ** 4
+    return np.asarray(np.interp(np.maximum(asked, told), frequency, share) * slower)
 
 
 def _per_newton_metre(recording: Recording, torque: FloatArray, band: Band) -> float:

@@ -92,26 +92,37 @@ def has_play(effects: Sequence[Effect]) -> bool:
 
 def _missed(plant: Plant, evidence: AxisEvidence) -> Missed:
     plant = evidence.placed(plant)
-    base = simulate_driven(plant, evidence.motion).table_position.copy()  # not with all else that was simulated
-    squares, causes = np.zeros(len(base)), []
-    for other in _other_motions(evidence):
-        causes.append(float(np.mean((other.angle - evidence.motion.angle) ** 2)))
-        squares += evidence.band.filter(simulate_driven(plant, other).table_position - base) ** 2 / DRAWS
+    radius, error = plant.chain.motor_radius, _encoder_error(evidence)
+    base, squares = _behind(plant, evidence.motion), np.zeros(len(evidence.recording))
+    for other in _other_motions(evidence, error):
+        squares += evidence.band.filter(_behind(plant, other) - base) ** 2 / DRAWS
     about = 2 * round(REACH / (evidence.band.edge * evidence.recording.sample_time)) + 1
     table = np.sqrt(np.maximum(uniform_filter1d(squares, about), 0.0))  # a running sum may end below zero
-    return Missed(table, math.sqrt(float(np.mean(causes))) * plant.chain.motor_radius)
+    return Missed(table, error * radius)
 
 
-def _other_motions(evidence: AxisEvidence) -> Iterator[MotorMotion]:
-    """Motions that the motor may have made as well: with the encoder's error once more."""
+def _behind(plant: Plant, motion: MotorMotion) -> FloatArray:
+    """Way [m] of the table beyond that of the motor, (n,): a slow error of the motor is followed, and not magnified."""
+    run = simulate_driven(plant, motion)
+    behind: FloatArray = run.table_position - plant.chain.motor_radius * motion.angle[motion.samples]
+    return behind
+
+
+def _encoder_error(evidence: AxisEvidence) -> float:
+    """Rms of what noise and steps of the encoder add to a row [rad]."""
+    measured = evidence.recording["motor_angle"]
+    steps = quantisation_step(measured) / math.sqrt(12)
+    return max(math.hypot(white_noise(measured, evidence.band.sample_rate), steps), TINY_ANGLE)
+
+
+def _other_motions(evidence: AxisEvidence, error: float) -> Iterator[MotorMotion]:
+    """Motions that the motor may have made as well: with the encoder's error [rad] once more."""
     if evidence.drawn:
         yield from (replace(motion, time=evidence.motion.time) for motion in evidence.drawn[:DRAWS])
         return
-    measured = evidence.recording["motor_angle"]
-    error = math.hypot(white_noise(measured, evidence.band.sample_rate), quantisation_step(measured) / math.sqrt(12))
     generator, motion = np.random.default_rng(20240501), evidence.motion
     for _ in range(DRAWS):
-        drawn = max(error, TINY_ANGLE) * generator.standard_normal(len(measured))
+        drawn = error * generator.standard_normal(len(evidence.recording))
         yield replace(motion, angle=motion.angle + on_grid(drawn, motion.substeps))
 
 

@@ -86,7 +86,7 @@ def _turned(angle: FloatArray, sample_time: float) -> tuple[FloatArray, ComplexA
     """Frequencies [Hz] and spectrum of a motion, twice as long: without the stroke, which would jump at the end."""
     size = next_fast_len(2 * len(angle), real=True)
     size += size % 2  # irfft takes an even length
-    frequency = np.fft.rfftfreq(size, sample_time)
+    frequency: FloatArray = np.asarray(np.fft.rfftfreq(size, sample_time), dtype=np.float64)
     difference = (2 * np.sin(np.pi * frequency * sample_time)) ** 2
-    spectrum = -rfft(np.concatenate([[0.0], np.diff(angle, 2), [0.0]]), size)
+    spectrum: ComplexArray = -rfft(np.concatenate([[0.0], np.diff(angle, 2), [0.0]]), size)
     return frequency, spectrum / np.where(difference > 0, difference, 1.0)

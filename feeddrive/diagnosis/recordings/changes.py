@@ -28,10 +28,15 @@ from feeddrive.diagnosis.recordings.change_candidates import (
     material_difference,
     movables,
     offers,
-    recording_of_rows,
 )
 from feeddrive.diagnosis.recordings.change_result import CommonTrial
-from feeddrive.diagnosis.recordings.recordings import RecordingShift, Target, is_shift, without_shifts
+from feeddrive.diagnosis.recordings.recordings import (
+    RecordingPredictor,
+    RecordingShift,
+    Target,
+    is_shift,
+    without_shifts,
+)
 from feeddrive.effects.base import Effect
 from feeddrive.effects.base import number as number_of
 from feeddrive.effects.friction.friction_deviation import FrictionDeviation
@@ -107,12 +112,14 @@ def _forward(
     taken: list[Target] = []
     current = common
     for one in movables(given, problem):
-        if has_play([given[one.effect]]):
-            own, wider, comparison = _play_apart(problem, given, common, one, recordings)
-            ranked[one.target] = one, comparison
-            if _pays(comparison, len(common.coordinates)) and _material(own, wider, one.target, recordings):
-                taken.append(one.target)
-                problem, current = own, wider
+        apart = _play_apart(problem, given, one, recordings) if has_play([given[one.effect]]) else None
+        if apart is None:
+            continue
+        comparison = gain_between(Standing(problem, common), apart, in_folds=False)
+        ranked[one.target] = one, comparison
+        if _pays(comparison, len(common.coordinates)) and _material(apart.problem, apart.fit, one.target, recordings):
+            taken.append(one.target)
+            problem, current = apart.problem, apart.fit
     if taken and current.squared_error < UNEXPLAINED * len(current.residual):
         return problem, current, taken
     while len(taken) < MOST_CHANGES:
@@ -139,41 +146,42 @@ def _forward(
     return problem, current, taken
 
 
-def _play_apart(
-    problem: Problem, given: Sequence[Effect], common: Fit, one: Movable, recordings: Sequence[int]
-) -> tuple[Problem, Fit, Comparison]:
-    """The fit with a free play of its own in some recordings, beside the one that has everything in common.
+def _play_apart(problem: Problem, given: Sequence[Effect], one: Movable, recordings: Sequence[int]) -> Standing | None:
+    """The set with a free play of its own in some recordings; None where no other play suits them better.
 
     A screw that is worn is no step away from a new one: a play that is far too small leaves the table's lag to every
     other effect, so that a fit in common is neither machine, and linear steps from there lead to neither. So widths are
     tried about that lag, as the search does it, the other effects being as they were found.
     """
-    effect, residuals = given[one.effect], problem.residual(given)
-    of_row = recording_of_rows(problem)
-    lag = {number: float(np.std(residuals[of_row == number])) for number in recordings}
-    scale = {
-        problem.predictor.numbers[e.recording]: e.noise.get("table_position", 0.0)  # type: ignore[attr-defined]
-        for e in problem.evidence
-    }
+    effect, predictor, plant = given[one.effect], problem.predictor, problem.machine(given)
+    assert isinstance(predictor, RecordingPredictor)
+    lag = dict.fromkeys(recordings, 0.0)
+    for e in problem.evidence:
+        if (number := predictor.numbers[e.recording]) in lag and "table_position" in e.channels:
+            error = e.measured["table_position"] - predictor.predict(plant, e)["table_position"]
+            lag[number] = float(np.std(error[e.fit_rows]))
+    if not any(lag.values()):
+        return None
 
     def moved(times: float) -> list[Effect]:
         shifts = []
         for number, shift in zip(recordings, one.shifts(recordings), strict=True):
-            width = max(0.0, number_of(effect.values["width"]) + times * lag[number] * scale[number])
+            width = max(0.0, number_of(effect.values["width"]) + times * lag[number])
             other = effect.with_values(width=min(width, effect.parameter("width").maximum))
             by = read_coordinates([other], problem.plant) - read_coordinates([effect], problem.plant)
             shifts.append(shift.with_values(shift=tuple(by.tolist())))
         return [*given, *shifts]
 
     own = with_predictable(problem, moved(LAGS[0]))
-    starts = [moved(sign * times) for sign in (1, -1) for times in LAGS]
+    starts = [moved(times) for times in (0.0, *LAGS, *(-times for times in LAGS))]
     start = min(starts, key=lambda effects: fit(own, effects, error_only=True).squared_error)
+    if start is starts[0]:
+        return None
     own = with_predictable(problem, start)
     free = [False] * len(given) + [True] * len(recordings)
     tried = fit(own, start, free, SCANNED_ITERATIONS)
     own = with_predictable(problem, tried.effects)
-    wider = fit(own, tried.effects, iterations=JOINT_STEPS)
-    return own, wider, gain_between(Standing(problem, common), Standing(own, wider), in_folds=False)
+    return Standing(own, fit(own, tried.effects, iterations=JOINT_STEPS))
 
 
 def _partners(one: Target, other: Target) -> bool:

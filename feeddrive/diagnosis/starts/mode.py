@@ -6,7 +6,8 @@ its motion shows that in torque and position:
     T = (w^2 + 2 zeta w s) / (s^2 + 2 zeta w s + w^2),   x_left = -m G_x T a,   M_left = -m G_M T a,   s = j 2 pi f
 
 with the chain's own responses G to a force on the table. For a few w and zeta the mass follows by least squares, each
-channel weighted by its noise. Mass and spectrum alone say where the resonance is, also between lines of motion.
+channel weighted by its noise and each frequency by what the encoder tells of it. Mass and spectrum alone say where the
+resonance is, also between lines of motion.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from scipy.optimize import minimize
 
 from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.finding.scene import Scene
+from feeddrive.diagnosis.likelihood.evidence import AxisEvidence
 from feeddrive.effects.base import Effect
 from feeddrive.effects.chain.structural_mode import StructuralMode
 from feeddrive.typing import BoolArray, ComplexArray, FloatArray
@@ -98,6 +100,8 @@ class _Spectra:
         self.frequency: FloatArray = every[kept].astype(np.float64)
         self.edge = evidence.edge
         noise = np.array([evidence.noise[name] for name in evidence.channels])[:, None]
+        if isinstance(evidence, AxisEvidence) and evidence.gains:
+            noise = noise / np.array([evidence.gains[name][kept] for name in evidence.channels])
         self.left = np.array([np.fft.rfft(window * residual[n])[kept] for n in evidence.channels]) / noise
         acceleration = np.fft.rfft(window * np.gradient(run.table_velocity, evidence.recording.sample_time))[kept]
         responses = _responses(scene, self.frequency)

@@ -181,31 +181,34 @@ class Sums:
         ends = np.searchsorted(folds[self._order], np.arange(FOLDS + 1))
         self._folds = [slice(first, last) for first, last in pairwise(ends)]
         self._residual = sample.residual[self._order]
-        self._raw: dict[Term | None, FloatArray] = {}
         self._scale: dict[Term | None, FloatArray] = {}
         self._moments: dict[Term | None, FloatArray] = {}
         self._products: dict[tuple[Term | None, Term | None], FloatArray] = {}
         self._left: dict[tuple[Term, ...], FloatArray] = {}
-        self._take(None, sample.offsets)
+        self._take(None)
         self._squares = np.array([float(np.sum(self._residual[fold] ** 2)) for fold in self._folds])
 
     def add(self, terms: Sequence[Term]) -> None:
         """Take further terms in."""
         for term in terms:
-            if term not in self._raw:
-                self._take(term, self._sample.columns(term))
+            if term not in self._scale:
+                self._take(term)
 
-    def _take(self, term: Term | None, columns: FloatArray) -> None:
+    def _raw(self, term: Term | None) -> FloatArray:
+        """Columns of a term, or the offsets: held once for all channels (`terms.columns_in`): they fill gigabytes."""
+        return self._sample.offsets if term is None else self._sample.columns(term)
+
+    def _take(self, term: Term | None) -> None:
         """Take columns of a term in, or those of the offsets."""
-        length: FloatArray = np.sqrt(np.sum(columns**2, axis=0))
-        self._raw[term], self._scale[term] = columns, np.where(length > 0, length, 1.0)
+        length: FloatArray = np.sqrt(np.sum(self._raw(term) ** 2, axis=0))
+        self._scale[term] = np.where(length > 0, length, 1.0)
         ordered = self._ordered(term)
         self._moments[term] = np.stack([ordered[fold].T @ self._residual[fold] for fold in self._folds])
         self._products[term, term] = np.stack([ordered[fold].T @ ordered[fold] for fold in self._folds])
 
     def _ordered(self, term: Term | None) -> FloatArray:
         """Columns of length one, fold after fold."""
-        ordered: FloatArray = self._raw[term][self._order] / self._scale[term]
+        ordered: FloatArray = self._raw(term)[self._order] / self._scale[term]
         return ordered
 
     def _product(self, one: Term | None, other: Term | None) -> FloatArray:
@@ -224,7 +227,7 @@ class Sums:
 
     def _columns(self, terms: Sequence[Term]) -> FloatArray:
         """Columns of length one of a set, offsets first, (n, k)."""
-        return np.hstack([self._raw[term] / self._scale[term] for term in (None, *terms)])
+        return np.hstack([self._raw(term) / self._scale[term] for term in (None, *terms)])
 
     @property
     def _fixed(self) -> int:

@@ -130,7 +130,7 @@ def on_one_grid(
         raise InputError(f"a rate of {1.0 / step:g} Hz makes {count:.3g} samples", where, "give a lower --rate")
     own = next((one.time for one in fast.values() if abs(usual_step(one.time) / step - 1.0) < _SAME), None)
     if own is not None:
-        grid: FloatArray = own[(own >= part.start) & (own <= part.stop)]
+        grid: FloatArray = own if own[0] >= part.start and own[-1] <= part.stop else _inside(own, part)
     else:
         grid = part.start + step * np.arange(int(np.floor(count * (1.0 + 1e-12))) + 1, dtype=np.float64)
     made: dict[str, FloatArray] = {}
@@ -150,8 +150,15 @@ def _cut(one: Series, part: Part) -> Series:
     return Series(one.time[first:last], one.values[first:last])
 
 
+def _inside(time: FloatArray, part: Part) -> FloatArray:
+    found: FloatArray = time[(time >= part.start) & (time <= part.stop)]
+    return found
+
+
 def _on(name: str, one: Series, grid: FloatArray, step: float) -> tuple[FloatArray, str]:
     """Return a channel on the grid, and what was done; nothing where its samples are those of the grid."""
+    if same_time(one.time, grid):  # as they are: no second copy of a long recording
+        return one.values, ""
     at = np.searchsorted(one.time, grid)
     if at.size and at[-1] < one.time.size and np.array_equal(one.time[at], grid):
         finer = usual_step(one.time) < (1.0 - _SAME) * step
