@@ -3,15 +3,14 @@
 The two say nearly the same of most recordings, and neither is straight in the declared values: values that were fitted
 while the law was missing have gone to stand in for it, some of them several deviations away, and a play of the right
 width is then worse than a softness fitted there. A play is chaotic besides, and predicts fewer samples. So each law
-begins at the declared values, with the samples that it predicts and slopes of its own, and the two are compared as any
-sets that predict different samples (`likelihood.set_evidence`).
+begins at the declared values, with the samples that it predicts and slopes of its own, and the likelier is taken
+(`set_evidence.odds_between`).
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Container, Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -20,9 +19,8 @@ from feeddrive.diagnosis.certainty.imitations import imitations_of
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, with_predictable
 from feeddrive.diagnosis.finding.scene import scene_of
 from feeddrive.diagnosis.likelihood.coordinates import at_its_limit
-from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
-from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between, same_samples, variance_along
+from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between, regained, same_samples, variance_along
 from feeddrive.effects.base import Effect, number
 from feeddrive.effects.transmission.backlash import Backlash
 from feeddrive.effects.transmission.preload_loss import PreloadLoss
@@ -40,9 +38,7 @@ PASSES = 4
 """Times that samples, slopes and fit follow each other; from declared values each is near after two."""
 
 
-def with_likelier_law(
-    problem: Problem, fitted: Fit, whole: Sequence[Evidence], count: int, denied: Container[str] = ()
-) -> Standing | None:
+def with_likelier_law(problem: Problem, fitted: Fit, count: int, denied: Container[str] = ()) -> Standing | None:
     """The likelier of the sets with either law in the place of the one that a set has; None where it has none.
 
     Lost preload at the end of its range is free play, and stands for itself only where there is no fit of that.
@@ -50,7 +46,6 @@ def with_likelier_law(
     Args:
         problem: recordings.
         fitted: the set.
-        whole: the recordings with all samples.
         count: candidates and starts that were tried.
         denied: names that are not asked for.
     """
@@ -59,11 +54,11 @@ def with_likelier_law(
         return None
     place, law = places[0], fitted.effects[places[0]]
     others = [
-        from_declared(problem, fitted.effects, place, start, whole)
+        from_declared(problem, fitted.effects, place, start)
         for start in (law, *imitations_of(law, problem.plant))
         if start.name not in denied
     ]
-    able = [one for one in (_settled(problem, fitted.effects, whole), *others) if one is not None]
+    able = [one for one in (_settled(problem, fitted.effects), *others) if one is not None]
     inside = [one for one in able if not at_its_limit(one.fit.effects[place])]
     best: Standing | None = None
     for one in inside or able:
@@ -72,17 +67,16 @@ def with_likelier_law(
     return best
 
 
-def from_declared(
-    problem: Problem, effects: Sequence[Effect], place: int, law: Effect, whole: Sequence[Evidence]
-) -> Standing | None:
+def from_declared(problem: Problem, effects: Sequence[Effect], place: int, law: Effect) -> Standing | None:
     """A set with a law of the spring at one place, fitted from the declared values on; None where it has no fit."""
-    there = replace(at_declared(problem), evidence=tuple(whole))
+    there = at_declared(regained(problem, ()))
     rest = [effect for i, effect in enumerate(effects) if i != place]
-    (candidate,) = [one for one in problem.predictor.candidates if one.name == law.name]
+    forms = [one.forms for one in problem.predictor.candidates if one.name == law.name]
     try:
-        starts = [law, *(start for form in candidate.forms(scene_of(there, rest)) for start in form)]
+        scene = scene_of(there, rest)
+        starts = [law, *(start for of in forms for form in of(scene) for start in form)]
         sets = [[*effects[:place], start, *effects[place + 1 :]] for start in starts]
-        return _settled(there, min(sets, key=lambda one: _error(there, one)), whole)
+        return _settled(there, min(sets, key=lambda one: _error(there, one)))
     except InputError:
         return None
 
@@ -91,13 +85,13 @@ def _error(problem: Problem, effects: Sequence[Effect]) -> float:
     return fit(problem, effects, error_only=True).squared_error
 
 
-def _settled(problem: Problem, effects: Sequence[Effect], whole: Sequence[Evidence]) -> Standing | None:
+def _settled(problem: Problem, effects: Sequence[Effect]) -> Standing | None:
     """A set fitted with the samples that it predicts, and declared values with slopes beside it."""
     result = None
     try:
         for _ in range(PASSES):
             before = problem
-            problem = recalibrated(with_predictable(replace(problem, evidence=tuple(whole)), effects), effects)
+            problem = recalibrated(with_predictable(regained(problem, ()), effects), effects)
             result = Standing(problem, fit(problem, effects, iterations=JOINT_ITERATIONS))
             effects = result.fit.effects
             if same_samples(before, problem) and (

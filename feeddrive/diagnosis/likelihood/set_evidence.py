@@ -211,6 +211,8 @@ ITERATIONS = 4
 def odds_between(first: Standing, second: Standing, count: int) -> float:
     """Logarithm of the odds for the second of two sets, each on the samples that it predicts.
 
+    Each stands beside its own declared values: what the others leave unsaid they say within the same tolerances.
+
     Args:
         first: a set.
         second: another.
@@ -220,7 +222,7 @@ def odds_between(first: Standing, second: Standing, count: int) -> float:
         return log_odds(second.problem, first.fit, second.fit, count)
     common = commonly_predicted(second.problem, first.problem)
     try:
-        there = fitted_there(first, commonly_predicted(first.problem, second.problem)), fitted_there(second, common)
+        there = fitted_there(first, replace(first.problem, evidence=common.evidence)), fitted_there(second, common)
         return log_odds(common, *there, count, excess_beyond(first, second, _level(*there)))
     except InputError:  # the first cannot be simulated with what suits the common samples best
         return math.inf
@@ -269,7 +271,10 @@ def excess_beyond(first: Standing, second: Standing, level: float) -> float:
         alone = ~_inside(able.problem, other.problem)
         if alone.any():
             error = able.fit.residual[alone]
-            declines = declining(error, able.problem.residual(other.fit.effects)[alone], level)
+            asked = able.problem
+            if other.problem.calibration is not asked.calibration:  # each beside its own declared values
+                asked = replace(other.problem, evidence=asked.evidence)
+            declines = declining(error, asked.residual(other.fit.effects)[alone], level)
             total += sign * float(error @ error - declines @ declines)
     return total
 
