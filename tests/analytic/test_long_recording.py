@@ -10,10 +10,12 @@ import numpy as np
 import pytest
 
 import feeddrive as fd
+from feeddrive.diagnosis.judging.judge import judged_recordings, prepared_for_judging
 from feeddrive.diagnosis.likelihood.evidence import prepare
-from feeddrive.diagnosis.preparation import informative
+from feeddrive.diagnosis.preparation import informative, prepared
 from feeddrive.diagnosis.suspicion.quality import flawed
 from feeddrive.interface.measured.first_look import play_seen
+from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.recording.checks.flaws import BAD, JOINED, flaw
 from feeddrive.recording.long import joined
 from feeddrive.recording.long.windows import informative_windows
@@ -22,6 +24,7 @@ from feeddrive.trend.regressors import TRAVEL, grid_for, linear_pass
 from feeddrive.trend.watched_quantities import prior_widths
 from tests.recovery import trend_machine as machine
 from tests.recovery.long_production import blocks
+from tests.recovery.rigid_runs import PLANT, Truth, rigid_run
 
 RADIUS = machine.LEAD / (2 * math.pi)
 STEP = 2e-3
@@ -190,3 +193,15 @@ def test_noise_of_the_sensors_is_that_of_recorded_rows(long_one: fd.Recording, t
     whole = prepare(joined.shortened(long_one, RADIUS), plant, 1.0)
     for name, noise in short.noise.items():
         assert whole.noise[name] == pytest.approx(noise, rel=0.1)
+
+
+def test_shown_is_what_is_judged_and_not_what_lies_between(tmp_path: Path) -> None:
+    (tmp_path / "rigid.toml").write_text(PLANT, encoding="utf-8")
+    plant = read_plant(tmp_path / "rigid.toml")
+    recording = rigid_run("a", Truth())
+    apart = np.zeros(len(recording), dtype=bool)
+    apart[500:700] = apart[1500:1700] = True
+    problem, (evidence,), _ = prepared(plant, [replace(recording, kept_apart=apart)], [], 0.75)
+    (shown,) = judged_recordings(problem, [prepared_for_judging(problem, evidence, plant, plant)])
+    np.testing.assert_array_equal(shown.time, recording.time[apart])
+    assert all(np.isfinite(one.measured).all() for one in shown.channels)

@@ -204,6 +204,7 @@ class Made:
     plant: Plant = PLANT
     numbers: MeasuredRows = field(default_factory=MeasuredRows)
     predictor: Any = field(default_factory=lambda: SimpleNamespace(chance=0.0, of_motion=True))
+    calibration: None = None
 
 
 def standing(fit: Fit, counted: Any, series: FloatArray) -> Standing:

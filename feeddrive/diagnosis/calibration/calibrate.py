@@ -156,7 +156,8 @@ def slopes_of(
         there = replace(problem, calibration=replace(known, coordinates=coordinates)).machine(effects)
         return problem.predictor.predict(there, evidence)
 
-    smooth, base = problem.predictor.smooth(problem.plant) and not has_play(effects), at(0, 0.0)
+    bounces = has_play(effects) and evidence.lost is not None
+    smooth, base = problem.predictor.smooth(problem.plant) and not bounces, at(0, 0.0)
     slopes = {name: np.empty((len(base[name]), len(known.values))) for name in evidence.channels}
     for i, value in enumerate(known.values):
         step = (STEP if smooth else LONG) / value.deviation

@@ -24,7 +24,6 @@ from feeddrive.diagnosis.finding.spring_law import LAWS, soft_everywhere, with_l
 from feeddrive.diagnosis.heat.heat_candidates import is_another
 from feeddrive.diagnosis.judging.result import Trial
 from feeddrive.diagnosis.likelihood.coordinates import write_coordinates
-from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between, regained, same_samples
 from feeddrive.effects.base import Effect
@@ -113,7 +112,7 @@ def search(
         progress(f"round {len(rounds) + 1}: {len(found.effects)} effects so far")
         now = one_round(scene_of(problem, found.effects), found, impossible, denied, len(rounds) + 1)
         taken, near = _likelier(problem, found, now)
-        taken = _of_likelier_law(taken, begun[0].evidence, now.count, denied)
+        taken = _of_likelier_law(taken, now.count, denied)
         rounds.append(tuple(attempt.for_the_record() for attempt in now.attempts))
         names = taken.name.split(" with ") if taken is not None else []
         trials += [_trial(len(rounds), attempt, attempt.name in names) for attempt in rounds[-1]]
@@ -173,14 +172,12 @@ def _likelier(problem: Problem, found: Fit, now: Round) -> tuple[_Taken | None, 
     return best, tuple(Near(here[one.added[0]].name, one.gain, one.speaks) for one in beside)
 
 
-def _of_likelier_law(
-    taken: _Taken | None, whole: Sequence[Evidence], count: int, denied: Container[str]
-) -> _Taken | None:
+def _of_likelier_law(taken: _Taken | None, count: int, denied: Container[str]) -> _Taken | None:
     """A likelier set with the likelier of free play and lost preload, where it adds one of them."""
     names = taken.name.split(" with ") if taken is not None else []
     if taken is None or not any(name in LAWS for name in names):
         return taken
-    there = with_likelier_law(taken.problem, taken.fit, whole, count, denied)
+    there = with_likelier_law(taken.problem, taken.fit, count, denied)
     if there is None:
         return taken
     (law,) = [effect.name for effect in there.fit.effects if effect.name in LAWS]

@@ -3,22 +3,14 @@
 The two say nearly the same of most recordings, and neither is straight in the declared values: values that were fitted
 while the law was missing have gone to stand in for it, some of them several deviations away, and a play of the right
 width is then worse than a softness fitted there. A play is chaotic besides, and predicts fewer samples. So each law
-begins at the declared values, with the samples that it predicts and slopes of its own, and the two are compared by
-
-    log E(B) - log E(A)   on the samples of both, each beside its own declared values
-    + (m (1 + log max(q / c, 1)) c - |r_B|^2) / 2 v   on the m samples that B alone predicts; and the other way round
-
-| symbol | meaning | unit |
-|---|---|---|
-| c, v | mean square of the better one on the samples of both, and its variance along their difference | 1 |
-| q | mean square of A on the m samples, were it asked there: it says how wide its error is, and pays for that | 1 |
+begins at the declared values, with the samples that it predicts and slopes of its own, and the likelier is taken
+(`set_evidence.odds_between`).
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Container, Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -27,14 +19,12 @@ from feeddrive.diagnosis.certainty.imitations import imitations_of
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, with_predictable
 from feeddrive.diagnosis.finding.scene import scene_of
 from feeddrive.diagnosis.likelihood.coordinates import at_its_limit
-from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
-from feeddrive.diagnosis.likelihood.set_evidence import Standing, log_odds, same_samples, variance_along
+from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between, regained, same_samples, variance_along
 from feeddrive.effects.base import Effect, number
 from feeddrive.effects.transmission.backlash import Backlash
 from feeddrive.effects.transmission.preload_loss import PreloadLoss
 from feeddrive.errors import InputError
-from feeddrive.typing import FloatArray
 
 LAWS = (Backlash.name, PreloadLoss.name)
 
@@ -48,9 +38,7 @@ PASSES = 4
 """Times that samples, slopes and fit follow each other; from declared values each is near after two."""
 
 
-def with_likelier_law(
-    problem: Problem, fitted: Fit, whole: Sequence[Evidence], count: int, denied: Container[str] = ()
-) -> Standing | None:
+def with_likelier_law(problem: Problem, fitted: Fit, count: int, denied: Container[str] = ()) -> Standing | None:
     """The likelier of the sets with either law in the place of the one that a set has; None where it has none.
 
     Lost preload at the end of its range is free play, and stands for itself only where there is no fit of that.
@@ -58,7 +46,6 @@ def with_likelier_law(
     Args:
         problem: recordings.
         fitted: the set.
-        whole: the recordings with all samples.
         count: candidates and starts that were tried.
         denied: names that are not asked for.
     """
@@ -67,11 +54,11 @@ def with_likelier_law(
         return None
     place, law = places[0], fitted.effects[places[0]]
     others = [
-        from_declared(problem, fitted.effects, place, start, whole)
+        from_declared(problem, fitted.effects, place, start)
         for start in (law, *imitations_of(law, problem.plant))
         if start.name not in denied
     ]
-    able = [one for one in (_settled(problem, fitted.effects, whole), *others) if one is not None]
+    able = [one for one in (_settled(problem, fitted.effects), *others) if one is not None]
     inside = [one for one in able if not at_its_limit(one.fit.effects[place])]
     best: Standing | None = None
     for one in inside or able:
@@ -80,17 +67,16 @@ def with_likelier_law(
     return best
 
 
-def from_declared(
-    problem: Problem, effects: Sequence[Effect], place: int, law: Effect, whole: Sequence[Evidence]
-) -> Standing | None:
+def from_declared(problem: Problem, effects: Sequence[Effect], place: int, law: Effect) -> Standing | None:
     """A set with a law of the spring at one place, fitted from the declared values on; None where it has no fit."""
-    there = replace(at_declared(problem), evidence=tuple(whole))
+    there = at_declared(regained(problem, ()))
     rest = [effect for i, effect in enumerate(effects) if i != place]
-    (candidate,) = [one for one in problem.predictor.candidates if one.name == law.name]
+    forms = [one.forms for one in problem.predictor.candidates if one.name == law.name]
     try:
-        starts = [law, *(start for form in candidate.forms(scene_of(there, rest)) for start in form)]
+        scene = scene_of(there, rest)
+        starts = [law, *(start for of in forms for form in of(scene) for start in form)]
         sets = [[*effects[:place], start, *effects[place + 1 :]] for start in starts]
-        return _settled(there, min(sets, key=lambda one: _error(there, one)), whole)
+        return _settled(there, min(sets, key=lambda one: _error(there, one)))
     except InputError:
         return None
 
@@ -99,13 +85,13 @@ def _error(problem: Problem, effects: Sequence[Effect]) -> float:
     return fit(problem, effects, error_only=True).squared_error
 
 
-def _settled(problem: Problem, effects: Sequence[Effect], whole: Sequence[Evidence]) -> Standing | None:
+def _settled(problem: Problem, effects: Sequence[Effect]) -> Standing | None:
     """A set fitted with the samples that it predicts, and declared values with slopes beside it."""
     result = None
     try:
         for _ in range(PASSES):
             before = problem
-            problem = recalibrated(with_predictable(replace(problem, evidence=tuple(whole)), effects), effects)
+            problem = recalibrated(with_predictable(regained(problem, ()), effects), effects)
             result = Standing(problem, fit(problem, effects, iterations=JOINT_ITERATIONS))
             effects = result.fit.effects
             if same_samples(before, problem) and (
@@ -137,50 +123,3 @@ def soft_everywhere(problem: Problem, found: Fit) -> list[Effect]:
 
 def _square(one: Fit) -> float:
     return one.squared_error
-
-
-def odds_between(first: Standing, second: Standing, count: int) -> float:
-    """Logarithm of the odds for the second of two sets, each on the samples that it predicts.
-
-    Args:
-        first: a set.
-        second: another.
-        count: candidates and starts that were tried.
-    """
-    one, other = _within(first, second), _within(second, first)
-    odds = log_odds(other.problem, one.fit, other.fit, count)
-    if not math.isfinite(odds) or same_samples(first.problem, second.problem):
-        return odds
-    left = min((one.fit, other.fit), key=lambda fitted: fitted.squared_error)
-    level = left.squared_error / len(left.residual)
-    excess = _beyond(second, first, level) - _beyond(first, second, level)
-    return odds + 0.5 * excess / variance_along(other.problem, left, one.fit, other.fit)
-
-
-def _within(one: Standing, other: Standing) -> Standing:
-    """A set on the samples that another predicts as well."""
-    pairs = zip(one.problem.evidence, other.problem.evidence, strict=True)
-    problem = replace(one.problem, evidence=tuple(a.within(b) for a, b in pairs))
-    if same_samples(one.problem, problem):
-        return one
-    return Standing(problem, fit(problem, one.fit.effects, iterations=JOINT_ITERATIONS))
-
-
-def _beyond(one: Standing, other: Standing, level: float) -> float:
-    """Squared error that a set spares on the samples that it alone predicts, the other saying how wide its error is."""
-    alone = tuple(a.beside(b) for a, b in zip(one.problem.evidence, other.problem.evidence, strict=True))
-    errors = [_errors_at(standing, alone) for standing in (one, other)]
-    if not len(errors[0]) or level <= 0:
-        return 0.0
-    squares = [float(error @ error) for error in errors]
-    wide = max(squares[1] / len(errors[1]) / level, 1.0)
-    return len(errors[0]) * (1 + math.log(wide)) * level - squares[0] if math.isfinite(wide) else 0.0
-
-
-def _errors_at(one: Standing, samples: tuple[Evidence, ...]) -> FloatArray:
-    """Error of a set over the noise at samples that it may not predict, (m,)."""
-    there = replace(one.problem, evidence=samples)
-    if not any(e.fit_rows.any() for e in there.evidence):
-        return np.zeros(0)
-    error = there.unwhitened(one.fit.effects)
-    return error[: len(error) - len(there.numbers)]

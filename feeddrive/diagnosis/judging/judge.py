@@ -202,7 +202,8 @@ def judged_recordings(problem: Problem, judged: Sequence[Judged]) -> tuple[Judge
         rows = evidence.judged_rows
         before, after = (error_series(problem, plant, evidence) for plant in (j.before, j.after))
         first, last = np.flatnonzero(rows)[[0, -1]]
-        part = slice(first, last + 1)
+        kept = np.flatnonzero(~evidence.fitted)  # of a long recording fitted pieces lie between
+        part = kept[(kept >= first) & (kept <= last)]
         series = tuple(
             ChannelSeries(
                 name,

@@ -242,7 +242,8 @@ class Problem:
         if moved and (exact := self._exact_jacobian(effects, moved, vector)) is not None:
             return exact
         _, high = coordinate_ends(moved, self.plant)
-        bounces, longest = has_play(effects), longest_steps(moved, self.plant)
+        bounces = has_play(effects) and any(e.lost is not None for e in self.evidence)
+        longest = longest_steps(moved, self.plant)
         coarse = bounces or not self.predictor.smooth(self.plant)
         short = COARSE if coarse else DIFFERENCE
         columns = []

@@ -211,6 +211,8 @@ ITERATIONS = 4
 def odds_between(first: Standing, second: Standing, count: int) -> float:
     """Logarithm of the odds for the second of two sets, each on the samples that it predicts.
 
+    Each stands beside its own declared values: what the others leave unsaid they say within the same tolerances.
+
     Args:
         first: a set.
         second: another.
@@ -218,9 +220,9 @@ def odds_between(first: Standing, second: Standing, count: int) -> float:
     """
     if same_samples(first.problem, second.problem):
         return log_odds(second.problem, first.fit, second.fit, count)
-    common = commonly_predicted(first.problem, second.problem)
+    common = commonly_predicted(second.problem, first.problem)
     try:
-        there = fitted_there(first, common), fitted_there(second, common)
+        there = fitted_there(first, replace(first.problem, evidence=common.evidence)), fitted_there(second, common)
         return log_odds(common, *there, count, excess_beyond(first, second, _level(*there)))
     except InputError:  # the first cannot be simulated with what suits the common samples best
         return math.inf
@@ -243,7 +245,7 @@ def gain_between(first: Standing, second: Standing, in_folds: bool = True) -> Co
         return compare_left_out(without, errors, others, least_gain(second.problem, without, errors))
     inside, its = _inside(first.problem, second.problem), _inside(second.problem, first.problem)
     before, after = without[inside], errors[its]
-    least = least_gain(commonly_predicted(first.problem, second.problem), before, after)
+    least = least_gain(commonly_predicted(second.problem, first.problem), before, after)
     level = min(float(before @ before), float(after @ after)) / max(len(before), 1)
     without, errors = without[~inside], errors[~its]
     first_declines = declining(errors, second.problem.residual(first.fit.effects)[~its], level)
@@ -269,7 +271,10 @@ def excess_beyond(first: Standing, second: Standing, level: float) -> float:
         alone = ~_inside(able.problem, other.problem)
         if alone.any():
             error = able.fit.residual[alone]
-            declines = declining(error, able.problem.residual(other.fit.effects)[alone], level)
+            asked = able.problem
+            if other.problem.calibration is not asked.calibration:  # each beside its own declared values
+                asked = replace(other.problem, evidence=asked.evidence)
+            declines = declining(error, asked.residual(other.fit.effects)[alone], level)
             total += sign * float(error @ error - declines @ declines)
     return total
 
@@ -304,10 +309,10 @@ def regained(problem: Problem, effects: Sequence[Effect]) -> Problem:
     return replace(problem, evidence=tuple(e.whole for e in problem.evidence))
 
 
-def commonly_predicted(first: Problem, second: Problem) -> Problem:
-    """The second of two problems on the samples of both; weighed as in the one that weighs a sample less."""
-    pairs = zip(first.evidence, second.evidence, strict=True)
-    return replace(second, evidence=tuple(b.within(a) for a, b in pairs))
+def commonly_predicted(problem: Problem, other: Problem) -> Problem:
+    """A problem on the samples that another one has as well, weighed as in the one that weighs a sample less."""
+    pairs = zip(problem.evidence, other.evidence, strict=True)
+    return replace(problem, evidence=tuple(mine.within(its) for mine, its in pairs))
 
 
 def fitted_there(one: Standing, common: Problem) -> Fit:
