@@ -18,7 +18,7 @@ from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.recording import Recording, read_recording, write_recording
 from feeddrive.recording.checks.copies import is_copy
 from feeddrive.recording.checks.find_flaws import find_flaws
-from feeddrive.recording.checks.flaws import BAD, CLIPPED, HELD, Flaw
+from feeddrive.recording.checks.flaws import BAD, CLIPPED, HELD, JOINED, Flaw
 from tests.analytic.sound_recordings import sound_recording
 
 Array = npt.NDArray[np.float64]
@@ -160,6 +160,10 @@ def test_limits_of_the_declared_drive_are_kept_and_others_left_out() -> None:
     with pytest.raises(InputError, match="motor_angle holds 100 samples"):
         refuse_little_left(np.arange(4000) < 1900, angle)
     refuse_little_left(np.arange(4000) < 1900, recording)
+    joined = Recording(
+        "a", recording.time, recording.channels, 5e-4, flaws=(Flaw("motor_angle", JOINED, rows, 0.0, 1),)
+    )
+    refuse_little_left(np.arange(4000) < 1900, joined)  # between pieces that are kept of hours nothing was recorded
 
 
 def test_flaws_follow_a_cut() -> None:

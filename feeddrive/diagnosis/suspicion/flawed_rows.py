@@ -16,7 +16,7 @@ from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 from feeddrive.recording.checks.copies import is_copy
-from feeddrive.recording.checks.flaws import CLIPPED, Flaw
+from feeddrive.recording.checks.flaws import CLIPPED, JOINED, Flaw
 from feeddrive.typing import BoolArray
 from feeddrive.units.quantity import format_quantity
 
@@ -54,9 +54,10 @@ def refuse_little_left(counted: BoolArray, recording: Recording) -> None:
     Raises:
         InputError: less than `LEAST_LEFT` of the rows are left; names the worst flaw.
     """
-    if not recording.flaws or float(np.mean(counted)) >= LEAST_LEFT:
+    flaws = [flaw for flaw in recording.flaws if flaw.kind != JOINED]  # joints are our own doing
+    if not flaws or float(np.mean(counted)) >= LEAST_LEFT:
         return
-    worst = max(recording.flaws, key=lambda flaw: flaw.rows.size)
+    worst = max(flaws, key=lambda flaw: flaw.rows.size)
     unit = {"motor_current": "A", "motor_torque_share": "1", "motor_angle": "rad", "table_position": "m"}
     level = format_quantity(worst.level, unit.get(worst.channel, "N m"))
     did = {CLIPPED: f"is cut off at {level}"}.get(worst.kind, f"holds {worst.rows.size} samples that no machine made")
