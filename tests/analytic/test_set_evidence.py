@@ -240,22 +240,3 @@ def test_set_that_declines_wins_where_the_other_does_worse_there_than_elsewhere(
     assert (odds > 0) is wins
     assert odds_between(second, first, COUNT) == pytest.approx(-odds, rel=1e-6)
     assert gain_between(first, second, in_folds=False).pays is wins
-
-
-@pytest.mark.parametrize(("large", "is_named"), [(THIRD, False), (SECOND, True)])
-def test_second_name_pays_beyond_what_the_form_of_the_first_may_leave(large: Effect, is_named: bool) -> None:
-    """A law that takes 30 times the noise may leave two hundredths of its size; a mere value leaves none."""
-    random = np.random.default_rng(11)
-    columns = {one.name: random.standard_normal(ROWS) for one in (FIRST, large)}
-    # 0.02 of the size of the first is 0.6 of the noise: an effect by itself
-    measured = random.standard_normal(ROWS) + 30.0 * columns[large.name] + 0.6 * columns[FIRST.name]
-    there = problem(columns, measured)
-    one, both = fitted([large], columns, measured), fitted([large, FIRST], columns, measured)
-    assert (log_odds(there, one, both, COUNT) > 0) == is_named
-    # the same is told by slopes
-    (odds,) = [
-        odds
-        for effect, odds in zip(both.effects, odds_of_members(there, both, COUNT), strict=True)
-        if effect.name == FIRST.name
-    ]
-    assert (odds > 0) == is_named

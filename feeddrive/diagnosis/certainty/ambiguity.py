@@ -31,6 +31,7 @@ from feeddrive.diagnosis.likelihood.set_evidence import (
     regained,
     same_samples,
 )
+from feeddrive.diagnosis.likelihood.tolerances import SURE
 from feeddrive.effects.base import Effect, number
 from feeddrive.effects.chain.stiffness_deviation import PARTS, StiffnessDeviation, parts_of
 from feeddrive.errors import InputError
@@ -59,6 +60,9 @@ PLACED = ("inertia_deviation", "channel_delay", "stiffness_deviation")
 PASSES = 2
 """Times that a rival and declared values are fitted in turn: what a rival that is as good is behind by, two remove; of
 one that is not the odds alone are asked, and nothing of its values is reported."""
+
+WITHIN = {("position_spring", "constant_force")}
+"""Laws that hold another within them, a spring of no stiffness a force: what the data do not tell from that is that."""
 
 ITERATIONS = 12
 """Steps of that fit at most; it starts from values that were fitted in the round of the search, others with it."""
@@ -114,6 +118,8 @@ def rivals_of(found: Search, judged: Sequence[Judged]) -> list[list[Rival]]:
         ]
         tried = [_in_place(found, judged, place, rival, mine) for rival in (*near, *like)]
         good = [rival for rival in tried if rival is not None and rival.as_good and not at_its_limit(rival.effect)]
+        taken = found.fit.effects[place].name
+        good = [r for r in good if (r.effect.name, taken) not in WITHIN or r.distance > SURE]
         best: dict[str, Rival] = {}
         for rival in sorted(good, key=lambda rival: rival.odds):
             best.setdefault(rival.effect.name, rival)

@@ -31,12 +31,12 @@ def imitations_of(effect: Effect, plant: Plant) -> tuple[Effect, ...]:
         effect: found.
         plant: as declared.
     """
-    if not plant.chain.elastic:
+    if not isinstance(effect, PreloadLoss | Backlash) or not plant.chain.elastic:
         return ()
     if isinstance(effect, PreloadLoss):
         width = lost_motion(number(effect.values["ratio"]), number(effect.values["force"]), plant)
         return (Backlash.of(width=min(width, Backlash.parameter("width").maximum)),) if width > 0 else ()
-    if not isinstance(effect, Backlash) or number(effect.values["width"]) <= 0:
+    if number(effect.values["width"]) <= 0:
         return ()
     force = 0.5 * number(effect.values["width"]) * nut_stiffness(plant) * SOFTENED / (1 - SOFTENED)
     return (PreloadLoss.of(ratio=SOFTENED, force=force),)

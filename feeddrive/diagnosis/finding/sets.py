@@ -36,7 +36,6 @@ from feeddrive.diagnosis.likelihood.set_evidence import (
     log_volume,
     odds_between,
     regained,
-    taken_by_laws,
 )
 from feeddrive.effects.base import Effect
 from feeddrive.typing import FloatArray, IntegerArray
@@ -191,7 +190,6 @@ class _Columns:
 
     def __init__(self, problem: Problem, found: Fit, attempts: Sequence[Attempt], count: int) -> None:
         self.problem, self.found, self.count = problem, found, count
-        self.laws: dict[tuple[int, ...], float] = {}
         self.own = [attempt.fit for attempt in attempts]
         sizes = [len(read_coordinates([effect], problem.plant)) for effect in found.effects]
         self.member = np.cumsum([0, *sizes])
@@ -253,17 +251,9 @@ class _Columns:
         less = min(before, before - excess)
         if square <= 0 or less <= 0:
             return Neighbour(dropped, added, -np.inf)
-        form = less + self._by_laws(dropped)
-        variance = float(taken @ self.scatter @ taken) / square * less / before + DISCREPANCY * form
+        variance = float(taken @ self.scatter @ taken) / square * less / before + DISCREPANCY * less
         gain = self._gain(excess, variance, free, effects, coordinates)
         return Neighbour(dropped, added, gain, 0.5 * excess / max(variance, TINY))
-
-    def _by_laws(self, dropped: tuple[int, ...]) -> float:
-        """What the members that stay take of the squared error, those without a form aside."""
-        if dropped not in self.laws:
-            kept = [effect for place, effect in enumerate(self.found.effects) if place not in dropped]
-            self.laws[dropped] = taken_by_laws(self.problem, kept)
-        return self.laws[dropped]
 
     def _gain(
         self, excess: float, variance: float, free: IntegerArray, effects: Sequence[Effect], coordinates: FloatArray

@@ -152,10 +152,7 @@ def encoder_error(
     if step <= 0 or round(WINDOW / sample_time) < 16 or len(angle) < 4 * round(WINDOW / sample_time):
         return None
     time: FloatArray = np.arange(len(angle), dtype=np.float64) * sample_time
-    expected = expected_motion(angle, step, sample_time)
-    errors = [drawn_error(expected, step, sample_time, draw) for draw in range(DRAWS)]
-    share = _share_of_error(expected, errors, sample_time)
-    expected = without_share(expected, share, sample_time)
+    expected, share = known_motion_of(angle, step, sample_time)
     errors = [drawn_error(expected, step, sample_time, draw, share) for draw in range(DRAWS)]
     motion, *drawn = motor_motions(time, np.column_stack([expected, *(expected + left for left in errors)]))
     try:
@@ -189,6 +186,20 @@ def encoder_error(
     return EncoderError(
         motion, tuple(drawn), gains, added, {name: np.column_stack(c) for name, c in unsure.items() if c}
     )
+
+
+def known_motion_of(angle: FloatArray, step: float, sample_time: float) -> tuple[FloatArray, FloatArray]:
+    """The motion that is expected, without what is more error than motion, (n,), and the share of the error in it.
+
+    Args:
+        angle: as the encoder gives it, (n,).
+        step: of the encoder.
+        sample_time: of the rows [s].
+    """
+    expected = expected_motion(angle, step, sample_time)
+    errors = [drawn_error(expected, step, sample_time, draw) for draw in range(DRAWS)]
+    share = _share_of_error(expected, errors, sample_time)
+    return without_share(expected, share, sample_time), share
 
 
 def _answer(run: LoadMotion, name: str) -> FloatArray:

@@ -11,7 +11,7 @@ import numpy as np
 
 from feeddrive.diagnosis.calibration.calibration import Whitener, whitener
 from feeddrive.diagnosis.likelihood.band import END_CUT, Band, comparison_band, held, sensor_noise
-from feeddrive.diagnosis.likelihood.encoder_error import Weighing, encoder_error, expected_motion
+from feeddrive.diagnosis.likelihood.encoder_error import Weighing, encoder_error, known_motion_of
 from feeddrive.diagnosis.likelihood.slow_rows import (
     is_slow,
     known_motion,
@@ -273,9 +273,9 @@ class AxisEvidence(Evidence):
 
     def at_other_times(self, recording: Recording) -> AxisEvidence:
         """The evidence as it is where the same rows have other times: what changes is the motion between them."""
-        angle, sample_time = recording["motor_angle"], recording.sample_time
+        angle = recording["motor_angle"]
         if self.gains:
-            angle = expected_motion(angle, quantisation_step(angle), sample_time)
+            angle = known_motion_of(angle, quantisation_step(angle), recording.sample_time)[0]
         motion = motor_motion(_from_zero(recording), angle).timed(clock(recording))
         return replace(self, recording=recording, motion=motion)
 

@@ -1,7 +1,7 @@
 """Evidence of a set of effects: what the data say for it, less what its freedom and its luck among many cost.
 
     log E(S) = -|r_S|² / 2c + Σ log p(θ_i) + k/2 log 2π - 1/2 log |H/c + W⁻²| + log p(S)
-    c = d' Γ d / d'd + δ (|r|² + |s|²)
+    c = d' Γ d / d'd + δ |r|²
     p(S) = B(1 + |S|, 2K - |S|) / B(1, K)
 
 | symbol | meaning | unit |
@@ -12,7 +12,6 @@
 | H | J'J of the slopes of the prediction with θ | 1 |
 | d | difference of the residuals of two sets that are compared | 1 |
 | Γ | covariance of the residual that is less: its spectrum, its level where d is large, sums over blocks | 1 |
-| s | what the laws that both sets hold take from the residual; values that have no form aside | 1 |
 | δ | `DISCREPANCY` | 1 |
 | K | candidates and starts that were tried for one further effect | 1 |
 
@@ -23,15 +22,13 @@ with others on those that both predict; where only one, A, predicts, the other, 
 
 in place of the m squares of mean q_B: as likely as a normal distribution of that variance. A must do there as well as
 elsewhere, B pays for its freedom. Their discrepancy from the law is not known beforehand: Γ is that
-of what is left, so that a channel, a frequency or a kind of motion that the model reaches badly counts for little. A
-law of another form than ours leaves a share of what it does itself: what is no more than that is no second effect.
+of what is left, so that a channel, a frequency or a kind of motion that the model reaches badly counts for little.
 Sources: MacKay, Neural Computation 4 (1992) 415 (Laplace); Scott and Berger, Ann. Statist. 38 (2010) 2587 (p(S)).
 """
 
 from __future__ import annotations
 
 import math
-from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -58,7 +55,6 @@ from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
 from feeddrive.diagnosis.likelihood.folds import block_numbers
 from feeddrive.diagnosis.likelihood.predictability import has_play
 from feeddrive.effects.base import Effect, number
-from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.effects.transmission.backlash import Backlash
 from feeddrive.effects.transmission.preload_loss import PreloadLoss
 from feeddrive.errors import InputError
@@ -71,15 +67,8 @@ PLACES = frozenset({"centre"})
 TINY = 1e-9
 """In place of a width of nothing over its size [1]: no data tell a femtometre from none."""
 
-FORMLESS = frozenset({
-    "constant_force", "payload", "inertia_deviation", "stiffness_deviation", "friction_deviation", "drive_delay",
-    "channel_delay",
-})  # fmt: skip
-"""Effects that are values of the machine and its recorder: there is no other form of them."""
-
 DISCREPANCY = 2e-4
-"""Share of the squared residual, and of the square that a law takes, that a law other than ours leaves along any one
-direction (variance). The luckiest of
+"""Share of the squared residual that a law other than ours leaves along any one direction (variance). The luckiest of
 some hundred candidates, at 2.2 deviations, then takes 0.1 % away: as much as it does of recordings with nothing in."""
 
 
@@ -153,34 +142,12 @@ def log_odds(problem: Problem, first: Fit, second: Fit, count: int, beyond: floa
     if not np.isfinite(excess):
         return float("inf") if excess > 0 else float("-inf")
     variance = variance_along(problem, min((first, second), key=lambda one: one.squared_error), first, second)
-    variance += DISCREPANCY * taken_by_laws(problem, _common(first.effects, second.effects))
     sets = [
         log_volume(one.effects, problem.plant, one.coordinates, one.jacobian.T @ one.jacobian, variance)
         + log_prior_of_size(len(one.effects), count)
         for one in (first, second)
     ]
     return 0.5 * excess / variance + sets[1] - sets[0]
-
-
-def _common(effects: Sequence[Effect], others: Sequence[Effect]) -> list[Effect]:
-    """The effects of a set that another set holds too, with their values in the first."""
-    there = Counter((one.name, one.port, one.place) for one in others)
-    result = []
-    for effect in effects:
-        if there[effect.name, effect.port, effect.place] > 0:
-            there[effect.name, effect.port, effect.place] -= 1
-            result.append(effect)
-    return result
-
-
-def taken_by_laws(problem: Problem, effects: Sequence[Effect]) -> float:
-    """|s|²: by how much effects that have a form lower the squared error of a set."""
-    formless = [one for one in effects if one.name in FORMLESS or one.name not in EFFECTS]
-    if not problem.predictor.of_motion or len(formless) == len(effects):
-        return 0.0
-    without, having = (problem.residual(some) for some in (formless, effects))
-    taken = float(without @ without) - float(having @ having)
-    return max(taken, 0.0) if np.isfinite(taken) else 0.0
 
 
 def variance_along(problem: Problem, left: Fit, first: Fit, second: Fit) -> float:
