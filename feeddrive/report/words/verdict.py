@@ -116,14 +116,14 @@ def _doubts(diagnosis: Diagnosis) -> list[str]:
 
 
 def _possible(diagnosis: Diagnosis) -> list[str]:
-    """Names that are not asserted, with their odds and what settles them; those that the same settles together."""
-    settled: dict[str, list[str]] = {}
-    for one in diagnosis.possible:
-        if not one.instead_of:
-            words = f"{effect_words(one.name)} (odds {odds_text(one.odds / (1 + one.odds))})"
-            settled.setdefault(one.settles, []).append(words)
+    """Names that are not asserted, with their odds; what settles one, where it is one."""
+    alone = [one for one in diagnosis.possible if not one.instead_of]
+    if not alone:
+        return []
+    names = [f"{effect_words(one.name)} (odds {odds_text(one.odds / (1 + one.odds))})" for one in alone]
     beside = "Possible beside these" if diagnosis.effects else "Possible, and not asserted"
-    return [f"{beside}: {joined(names)}; {settles} settles it." for settles, names in settled.items()]
+    settled = f"; {alone[0].settles} settles it" if len(alone) == 1 else "; diagnosis.json says what settles each"
+    return [f"{beside}: {joined(names)}{settled}."]
 
 
 def _begin(text: str) -> str:
