@@ -100,7 +100,7 @@ def _continued(problem: Problem, start: Sequence[Effect], progress: Callable[[st
     problem = with_predictable(problem, start)
     earlier = range(len(problem.evidence) - 1)
     again = find_changes(problem, fit(problem, start).effects, earlier)
-    needed = _still_needed(problem, again.fit)
+    needed = _still_needed(again.problem, again.fit)
     again = replace(again, problem=needed.problem, fit=needed.fit)
     more = _searched(needed.problem, again, progress)
     effects = (*without_shifts(again.fit.effects), *more.fit.effects)
