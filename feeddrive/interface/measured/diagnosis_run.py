@@ -158,7 +158,11 @@ def diagnose_files(job: Job, progress: Callable[[str], None] = lambda _: None) -
     runs_of(job.out)  # refused now if it cannot be read, and not when all is done
     declared = _bytes(job.plant)
     axis = load(job.plant)  # refused before the recordings are read
-    fitted, judged = ([_read(source) for source in sources] for sources in (job.recordings, job.validation))
+    paths = [source.path for source in (*job.recordings, *job.validation)]
+    fitted, judged = (
+        [called_apart(_read(source), source.path, paths) for source in sources]
+        for sources in (job.recordings, job.validation)
+    )
     fitted = list(informative(axis.plant, fitted, 1.0 if judged else job.split))  # the rest is given back
     judged = list(informative(axis.plant, judged))
     if _bytes(job.plant) != declared:
@@ -218,6 +222,13 @@ def _bytes(plant: Path) -> bytes:
         return plant.read_bytes()
     except OSError as error:
         raise InputError(f"cannot be read ({error.strerror})", str(plant), "put the plant file back") from None
+
+
+def called_apart(recording: Recording, path: Path, paths: Sequence[Path]) -> Recording:
+    """A recording that is called by its folder as well where another file has its name: every run writes the same."""
+    if recording.name != path.name or sum(one.name == path.name for one in paths) < 2:
+        return recording
+    return replace(recording, name=f"{path.absolute().parent.name}/{path.name}")
 
 
 def _read(source: Source) -> Recording:
