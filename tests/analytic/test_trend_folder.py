@@ -37,6 +37,17 @@ from tests.recovery.trend_files import write_recording
         ("2026-02-01.csv", "Start: 2026-01-31 06:00\n", "", "2026-01-31 06:00:00"),  # content before name
         # 100 ns since 1601: 116444736000000000 is the beginning of 1970
         ("a.csv", "Name\tx\nStarttime of export\t116444736610000000\n", "", "1970-01-01 00:01:01"),
+        ("a.csv", "Name:x\nStarttime of export:116444736610000000:Montag\n", "", "1970-01-01 00:01:01"),
+        # TNCscope: s since 1970, and the control's own time an hour ahead of UTC
+        ("a.sco", "%TNCscopeNT data file\n%TIME=1769869805\n%DIFFTIMEUTC=3600\n%[CURVE1]\n", "", "2026-01-31 15:30:05"),
+        # SINUMERIK Operate: behind a long set-up of the display
+        (
+            "a.xml",
+            200 * "<signal/>\n" + '<frameHeader startTime="2026-01-31T14:30:05.613Z"/>',
+            "",
+            "2026-01-31 14:30:05",
+        ),
+        ("a.csv", "time,table_position [mm]\n2026-01-31 14:30:05.001,1.5\n", "", "2026-01-31 14:30:05"),
     ],
 )
 def test_dates(name: str, head: str, pattern: str, expected: str) -> None:
