@@ -245,3 +245,19 @@ def test_search_of_two_recordings_does_not_contradict_all_of_them(
     assert "play jumps by +4" in watched.verdict and said in watched.verdict
     assert fd.watch(folder, axis, search=True).verdict == watched.verdict
     assert asked == [["x_2026-01-07.csv", "x_2026-01-09.csv"]]
+
+
+def test_a_file_of_another_axis_is_not_mixed_in(tmp_path: Path, axis: fd.Axis) -> None:
+    """Of the same form, but with another lead: it is listed with both leads and moves no value."""
+    folder = tmp_path / "days"
+    folder.mkdir()
+    for number in range(3):
+        write_recording(folder / f"x_2026-01-{number + 1:02d}.csv", day(number))
+    other = day(7)
+    halved = other.channels | {"motor_angle": 2.0 * other.channels["motor_angle"]}
+    write_recording(folder / "y_2026-01-02.csv", replace(other, channels=halved))
+    found = fd.watch(folder, axis).trend
+    assert statuses(found)["y_2026-01-02.csv"] == "broken"
+    assert len(found.used) == 3
+    (entry,) = [one for one in found.entries if one.key == "y_2026-01-02.csv"]
+    assert "moves 5 mm per revolution" in entry.reason and "lead is 10 mm" in entry.reason
