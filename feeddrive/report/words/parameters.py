@@ -60,8 +60,8 @@ def parameter_text(key: str, parameter: ParameterResult) -> ParameterText:
 def _number_text(key: str, value: float, unit: str, ci95: object, most_digits: int | None = None) -> ParameterText:
     """Value with as many digits as the interval supports, three significant ones where there is no interval.
 
-    Of at most `most_digits` significant ones the interval is left out where both of its ends are then the value's. Where
-    the interval is as good as open above, its lower end is all that is known.
+    Of at most `most_digits` significant ones the interval is left out where both of its ends are then the value's.
+    Where the interval is as good as open above, its lower end is all that is known.
     """
     ends = ci95 if isinstance(ci95, tuple) and len(ci95) == 2 and all(map(math.isfinite, ci95)) else None
     # A value of zero has no size of its own; the interval gives the unit.
