@@ -3,24 +3,32 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from feeddrive.diagnosis.calibration.beyond import said_by_effects
+from feeddrive.diagnosis.calibration.calibrate import calibrated
 from feeddrive.diagnosis.certainty.ambiguity import ambiguous_sets, at_its_limit, rivals_of
 from feeddrive.diagnosis.certainty.inclusion import asserted, odds_for, possible_effects
 from feeddrive.diagnosis.certainty.next_experiment import distance, hardly_known, next_experiments
 from feeddrive.diagnosis.certainty.noise_colour import independent_share
 from feeddrive.diagnosis.certainty.preferred import with_the_preferred
 from feeddrive.diagnosis.certainty.rehearsal import Rehearsal, rehearsals
-from feeddrive.diagnosis.judging.judge import share_of
+from feeddrive.diagnosis.finding.attempt import compared
+from feeddrive.diagnosis.finding.search import Search
+from feeddrive.diagnosis.judging.judge import prepared_for_judging, share_of
+from feeddrive.diagnosis.judging.result import Trial
 from feeddrive.diagnosis.likelihood.cross_validation import compare_left_out
 from feeddrive.diagnosis.likelihood.evidence import AxisEvidence, prepare
 from feeddrive.diagnosis.likelihood.fit import Problem, fit
 from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
 from feeddrive.effects.base import Effect, Port
 from feeddrive.effects.catalogue import EFFECTS
+from feeddrive.files import plants_folder
 from feeddrive.plant.analysis.modes import inertia_at_motor
+from feeddrive.plant.file.plant_file import read_plant
 from tests.recovery.drawn import drawn, settled
 from tests.recovery.planted import axis_plant, pair
 
@@ -75,6 +83,30 @@ def test_small_effect_is_not_alike_to_whatever_costs_less_than_5_per_cent() -> N
     alike = ambiguous_sets(found, rivals_of(found, judged))
     # where nothing hangs, a constant force and an offset of the recorded torque are one
     assert [one.names for one in alike] == [("constant_force", "channel_offset")]
+
+
+def test_what_explains_nothing_beside_a_value_within_its_tolerance_is_no_rival(tmp_path: Path) -> None:
+    """The mass is 2.3 deviations beyond what is declared, so that naming it is worth some 14 to 1.
+
+    With any idle name in the place of the payload the mass itself is fitted again, at that price alone.
+    """
+    text = (plants_folder() / "bench_axis.toml").read_text(encoding="utf-8")
+    weighed = tmp_path / "weighed.toml"
+    weighed.write_text(text.replace('"134 kg"', '{ value = "134 kg", tolerance = "10 %" }'), encoding="utf-8")
+    plant, payload = read_plant(weighed), EFFECTS["payload"].of(mass=134 * np.expm1(2.3 * 0.05))
+    fitted, judged = (prepare(one, plant, share) for one, share in zip(pair("bench", "null"), (1.0, 0.0), strict=True))
+    problem = calibrated(Problem(plant, (drawn(plant, fitted, [payload], 3),), AxisPredictor()))
+    assert problem.calibration is not None and [value.key for value in problem.calibration.values] == ["table_mass"]
+    rest, (taken,) = said_by_effects(problem, [EFFECTS["payload"].of(mass=0.0)])
+    found = fit(rest, [taken])
+    ripple = compared(
+        rest, "torque_ripple", fit(rest, [EFFECTS["torque_ripple"].of(amplitude=1e-4, order=3.0, phase=0.0)]), []
+    )
+    ripple = replace(ripple, comparison=replace(ripple.comparison, gain=1.0, standard_error=0.0))
+    search = Search(rest, found, (Trial(1, "payload", 1.0, 0.0, True),), ((ripple,),), {})
+    after = plant.with_effects(*found.effects)
+    seen = [prepared_for_judging(rest, drawn(plant, judged, [payload], 4), plant, after)]
+    assert ambiguous_sets(search, rivals_of(search, seen)) == ()
 
 
 def test_set_is_led_by_the_member_with_fewest_parameters() -> None:
