@@ -125,14 +125,13 @@ def search(
             problem, found = _refitted(problem, fit(problem, rest))
         if taken is None:
             left_out = problem.budget.skips("declared values beyond their tolerances")
-            beyond = None if left_out else beyond_tolerance(problem, found)
+            beyond = None if left_out else _with_value_beyond(problem, found)
             if beyond is None and others:
                 continue
             if beyond is None:
                 break
-            problem, effect = beyond
-            problem, found = _refitted(problem, fit(problem, (*found.effects, effect)))
-            trials.append(Trial(len(rounds), effect.name, 0.0, 0.0, True))
+            problem, found = beyond
+            trials.append(Trial(len(rounds), found.effects[-1].name, 0.0, 0.0, True))
             continue
         problem = without_effects(taken.problem, found.effects, taken.fit.effects)
         problem, found = _refitted(problem, taken.fit)
@@ -252,6 +251,20 @@ def _refitted(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
         other = anew, fit(anew, found.effects, iterations=JOINT_ITERATIONS)
         result = min(result, other, key=lambda one: one[1].squared_error)
     return result
+
+
+def _with_value_beyond(problem: Problem, found: Fit) -> tuple[Problem, Fit] | None:
+    """A set with the declared value as an effect that is beyond its tolerance; None where none is.
+
+    Free of its tolerance a value can only lower the error. Where it does not, slopes alone said so: beside a free play
+    a step of a value moves the contacts, and what the slope then tells holds for that step.
+    """
+    beyond = beyond_tolerance(problem, found)
+    if beyond is None:
+        return None
+    freed, effect = beyond
+    there, result = _refitted(freed, fit(freed, (*found.effects, effect)))
+    return (there, result) if result.squared_error < found.squared_error else None
 
 
 def _trial(number: int, attempt: Attempt, taken: bool) -> Trial:

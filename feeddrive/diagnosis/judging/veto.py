@@ -26,6 +26,7 @@ from scipy.special import chdtri
 
 from feeddrive.diagnosis.calibration.beyond import without_effects
 from feeddrive.diagnosis.calibration.calibrate import weighed_by_rest, with_kept
+from feeddrive.diagnosis.certainty.one_sided import one_sided
 from feeddrive.diagnosis.certainty.uncertainty import certainty
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging.judge import Judged, Share, error_series, judged_channels, share_beyond, share_of
@@ -250,7 +251,7 @@ def sizes_around_none(problem: Problem, fitted: Fit) -> list[str]:
     """Per effect, a sentence where the 95 % intervals of all its sizes hold the absent effect; else empty.
 
     Of components and nodes that belong together the whole is asked: their squares over their variances, against the
-    same quantile.
+    same quantile. Of a size whose slope tells nothing the likelihood is asked (`one_sided`).
     """
     if not fitted.effects:
         return []
@@ -259,12 +260,13 @@ def sizes_around_none(problem: Problem, fitted: Fit) -> list[str]:
     beyond = fitted.coordinates - absent
     half = np.sqrt(np.diag(known.half_covariance))
     result, at = [], 0
-    for effect in fitted.effects:
+    for place, effect in enumerate(fitted.effects):
         count = len(read_coordinates([effect], problem.plant))
         places = range(at, at + count)
         sizes = sorted({int(groups[i]) for i in places if not math.isnan(absent[i])})
         sure = [_is_not_none(known.half_covariance, beyond, half, np.flatnonzero(groups == group)) for group in sizes]
-        result.append("" if any(sure) or not sizes or is_shift(effect) else "its interval holds no effect at all")
+        denied = not (any(sure) or not sizes or is_shift(effect)) and one_sided(problem, fitted, place) is None
+        result.append("its interval holds no effect at all" if denied else "")
         at += count
     return result
 

@@ -258,10 +258,21 @@ class AxisEvidence(Evidence):
         if name not in self.gains:
             return series
         known = np.isfinite(series)
-        mean = float(np.mean(series[known])) if known.any() else 0.0  # apart, so that gaps do not make steps
-        filled = np.where(known, series - mean, 0.0)
+        inside = known & self._between_ends
+        mean = float(np.mean(series[inside])) if inside.any() else 0.0  # apart, so that gaps do not make steps
+        filled = np.where(inside, series - mean, 0.0)
         weighed = self._weighing[name](filled)
         return np.where(known, weighed + self.gains[name][0] * mean, series)
+
+    @cached_property
+    def _between_ends(self) -> BoolArray:
+        """Samples from the first that counts to the last, (n,).
+
+        A simulation begins at rest without stretch: what it does until that is forgotten would be carried on.
+        """
+        counted = self.counted if self.lost is None else self.counted | self.lost
+        inside: BoolArray = np.logical_or.accumulate(counted) & np.logical_or.accumulate(counted[::-1])[::-1]
+        return inside
 
     @cached_property
     def _weighing(self) -> dict[str, Weighing]:

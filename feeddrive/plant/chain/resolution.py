@@ -13,9 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feeddrive.plant.analysis.modes import Modes, braked_modes, free_modes
-from feeddrive.plant.chain.distributed_screw import DistributedScrew
 from feeddrive.plant.chain.drive_values import hubs_between
-from feeddrive.plant.chain.standing_waves import ScrewWithWaves, waves_needed
 from feeddrive.plant.plant import Plant
 
 ACCURACY = 0.005
@@ -56,12 +54,9 @@ def resolved(plant: Plant, frequency: float, positions: Sequence[float]) -> Plan
         positions: of the table [m].
     """
     chain = plant.chain.without_modes
-    if not isinstance(chain, DistributedScrew):
-        return plant
-    bare = DistributedScrew(plant.chain_values())
-    waves = max(waves_needed(bare, frequency, x, ACCURACY) for x in positions)
     hubs = hubs_between(plant.drive) if plant.drive is not None else ()
-    return replace(plant, mechanics=ScrewWithWaves(chain.values, 1, waves, hubs))
+    fine = chain.resolved(plant.chain_values(), frequency, positions, ACCURACY, hubs)
+    return plant if fine is chain else replace(plant, mechanics=fine)
 
 
 def resolved_modes(plant: Plant, position: float, count: int = FIRST) -> ResolvedModes:
@@ -76,12 +71,12 @@ def resolved_modes(plant: Plant, position: float, count: int = FIRST) -> Resolve
         InputError: the nut would not be on the screw.
     """
     own = _first(braked_modes(plant, position), count), _first(free_modes(plant, position), count + 1)
-    if not isinstance(plant.chain.without_modes, DistributedScrew):
-        return ResolvedModes(plant.chain.coordinates, *own, float("inf"))
     counts = [len(modes.frequencies) for modes in own]
     highest = max(float(modes.frequencies[-1]) for modes in own)
     for _ in range(_ROUNDS):
         fine = resolved(plant, highest, [position])
+        if fine is plant:
+            return ResolvedModes(plant.chain.coordinates, *own, float("inf"))
         found = [_first(modes(fine, position), n) for modes, n in zip((braked_modes, free_modes), counts, strict=True)]
         reached, highest = highest, max(float(modes.frequencies[-1]) for modes in found)
         if highest <= reached:  # it held up to there
