@@ -1,4 +1,4 @@
-"""Free play with soft edges is drawn only where it is free play: the nearest spring of two lines hardly carries in it."""
+"""Soft edges of a free play are drawn only where the nearest spring of two lines hardly carries within."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from feeddrive.diagnosis.likelihood.coordinates import LEAST
+from tests.generator.axis import BENCH
 from tests.generator.constants import Constants, declared_constants
 from tests.generator.drawn_effects import SOFT_EDGES
-from tests.generator.axis import BENCH
 from tests.generator.transmission import spring
 
 STRETCHES = np.linspace(0.0, 2.0, 2001)
