@@ -437,4 +437,7 @@ def is_possible(effect: Effect, machine: Machine) -> bool:
     level = c.guide_coulomb + sum(min(part, 0.0) for part in parts)
     largest = c.droop * machine.axis.controller.torque_limit**c.droop_power
     numbers = np.array([level, c.table_mass, c.motor_inertia, c.screw_inertia, c.axial_stiffness, 0.4 - largest])
-    return bool(np.all(numbers > 0.0)) and c.stroke_share < 0.9 and abs(c.passing_amplitude) < c.nut_coulomb * 1.5
+    phase = np.linspace(0.0, 2.0 * math.pi, 721)
+    rising = float(np.max(np.sin(phase) + c.passing_second * np.sin(2.0 * phase)))
+    drag = c.nut_coulomb + c.bearing_coulomb - abs(c.passing_amplitude) * rising
+    return bool(np.all(numbers > 0.0)) and c.stroke_share < 0.9 and drag > 0.0
