@@ -6,6 +6,7 @@ An effect that the search took is not reported as found where
 - it does not lower the error on the judged data; where they could hardly show it, or it lowers it by no more than the
   gain's scatter, the gain on blocks left out of the fit must be three times its scatter instead;
 - the intervals of all its sizes hold the absent effect (no amplitude, a factor of one);
+- with it friction would push the axis, which no plant file may hold, and without it not;
 - a channel is predicted worse with what was found than as declared, by more than the scatter of its rms, and this
   effect worsens it most.
 
@@ -43,7 +44,7 @@ from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between, 
 from feeddrive.diagnosis.likelihood.tolerances import SURE
 from feeddrive.diagnosis.recordings.compared import judged_changes
 from feeddrive.diagnosis.recordings.recordings import RecordingShift, is_shift, without_shifts
-from feeddrive.effects.base import ChainEffect, Effect
+from feeddrive.effects.base import ChainEffect, Effect, FrictionEffect
 from feeddrive.typing import FloatArray, IntegerArray
 from feeddrive.units.quantity import format_quantity, percent
 
@@ -129,10 +130,12 @@ def _first_denied(found: Search, judged: Sequence[Judged]) -> Denied | None:
         idle = ["" if stood else reason for reason, stood in zip(idle, stands, strict=True)]
         worst = _worst_channel(other.problem, other.allowed)
     at_end, around_none = ends_reached(problem, found.fit), sizes_around_none(problem, found.fit)
+    pushing = friction_that_pushes(problem, effects)
+    reasons = [at_end[i] or idle[i] or around_none[i] or pushing[i] for i in named]
     denied = [
-        Denied(i, shares[i].comparison.gain, at_end[i] or idle[i] or around_none[i])
-        for i in named
-        if (at_end[i] or idle[i] or around_none[i]) and not _differs(effects, i)
+        Denied(i, shares[i].comparison.gain, reason)
+        for i, reason in enumerate(reasons)
+        if reason and not _differs(effects, i)
     ]
     if worst and not denied:
         place = min(named, key=lambda i: shares[i].explains[worst])
@@ -279,6 +282,17 @@ def _is_not_none(covariance: FloatArray, beyond: FloatArray, half: FloatArray, g
     # half widths are 1.96 standard deviations
     square = float(beyond[group] @ np.linalg.pinv(part, hermitian=True) @ beyond[group]) * 1.96**2
     return square > float(chdtri(len(group), 0.05))
+
+
+def friction_that_pushes(problem: Problem, effects: Sequence[Effect]) -> list[str]:
+    """Per effect, a sentence where friction pushes the axis with it and not without; where none is alone, for all."""
+    there = problem.settled(effects)
+    if there.possible(effects):
+        return [""] * len(effects)
+    rubs = [isinstance(effect, FrictionEffect) for effect in effects]
+    alone = [rub and there.possible([*effects[:i], *effects[i + 1 :]]) for i, rub in enumerate(rubs)]
+    told = alone if any(alone) else rubs
+    return ["with it friction would push the axis somewhere within its reach" if one else "" for one in told]
 
 
 def _worst_channel(problem: Problem, judged: Sequence[Judged]) -> str:

@@ -222,9 +222,12 @@ class Problem:
             return self
         wanted = self.whitener.most_likely(residual)
         before = float(residual @ residual) + known.variance * float(known.coordinates @ known.coordinates)
+        possible = self.possible(effects)
         for share in (1.0, 0.5, 0.1):
             coordinates = known.coordinates + share * (wanted - known.coordinates)
             there = replace(self, calibration=replace(known, coordinates=coordinates))
+            if possible and not there.possible(effects):
+                continue  # friction that an effect takes more than all of
             left = there.unwhitened(effects)
             if np.all(np.isfinite(left)) and left @ left + known.variance * float(coordinates @ coordinates) < before:
                 return there
