@@ -13,9 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from feeddrive.diagnosis.calibration.beyond import beyond_tolerance, without_effects
-from feeddrive.diagnosis.calibration.calibrate import at_declared, calibrated, recalibrated
+from feeddrive.diagnosis.calibration.calibrate import at_declared, calibrated, recalibrated, recalibrated_by_rest
 from feeddrive.diagnosis.calibration.known import TOLERANCE
-from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, Attempt, compared, started
+from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, Attempt, compared, refuse_over_at_once, started
 from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.finding.round import Round, one_round
 from feeddrive.diagnosis.finding.scene import scene_of
@@ -210,6 +210,7 @@ def _fitted(at_hand: Standing, one: Neighbour, attempts: Sequence[Attempt], coun
         again = regained(own, result.effects)
         if again is not own:  # what the play could not predict is to be predicted again
             own, result = again, fit(again, result.effects, iterations=JOINT_ITERATIONS)
+        refuse_over_at_once(own, result.effects)
         odds = odds_between(at_hand, Standing(own, result), count)
         if one.added and not one.dropped and not compared(own, name, result, found.effects).comparison.pays:
             return None
@@ -243,10 +244,11 @@ def _refitted(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
     """
     if problem.calibration is None:
         return problem, found if not found.held else fit(problem, found.effects, iterations=0)
-    there = recalibrated(problem, found.effects)
+    there = recalibrated_by_rest(problem, found.effects)
     result = there, fit(there, found.effects, iterations=JOINT_ITERATIONS)
     assert there.calibration is not None
-    if np.max(np.abs(there.calibration.coordinates), initial=0.0) > TOLERANCE:
+    weighed = any(e.left for e in there.evidence)  # begun as declared, and other weights are no lower error
+    if not weighed and np.max(np.abs(there.calibration.coordinates), initial=0.0) > TOLERANCE:
         anew = recalibrated(at_declared(problem), found.effects)
         other = anew, fit(anew, found.effects, iterations=JOINT_ITERATIONS)
         result = min(result, other, key=lambda one: one[1].squared_error)

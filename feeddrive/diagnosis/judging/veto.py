@@ -38,7 +38,7 @@ from feeddrive.diagnosis.likelihood.coordinates import (
     read_coordinates,
     write_coordinates,
 )
-from feeddrive.diagnosis.likelihood.cross_validation import Comparison, compare_left_out
+from feeddrive.diagnosis.likelihood.cross_validation import Comparison, worse_beyond_scatter
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit, linear_step
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between, regained
 from feeddrive.diagnosis.likelihood.tolerances import SURE
@@ -50,9 +50,6 @@ from feeddrive.units.quantity import format_quantity, percent
 
 CLEARLY_NEEDED = 0.1
 """Share of the squared error that an effect must bring, by one linear step, not to be refitted without it."""
-
-SCATTER = 2.0
-"""Standard deviations by which a channel must be worse: one of forty by chance."""
 
 
 @dataclass(frozen=True)
@@ -74,7 +71,10 @@ def without_denied(
         judged: recordings with the found effects in.
         judge: judges other effects.
     """
-    while (denied := _first_denied(found, judged)) is not None:
+    while True:
+        found, judged = not_worse_than_declared(found, judged, judge)  # no name is to go for what fitted values do
+        if (denied := _first_denied(found, judged)) is None:
+            return found, judged
         effects = found.fit.effects
         gone = effects[denied.place]
         rest = _without_lost_shifts([effect for i, effect in enumerate(effects) if i != denied.place])
@@ -83,7 +83,6 @@ def without_denied(
         problem = without_effects(found.problem, [gone], rest)
         found = replace(found, problem=problem, fit=fit(problem, rest), impossible=reasons)
         judged = judge(found)
-    return found, judged
 
 
 def not_worse_than_declared(
@@ -303,12 +302,7 @@ def _worst_channel(problem: Problem, judged: Sequence[Judged]) -> str:
 
 
 def worse_by(problem: Problem, judged: Sequence[Judged], name: str) -> float:
-    """Share by which a channel's squared error as declared is smaller, beyond its scatter; negative where it is not.
-
-    It is the gain of the declared plant over the corrected one: of what they differ by, only the product with the
-    declared plant's own error is chance, however few blocks hold it. Both scatters count: that of the gain between
-    blocks, and that of a mean square of 2 B T independent values.
-    """
+    """Share by which a channel's squared error as declared is smaller, beyond its scatter; negative where it is not."""
     before, after, blocks, first, values = [], [], [], 0, 0.0
     for one in judged:
         if name not in one.evidence.channels:
@@ -321,6 +315,4 @@ def worse_by(problem: Problem, judged: Sequence[Judged], name: str) -> float:
         blocks.append(first + numbers)
         first += int(numbers.max(initial=-1)) + 1
         values += 2 * one.evidence.edge * float(rows.sum()) * step
-    gain = compare_left_out(np.concatenate(after), np.concatenate(before), np.concatenate(blocks), 0.0)
-    scatter = max(gain.standard_error, math.sqrt(2 / max(values, 1.0)))
-    return gain.gain - SCATTER * scatter
+    return worse_beyond_scatter(np.concatenate(before), np.concatenate(after), np.concatenate(blocks), values)

@@ -64,6 +64,7 @@ class Evidence:
         floating: channels whose zero is not known, and taken out of every error.
         model_error: channel to the rms of what the model itself may miss; channels left out are predicted exactly.
         lost: samples that would count, but that a free play of the plant leaves unpredictable, (n,); None for none.
+        left: channel to what is left of it over its noise, where it weighs no more than that (`weighed_by_rest`).
     """
 
     recording: Recording
@@ -77,6 +78,7 @@ class Evidence:
     floating: tuple[str, ...]
     model_error: dict[str, float]
     lost: BoolArray | None = field(default=None, kw_only=True)
+    left: dict[str, float] = field(default_factory=dict, kw_only=True)
 
     @property
     def channels(self) -> tuple[str, ...]:
@@ -123,13 +125,17 @@ class Evidence:
         """Rms of what the sensors add to a channel in the band."""
         return self.noise[name]
 
+    def unit(self, name: str) -> float:
+        """Error of a channel that counts as one: its noise, or more where more is left of it than any name explains."""
+        return self.noise[name] * self.left.get(name, 1.0)
+
     def evened(self, name: str, series: FloatArray) -> FloatArray:
         """A channel, (n,), with each frequency weighed by how well it is known there."""
         return series
 
     def without_open(self, name: str, part: FloatArray, rows: BoolArray) -> FloatArray:
         """One channel over its noise, (k,), without what its sensor leaves open: the zero of a scale."""
-        part = part / self.noise[name]
+        part = part / self.unit(name)
         return part - np.mean(part) if name in self.floating else part
 
     def missed(self, name: str) -> float:
@@ -138,7 +144,7 @@ class Evidence:
 
     def weighs_as(self, other: Self) -> bool:
         """Whether samples weigh as much in another evidence of this recording."""
-        return True
+        return self.left == other.left
 
     @property
     def whole(self) -> Self:
@@ -155,7 +161,10 @@ class Evidence:
         """The evidence on the samples that another one of this recording has as well."""
         gone = self.counted & ~other.counted
         lost = gone if self.lost is None else gone | self.lost
-        return replace(self, counted=self.counted & other.counted, lost=lost) if gone.any() else self
+        kept = replace(self, counted=self.counted & other.counted, lost=lost) if gone.any() else self
+        names = (*self.left, *other.left)
+        left = {name: max(self.left.get(name, 1.0), other.left.get(name, 1.0)) for name in names}
+        return kept if left == self.left else replace(kept, left=left)
 
     def beside(self, other: Self) -> Self:
         """The evidence on the samples alone that another one of this recording does not have."""
@@ -217,14 +226,18 @@ class AxisEvidence(Evidence):
     def weighs_as(self, other: Self) -> bool:
         """Whether samples weigh as much in another evidence of this recording."""
         mine, its = self.weights, other.weights
-        return mine.keys() == its.keys() and all(np.array_equal(mine[name], its[name]) for name in mine)
+        return (
+            super().weighs_as(other)
+            and mine.keys() == its.keys()
+            and all(np.array_equal(mine[name], its[name]) for name in mine)
+        )
 
     def without_open(self, name: str, part: FloatArray, rows: BoolArray) -> FloatArray:
         """One channel over its noise and by its weights, (k,), without the zero of a scale."""
         if name not in self.weights:
             return super().without_open(name, part, rows)
         weights = self.weights[name][rows]
-        weighed = weights * part / self.noise[name]
+        weighed = weights * part / self.unit(name)
         return weighed - weights * float(weights @ weighed / (weights @ weights)) if name in self.floating else weighed
 
     def in_band(self, series: FloatArray) -> FloatArray:
