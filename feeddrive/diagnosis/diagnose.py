@@ -322,7 +322,7 @@ def _judged(found: Search, evidence: Sequence[Evidence]) -> tuple[list[Judged], 
     problem = found.problem.settled(found.fit.effects)
     declared, after = problem.plant, problem.machine(found.fit.effects)
     judged, rehomed = [], []
-    for one in evidence:
+    for one in (replace(e, levels=problem.evidence[-1].levels) for e in evidence):
         homed = rehomed_plant(problem, found.fit.effects, one)
         if homed is None:
             judged.append(prepared_for_judging(problem, one, declared, after))

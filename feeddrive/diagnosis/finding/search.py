@@ -102,6 +102,7 @@ def search(
     problem = calibrated(problem)
     found = fit(problem, start.fit.effects if start is not None else ())
     begun = (problem, found) if start is None or start.begun is None else start.begun
+    problem, found = _balanced(problem, found)
     trials: list[Trial] = [*start.trials] if start is not None else []
     rounds: list[tuple[Attempt, ...]] = [*start.rounds] if start is not None else []
     denied = {**start.impossible} if start is not None else {}
@@ -251,7 +252,13 @@ def _refitted(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
         anew = recalibrated(at_declared(problem), found.effects)
         other = anew, fit(anew, found.effects, iterations=JOINT_ITERATIONS)
         result = min(result, other, key=lambda one: one[1].squared_error)
-    return result
+    return _balanced(*result)
+
+
+def _balanced(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
+    """Each channel weighed by what is left of it, and the set fitted so."""
+    there = problem.balanced(found.effects)
+    return (problem, found) if there is problem else (there, fit(there, found.effects, iterations=JOINT_ITERATIONS))
 
 
 def _trial(number: int, attempt: Attempt, taken: bool) -> Trial:

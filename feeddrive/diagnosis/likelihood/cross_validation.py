@@ -187,7 +187,7 @@ def model_error_rows(evidence: Sequence[Evidence], rows: Sequence[BoolArray]) ->
     whole: dict[str, float] = {}
     for one, chosen in zip(evidence, rows, strict=True):
         for name, error in one.model_error.items():
-            whole[name] = whole.get(name, 0.0) + float(np.sum(chosen)) * (error / one.noise[name]) ** 2
+            whole[name] = whole.get(name, 0.0) + float(np.sum(chosen)) * (error / one.spread(name)) ** 2
     parts = [
         np.full(int(np.sum(chosen)), whole.get(name, 0.0))
         for one, chosen in zip(evidence, rows, strict=True)

@@ -65,6 +65,7 @@ class Evidence:
         floating: channels whose zero is not known, and taken out of every error.
         model_error: channel to the rms of what the model itself may miss; channels left out are predicted exactly.
         lost: samples that would count, but that a free play of the plant leaves unpredictable, (n,); None for none.
+        levels: channel to the factor on its noise by which it is weighed less (`fit.Problem.balanced`).
     """
 
     recording: Recording
@@ -78,6 +79,7 @@ class Evidence:
     floating: tuple[str, ...]
     model_error: dict[str, float]
     lost: BoolArray | None = field(default=None, kw_only=True)
+    levels: dict[str, float] = field(default_factory=dict, kw_only=True)
 
     @property
     def channels(self) -> tuple[str, ...]:
@@ -124,13 +126,17 @@ class Evidence:
         """Rms of what the sensors add to a channel in the band."""
         return self.noise[name]
 
+    def spread(self, name: str) -> float:
+        """Error of a channel by which it is weighed: its noise, or more where the model reaches it no better."""
+        return self.noise[name] * self.levels.get(name, 1.0)
+
     def evened(self, name: str, series: FloatArray) -> FloatArray:
         """A channel, (n,), with each frequency weighed by how well it is known there."""
         return series
 
     def without_open(self, name: str, part: FloatArray, rows: BoolArray) -> FloatArray:
         """One channel over its noise, (k,), without what its sensor leaves open: the zero of a scale."""
-        part = part / self.noise[name]
+        part = part / self.spread(name)
         return part - np.mean(part) if name in self.floating else part
 
     def missed(self, name: str) -> float:
@@ -232,7 +238,7 @@ class AxisEvidence(Evidence):
         if name not in self.weights:
             return super().without_open(name, part, rows)
         weights = self.weights[name][rows]
-        weighed = weights * part / self.noise[name]
+        weighed = weights * part / self.spread(name)
         return weighed - weights * float(weights @ weighed / (weights @ weights)) if name in self.floating else weighed
 
     def in_band(self, series: FloatArray) -> FloatArray:
