@@ -45,7 +45,7 @@ def calibrated(problem: Problem) -> Problem:
     if not values:
         return problem
     start = replace(problem, calibration=Calibration(values, np.zeros(len(values)), {}, 1.0))
-    if any(is_joined(e.recording) for e in problem.evidence):  # hours hold much that has no name
+    if of_hours(problem):
         return weighed_by_rest(_without_unseen(weighed_by_rest(start, ())), ())
     start = _without_unseen(recalibrated(start, (), rough=True))
     for turn in range(PASSES):
@@ -87,6 +87,11 @@ def at_declared(problem: Problem) -> Problem:
     return replace(problem, calibration=replace(known, coordinates=np.zeros(len(known.values))))
 
 
+def of_hours(problem: Problem) -> bool:
+    """Whether a recording is cut out of hours, which hold much that has no name."""
+    return any(is_joined(e.recording) for e in problem.evidence)
+
+
 def weighed_by_rest(problem: Problem, effects: Sequence[Effect]) -> Problem:
     """The problem with no channel weighed by more than what is left of it, its declared values fitted anew from there.
 
@@ -106,7 +111,7 @@ def weighed_by_rest(problem: Problem, effects: Sequence[Effect]) -> Problem:
 
 def recalibrated_by_rest(problem: Problem, effects: Sequence[Effect]) -> Problem:
     """The problem as `recalibrated`, where channels are weighed by what is left of them by what these effects leave."""
-    if not any(e.left for e in problem.evidence):
+    if not of_hours(problem):
         return recalibrated(problem, effects)
     return _weighed_in_turn(problem, effects)
 

@@ -13,7 +13,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from feeddrive.diagnosis.calibration.beyond import beyond_tolerance, without_effects
-from feeddrive.diagnosis.calibration.calibrate import at_declared, calibrated, recalibrated, recalibrated_by_rest
+from feeddrive.diagnosis.calibration.calibrate import (
+    at_declared,
+    calibrated,
+    of_hours,
+    recalibrated,
+    recalibrated_by_rest,
+)
 from feeddrive.diagnosis.calibration.known import TOLERANCE
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, Attempt, compared, refuse_over_at_once, started
 from feeddrive.diagnosis.finding.materiality import is_material
@@ -102,6 +108,7 @@ def search(
     problem = calibrated(problem)
     found = fit(problem, start.fit.effects if start is not None else ())
     begun = (problem, found) if start is None or start.begun is None else start.begun
+    problem, found = _balanced(problem, found)
     trials: list[Trial] = [*start.trials] if start is not None else []
     rounds: list[tuple[Attempt, ...]] = [*start.rounds] if start is not None else []
     denied = {**start.impossible} if start is not None else {}
@@ -247,12 +254,18 @@ def _refitted(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
     there = recalibrated_by_rest(problem, found.effects)
     result = there, fit(there, found.effects, iterations=JOINT_ITERATIONS)
     assert there.calibration is not None
-    weighed = any(e.left for e in there.evidence)  # begun as declared, and other weights are no lower error
-    if not weighed and np.max(np.abs(there.calibration.coordinates), initial=0.0) > TOLERANCE:
+    # That of hours has begun as declared, and other weights are no lower error.
+    if not of_hours(there) and np.max(np.abs(there.calibration.coordinates), initial=0.0) > TOLERANCE:
         anew = recalibrated(at_declared(problem), found.effects)
         other = anew, fit(anew, found.effects, iterations=JOINT_ITERATIONS)
         result = min(result, other, key=lambda one: one[1].squared_error)
-    return result
+    return _balanced(*result)
+
+
+def _balanced(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
+    """Each channel weighed by what is left of it, and the set fitted so."""
+    there = problem if of_hours(problem) else problem.balanced(found.effects)
+    return (problem, found) if there is problem else (there, fit(there, found.effects, iterations=JOINT_ITERATIONS))
 
 
 def _with_value_beyond(problem: Problem, found: Fit) -> tuple[Problem, Fit] | None:

@@ -12,6 +12,7 @@ import numpy as np
 from feeddrive.diagnosis.calibration.calibration import Whitener, whitener
 from feeddrive.diagnosis.likelihood.band import END_CUT, Band, comparison_band, held, sensor_noise
 from feeddrive.diagnosis.likelihood.encoder_error import Weighing, encoder_error, known_motion_of
+from feeddrive.diagnosis.likelihood.lead_map import lead_map
 from feeddrive.diagnosis.likelihood.slow_rows import (
     is_slow,
     known_motion,
@@ -64,7 +65,8 @@ class Evidence:
         floating: channels whose zero is not known, and taken out of every error.
         model_error: channel to the rms of what the model itself may miss; channels left out are predicted exactly.
         lost: samples that would count, but that a free play of the plant leaves unpredictable, (n,); None for none.
-        left: channel to what is left of it over its noise, where it weighs no more than that (`weighed_by_rest`).
+        left: channel to what is left of it over its noise, where it weighs no more than that (`Problem.balanced`,
+            `weighed_by_rest`).
     """
 
     recording: Recording
@@ -147,6 +149,11 @@ class Evidence:
         return self.left == other.left
 
     @property
+    def mapped(self) -> Self:
+        """The evidence in which the lead map counts."""
+        return self
+
+    @property
     def whole(self) -> Self:
         """The evidence with the samples again that a free play left unpredictable."""
         return self if self.lost is None else replace(self, counted=self.counted | self.lost, lost=None)
@@ -185,6 +192,7 @@ class AxisEvidence(Evidence):
         drawn: motions with the encoder's error once more; as `gains`.
         weights: channel to the weight of every sample, (n,): noise over noise and what the encoder's error makes of a
             free play there; channels left out are predicted alike everywhere.
+        lead_map: what a lead map may be of the table position, in the band, (n, k); None where it counts.
         unsure: channel to what motion that may not be makes of it, in the band, (n, k); as `gains`.
         torque_rows: rows that the recorder writes a torque for, and the first row of one (`suspicion.logged_rows`);
             None where the torque is what the drive holds.
@@ -200,6 +208,7 @@ class AxisEvidence(Evidence):
     unsure: dict[str, FloatArray] = field(default_factory=dict)
     torque_rows: tuple[int, int] | None = None
     weights: dict[str, FloatArray] = field(default_factory=dict)
+    lead_map: FloatArray | None = None
 
     def where_predictable(self, predictable: BoolArray | FloatArray) -> Self:
         """The evidence without the samples of weight 0, the table position weighed at the others."""
@@ -245,17 +254,31 @@ class AxisEvidence(Evidence):
         return self.band.filter(series)
 
     def weighted(self, series: dict[str, FloatArray], rows: BoolArray) -> FloatArray:
-        """Channels at some samples as any are, less what motion that is not known may make of them."""
+        """Channels at some samples as any are, less what motion that is not known, or a lead map, may make of them."""
         weighted = super().weighted(series, rows)
-        if not self.unsure or not rows.any():
+        parts = self._open
+        if not parts or not rows.any():
             return weighted
         key = rows.tobytes()
         if key not in self._sure:
-            count = next(iter(self.unsure.values())).shape[1]
-            parts = [{name: columns[:, i] for name, columns in self.unsure.items()} for i in range(count)]
             columns = np.column_stack([super(AxisEvidence, self).weighted(part, rows) for part in parts])
-            self._sure[key] = whitener(columns, np.zeros(count), 1.0)
+            self._sure[key] = whitener(columns, np.zeros(len(parts)), 1.0)
         return self._sure[key].applied(weighted)
+
+    @cached_property
+    def _open(self) -> list[dict[str, FloatArray]]:
+        """Series of all channels, (n,) each, that a recording may hold, as far as a deviation of one goes."""
+        count = next(iter(self.unsure.values())).shape[1] if self.unsure else 0
+        parts = [{name: columns[:, i] for name, columns in self.unsure.items()} for i in range(count)]
+        if self.lead_map is not None:
+            none = dict.fromkeys(self.channels, np.zeros(len(self.counted)))
+            parts += [{**none, "table_position": column} for column in self.lead_map.T]
+        return parts
+
+    @property
+    def mapped(self) -> Self:
+        """The evidence in which the lead map counts."""
+        return replace(self, lead_map=None)
 
     @cached_property
     def _sure(self) -> dict[bytes, Whitener]:
@@ -392,6 +415,7 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
         encoder.added if encoder is not None else {},
         encoder.drawn if encoder is not None else (),
         encoder.unsure if encoder is not None else {},
+        lead_map=band.filter(lead_map(raw["table_position"], plant.chain.radius)) if "table_position" in raw else None,
     )
 
 
