@@ -250,7 +250,7 @@ def _refitted(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
     Values gone beyond their tolerances may have stood in for what was missing: they begin as declared as well.
     """
     if problem.calibration is None:
-        return problem, found if not found.held else fit(problem, found.effects, iterations=0)
+        return _balanced(problem, found if not found.held else fit(problem, found.effects, iterations=0))
     there = recalibrated_by_rest(problem, found.effects)
     result = there, fit(there, found.effects, iterations=JOINT_ITERATIONS)
     assert there.calibration is not None
@@ -264,8 +264,14 @@ def _refitted(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
 
 def _balanced(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
     """Each channel weighed by what is left of it, and the set fitted so."""
-    there = problem if of_hours(problem) else problem.balanced(found.effects)
-    return (problem, found) if there is problem else (there, fit(there, found.effects, iterations=JOINT_ITERATIONS))
+    if of_hours(problem):
+        return problem, found
+    for _ in range(JOINT_ITERATIONS):
+        there = problem.balanced(found.effects)
+        if there is problem:
+            break
+        problem, found = there, fit(there, found.effects, iterations=JOINT_ITERATIONS)
+    return problem, found
 
 
 def _with_value_beyond(problem: Problem, found: Fit) -> tuple[Problem, Fit] | None:

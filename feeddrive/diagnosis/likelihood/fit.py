@@ -187,6 +187,9 @@ class Problem:
         if not all(np.isfinite(one) for one in left.values()):
             return self
         least = max(1.0, min(left.values()))
+        used = self.evidence[0].left
+        if all(LEVEL < left[name] / least / used.get(name, 1.0) < 1 / LEVEL for name in left):
+            return self  # as it is weighed, but for a few
         return self.weighed({name: one / least for name, one in left.items() if one * LEVEL > least})
 
     def weighed(self, left: dict[str, float]) -> Problem:
