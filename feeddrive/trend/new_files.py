@@ -108,9 +108,7 @@ def _with_source(plant: Plant, source: Source, options: Options, kept: Checkpoin
     grid = kept.grid
     try:
         recording = replace(found.recording, name=source.key)
-        check_against_lead(
-            recording, 2 * np.pi * plant.chain.motor_radius, source.key
-        )
+        check_against_lead(recording, 2 * np.pi * plant.chain.motor_radius, source.key)
         grid = kept.grid or grid_for(plant, recording)
         passes = linear_pass(recording, plant, grid)
     except InputError as error:
