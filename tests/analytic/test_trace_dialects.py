@@ -12,6 +12,7 @@ import pytest
 from scipy.io import savemat
 
 from feeddrive.errors import InputError
+from feeddrive.interface.measured.inspection import inspect
 from feeddrive.recording.files.opening import open_file
 from feeddrive.recording.formats.parquet import NAME as PARQUET
 from feeddrive.recording.traces.channel_choice import Wishes
@@ -227,6 +228,12 @@ def test_matlab_5(tmp_path: Path) -> None:
     assert np.array_equal(result.channels["table_position"], PLACE / 1e3)
     assert np.array_equal(result.channels["motor_torque"], TORQUE)
     assert np.array_equal(result.time, TIME)
+    found = inspect(path)  # and by the mapping that is written of it
+    mapping = tmp_path / "map.toml"
+    mapping.write_text(found.mapping, encoding="utf-8")
+    again = inspect(path, mapping).recording
+    assert found.recording is not None and again is not None
+    assert np.array_equal(again["motor_torque"], found.recording["motor_torque"])
 
 
 def test_matlab_tables_are_refused_with_the_line_that_saves_them(tmp_path: Path) -> None:

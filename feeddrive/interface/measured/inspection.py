@@ -11,8 +11,7 @@ from feeddrive.interface.quantities import Quantity, positive
 from feeddrive.recording.channels import channel_unit
 from feeddrive.recording.files.channel_mapping import read_mapping
 from feeddrive.recording.files.opening import FileContent, first_bytes, open_file
-from feeddrive.recording.files.reading import checked_trace, read_recording
-from feeddrive.recording.formats import matlab5
+from feeddrive.recording.files.reading import checked_trace, mapped_by_variables, read_recording
 from feeddrive.recording.frequency_response import FrequencyResponse
 from feeddrive.recording.recording import Recording
 from feeddrive.recording.traces.channel_choice import Wishes
@@ -66,8 +65,8 @@ def inspect(
         tuple(columns),
     )
     start = first_bytes(Path(path))
-    is_trace = could_be_trace(start) and not (map is not None and matlab5.recognises(start))
     known = None if map is None else read_mapping(Path(map))
+    is_trace = could_be_trace(start) and not mapped_by_variables(Path(path), start, known)
     if known is not None and known.sample_time is not None and wishes.sample_time is None:
         wishes = Wishes(sample_time=known.sample_time, columns=wishes.columns)
     found = read_trace(content := open_file(Path(path)), wishes) if is_trace else None

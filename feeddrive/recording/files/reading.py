@@ -54,7 +54,7 @@ def read_recording(path: Path, mapping: Path | None = None, *, decimal: str | No
         raise InputError(f"{decimal!r} is not a decimal sign", "--decimal", "write . or ,")
     known = read_mapping(Path(mapping)) if mapping is not None else None
     start = first_bytes(path)
-    if could_be_trace(start) and not (known is not None and matlab5.recognises(start)):  # mapped by its variables
+    if could_be_trace(start) and not mapped_by_variables(path, start, known):
         content = open_file(path)
         trace = read_trace(content, Wishes(sample_time=known.sample_time if known else None))
         if trace is not None:
@@ -65,6 +65,25 @@ def read_recording(path: Path, mapping: Path | None = None, *, decimal: str | No
     else:
         columns, first_row, notes = _canonical(source, decimal)
     return _checked(source, columns, first_row, notes)
+
+
+def mapped_by_variables(path: Path, start: bytes, mapping: FileMapping | None) -> bool:
+    """Tell whether a mapping names variables of a .mat file, single numbers and a time among them, and not its signals.
+
+    Args:
+        path: of the file.
+        start: its first bytes.
+        mapping: of it; None for none.
+
+    Raises:
+        InputError: the file is damaged.
+    """
+    if mapping is None or not matlab5.recognises(start):
+        return False
+    if mapping.time is not None:
+        return True
+    held = {signal.name for signal in matlab5.read(open_file(path), mapping.sample_time).signals}
+    return not all(name in held for variable in mapping.channels.values() for name in variable.names)
 
 
 def _traced(
