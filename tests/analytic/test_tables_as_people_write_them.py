@@ -108,3 +108,10 @@ def test_overshoot_of_a_ball_bar_is_no_part_of_the_circle(tmp_path: Path, begin:
 def test_rows_that_turn_against_their_direction_are_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="the rows of direction -1 turn the other way"):
         circle_test(read_readings(ball_bar(tmp_path / "a.csv", 1.0, 0.0, (1, -1), turned=True)), None)
+
+
+def test_lines_of_text_above_the_headings_are_told(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    path.write_text("Logger 3 of hall 2\ntime [s],table_position [mm]\n0,1\n", encoding="utf-8")
+    with pytest.raises(InputError, match=r'"Logger 3 of hall 2" is no row of headings; put # before'):
+        read_recording(path)

@@ -21,7 +21,7 @@ from feeddrive.recording.traces.naming import candidate
 from feeddrive.recording.traces.opened import Understood, columns_of, read_trace, understand
 from feeddrive.recording.traces.trace import Signal, Trace
 from feeddrive.typing import FloatArray
-from tests.analytic.trace_files import current, motion
+from tests.analytic.trace_files import current, motion, sinumerik_trace
 
 TIME: FloatArray = np.arange(1500) * 1e-3
 PLACE, TORQUE = motion(TIME)[0], 1.25 * current(TIME)
@@ -180,6 +180,19 @@ def test_operate_trace_of_a_linear_axis_with_two_encoders(tmp_path: Path) -> Non
     turns = (place - 800.0) / 10.0
     assert np.max(np.abs(result.channels["motor_angle"] / (2.0 * np.pi) - turns)) < 1e-7
     assert np.max(np.abs(result.channels["table_velocity"] - speed / 1e3)) < 1e-10
+
+
+def test_xml_in_the_encoding_that_it_declares(tmp_path: Path) -> None:
+    text, _ = sinumerik_trace()
+    assert "utf-8" in text
+    path = tmp_path / "a.xml"
+    for written, coding in (("位置实际值", "gb2312"), ("Geschwindigkeit für X", "iso-8859-1")):
+        begin = text.index('description="') + len('description="')
+        named = text[:begin] + written + text[text.index('"', begin) :]
+        path.write_bytes(named.replace("utf-8", coding).encode(coding))
+        found = read_trace(open_file(path), Wishes())
+        assert isinstance(found, Trace)
+        assert written in {signal.about for signal in found.signals}
 
 
 @pytest.mark.parametrize(("separator", "address"), [(",", "[u1; 1]"), (";", "[u1, 1]")])

@@ -131,6 +131,9 @@ def _headings(table: TextTable, where: str) -> list[Heading]:
     if all(is_number(name) for name in table.names):
         mend = f'put one above the numbers, e.g. "time [s]{table.separator}motor_torque [N m]"'
         raise InputError("there is no header row", where, mend)
+    if len(table.names) == 1 and " " in table.names[0].split("[")[0].strip():  # a line of text, as loggers write above
+        mend = "put # before the lines above the headings, or name their row by a mapping: [file] header_row"
+        raise InputError(f'"{quoted(table.names[0], 40)}" is no row of headings', where, mend)
     headings = [read_heading(name, where) for name in table.names]
     seen: set[str] = set()
     for heading in headings:
