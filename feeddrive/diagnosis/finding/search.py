@@ -8,13 +8,14 @@ all effects together, and the likeliest of them is taken if what it adds also lo
 from __future__ import annotations
 
 from collections.abc import Callable, Container, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from feeddrive.diagnosis.calibration.beyond import beyond_tolerance, without_effects
 from feeddrive.diagnosis.calibration.calibrate import at_declared, calibrated, recalibrated
 from feeddrive.diagnosis.calibration.known import TOLERANCE
+from feeddrive.diagnosis.certainty.one_sided import with_usual_sizes
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, Attempt, compared, started
 from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.finding.round import Round, one_round
@@ -25,7 +26,7 @@ from feeddrive.diagnosis.heat.heat_candidates import is_another
 from feeddrive.diagnosis.judging.result import Trial
 from feeddrive.diagnosis.likelihood.coordinates import write_coordinates
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
-from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between, regained, same_samples
+from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between, odds_between, regained, same_samples
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 
@@ -111,7 +112,7 @@ def search(
     while len(rounds) < MOST_ROUNDS and not (rounds and problem.budget.skips("further rounds of the search")):
         progress(f"round {len(rounds) + 1}: {len(found.effects)} effects so far")
         now = one_round(scene_of(problem, found.effects), found, impossible, denied, len(rounds) + 1)
-        taken, near = _likelier(problem, found, now)
+        taken, near = _likelier(problem, found, now, denied)
         taken = _of_likelier_law(taken, now.count, denied)
         rounds.append(tuple(attempt.for_the_record() for attempt in now.attempts))
         names = taken.name.split(" with ") if taken is not None else []
@@ -147,10 +148,13 @@ def search(
         problem = without_effects(problem, small, rest)
         found = fit(problem, rest)
         impossible |= dict.fromkeys((one.name for one in small), SMALL)
+    found = with_usual_sizes(problem, found)
     return Search(problem, found, tuple(trials), tuple(rounds), impossible, near, begun)
 
 
-def _likelier(problem: Problem, found: Fit, now: Round) -> tuple[_Taken | None, tuple[Near, ...]]:
+def _likelier(
+    problem: Problem, found: Fit, now: Round, denied: Container[str]
+) -> tuple[_Taken | None, tuple[Near, ...]]:
     """The likeliest of the sets near one, fitted, None where none is likelier; and what comes near beside it."""
     here = [attempt for attempt in now.attempts if same_samples(attempt.problem, problem)]
     sets = neighbours(problem, found, here, now.count)
@@ -160,12 +164,14 @@ def _likelier(problem: Problem, found: Fit, now: Round) -> tuple[_Taken | None, 
     tried: list[_Taken | None] = []
     for one in chosen:  # the likeliest in any case
         if not tried or not problem.budget.skips("sets of effects that came near"):
-            tried.append(_fitted(at_hand, one, here, now.count))
+            tried.append(_fitted(at_hand, one, here, now.count, denied))
     for attempt in now.attempts:
         if not same_samples(attempt.problem, problem):  # some samples tell less of it: compared on the others
             there = fit(attempt.problem, found.effects, iterations=0)
             away = neighbours(attempt.problem, there, [attempt], now.count)
-            tried += [_fitted(at_hand, one, [attempt], now.count) for one in away[:1] if one.gain > 0 and one.added]
+            tried += [
+                _fitted(at_hand, one, [attempt], now.count, denied) for one in away[:1] if one.gain > 0 and one.added
+            ]
     best = _best((one for one in tried if one is not None and one.odds > 0), now.count)
     beside = [one for one in sets if not one.dropped and len(one.added) == 1 and one.speaks > 0]
     return best, tuple(Near(here[one.added[0]].name, one.gain, one.speaks) for one in beside)
@@ -193,8 +199,14 @@ def _best(likelier: Iterable[_Taken], count: int) -> _Taken | None:
     return best
 
 
-def _fitted(at_hand: Standing, one: Neighbour, attempts: Sequence[Attempt], count: int) -> _Taken | None:
-    """A set fitted; None where it cannot be simulated, or what it adds does not pay on blocks left out."""
+def _fitted(
+    at_hand: Standing, one: Neighbour, attempts: Sequence[Attempt], count: int, denied: Container[str]
+) -> _Taken | None:
+    """A set fitted; None where it cannot be simulated, or what it adds does not pay on blocks left out.
+
+    A law of the nut's spring that does not pay is asked once more from the declared values on: those fitted without it
+    stand in for it.
+    """
     problem, found = at_hand.problem, at_hand.fit
     kept = [effect for place, effect in enumerate(found.effects) if place not in one.dropped]
     added = [attempts[i] for i in one.added]
@@ -210,12 +222,15 @@ def _fitted(at_hand: Standing, one: Neighbour, attempts: Sequence[Attempt], coun
         again = regained(own, result.effects)
         if again is not own:  # what the play could not predict is to be predicted again
             own, result = again, fit(again, result.effects, iterations=JOINT_ITERATIONS)
-        odds = odds_between(at_hand, Standing(own, result), count)
-        if one.added and not one.dropped and not compared(own, name, result, found.effects).comparison.pays:
+        taken = _Taken(own, result, name, odds_between(at_hand, Standing(own, result), count))
+        if not one.added or one.dropped or compared(own, name, result, found.effects).comparison.pays:
+            return taken
+        anew = _of_likelier_law(taken, count, denied)
+        if anew is None or anew is taken or not gain_between(at_hand, anew).pays:
             return None
+        return replace(anew, odds=odds_between(at_hand, anew, count))
     except InputError:
         return None
-    return _Taken(own, result, name, odds)
 
 
 def _restarted(problem: Problem, kept: Sequence[Effect], first: Attempt, second: Attempt) -> list[Effect]:

@@ -368,8 +368,9 @@ def _lower(problem: Problem, at: _State, free: Sequence[bool], jacobian: FloatAr
     moved = [effect for effect, is_free in zip(at.effects, free, strict=True) if is_free]
     start = read_coordinates(moved, problem.plant)
     low, high = coordinate_ends(moved, problem.plant)
+    prior = _prior(moved, problem.plant)
     for _ in range(5):
-        step = inside_step(jacobian, at.residual, damping, low - start, high - start)
+        step = inside_step(jacobian, at.residual, damping, low - start, high - start, prior)
         vector = start + step
         effects = _placed(at.effects, free, write_coordinates(moved, problem.plant, vector))
         if not problem.possible(effects) and problem.possible(at.effects):
@@ -383,9 +384,18 @@ def _lower(problem: Problem, at: _State, free: Sequence[bool], jacobian: FloatAr
     return _Lower(None, step, damping)
 
 
+def _prior(moved: Sequence[Effect], plant: Plant) -> FloatArray:
+    """Information that a step is damped by, (k,): of a free play that of its size, of others none.
+
+    Where a load holds the play on one flank no slope tells its width, and a step along one goes anywhere.
+    """
+    return np.array([float(has_play([effect])) for effect in moved for _ in read_coordinates([effect], plant)])
+
+
 def inside_step(
-    jacobian: FloatArray, residual: FloatArray, damping: float, low: FloatArray, high: FloatArray
-) -> FloatArray:
+    jacobian: FloatArray, residual: FloatArray, damping: float, low: FloatArray, high: FloatArray,
+    prior: FloatArray | None = None,
+) -> FloatArray:  # fmt: skip
     """Damped Gauss-Newton step that stays inside its ends, each column damped by a share of its own square.
 
     A coordinate that would leave its range is set to the end of it, and the others are solved for again.
@@ -395,6 +405,7 @@ def inside_step(
         residual: shape (m,).
         damping: share of each column's square.
         low, high: ends of the step, shape (k,).
+        prior: information of each coordinate, shape (k,), that damps those of which the residual tells less.
 
     Returns:
         The step, shape (k,); 0 along columns of zeros, or that no number can hold.
@@ -403,6 +414,9 @@ def inside_step(
     step = np.zeros(len(length))
     free = length > 0
     known = columns.T @ columns + damping * np.eye(len(length))
+    if prior is not None:
+        hardly = free & (length**2 < prior)
+        known += np.diag(np.where(hardly, prior / np.where(hardly, length, 1.0) ** 2, 0.0))
     wanted = columns.T @ residual
     while free.any():
         held = known[np.ix_(free, ~free)] @ (step * length)[~free]
