@@ -9,7 +9,7 @@ import numpy as np
 
 from feeddrive.blas_threads import one_thread
 from feeddrive.diagnosis.budget import Budget
-from feeddrive.diagnosis.calibration.calibrate import calibrated
+from feeddrive.diagnosis.calibration.calibrate import calibrated, weighed_alike
 from feeddrive.diagnosis.calibration.calibrated_result import calibrated_results, known_together
 from feeddrive.diagnosis.certainty.ambiguity import Rival, ambiguous_sets, other_places, rivals_of
 from feeddrive.diagnosis.certainty.correlation import correlation
@@ -323,7 +323,7 @@ def _judged(found: Search, evidence: Sequence[Evidence]) -> tuple[list[Judged], 
     problem = found.problem.settled(found.fit.effects)
     declared, after = problem.plant, problem.machine(found.fit.effects)
     judged, rehomed = [], []
-    for one in evidence:
+    for one in (weighed_alike(each, problem.evidence) for each in evidence):
         homed = rehomed_plant(problem, found.fit.effects, one)
         if homed is None:
             judged.append(prepared_for_judging(problem, one, declared, after))

@@ -13,10 +13,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feeddrive.diagnosis.calibration.beyond import beyond_tolerance, without_effects
-from feeddrive.diagnosis.calibration.calibrate import at_declared, calibrated, recalibrated
+from feeddrive.diagnosis.calibration.calibrate import (
+    at_declared,
+    calibrated,
+    of_hours,
+    recalibrated,
+    recalibrated_by_rest,
+)
 from feeddrive.diagnosis.calibration.known import TOLERANCE
 from feeddrive.diagnosis.certainty.one_sided import with_usual_sizes
-from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, Attempt, compared, started
+from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, Attempt, compared, refuse_over_at_once, started
 from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.finding.round import Round, one_round
 from feeddrive.diagnosis.finding.scene import scene_of
@@ -103,6 +109,7 @@ def search(
     problem = calibrated(problem)
     found = fit(problem, start.fit.effects if start is not None else ())
     begun = (problem, found) if start is None or start.begun is None else start.begun
+    problem, found = _balanced(problem, found)
     trials: list[Trial] = [*start.trials] if start is not None else []
     rounds: list[tuple[Attempt, ...]] = [*start.rounds] if start is not None else []
     denied = {**start.impossible} if start is not None else {}
@@ -222,6 +229,7 @@ def _fitted(
         again = regained(own, result.effects)
         if again is not own:  # what the play could not predict is to be predicted again
             own, result = again, fit(again, result.effects, iterations=JOINT_ITERATIONS)
+        refuse_over_at_once(own, result.effects)
         taken = _Taken(own, result, name, odds_between(at_hand, Standing(own, result), count))
         if not one.added or one.dropped or compared(own, name, result, found.effects).comparison.pays:
             return taken
@@ -257,15 +265,28 @@ def _refitted(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
     Values gone beyond their tolerances may have stood in for what was missing: they begin as declared as well.
     """
     if problem.calibration is None:
-        return problem, found if not found.held else fit(problem, found.effects, iterations=0)
-    there = recalibrated(problem, found.effects)
+        return _balanced(problem, found if not found.held else fit(problem, found.effects, iterations=0))
+    there = recalibrated_by_rest(problem, found.effects)
     result = there, fit(there, found.effects, iterations=JOINT_ITERATIONS)
     assert there.calibration is not None
-    if np.max(np.abs(there.calibration.coordinates), initial=0.0) > TOLERANCE:
+    # That of hours has begun as declared, and other weights are no lower error.
+    if not of_hours(there) and np.max(np.abs(there.calibration.coordinates), initial=0.0) > TOLERANCE:
         anew = recalibrated(at_declared(problem), found.effects)
         other = anew, fit(anew, found.effects, iterations=JOINT_ITERATIONS)
         result = min(result, other, key=lambda one: one[1].squared_error)
-    return result
+    return _balanced(*result)
+
+
+def _balanced(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
+    """Each channel weighed by what is left of it, and the set fitted so."""
+    if of_hours(problem):
+        return problem, found
+    for _ in range(JOINT_ITERATIONS):
+        there = problem.balanced(found.effects)
+        if there is problem:
+            break
+        problem, found = there, fit(there, found.effects, iterations=JOINT_ITERATIONS)
+    return problem, found
 
 
 def _with_value_beyond(problem: Problem, found: Fit) -> tuple[Problem, Fit] | None:

@@ -57,7 +57,7 @@ overhang and of the split span follow from the Pade approximants given.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from feeddrive.errors import InputError
@@ -67,7 +67,6 @@ from feeddrive.plant.chain.linear_chain import (
     RATIO,
     TABLE_MASS,
     Chain,
-    Hubs,
     Matrix,
     Row,
     Spring,
@@ -135,14 +134,6 @@ first_nut_position | table.first_nut_position | m | >= 0 | nut from the near bea
     @property
     def key(self) -> tuple[object, ...]:
         return (self.structure, self.elements)
-
-    def resolved(
-        self, values: Mapping[str, float], frequency: float, positions: Sequence[float], accuracy: float, hubs: Hubs
-    ) -> Chain:
-        from feeddrive.plant.chain.standing_waves import ScrewWithWaves, waves_needed  # they stand on this chain
-
-        waves = max(waves_needed(DistributedScrew(values), frequency, x, accuracy) for x in positions)
-        return ScrewWithWaves(self.values, 1, waves, hubs)
 
     def springs(self, p: Values, position: Expression = 0.0) -> tuple[Spring, ...]:
         return (*self._torsional(p, position), *self._axial(p, position), self.nut(p))

@@ -22,7 +22,7 @@ A structure whose values depend on where the nut stands (`varies`) answers for a
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
@@ -190,20 +190,6 @@ class Chain:
             stiffness: declared, of the nut [N/m]; taken where the chain knows it only in series with others.
         """
         return self.values
-
-    def resolved(
-        self, values: Mapping[str, float], frequency: float, positions: Sequence[float], accuracy: float, hubs: Hubs
-    ) -> Chain:
-        """A chain whose frequencies hold up to one that is asked for; itself where it leaves nothing out.
-
-        Args:
-            values: of the machine, with its effects.
-            frequency: the highest [Hz].
-            positions: of the table [m].
-            accuracy: relative error of a frequency.
-            hubs: (a_j, J_j) of what turns between motor and screw, a ascending between 0 and 1 [1, kg m^2].
-        """
-        return self
 
     def positions_on_screw(self) -> tuple[float, float]:
         """Table positions [m] between which the nut is on the screw; any, where the chain does not know its ends."""
