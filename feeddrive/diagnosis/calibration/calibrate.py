@@ -12,7 +12,7 @@ from feeddrive.diagnosis.calibration.calibration import Calibration
 from feeddrive.diagnosis.calibration.declared import CalibratedValue, calibrated_values
 from feeddrive.diagnosis.calibration.known import known_values
 from feeddrive.diagnosis.certainty.noise_colour import score_covariance
-from feeddrive.diagnosis.likelihood.evidence import Evidence
+from feeddrive.diagnosis.likelihood.evidence import Evidence, weighed_by
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem
 from feeddrive.diagnosis.likelihood.predictability import has_play
 from feeddrive.effects.base import Effect
@@ -49,6 +49,10 @@ def calibrated(problem: Problem) -> Problem:
         before, start = start, recalibrated(start, (), rough=turn == 0)
         if turn > 0 and np.max(np.abs(moved(before, start)), initial=0.0) < ENOUGH:
             break
+    plant = start.machine(())
+    weighed = tuple(weighed_by(e, plant) for e in start.evidence)
+    if any(a is not b for a, b in zip(weighed, start.evidence, strict=True)):
+        start = recalibrated(replace(start, evidence=weighed), ())
     return recalibrated(start.levelled(), ())
 
 
