@@ -16,7 +16,8 @@ motor moves with that, and κ is the sensitivity 1 / (1 + L) of the loop, comple
 that rings (Forssell and Ljung, Automatica 35 (1999) 1215). A plant that answers the motor as a filter does (a further
 mode, a softer spring, another mass) lowers the error by what κ ρ takes from A, on blocks left out as well, as loop and
 encoder are the same there. At a pole of the load with the motor held the motor is hardly moved, L is nothing, and the
-sensitivity goes to one and back within the pole's own width: nodes stand there in steps of it.
+sensitivity goes to one and back: over the width 1 / |L| of the frequency, which is nobody's to know, the pole's own at
+least. Nodes stand at the pole, its half width away and twice as far each time until they are as far apart as all are.
 
 So (1 - ρ) A is simulated, and what the declared plant makes of ρ A around every node is a column that each comparison
 is without, as far as a deviation of one goes, at once and a quarter of a period later. Neither names nor declared
@@ -46,11 +47,6 @@ LEAST = 1e-3
 tell from none."""
 
 
-WIDTHS = (-4.0, -2.0, -1.0, 0.0, 1.0, 2.0, 4.0)
-"""Nodes about a pole, in its half widths: four away a resonance has turned to within a seventh of a radian, and twice
-eight are `SPACING` where it is damped by 0.014, so that less damped ones are met by nodes on their flanks."""
-
-
 def unsure_motions(
     angle: FloatArray, share: FloatArray, sample_time: float, edge: float, poles: Sequence[complex] = ()
 ) -> Iterator[FloatArray]:
@@ -76,7 +72,11 @@ def unsure_motions(
     nodes = [first * SPACING**node for node in range(-1, count + 1)]
     for pole in poles:
         width = max(-pole.real / (2 * math.pi), floor)
-        nodes += [abs(pole.imag) / (2 * math.pi) + widths * width for widths in WIDTHS]
+        centre = abs(pole.imag) / (2 * math.pi)
+        nodes.append(centre)
+        while width < 0.5 * (SPACING - 1) * centre:
+            nodes += [centre - width, centre + width]
+            width *= 2
     inside = [node for node in nodes if nodes[0] <= node <= nodes[count + 1]]
     places, at = np.unique(np.log(inside)), np.log(np.maximum(frequency, frequency[1]))
     for hat in np.eye(len(places))[1:-1]:
