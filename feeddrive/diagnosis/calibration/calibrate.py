@@ -231,7 +231,7 @@ class Calibrated:
         value: which.
         coordinate: most likely, as the plant has it.
         deviation: of the coordinate, given the recordings and the tolerances of all as deviations.
-        ends: of its 95 % interval as coordinates, all others within their tolerances (`known`).
+        ends: of its 95 % interval as coordinates, the value inside (`Known.interval_about`).
     """
 
     value: CalibratedValue
@@ -259,7 +259,6 @@ def calibrated_list(problem: Problem, found: Fit) -> tuple[Calibrated, ...]:
     deviations = np.sqrt(np.diag(known.covariance))
     result = []
     for i, value in enumerate(known.values):
-        coordinate, (low, high) = float(settled.coordinates[i]), known.interval(i)
-        ends = min(low, coordinate), max(high, coordinate)
-        result.append(Calibrated(value, coordinate, float(deviations[i]), ends))
+        coordinate = float(settled.coordinates[i])
+        result.append(Calibrated(value, coordinate, float(deviations[i]), known.interval_about(i, coordinate)))
     return tuple(result)
