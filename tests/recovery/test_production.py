@@ -25,7 +25,7 @@ from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording, read_recording
 from tests.recovery.fleet.plant_text import plant_text
-from tests.recovery.fleet.production import BLOCKS, Production, production
+from tests.recovery.fleet.production import BLOCKS, TOLERANCES, Production, production
 
 
 def test_play_and_reversals_are_where_the_truth_has_them() -> None:
@@ -49,7 +49,7 @@ def test_play_and_reversals_are_where_the_truth_has_them() -> None:
 
 def declared(axis: Production, folder: Path) -> Plant:
     """The plant file of an axis, read."""
-    (folder / "plant.toml").write_text(plant_text(axis.declared, "production"))
+    (folder / "plant.toml").write_text(plant_text(axis.declared, "production", TOLERANCES))
     return read_plant(folder / "plant.toml")
 
 

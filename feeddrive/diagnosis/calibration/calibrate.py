@@ -17,6 +17,7 @@ from feeddrive.diagnosis.likelihood.fit import Fit, Problem
 from feeddrive.diagnosis.likelihood.predictability import has_play
 from feeddrive.effects.base import Effect
 from feeddrive.recording import Recording
+from feeddrive.recording.long.joined import is_joined
 from feeddrive.typing import FloatArray
 
 STEP = 1e-3
@@ -44,6 +45,8 @@ def calibrated(problem: Problem) -> Problem:
     if not values:
         return problem
     start = replace(problem, calibration=Calibration(values, np.zeros(len(values)), {}, 1.0))
+    if of_hours(problem):
+        return weighed_by_rest(_without_unseen(weighed_by_rest(start, ())), ())
     start = _without_unseen(recalibrated(start, (), rough=True))
     for turn in range(PASSES):
         before, start = start, recalibrated(start, (), rough=turn == 0)
@@ -88,6 +91,11 @@ def at_declared(problem: Problem) -> Problem:
     return replace(problem, calibration=replace(known, coordinates=np.zeros(len(known.values))))
 
 
+def of_hours(problem: Problem) -> bool:
+    """Whether a recording is cut out of hours, which hold much that has no name."""
+    return any(is_joined(e.recording) for e in problem.evidence)
+
+
 def weighed_by_rest(problem: Problem, effects: Sequence[Effect]) -> Problem:
     """The problem with no channel weighed by more than what is left of it, its declared values fitted anew from there.
 
@@ -102,20 +110,48 @@ def weighed_by_rest(problem: Problem, effects: Sequence[Effect]) -> Problem:
     known = problem.calibration
     if known is None or not known.values:
         return problem
-    there = at_declared(problem)
-    for _ in range(PASSES):
+    return _weighed_in_turn(at_declared(problem), effects)
+
+
+def recalibrated_by_rest(problem: Problem, effects: Sequence[Effect]) -> Problem:
+    """The problem as `recalibrated`, where channels are weighed by what is left of them by what these effects leave."""
+    if not of_hours(problem):
+        return recalibrated(problem, effects)
+    return _weighed_in_turn(problem, effects)
+
+
+def _weighed_in_turn(there: Problem, effects: Sequence[Effect]) -> Problem:
+    if there.calibration is None or not there.calibration.values:
+        return there
+    for turn in range(PASSES):
         before = there
-        residual, first, evidence = replace(there, evidence=problem.evidence).unwhitened(effects), 0, []
-        for e in problem.evidence:
-            count, noise = int(e.thinned(e.fit_rows).sum()), dict(e.noise)
-            for name in e.channels:
-                noise[name] *= math.sqrt(max(float(np.mean(residual[first : first + count] ** 2)), 1.0))
-                first += count
-            evidence.append(replace(e, noise=noise))
-        there = recalibrated(replace(there, evidence=tuple(evidence)), effects)
-        if np.max(np.abs(moved(before, there)), initial=0.0) < ENOUGH:
+        evidence = tuple(replace(e, left=left) for e, left in zip(there.evidence, _left(there, effects), strict=True))
+        there = recalibrated(replace(there, evidence=evidence), effects, rough=turn == 0)
+        if turn and np.max(np.abs(moved(before, there)), initial=0.0) < ENOUGH:
             break
     return there
+
+
+def _left(problem: Problem, effects: Sequence[Effect]) -> list[dict[str, float]]:
+    """Per recording, channel to the rms of what is left of it over its noise, at least 1."""
+    residual, first, found = problem.unwhitened(effects), 0, []
+    for e in problem.evidence:
+        count, left = int(e.thinned(e.fit_rows).sum()), {}
+        for name in e.channels:
+            rms = math.sqrt(float(np.mean(residual[first : first + count] ** 2)))
+            left[name] = max(rms * e.left.get(name, 1.0), 1.0)
+            first += count
+        found.append(left)
+    return found
+
+
+def weighed_alike(evidence: Evidence, like: Sequence[Evidence]) -> Evidence:
+    """A recording with its channels weighed as those of fitted ones are, by the rms of what is left of these."""
+    left = {
+        name: math.sqrt(float(np.mean([one.left.get(name, 1.0) ** 2 for one in like if name in one.channels] or [1.0])))
+        for name in evidence.channels
+    }
+    return replace(evidence, left=left) if any(one.left for one in like) else evidence
 
 
 def with_new_slopes(problem: Problem, effects: Sequence[Effect], rough: bool = False) -> Problem:

@@ -13,9 +13,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from feeddrive.diagnosis.calibration.beyond import beyond_tolerance, without_effects
-from feeddrive.diagnosis.calibration.calibrate import at_declared, calibrated, recalibrated
+from feeddrive.diagnosis.calibration.calibrate import (
+    at_declared,
+    calibrated,
+    of_hours,
+    recalibrated,
+    recalibrated_by_rest,
+)
 from feeddrive.diagnosis.calibration.known import TOLERANCE
-from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, Attempt, compared, started
+from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, Attempt, compared, refuse_over_at_once, started
 from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.finding.round import Round, one_round
 from feeddrive.diagnosis.finding.scene import scene_of
@@ -102,6 +108,7 @@ def search(
     problem = calibrated(problem)
     found = fit(problem, start.fit.effects if start is not None else ())
     begun = (problem, found) if start is None or start.begun is None else start.begun
+    problem, found = _balanced(problem, found)
     trials: list[Trial] = [*start.trials] if start is not None else []
     rounds: list[tuple[Attempt, ...]] = [*start.rounds] if start is not None else []
     denied = {**start.impossible} if start is not None else {}
@@ -125,14 +132,13 @@ def search(
             problem, found = _refitted(problem, fit(problem, rest))
         if taken is None:
             left_out = problem.budget.skips("declared values beyond their tolerances")
-            beyond = None if left_out else beyond_tolerance(problem, found)
+            beyond = None if left_out else _with_value_beyond(problem, found)
             if beyond is None and others:
                 continue
             if beyond is None:
                 break
-            problem, effect = beyond
-            problem, found = _refitted(problem, fit(problem, (*found.effects, effect)))
-            trials.append(Trial(len(rounds), effect.name, 0.0, 0.0, True))
+            problem, found = beyond
+            trials.append(Trial(len(rounds), found.effects[-1].name, 0.0, 0.0, True))
             continue
         problem = without_effects(taken.problem, found.effects, taken.fit.effects)
         problem, found = _refitted(problem, taken.fit)
@@ -211,6 +217,7 @@ def _fitted(at_hand: Standing, one: Neighbour, attempts: Sequence[Attempt], coun
         again = regained(own, result.effects)
         if again is not own:  # what the play could not predict is to be predicted again
             own, result = again, fit(again, result.effects, iterations=JOINT_ITERATIONS)
+        refuse_over_at_once(own, result.effects)
         odds = odds_between(at_hand, Standing(own, result), count)
         if one.added and not one.dropped and not compared(own, name, result, found.effects).comparison.pays:
             return None
@@ -243,15 +250,42 @@ def _refitted(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
     Values gone beyond their tolerances may have stood in for what was missing: they begin as declared as well.
     """
     if problem.calibration is None:
-        return problem, found if not found.held else fit(problem, found.effects, iterations=0)
-    there = recalibrated(problem, found.effects)
+        return _balanced(problem, found if not found.held else fit(problem, found.effects, iterations=0))
+    there = recalibrated_by_rest(problem, found.effects)
     result = there, fit(there, found.effects, iterations=JOINT_ITERATIONS)
     assert there.calibration is not None
-    if np.max(np.abs(there.calibration.coordinates), initial=0.0) > TOLERANCE:
+    # That of hours has begun as declared, and other weights are no lower error.
+    if not of_hours(there) and np.max(np.abs(there.calibration.coordinates), initial=0.0) > TOLERANCE:
         anew = recalibrated(at_declared(problem), found.effects)
         other = anew, fit(anew, found.effects, iterations=JOINT_ITERATIONS)
         result = min(result, other, key=lambda one: one[1].squared_error)
-    return result
+    return _balanced(*result)
+
+
+def _balanced(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
+    """Each channel weighed by what is left of it, and the set fitted so."""
+    if of_hours(problem):
+        return problem, found
+    for _ in range(JOINT_ITERATIONS):
+        there = problem.balanced(found.effects)
+        if there is problem:
+            break
+        problem, found = there, fit(there, found.effects, iterations=JOINT_ITERATIONS)
+    return problem, found
+
+
+def _with_value_beyond(problem: Problem, found: Fit) -> tuple[Problem, Fit] | None:
+    """A set with the declared value as an effect that is beyond its tolerance; None where none is.
+
+    Free of its tolerance a value can only lower the error. Where it does not, slopes alone said so: beside a free play
+    a step of a value moves the contacts, and what the slope then tells holds for that step.
+    """
+    beyond = beyond_tolerance(problem, found)
+    if beyond is None:
+        return None
+    freed, effect = beyond
+    there, result = _refitted(freed, fit(freed, (*found.effects, effect)))
+    return (there, result) if result.squared_error < found.squared_error else None
 
 
 def _trial(number: int, attempt: Attempt, taken: bool) -> Trial:

@@ -27,6 +27,7 @@ from scipy.special import chdtri
 
 from feeddrive.diagnosis.calibration.beyond import without_effects
 from feeddrive.diagnosis.calibration.calibrate import weighed_by_rest, with_kept
+from feeddrive.diagnosis.certainty.one_sided import one_sided
 from feeddrive.diagnosis.certainty.uncertainty import certainty
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging.judge import Judged, Share, error_series, judged_channels, share_beyond, share_of
@@ -37,7 +38,7 @@ from feeddrive.diagnosis.likelihood.coordinates import (
     read_coordinates,
     write_coordinates,
 )
-from feeddrive.diagnosis.likelihood.cross_validation import Comparison, compare_left_out
+from feeddrive.diagnosis.likelihood.cross_validation import Comparison, worse_beyond_scatter
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit, linear_step
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between, regained
 from feeddrive.diagnosis.likelihood.tolerances import SURE
@@ -49,9 +50,6 @@ from feeddrive.units.quantity import format_quantity, percent
 
 CLEARLY_NEEDED = 0.1
 """Share of the squared error that an effect must bring, by one linear step, not to be refitted without it."""
-
-SCATTER = 2.0
-"""Standard deviations by which a channel must be worse: one of forty by chance."""
 
 
 @dataclass(frozen=True)
@@ -73,7 +71,10 @@ def without_denied(
         judged: recordings with the found effects in.
         judge: judges other effects.
     """
-    while (denied := _first_denied(found, judged)) is not None:
+    while True:
+        found, judged = not_worse_than_declared(found, judged, judge)  # no name is to go for what fitted values do
+        if (denied := _first_denied(found, judged)) is None:
+            return found, judged
         effects = found.fit.effects
         gone = effects[denied.place]
         rest = _without_lost_shifts([effect for i, effect in enumerate(effects) if i != denied.place])
@@ -82,7 +83,6 @@ def without_denied(
         problem = without_effects(found.problem, [gone], rest)
         found = replace(found, problem=problem, fit=fit(problem, rest), impossible=reasons)
         judged = judge(found)
-    return found, judged
 
 
 def not_worse_than_declared(
@@ -253,7 +253,7 @@ def sizes_around_none(problem: Problem, fitted: Fit) -> list[str]:
     """Per effect, a sentence where the 95 % intervals of all its sizes hold the absent effect; else empty.
 
     Of components and nodes that belong together the whole is asked: their squares over their variances, against the
-    same quantile.
+    same quantile. Of a size whose slope tells nothing the likelihood is asked (`one_sided`).
     """
     if not fitted.effects:
         return []
@@ -262,12 +262,13 @@ def sizes_around_none(problem: Problem, fitted: Fit) -> list[str]:
     beyond = fitted.coordinates - absent
     half = np.sqrt(np.diag(known.half_covariance))
     result, at = [], 0
-    for effect in fitted.effects:
+    for place, effect in enumerate(fitted.effects):
         count = len(read_coordinates([effect], problem.plant))
         places = range(at, at + count)
         sizes = sorted({int(groups[i]) for i in places if not math.isnan(absent[i])})
         sure = [_is_not_none(known.half_covariance, beyond, half, np.flatnonzero(groups == group)) for group in sizes]
-        result.append("" if any(sure) or not sizes or is_shift(effect) else "its interval holds no effect at all")
+        denied = not (any(sure) or not sizes or is_shift(effect)) and one_sided(problem, fitted, place) is None
+        result.append("its interval holds no effect at all" if denied else "")
         at += count
     return result
 
@@ -301,12 +302,7 @@ def _worst_channel(problem: Problem, judged: Sequence[Judged]) -> str:
 
 
 def worse_by(problem: Problem, judged: Sequence[Judged], name: str) -> float:
-    """Share by which a channel's squared error as declared is smaller, beyond its scatter; negative where it is not.
-
-    It is the gain of the declared plant over the corrected one: of what they differ by, only the product with the
-    declared plant's own error is chance, however few blocks hold it. Both scatters count: that of the gain between
-    blocks, and that of a mean square of 2 B T independent values.
-    """
+    """Share by which a channel's squared error as declared is smaller, beyond its scatter; negative where it is not."""
     before, after, blocks, first, values = [], [], [], 0, 0.0
     for one in judged:
         if name not in one.evidence.channels:
@@ -319,6 +315,4 @@ def worse_by(problem: Problem, judged: Sequence[Judged], name: str) -> float:
         blocks.append(first + numbers)
         first += int(numbers.max(initial=-1)) + 1
         values += 2 * one.evidence.edge * float(rows.sum()) * step
-    gain = compare_left_out(np.concatenate(after), np.concatenate(before), np.concatenate(blocks), 0.0)
-    scatter = max(gain.standard_error, math.sqrt(2 / max(values, 1.0)))
-    return gain.gain - SCATTER * scatter
+    return worse_beyond_scatter(np.concatenate(before), np.concatenate(after), np.concatenate(blocks), values)

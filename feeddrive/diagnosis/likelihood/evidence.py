@@ -12,6 +12,7 @@ import numpy as np
 from feeddrive.diagnosis.calibration.calibration import Whitener, whitener
 from feeddrive.diagnosis.likelihood.band import END_CUT, Band, comparison_band, held, sensor_noise
 from feeddrive.diagnosis.likelihood.encoder_error import Weighing, encoder_error, known_motion_of
+from feeddrive.diagnosis.likelihood.lead_map import lead_map
 from feeddrive.diagnosis.likelihood.slow_rows import (
     is_slow,
     known_motion,
@@ -64,6 +65,8 @@ class Evidence:
         floating: channels whose zero is not known, and taken out of every error.
         model_error: channel to the rms of what the model itself may miss; channels left out are predicted exactly.
         lost: samples that would count, but that a free play of the plant leaves unpredictable, (n,); None for none.
+        left: channel to what is left of it over its noise, where it weighs no more than that (`Problem.balanced`,
+            `weighed_by_rest`).
     """
 
     recording: Recording
@@ -77,6 +80,7 @@ class Evidence:
     floating: tuple[str, ...]
     model_error: dict[str, float]
     lost: BoolArray | None = field(default=None, kw_only=True)
+    left: dict[str, float] = field(default_factory=dict, kw_only=True)
 
     @property
     def channels(self) -> tuple[str, ...]:
@@ -123,13 +127,17 @@ class Evidence:
         """Rms of what the sensors add to a channel in the band."""
         return self.noise[name]
 
+    def unit(self, name: str) -> float:
+        """Error of a channel that counts as one: its noise, or more where more is left of it than any name explains."""
+        return self.noise[name] * self.left.get(name, 1.0)
+
     def evened(self, name: str, series: FloatArray) -> FloatArray:
         """A channel, (n,), with each frequency weighed by how well it is known there."""
         return series
 
     def without_open(self, name: str, part: FloatArray, rows: BoolArray) -> FloatArray:
         """One channel over its noise, (k,), without what its sensor leaves open: the zero of a scale."""
-        part = part / self.noise[name]
+        part = part / self.unit(name)
         return part - np.mean(part) if name in self.floating else part
 
     def missed(self, name: str) -> float:
@@ -138,7 +146,12 @@ class Evidence:
 
     def weighs_as(self, other: Self) -> bool:
         """Whether samples weigh as much in another evidence of this recording."""
-        return True
+        return self.left == other.left
+
+    @property
+    def mapped(self) -> Self:
+        """The evidence in which the lead map counts."""
+        return self
 
     @property
     def whole(self) -> Self:
@@ -155,7 +168,10 @@ class Evidence:
         """The evidence on the samples that another one of this recording has as well."""
         gone = self.counted & ~other.counted
         lost = gone if self.lost is None else gone | self.lost
-        return replace(self, counted=self.counted & other.counted, lost=lost) if gone.any() else self
+        kept = replace(self, counted=self.counted & other.counted, lost=lost) if gone.any() else self
+        names = (*self.left, *other.left)
+        left = {name: max(self.left.get(name, 1.0), other.left.get(name, 1.0)) for name in names}
+        return kept if left == self.left else replace(kept, left=left)
 
     def beside(self, other: Self) -> Self:
         """The evidence on the samples alone that another one of this recording does not have."""
@@ -176,6 +192,7 @@ class AxisEvidence(Evidence):
         drawn: motions with the encoder's error once more; as `gains`.
         weights: channel to the weight of every sample, (n,): noise over noise and what the encoder's error makes of a
             free play there; channels left out are predicted alike everywhere.
+        lead_map: what a lead map may be of the table position, in the band, (n, k); None where it counts.
         unsure: channel to what motion that may not be makes of it, in the band, (n, k); as `gains`.
         torque_rows: rows that the recorder writes a torque for, and the first row of one (`suspicion.logged_rows`);
             None where the torque is what the drive holds.
@@ -191,6 +208,7 @@ class AxisEvidence(Evidence):
     unsure: dict[str, FloatArray] = field(default_factory=dict)
     torque_rows: tuple[int, int] | None = None
     weights: dict[str, FloatArray] = field(default_factory=dict)
+    lead_map: FloatArray | None = None
 
     def where_predictable(self, predictable: BoolArray | FloatArray) -> Self:
         """The evidence without the samples of weight 0, the table position weighed at the others."""
@@ -217,14 +235,18 @@ class AxisEvidence(Evidence):
     def weighs_as(self, other: Self) -> bool:
         """Whether samples weigh as much in another evidence of this recording."""
         mine, its = self.weights, other.weights
-        return mine.keys() == its.keys() and all(np.array_equal(mine[name], its[name]) for name in mine)
+        return (
+            super().weighs_as(other)
+            and mine.keys() == its.keys()
+            and all(np.array_equal(mine[name], its[name]) for name in mine)
+        )
 
     def without_open(self, name: str, part: FloatArray, rows: BoolArray) -> FloatArray:
         """One channel over its noise and by its weights, (k,), without the zero of a scale."""
         if name not in self.weights:
             return super().without_open(name, part, rows)
         weights = self.weights[name][rows]
-        weighed = weights * part / self.noise[name]
+        weighed = weights * part / self.unit(name)
         return weighed - weights * float(weights @ weighed / (weights @ weights)) if name in self.floating else weighed
 
     def in_band(self, series: FloatArray) -> FloatArray:
@@ -232,17 +254,31 @@ class AxisEvidence(Evidence):
         return self.band.filter(series)
 
     def weighted(self, series: dict[str, FloatArray], rows: BoolArray) -> FloatArray:
-        """Channels at some samples as any are, less what motion that is not known may make of them."""
+        """Channels at some samples as any are, less what motion that is not known, or a lead map, may make of them."""
         weighted = super().weighted(series, rows)
-        if not self.unsure or not rows.any():
+        parts = self._open
+        if not parts or not rows.any():
             return weighted
         key = rows.tobytes()
         if key not in self._sure:
-            count = next(iter(self.unsure.values())).shape[1]
-            parts = [{name: columns[:, i] for name, columns in self.unsure.items()} for i in range(count)]
             columns = np.column_stack([super(AxisEvidence, self).weighted(part, rows) for part in parts])
-            self._sure[key] = whitener(columns, np.zeros(count), 1.0)
+            self._sure[key] = whitener(columns, np.zeros(len(parts)), 1.0)
         return self._sure[key].applied(weighted)
+
+    @cached_property
+    def _open(self) -> list[dict[str, FloatArray]]:
+        """Series of all channels, (n,) each, that a recording may hold, as far as a deviation of one goes."""
+        count = next(iter(self.unsure.values())).shape[1] if self.unsure else 0
+        parts = [{name: columns[:, i] for name, columns in self.unsure.items()} for i in range(count)]
+        if self.lead_map is not None:
+            none = dict.fromkeys(self.channels, np.zeros(len(self.counted)))
+            parts += [{**none, "table_position": column} for column in self.lead_map.T]
+        return parts
+
+    @property
+    def mapped(self) -> Self:
+        """The evidence in which the lead map counts."""
+        return replace(self, lead_map=None)
 
     @cached_property
     def _sure(self) -> dict[bytes, Whitener]:
@@ -258,10 +294,21 @@ class AxisEvidence(Evidence):
         if name not in self.gains:
             return series
         known = np.isfinite(series)
-        mean = float(np.mean(series[known])) if known.any() else 0.0  # apart, so that gaps do not make steps
-        filled = np.where(known, series - mean, 0.0)
+        inside = known & self._between_ends
+        mean = float(np.mean(series[inside])) if inside.any() else 0.0  # apart, so that gaps do not make steps
+        filled = np.where(inside, series - mean, 0.0)
         weighed = self._weighing[name](filled)
         return np.where(known, weighed + self.gains[name][0] * mean, series)
+
+    @cached_property
+    def _between_ends(self) -> BoolArray:
+        """Samples from the first that counts to the last, (n,).
+
+        A simulation begins at rest without stretch: what it does until that is forgotten would be carried on.
+        """
+        counted = self.counted if self.lost is None else self.counted | self.lost
+        inside: BoolArray = np.logical_or.accumulate(counted) & np.logical_or.accumulate(counted[::-1])[::-1]
+        return inside
 
     @cached_property
     def _weighing(self) -> dict[str, Weighing]:
@@ -368,6 +415,7 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
         encoder.added if encoder is not None else {},
         encoder.drawn if encoder is not None else (),
         encoder.unsure if encoder is not None else {},
+        lead_map=band.filter(lead_map(raw["table_position"], plant.chain.radius)) if "table_position" in raw else None,
     )
 
 

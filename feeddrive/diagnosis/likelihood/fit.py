@@ -163,6 +163,51 @@ class Problem:
             evidence.append(replace(e, noise=noise))
         return replace(self, evidence=tuple(evidence))
 
+    def balanced(self, effects: Sequence[Effect]) -> Problem:
+        """The problem with each channel weighed by what is left of it, beside the channel that is met best.
+
+        A channel whose noise is far below what the model reaches, a current with ripple and structure beside a scale,
+        holds an error of the model, whose variance is not known: the most likely one is its mean square, n/2 log r'r in
+        place of r'r / 2 σ². Weighed by its noise it would lead everything that the other channel tells astray.
+
+        Args:
+            effects: found, with the declared values as they are.
+        """
+        plain = self.plain
+        if len({name for e in self.evidence for name in e.channels}) < 2 or not self.predictor.of_motion:
+            return plain
+        residual, first = plain.residual(effects), 0
+        squares: dict[str, list[FloatArray]] = {}
+        for e in self.evidence:
+            count = int(e.thinned(e.fit_rows).sum())
+            for name in e.channels:
+                squares.setdefault(name, []).append(residual[first : first + count] ** 2)
+                first += count
+        left = {name: math.sqrt(float(np.mean(np.concatenate(parts)))) for name, parts in squares.items()}
+        if not all(np.isfinite(one) for one in left.values()):
+            return self
+        least = max(1.0, min(left.values()))
+        used = self.evidence[0].left
+        if all(LEVEL < left[name] / least / used.get(name, 1.0) < 1 / LEVEL for name in left):
+            return self  # as it is weighed, but for a few
+        return self.weighed({name: one / least for name, one in left.items() if one * LEVEL > least})
+
+    def weighed(self, left: dict[str, float]) -> Problem:
+        """The problem with other factors on the noise of channels."""
+        if all(e.left == left for e in self.evidence):
+            return self
+        return replace(self, evidence=tuple(replace(e, left=left) for e in self.evidence))
+
+    @property
+    def plain(self) -> Problem:
+        """The problem with every channel weighed by its noise."""
+        return self.weighed({})
+
+    def plain_error(self, effects: Sequence[Effect]) -> float:
+        """Weighted squared error per row, every channel weighed by its noise."""
+        residual = self.plain.residual(effects)
+        return float(residual @ residual) / max(len(residual), 1)
+
     def unwhitened(self, effects: Sequence[Effect]) -> FloatArray:
         """Measured less predicted over the noise at the fitted samples of all recordings."""
         plant, parts = self.machine(effects), []

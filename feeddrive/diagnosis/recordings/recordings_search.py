@@ -125,17 +125,24 @@ def _better(first: Searched, second: Searched) -> Searched:
 
     Where they predict different samples, the likelier.
     """
-    a, b = (Standing(one.search.problem, one.search.fit) for one in (first, second))
+    left = first.search.problem.evidence[0].left
+    a, b = (_weighed(one.search, left) for one in (first, second))
     if not same_samples(a.problem, b.problem):
         return second if odds_between(a, b, len(a.problem.predictor.candidates)) > 0 else first
-    errors = [one.search.fit.squared_error / len(one.search.fit.residual) for one in (first, second)]
+    errors = [one.fit.squared_error / len(one.fit.residual) for one in (a, b)]
     if abs(errors[0] - errors[1]) > SAME * min(errors):
         return first if errors[0] < errors[1] else second
     return min((first, second), key=lambda one: len(one.search.fit.coordinates))
 
 
+def _weighed(found: Search, left: dict[str, float]) -> Standing:
+    """A set that was found, its channels weighed as those of another."""
+    problem = found.problem.weighed(left)
+    return Standing(problem, found.fit if problem is found.problem else fit(problem, found.fit.effects, iterations=0))
+
+
 def _explained(one: Searched) -> bool:
-    return one.search.fit.squared_error < UNEXPLAINED * len(one.search.fit.residual)
+    return one.search.problem.plain_error(one.search.fit.effects) < UNEXPLAINED
 
 
 def _nothing(problem: Problem) -> Changes:

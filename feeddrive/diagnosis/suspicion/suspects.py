@@ -146,7 +146,7 @@ def is_better(fault: Suspect, mended: Search, found: Search) -> bool:
 
     As much is what chance does for the effects that are spared: for each, less than is asked of any.
     """
-    before, after = (one.fit.squared_error / max(len(one.fit.residual), 1) for one in (found, mended))
+    before, after = (one.problem.plain_error(one.fit.effects) for one in (found, mended))
     if len(mended.fit.coordinates) + 1 < len(found.fit.coordinates):
         spared = max(1, len(found.fit.effects) - len(mended.fit.effects))
         return after <= (1 + spared * fault.comparison.least) * before

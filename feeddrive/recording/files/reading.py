@@ -24,6 +24,7 @@ from feeddrive.recording.files.channel_mapping import FileMapping, read_mapping
 from feeddrive.recording.files.csv_file import Layout, TextTable, find_table, is_number
 from feeddrive.recording.files.foreign import mapped_columns, read_variables, table_variables
 from feeddrive.recording.files.opening import FileContent, TextFile, first_bytes, open_file
+from feeddrive.recording.formats import matlab5
 from feeddrive.recording.frequency_response import FrequencyResponse
 from feeddrive.recording.recording import Recording
 from feeddrive.recording.traces.channel_choice import Wishes
@@ -51,7 +52,8 @@ def read_recording(path: Path, mapping: Path | None = None, *, decimal: str | No
     if decimal not in (None, ".", ","):
         raise InputError(f"{decimal!r} is not a decimal sign", "--decimal", "write . or ,")
     known = read_mapping(Path(mapping)) if mapping is not None else None
-    if could_be_trace(first_bytes(path)):
+    start = first_bytes(path)
+    if could_be_trace(start) and not (known is not None and matlab5.recognises(start)):  # mapped by its variables
         content = open_file(path)
         trace = read_trace(content, Wishes(sample_time=known.sample_time if known else None))
         if trace is not None:

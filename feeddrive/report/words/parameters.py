@@ -19,6 +19,9 @@ from feeddrive.report.words.words import effect_words, headline_parameters, plai
 
 _LONGEST_LIST = 9
 _HEADLINE_DIGITS = 4
+OPEN = 1000.0
+"""End of an interval over its other one from which a value is told by the lower alone."""
+
 _SIZES = {"width", "amplitude", "mass", "delay", "slope", "strain", "stiffness", "inertia", "power", "growth"}
 _SPEAKING = _SIZES | {"force", "delta_force", "delta_viscous", "conductance"}
 """Keys that go without saying beside the effect's name."""
@@ -58,6 +61,7 @@ def _number_text(key: str, value: float, unit: str, ci95: object, most_digits: i
     """Value with as many digits as the interval supports, three significant ones where there is no interval.
 
     Of at most `most_digits` significant ones the interval is left out where both of its ends are then the value's.
+    Where the interval is as good as open above, its lower end is all that is known.
     """
     ends = ci95 if isinstance(ci95, tuple) and len(ci95) == 2 and all(map(math.isfinite, ci95)) else None
     # A value of zero has no size of its own; the interval gives the unit.
@@ -65,6 +69,9 @@ def _number_text(key: str, value: float, unit: str, ci95: object, most_digits: i
     shown = value * scale.factor
     if ends is None:
         return ParameterText(plain(key), with_unit(significant(shown), scale.unit), "")
+    if ends[0] > 0 and ends[1] > OPEN * ends[0]:
+        scale = _scale(key, ends[0], unit)
+        return ParameterText(plain(key), f"at least {with_unit(significant(ends[0] * scale.factor), scale.unit)}", "")
     low, high = (end * scale.factor for end in ends)
     decimals = decimals_for(0.5 * abs(high - low))
     if most_digits is not None and shown:
