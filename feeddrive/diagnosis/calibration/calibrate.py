@@ -12,7 +12,7 @@ from feeddrive.diagnosis.calibration.calibration import Calibration
 from feeddrive.diagnosis.calibration.declared import CalibratedValue, calibrated_values
 from feeddrive.diagnosis.calibration.known import known_values
 from feeddrive.diagnosis.certainty.noise_colour import score_covariance
-from feeddrive.diagnosis.likelihood.evidence import Evidence
+from feeddrive.diagnosis.likelihood.evidence import Evidence, weighed_by
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem
 from feeddrive.diagnosis.likelihood.predictability import has_play
 from feeddrive.effects.base import Effect
@@ -52,6 +52,10 @@ def calibrated(problem: Problem) -> Problem:
         before, start = start, recalibrated(start, (), rough=turn == 0)
         if turn > 0 and np.max(np.abs(moved(before, start)), initial=0.0) < ENOUGH:
             break
+    plant = start.machine(())
+    weighed = tuple(weighed_by(e, plant) for e in start.evidence)
+    if any(a is not b for a, b in zip(weighed, start.evidence, strict=True)):
+        start = recalibrated(replace(start, evidence=weighed), ())
     return recalibrated(start.levelled(), ())
 
 
@@ -263,7 +267,7 @@ class Calibrated:
         value: which.
         coordinate: most likely, as the plant has it.
         deviation: of the coordinate, given the recordings and the tolerances of all as deviations.
-        ends: of its 95 % interval as coordinates, all others within their tolerances (`known`).
+        ends: of its 95 % interval as coordinates, the value inside (`Known.interval_about`).
     """
 
     value: CalibratedValue
@@ -291,7 +295,6 @@ def calibrated_list(problem: Problem, found: Fit) -> tuple[Calibrated, ...]:
     deviations = np.sqrt(np.diag(known.covariance))
     result = []
     for i, value in enumerate(known.values):
-        coordinate, (low, high) = float(settled.coordinates[i]), known.interval(i)
-        ends = min(low, coordinate), max(high, coordinate)
-        result.append(Calibrated(value, coordinate, float(deviations[i]), ends))
+        coordinate = float(settled.coordinates[i])
+        result.append(Calibrated(value, coordinate, float(deviations[i]), known.interval_about(i, coordinate)))
     return tuple(result)

@@ -42,6 +42,7 @@ from feeddrive.diagnosis.likelihood.band import END_CUT, Band
 from feeddrive.diagnosis.likelihood.unsure_motion import unsure_motions, without_share
 from feeddrive.diagnosis.suspicion.torque_channel import scale_of
 from feeddrive.engine.step.linear_part import SimulationError
+from feeddrive.plant.analysis.modes import braked_modes
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 from feeddrive.recording.checks.flaws import quantisation_step
@@ -176,7 +177,8 @@ def encoder_error(
         return None
     gains = {name: gain / (1 + (share / SMALL) ** 2) for name, gain in gains.items()}
     unsure: dict[str, list[FloatArray]] = {name: [] for name in noise}
-    for part in unsure_motions(expected, share, sample_time, band.edge):
+    held = braked_modes(plant, plant.middle).poles
+    for part in unsure_motions(expected, share, sample_time, band.edge, [p for p in held if p.imag > 0]):
         try:
             run = simulate_driven(plant, motor_motion(time, expected + part))
         except SimulationError:

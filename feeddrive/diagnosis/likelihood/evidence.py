@@ -419,6 +419,21 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
     )
 
 
+def weighed_by(evidence: Evidence, plant: Plant) -> Evidence:
+    """The evidence with the encoder's error as a plant shows it: at its resonances, not at those of the declared one.
+
+    Args:
+        evidence: prepared for the declared plant.
+        plant: nearer to the machine.
+    """
+    if not isinstance(evidence, AxisEvidence) or not evidence.gains or evidence.scaled_from:
+        return evidence
+    encoder = encoder_error(_placed(plant, evidence.zero), evidence.recording, evidence.band, evidence.noise)
+    if encoder is None:
+        return evidence
+    return replace(evidence, gains=encoder.gains, added=encoder.added, unsure=encoder.unsure)
+
+
 def _from_zero(recording: Recording) -> FloatArray:
     """Times of the rows from the first on [s], (n,), as many periods of the clock as there are rows between."""
     time: FloatArray = np.arange(len(recording), dtype=np.float64) * recording.sample_time
