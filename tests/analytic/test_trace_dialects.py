@@ -137,6 +137,9 @@ def test_unit_that_is_stated_and_unknown_is_not_replaced_by_the_usual_one() -> N
         ("Coppia motore", "Nm", "motor_torque"),
         ("Velocità motore", "giri/min", "motor_speed"),
         ("Lagesollwert", "mm", "setpoint"),
+        ("Position des Tisches", "mm", ""),  # a German genitive, no desired position
+        ("des_pos", "mm", "setpoint"),
+        ("hm2_5i25.0.encoder.00.position", "mm", "table_position"),
         ("Motordrehzahl", "1/min", "motor_speed"),
     ],
 )

@@ -20,6 +20,7 @@ from feeddrive.recording.checks.unusable_samples import (
     clock_notes,
     mean_sample_time,
 )
+from feeddrive.recording.files.cells import with_dates
 from feeddrive.recording.files.channel_mapping import FileMapping, read_mapping
 from feeddrive.recording.files.csv_file import Layout, TextTable, find_table, is_number
 from feeddrive.recording.files.foreign import mapped_columns, read_variables, table_variables
@@ -96,14 +97,14 @@ def _canonical(
     if isinstance(source, FileContent):
         held = ", ".join(quoted(name, 40) for name in list(read_variables(source))[:12])
         raise InputError(f"a .mat file has no units (it holds {held})", where, "name its mapping file by --map")
-    text_table = find_table(source.blocks(), Layout(), where)
+    text_table, dated = with_dates(find_table(source.blocks(), Layout(), where))
     headings = _headings(text_table, where)
     table = text_table.numbers(decimal)
     columns = dict(zip((heading.channel for heading in headings), table.columns, strict=True))
     with np.errstate(all="ignore"):  # a number beyond all bounds is refused where its row is known
         for heading in headings:
             columns[heading.channel] = heading.conversion.apply(columns[heading.channel])
-    return columns, table.first_row, (*source.notes, *table.notes)
+    return columns, table.first_row, (*source.notes, *dated, *table.notes)
 
 
 def _headings(table: TextTable, where: str) -> list[Heading]:

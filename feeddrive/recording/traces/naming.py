@@ -124,9 +124,7 @@ def _rule(pattern: str, channels: str, unit: str, reason: str, rank: int = 5) ->
 
 _SIDES = f"table_position motor_angle {MOTOR_SIDE}"
 _ACTUAL = r"(?:act(?:ual)?|ist|fb|fbk|feedback|meas(?:ured)?|istwert)"
-_NOMINAL = (
-    r"(?:set(?: ?point)?|cmd|command(?:ed)?|nom(?:inal)?|soll(?:wert)?|target|desired|des|demand(?:ed)?|ref(?:erence)?)"
-)
+_NOMINAL = r"(?:set(?: ?point)?|cmd|command(?:ed)?|nom(?:inal)?|soll(?:wert)?|target|desired|des(?= ?(?:pos|vel|curr|torq))|demand(?:ed)?|ref(?:erence)?)"
 _POSITION = r"(?:pos(?:ition|n)?|lage)"
 _SPEED_WORD = r"(?:v|velo?|velocity|speed|geschwindigkeit|drehzahl|n)"
 _ROTARY = r"(?:speed|drehzahl|n|velo?|velocity)"
@@ -239,9 +237,7 @@ _FOREIGN_WORD = re.compile(
         for word in sorted(_WORDS, key=len, reverse=True)
     )
 )
-_SUFFIX = re.compile(
-    r"(.*[A-Za-z\d])_(mm|um|µm|nm|in|deg|rad|rpm|Nm|NM|A|mA|mm_s|mm_min|m_s|m_min|rad_s|deg_s|degC|mps)"
-)
+_SUFFIX = re.compile(r"(.*[A-Za-z\d])_(mm|um|µm|nm|deg|rad|rpm|Nm|NM|mA|mm_s|mm_min|m_s|m_min|rad_s|deg_s|degC|mps)")
 _WITH_NOT_MEASURED = re.compile(r"^(?:load (?:pos|position|velo|velocity|speed))\b")
 _AXIS = re.compile(
     r"(?:axis|achse|joint|joints|axes)[ _.]*(\d+)\b|\baxis[ _.]([a-z])\b"

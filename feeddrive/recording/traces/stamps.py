@@ -24,7 +24,7 @@ from feeddrive.recording.traces.trace import clean
 from feeddrive.typing import FloatArray
 
 _TIME = re.compile(
-    r"(?:t|time ?stamps?|(?:elapsed |x |relative )?(?:time|zeit|tempo|temps|tiempo|时间)(?: ?(?:axis|vector|vec))?)"
+    r"(?:t|time ?stamps?|(?:elapsed |x |relative )?(?:time|zeit|tempo|tiempo|时间)(?: ?(?:axis|vector|vec))?)"
 )
 _TIME_UNIT = re.compile(r"(.*\S)[ _](s|sec|secs|seconds?|sek|ms|msec|us|µs|usec|ns)")
 _DATES = (
