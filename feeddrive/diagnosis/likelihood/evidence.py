@@ -111,8 +111,10 @@ class Evidence:
             series: channel to measurement, prediction or their difference, (n,) each.
             rows: the samples, (n,).
         """
+        every = self.thinning if np.count_nonzero(rows[:: self.thinning]) == np.count_nonzero(rows) else 1
+        asked = rows[::every]
         return np.concatenate(
-            [self.without_open(name, self.evened(name, series[name])[rows], rows) for name in self.channels]
+            [self.without_open(name, self.evened(name, series[name], every)[asked], rows) for name in self.channels]
         )
 
     def in_band(self, series: FloatArray) -> FloatArray:
@@ -123,9 +125,9 @@ class Evidence:
         """Rms of what the sensors add to a channel in the band."""
         return self.noise[name]
 
-    def evened(self, name: str, series: FloatArray) -> FloatArray:
-        """A channel, (n,), with each frequency weighed by how well it is known there."""
-        return series
+    def evened(self, name: str, series: FloatArray, every: int) -> FloatArray:
+        """A channel, (n,), at every k-th sample, each frequency weighed by how well it is known there."""
+        return series[::every]
 
     def without_open(self, name: str, part: FloatArray, rows: BoolArray) -> FloatArray:
         """One channel over its noise, (k,), without what its sensor leaves open: the zero of a scale."""
@@ -253,19 +255,23 @@ class AxisEvidence(Evidence):
         """Rms of what sensor and encoder add to a channel in the band."""
         return math.hypot(self.noise[name], self.added.get(name, 0.0))
 
-    def evened(self, name: str, series: FloatArray) -> FloatArray:
-        """A channel, (n,), with each frequency weighed by sensor noise over that and the encoder's error."""
+    def evened(self, name: str, series: FloatArray, every: int) -> FloatArray:
+        """A channel, (n,), at every k-th sample, each frequency weighed by sensor noise over that and the encoder's."""
         if name not in self.gains:
-            return series
+            return series[::every]
         known = np.isfinite(series)
         mean = float(np.mean(series[known])) if known.any() else 0.0  # apart, so that gaps do not make steps
         filled = np.where(known, series - mean, 0.0)
-        weighed = self._weighing[name](filled)
-        return np.where(known, weighed + self.gains[name][0] * mean, series)
+        key = (name, every)
+        if key not in self._weighing:
+            self._weighing[key] = Weighing.of(self.gains[name], len(self.counted), every)
+        weighed = self._weighing[key](filled)
+        return np.where(known[::every], weighed + self.gains[name][0] * mean, series[::every])
 
     @cached_property
-    def _weighing(self) -> dict[str, Weighing]:
-        return {name: Weighing.of(gains, len(self.counted)) for name, gains in self.gains.items()}
+    def _weighing(self) -> dict[tuple[str, int], Weighing]:
+        """By channel and every how many samples are asked for."""
+        return {}
 
     def placed(self, plant: Plant) -> Plant:
         """The plant with its nut where it stood: simulated positions count from the zero of the motor angle."""
