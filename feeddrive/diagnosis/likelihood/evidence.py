@@ -11,7 +11,7 @@ import numpy as np
 
 from feeddrive.diagnosis.calibration.calibration import Whitener, whitener
 from feeddrive.diagnosis.likelihood.band import END_CUT, Band, comparison_band, held, sensor_noise
-from feeddrive.diagnosis.likelihood.encoder_error import Weighing, encoder_error, known_motion_of
+from feeddrive.diagnosis.likelihood.encoder_error import encoder_error, known_motion_of
 from feeddrive.diagnosis.likelihood.slow_rows import (
     is_slow,
     known_motion,
@@ -19,6 +19,7 @@ from feeddrive.diagnosis.likelihood.slow_rows import (
     refuse_unknown_motion,
     sentence,
 )
+from feeddrive.diagnosis.likelihood.weighing import Weighing
 from feeddrive.diagnosis.suspicion.channel_timing import lagging
 from feeddrive.diagnosis.suspicion.flawed_rows import refuse_little_left, sound_rows, without_copied_position
 from feeddrive.diagnosis.suspicion.torque_channel import with_torque
@@ -120,6 +121,10 @@ class Evidence:
     def in_band(self, series: FloatArray) -> FloatArray:
         """A series, (n,), as it shows in the comparison."""
         return series
+
+    def thinly_in_band(self, series: FloatArray) -> FloatArray:
+        """A series, (n,), as it shows in the comparison, at the samples that carry all of it; not at its ends."""
+        return series[:: self.thinning]
 
     def known_to(self, name: str) -> float:
         """Rms of what the sensors add to a channel in the band."""
@@ -232,6 +237,10 @@ class AxisEvidence(Evidence):
     def in_band(self, series: FloatArray) -> FloatArray:
         """A series or columns, (n,), in the band of the comparison."""
         return self.band.filter(series)
+
+    def thinly_in_band(self, series: FloatArray) -> FloatArray:
+        """A series, (n,), in the band of the comparison, at the samples that carry all of it; not at its ends."""
+        return self.band.thinned(series)
 
     def weighted(self, series: dict[str, FloatArray], rows: BoolArray) -> FloatArray:
         """Channels at some samples as any are, less what motion that is not known may make of them."""

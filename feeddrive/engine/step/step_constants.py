@@ -25,8 +25,8 @@ FULL_SCALE = 10.0
 
 CONVERGED = 1e-5
 """Newton ends where its last correction is below this share of the force, or of full scale: each is as the square of
-the one before, in shares of what bends the force. 1e-4 m/s^2 over half a millisecond are 50 nm/s, a ten-thousandth of the
-0.5 mm/s within which friction turns round. A further one would only say so, and takes a third of a run."""
+the one before, in shares of what bends the force. 1e-4 m/s^2 over half a millisecond are 50 nm/s, a ten-thousandth of
+the 0.5 mm/s within which friction turns round. A further one would only say so, and takes a third of a run."""
 
 CONVERGED_WITH_BRISTLES = 1e-9
 """The same with bristles: forces are compared, and a stiff bristle that breaks away bends within 10 nm, which the last
