@@ -72,7 +72,7 @@ class Band:
         return filtered
 
     def thinned(self, series: FloatArray) -> FloatArray:
-        """The series in the band, (n,), at every `thinning`-th sample from the first on; not within `END_CUT` of an end.
+        """The series in the band, (n,), at every `thinning`-th sample from the first on; not within `END_CUT` of ends.
 
         Away from the ends the filter is a gain of frequencies, and a third of the work of two passes over all samples.
         """
