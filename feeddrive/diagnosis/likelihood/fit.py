@@ -21,6 +21,7 @@ import numpy as np
 from feeddrive.diagnosis.budget import Budget
 from feeddrive.diagnosis.calibration.calibration import Calibration, Whitener, whitener
 from feeddrive.diagnosis.calibration.declared import with_values
+from feeddrive.diagnosis.finding.remembered import Remembered, effects_key
 from feeddrive.diagnosis.likelihood.coordinates import (
     coordinate_ends,
     longest_steps,
@@ -63,6 +64,9 @@ BENT = 0.5
 LEVEL = 0.8
 """Residual over the noise that a channel is stated to have, below which the noise is put right: a level read from
 the quietest tenth of the blocks is known to some per cent."""
+
+PREDICTIONS = 8_000_000
+"""Bytes of predictions that a problem keeps: some twenty of a minute at 2 kHz."""
 
 FREE = 1e-6
 """Damping that does not hold a step back."""
@@ -224,14 +228,24 @@ class Problem:
         return self.numbers.predicted(self.machine(effects))
 
     def predicted(self, effects: Sequence[Effect]) -> FloatArray:
-        """Weighted prediction at the fitted samples of all recordings, whitened."""
+        """Weighted prediction at the fitted samples of all recordings, whitened; to be read only."""
+        return self._predictions.found(None, effects_key(effects), lambda: self._predicted(effects))
+
+    @cached_property
+    def _predictions(self) -> Remembered[FloatArray]:
+        """The latest predictions: every candidate of a round asks for the set at hand again."""
+        return Remembered(lambda rows: rows.nbytes, PREDICTIONS)
+
+    def _predicted(self, effects: Sequence[Effect]) -> FloatArray:
         plant = self.machine(effects)
         rows = np.concatenate(
             [e.weighted(self.predictor.predict(plant, e), e.thinned(e.fit_rows)) for e in self.evidence]
             + ([self._numbers(effects)] if len(self.numbers) else [])
         )
         known = self.whitener
-        return rows if known is None else known.applied(rows - known.offset)
+        found = rows if known is None else known.applied(rows - known.offset)
+        found.flags.writeable = False
+        return found
 
     def possible(self, effects: Sequence[Effect]) -> bool:
         """Whether the plant with these effects is one that a file may hold: its friction takes power everywhere."""

@@ -124,7 +124,10 @@ def _rule(pattern: str, channels: str, unit: str, reason: str, rank: int = 5) ->
 
 _SIDES = f"table_position motor_angle {MOTOR_SIDE}"
 _ACTUAL = r"(?:act(?:ual)?|ist|fb|fbk|feedback|meas(?:ured)?|istwert)"
-_NOMINAL = r"(?:set(?: ?point)?|cmd|command(?:ed)?|nom(?:inal)?|soll(?:wert)?|target|desired|des(?= ?(?:pos|vel|curr|torq))|demand(?:ed)?|ref(?:erence)?)"
+_NOMINAL = (
+    r"(?:set(?: ?point)?|cmd|command(?:ed)?|nom(?:inal)?|soll(?:wert)?|target|desired|des(?= ?(?:pos|vel|curr|torq))"
+    r"|demand(?:ed)?|ref(?:erence)?)"
+)
 _POSITION = r"(?:pos(?:ition|n)?|lage)"
 _SPEED_WORD = r"(?:v|velo?|velocity|speed|geschwindigkeit|drehzahl|n)"
 _ROTARY = r"(?:speed|drehzahl|n|velo?|velocity)"
