@@ -147,3 +147,27 @@ def test_torque_is_not_given_up_for_a_lead_map_that_no_name_explains(tmp_path: P
     # weighed by what is left of each channel, not given up: fitted values are nearer than the declared ones
     assert kept.problem.calibration is not None and kept.problem.calibration.values
     assert not_worse_than_declared(kept, again, judge)[0] is kept
+
+
+def test_no_name_goes_for_what_fitted_values_do(tmp_path: Path) -> None:
+    """A lead map pulls the declared values, the torque is worse than as declared: 6 µm of play have no part in it."""
+    (tmp_path / "plant.toml").write_text(machine.PLANT, encoding="utf-8")
+    plant = read_plant(tmp_path / "plant.toml")
+    one, other = (
+        machine.recording(machine.State(seed=seed, start=1.3 * seed, play=6e-6), name=f"{seed}") for seed in range(2)
+    )
+    problem, evidence, _ = prepared(plant, [one], [other], 0.75)
+    problem = calibrated(problem)
+    found = Search(problem, fit(problem, [find_effect("backlash").of(width=6e-6)]), (), (), {})
+
+    def judge(search: Search) -> list[Judged]:
+        settled = search.problem.settled(search.fit.effects)
+        after = settled.machine(search.fit.effects)
+        return [prepared_for_judging(settled, one, plant, after) for one in evidence]
+
+    judged = judge(found)
+    assert worse_by(problem, judged, "motor_torque") > 0
+    kept, again = without_denied(found, judged, judge)
+    assert worse_by(kept.problem, again, "motor_torque") < 0
+    (play,) = kept.fit.effects
+    assert play.values["width"] == pytest.approx(6e-6, rel=0.2)
