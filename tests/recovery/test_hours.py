@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -72,8 +71,8 @@ def test_channels_are_weighed_by_what_is_left_of_them(problem: Problem) -> None:
     (evidence,) = known.evidence
     residual = known.unwhitened(())
     count = len(residual) // 2
-    # the values that were fitted last have moved it by less than a tenth of their deviations
-    np.testing.assert_allclose([np.std(residual[:count]), np.std(residual[count:])], 1.0, rtol=0.05)
+    # values were fitted once more since, by less than a tenth of a deviation: 1.5 % of 0.45 N m, 0.05 N m being left
+    np.testing.assert_allclose([np.std(residual[:count]), np.std(residual[count:])], 1.0, rtol=0.13)
     assert evidence.noise == problem.evidence[0].noise  # the sensor is what it was
     other = weighed_alike(problem.evidence[0], known.evidence)
     assert other.left == pytest.approx(evidence.left)
@@ -84,8 +83,11 @@ def test_channels_are_weighed_by_what_is_left_of_them(problem: Problem) -> None:
 
 def test_what_warms_up_is_looked_for_over_the_hours(problem: Problem) -> None:
     ((first, second),) = starts.thermal_growth(scene_of(problem, ()))
-    assert first.values["time_constant"] == pytest.approx(0.15 * 3600 * HOURS, rel=0.2)  # stretches begin within it
-    assert second.values["time_constant"] == pytest.approx(0.6 * 3600 * HOURS, rel=0.2)
+    (evidence,) = problem.evidence
+    lasted = float(np.ptp(evidence.recording.time[evidence.fit_rows]))
+    assert lasted > 3 * np.sum(evidence.fit_rows) * evidence.recording.sample_time  # most of it was left out
+    assert first.values["time_constant"] == pytest.approx(0.15 * lasted, rel=1e-3)
+    assert second.values["time_constant"] == pytest.approx(0.6 * lasted, rel=1e-3)
 
 
 def test_growth_that_one_stretch_alone_shows_is_none(problem: Problem) -> None:
@@ -103,7 +105,7 @@ def test_growth_that_one_stretch_alone_shows_is_none(problem: Problem) -> None:
 
 def test_nut_crosses_its_play_before_the_table_follows() -> None:
     """Ahead and behind by half the play, where it was at rest, and between only while the motor crosses."""
-    _, _, angle, table = np.concatenate(list(blocks(0.02, 12, PLAY))).T
+    _, _, angle, table = np.concatenate(list(blocks(0.1, 12, PLAY))).T
     moved = machine.LEAD / (2 * math.pi) * angle
     ahead = table - moved - machine.lead_map(moved)
     turned = np.flatnonzero(np.diff(np.sign(np.diff(moved))))
