@@ -8,7 +8,8 @@ all effects together, and the likeliest of them is taken if what it adds also lo
 from __future__ import annotations
 
 from collections.abc import Callable, Container, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -57,6 +58,7 @@ class Search:
         impossible: candidate to why the recordings cannot show it.
         near: effects that may come beside those found, the likeliest first.
         begun: problem and fit that the search began with; None for one that is made of a fit.
+        asked: what was asked of the judged recordings beside it and beside sets made of it (`recordings.compared`).
     """
 
     problem: Problem
@@ -66,6 +68,7 @@ class Search:
     impossible: dict[str, str]
     near: tuple[Near, ...] = ()
     begun: tuple[Problem, Fit] | None = None
+    asked: list[Any] = field(default_factory=list, compare=False)
 
 
 @dataclass(frozen=True)
