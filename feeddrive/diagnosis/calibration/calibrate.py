@@ -10,10 +10,10 @@ import numpy as np
 
 from feeddrive.diagnosis.calibration.calibration import Calibration
 from feeddrive.diagnosis.calibration.declared import CalibratedValue, calibrated_values
-from feeddrive.diagnosis.calibration.known import known_values
+from feeddrive.diagnosis.calibration.known import TOLERANCE, known_values
 from feeddrive.diagnosis.certainty.noise_colour import score_covariance
 from feeddrive.diagnosis.likelihood.evidence import Evidence
-from feeddrive.diagnosis.likelihood.fit import Fit, Problem
+from feeddrive.diagnosis.likelihood.fit import UNEXPLAINED, Fit, Problem
 from feeddrive.diagnosis.likelihood.predictability import has_play
 from feeddrive.effects.base import Effect
 from feeddrive.recording import Recording
@@ -49,7 +49,10 @@ def calibrated(problem: Problem) -> Problem:
         before, start = start, recalibrated(start, (), rough=turn == 0)
         if turn > 0 and np.max(np.abs(moved(before, start)), initial=0.0) < ENOUGH:
             break
-    return recalibrated(start.levelled(), ())
+    start = recalibrated(start.levelled(), ())
+    if np.max(np.abs(start.calibration.coordinates), initial=0.0) <= TOLERANCE or start.plain_error(()) < UNEXPLAINED:
+        return start
+    return recalibrated(at_declared(start), ())  # they stand in for what is to be found
 
 
 def recalibrated(problem: Problem, effects: Sequence[Effect], rough: bool = False) -> Problem:

@@ -64,6 +64,9 @@ LEVEL = 0.8
 """Residual over the noise that a channel is stated to have, below which the noise is put right: a level read from
 the quietest tenth of the blocks is known to some per cent."""
 
+UNEXPLAINED = 1.3
+"""Weighted squared error per sample beyond which much is left; noise alone gives one."""
+
 FREE = 1e-6
 """Damping that does not hold a step back."""
 

@@ -18,7 +18,7 @@ from feeddrive.diagnosis.calibration.beyond import said_by_effects
 from feeddrive.diagnosis.finding.attempt import SCANNED_ITERATIONS, with_predictable
 from feeddrive.diagnosis.likelihood.coordinates import read_coordinates
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison
-from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
+from feeddrive.diagnosis.likelihood.fit import UNEXPLAINED, Fit, Problem, fit
 from feeddrive.diagnosis.likelihood.predictability import has_play
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between
 from feeddrive.diagnosis.recordings.change_candidates import (
@@ -51,9 +51,6 @@ FALSE_ALARMS = 0.05
 
 OFFERS = 2
 """Parameters that are fitted before the recordings are taken to share the rest."""
-
-UNEXPLAINED = 1.3
-"""Weighted squared error per sample beyond which much is left; noise alone gives one."""
 
 LAGS = (2.0, 1.4, 0.7, 3.0)
 """Differences of a free play that are tried, over the rms of what the table lags: half of one, either way, at rest."""

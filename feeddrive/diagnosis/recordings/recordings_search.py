@@ -17,11 +17,11 @@ from feeddrive.diagnosis.finding.attempt import with_predictable
 from feeddrive.diagnosis.finding.search import Search, search
 from feeddrive.diagnosis.finding.sets import needed_members
 from feeddrive.diagnosis.likelihood.evidence import Evidence
-from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
+from feeddrive.diagnosis.likelihood.fit import UNEXPLAINED, Fit, Problem, fit
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between, same_samples
 from feeddrive.diagnosis.recordings.change_candidates import levels
 from feeddrive.diagnosis.recordings.change_words import FACTORS
-from feeddrive.diagnosis.recordings.changes import UNEXPLAINED, Changes, find_changes
+from feeddrive.diagnosis.recordings.changes import Changes, find_changes
 from feeddrive.diagnosis.recordings.recordings import (
     RecordingPredictor,
     RecordingShift,

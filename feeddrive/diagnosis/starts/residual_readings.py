@@ -176,10 +176,10 @@ def strongest_sines(
 ) -> list[Sine]:
     """Sines that take most of a residual, each looked for at the samples at which it is in the band.
 
-    An order n shows where n |speed| is below the edge, or little above: a high one at low speed alone, where the fast strokes, in which
-    it is filtered off, or sampled as another one, are noise. So octaves of orders are looked for, each where the speed
-    is so low that the whole octave is in the band; what each takes of the square is compared (of noise the best takes
-    as much of few samples as of many).
+    An order n shows where n |speed| is below the edge, or little above: a high one at low speed alone, where the fast
+    strokes, in which it is filtered off, or sampled as another one, are noise. So octaves of orders are looked for,
+    each where the speed is so low that the whole octave is in the band; what each takes of the square is compared (of
+    noise the best takes as much of few samples as of many).
 
     Args:
         angle: shape (n,) [rad].
