@@ -109,7 +109,9 @@ def _continued(problem: Problem, start: Sequence[Effect], progress: Callable[[st
     """
     progress("asking again for the effects found earlier")
     last = len(problem.evidence) - 1
-    again = _as_last(find_changes(with_predictable(problem, start), start, [last]), last)
+    again = _as_last(find_changes(with_predictable(problem, start), start, [last] if last else []), last)
+    if last > 1 and again.problem.plain_error(again.fit.effects) > UNEXPLAINED:  # those before differ as well
+        again = find_changes(again.problem, without_shifts(again.fit.effects), range(last))
     needed = _still_needed(again.problem, again.fit)
     again = replace(again, problem=needed.problem, fit=needed.fit)
     if again.problem.plain_error(again.fit.effects) < UNEXPLAINED:
