@@ -10,10 +10,10 @@ import numpy as np
 
 from feeddrive.diagnosis.calibration.calibration import Calibration
 from feeddrive.diagnosis.calibration.declared import CalibratedValue, calibrated_values
-from feeddrive.diagnosis.calibration.known import known_values
+from feeddrive.diagnosis.calibration.known import TOLERANCE, known_values
 from feeddrive.diagnosis.certainty.noise_colour import score_covariance
 from feeddrive.diagnosis.likelihood.evidence import Evidence, weighed_by
-from feeddrive.diagnosis.likelihood.fit import Fit, Problem
+from feeddrive.diagnosis.likelihood.fit import UNEXPLAINED, Fit, Problem
 from feeddrive.diagnosis.likelihood.predictability import has_play
 from feeddrive.effects.base import Effect
 from feeddrive.recording import Recording
@@ -56,7 +56,10 @@ def calibrated(problem: Problem) -> Problem:
     weighed = tuple(weighed_by(e, plant) for e in start.evidence)
     if any(a is not b for a, b in zip(weighed, start.evidence, strict=True)):
         start = recalibrated(replace(start, evidence=weighed), ())
-    return recalibrated(start.levelled(), ())
+    start = recalibrated(start.levelled(), ())
+    if np.max(np.abs(start.calibration.coordinates), initial=0.0) <= TOLERANCE or start.plain_error(()) < UNEXPLAINED:
+        return start
+    return recalibrated(at_declared(start), ())  # they stand in for what is to be found
 
 
 def recalibrated(problem: Problem, effects: Sequence[Effect], rough: bool = False) -> Problem:

@@ -8,7 +8,8 @@ all effects together, and the likeliest of them is taken if what it adds also lo
 from __future__ import annotations
 
 from collections.abc import Callable, Container, Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -31,7 +32,7 @@ from feeddrive.diagnosis.finding.spring_law import LAWS, soft_everywhere, with_l
 from feeddrive.diagnosis.heat.heat_candidates import is_another
 from feeddrive.diagnosis.judging.result import Trial
 from feeddrive.diagnosis.likelihood.coordinates import write_coordinates
-from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
+from feeddrive.diagnosis.likelihood.fit import UNEXPLAINED, Fit, Problem, fit
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between, odds_between, regained, same_samples
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
@@ -64,6 +65,7 @@ class Search:
         impossible: candidate to why the recordings cannot show it.
         near: effects that may come beside those found, the likeliest first.
         begun: problem and fit that the search began with; None for one that is made of a fit.
+        asked: what was asked of the judged recordings beside it and beside sets made of it (`recordings.compared`).
     """
 
     problem: Problem
@@ -73,6 +75,7 @@ class Search:
     impossible: dict[str, str]
     near: tuple[Near, ...] = ()
     begun: tuple[Problem, Fit] | None = None
+    asked: list[Any] = field(default_factory=list, compare=False)
 
 
 @dataclass(frozen=True)
@@ -148,7 +151,7 @@ def search(
         if members in met:  # they only take each other's place
             break
         met.add(members)
-    problem, found = _refitted(problem, fit(problem, found.effects))
+    problem, found = _refitted(problem, fit(problem, found.effects), ends=True)
     small = [one for one in found.effects if not is_material(one, problem.plant)]
     if small:
         rest = [one for one in found.effects if not any(one is other for other in small)]
@@ -259,10 +262,12 @@ def _error(problem: Problem, effects: Sequence[Effect]) -> float:
     return fit(problem, effects, error_only=True).squared_error
 
 
-def _refitted(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
+def _refitted(problem: Problem, found: Fit, ends: bool = False) -> tuple[Problem, Fit]:
     """Declared values and effects fitted in turn, with new slopes of the values.
 
-    Values gone beyond their tolerances may have stood in for what was missing: they begin as declared as well.
+    Values gone beyond their tolerances may have stood in for what was missing: they begin as declared as well. While
+    much is left and the search goes on they still do, and what is missing would be sought beside them: then they begin
+    as declared in any case.
     """
     if problem.calibration is None:
         return _balanced(problem, found if not found.held else fit(problem, found.effects, iterations=0))
@@ -273,7 +278,8 @@ def _refitted(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
     if not of_hours(there) and np.max(np.abs(there.calibration.coordinates), initial=0.0) > TOLERANCE:
         anew = recalibrated(at_declared(problem), found.effects)
         other = anew, fit(anew, found.effects, iterations=JOINT_ITERATIONS)
-        result = min(result, other, key=lambda one: one[1].squared_error)
+        stand_in = not ends and there.plain_error(found.effects) > UNEXPLAINED
+        result = other if stand_in else min(result, other, key=lambda one: one[1].squared_error)
     return _balanced(*result)
 
 

@@ -68,6 +68,9 @@ the quietest tenth of the blocks is known to some per cent."""
 PREDICTIONS = 8_000_000
 """Bytes of predictions that a problem keeps: some twenty of a minute at 2 kHz."""
 
+UNEXPLAINED = 1.3
+"""Weighted squared error per sample beyond which much is left; noise alone gives one."""
+
 FREE = 1e-6
 """Damping that does not hold a step back."""
 
