@@ -7,8 +7,8 @@
 | channel_drift | torque with a zero that moves, by c t | torque - c t |
 
 Each is one column beside the slopes of a fitted set: for the clock the change of the residual when the recording is
-prepared with other time stamps, for a gain the predicted torque, for a drift the time. What a column brings on blocks left out is compared as
-for any effect (`cross_validation`), and two questions are asked of it:
+prepared with other time stamps, for a gain the predicted torque, for a drift the time. What a column brings on blocks
+left out is compared as for any effect (`cross_validation`), and two questions are asked of it:
 
     alone    with nothing found, is it worth as much as the best single effect was?
     beside   with all effects found, does it pay?
