@@ -22,10 +22,11 @@ from feeddrive.typing import FloatArray
 STEP = 1e-3
 """Change of the logarithm of a value from which its slope is taken; ten times that of a coordinate of size one."""
 
-SHORT = 1.0
-"""Deviations of the noise by which the step of a slope moves all rows together at most. What a fine scale sees of a
-mass or a stiffness bends with the resonance: over a thousandth its slope was two per cent off, and values that weigh
-against each other, an inertia, a mass, a torque constant, could not move together."""
+SHORT, SHORTEST = 1.0, STEP / 30
+"""Deviations of the noise by which the step of a slope moves all rows together at most, and the shortest step. What a
+fine scale sees of a mass or a stiffness bends with the resonance: over a thousandth its slope was two per cent off, and
+values that weigh against each other, an inertia, a mass, a torque constant, could not move together. Shorter ones show
+where the solver changes its steps."""
 
 LONG = 30 * STEP
 """Change of the logarithm where a prediction goes from cell to cell, or a table bounces (`fit.COARSE`)."""
@@ -169,7 +170,7 @@ def slopes_of(
         sizes = np.linalg.norm(problem.whitener.columns, axis=0)
     for i, value in enumerate(known.values):
         step = (STEP if smooth else LONG) / value.deviation
-        step = min(step, SHORT / sizes[i]) if sizes[i] > 0 else step
+        step = max(min(step, SHORT / sizes[i]), SHORTEST / value.deviation) if sizes[i] > 0 else step
         after, before, apart = at(i, step), base, step
         if not smooth and not rough:
             before, apart = at(i, -step), 2 * step
