@@ -305,8 +305,10 @@ def _with_value_beyond(problem: Problem, found: Fit) -> tuple[Problem, Fit] | No
     if beyond is None:
         return None
     freed, effect = beyond
-    there, result = _refitted(freed, fit(freed, (*found.effects, effect)))
-    return (there, result) if result.squared_error < found.squared_error else None
+    there, result = _refitted(freed, fit(freed, (*found.effects, effect)), ends=True)
+    alike = there.weighed(problem.evidence[0].left)
+    error = (result if alike is there else fit(alike, result.effects, iterations=0)).squared_error
+    return (there, result) if error < found.squared_error else None
 
 
 def _trial(number: int, attempt: Attempt, taken: bool) -> Trial:
