@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from feeddrive.diagnosis.certainty.one_sided import all_intervals, one_sided
+from feeddrive.diagnosis.certainty.one_sided import OPEN, all_intervals, one_sided, with_usual_sizes
 from feeddrive.diagnosis.certainty.uncertainty import certainty, intervals
 from feeddrive.diagnosis.judging.result import ParameterResult
 from feeddrive.diagnosis.judging.veto import sizes_around_none
@@ -16,7 +16,7 @@ from feeddrive.effects.chain.payload import Payload
 from feeddrive.effects.transmission.backlash import Backlash
 from feeddrive.files import find_plant
 from feeddrive.plant.file.plant_file import read_plant
-from feeddrive.report.words.parameters import OPEN, parameter_text
+from feeddrive.report.words.parameters import parameter_text
 from tests.recovery.parts.cases import SECONDS
 from tests.recovery.parts_runs import made
 
@@ -44,6 +44,13 @@ def test_a_width_that_no_motion_reached_is_told_from_below(problem: Problem) -> 
     ]
     assert left[0] > left[1] + 4 and max(left[1:]) < min(left[1:]) + 4
     assert sizes_around_none(problem, found) == [""]
+    # where the fit ended is chance: the play is as wide as plays are, and the prediction no other
+    usual = with_usual_sizes(problem, found)
+    assert number(usual.effects[0].values["width"]) == Backlash.parameter("width").size
+    assert usual.squared_error == pytest.approx(found.squared_error, abs=4)
+    # a fit from there on goes nowhere: its slope tells nothing
+    again = fit(problem, usual.effects)
+    assert number(again.effects[0].values["width"]) == pytest.approx(5e-6, rel=0.5)
     shown = parameter_text("width", ParameterResult(number(found.effects[0].values["width"]), "m", (low, high)))
     assert shown.sentence.startswith("at least 0.") and shown.sentence.endswith("µm")
 

@@ -20,7 +20,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from feeddrive.diagnosis.certainty.uncertainty import Certainty, Interval, intervals
+from feeddrive.diagnosis.certainty.uncertainty import Certainty, Interval, certainty, intervals
 from feeddrive.diagnosis.likelihood.coordinates import (
     absent_coordinates,
     coordinate_ends,
@@ -28,6 +28,7 @@ from feeddrive.diagnosis.likelihood.coordinates import (
     write_coordinates,
 )
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
+from feeddrive.diagnosis.likelihood.predictability import has_play
 from feeddrive.diagnosis.likelihood.set_evidence import variance_along
 from feeddrive.effects.base import Effect, number
 from feeddrive.typing import FloatArray
@@ -48,6 +49,12 @@ HALVINGS = 5
 TINY = 1e-6
 """Of a size without an end of its range: the size over what it is not asked beyond."""
 
+OPEN = 1000.0
+"""End of an interval over its other one from which nothing recorded ends it."""
+
+USUAL = 1.0
+"""Coordinate of a size that is half of the time exceeded: the median of its prior, Cauchy of scale one beyond none."""
+
 Spans = list[dict[str, list[Interval] | None]]
 
 
@@ -65,6 +72,26 @@ def all_intervals(problem: Problem, fitted: Fit, known: Certainty) -> Spans:
             (key,) = [k for k in effect.values if moved[0].values[k] != effect.values[k]]
             spans[place] = {**spans[place], key: [(number(moved[0].values[key]), number(moved[1].values[key]))]}
     return spans
+
+
+def with_usual_sizes(problem: Problem, fitted: Fit) -> Fit:
+    """The fit with every play that nothing recorded ends as wide as plays are: where a fit ends there is chance.
+
+    Of other motions, which may meet the other flank, the width met here would say that they do.
+    """
+    if not any(has_play([effect]) for effect in fitted.effects):
+        return fitted
+    half, moved = np.sqrt(np.diag(certainty(problem, fitted).half_covariance)), fitted.coordinates.copy()
+    for place, effect in enumerate(fitted.effects):
+        at = _coordinate(problem, fitted, place)
+        if at is None or not has_play([effect]) or half[at] < fitted.coordinates[at]:
+            continue
+        ends = one_sided(problem, fitted, place)
+        if ends is not None and ends[1] > OPEN * ends[0] and ends[0] < USUAL:
+            moved[at] = USUAL
+    if np.array_equal(moved, fitted.coordinates):
+        return fitted
+    return fit(problem, write_coordinates(fitted.effects, problem.plant, moved), iterations=0)
 
 
 def one_sided(problem: Problem, fitted: Fit, place: int) -> tuple[float, float] | None:

@@ -10,6 +10,8 @@ An effect that the search took is not reported as found where
 - a channel is predicted worse with what was found than as declared, by more than the scatter of its rms, and this
   effect worsens it most.
 
+Declared values are asked first: no name goes for a channel that is as good with values fitted otherwise.
+
 One name goes at a time, that with the least gain of those that are denied: of two that say the same the other may then
 stand. An effect that differs between the fitted recordings may be absent from the judged one, and is denied by the last
 alone. Where the judged recording is known to differ in a level from the fitted ones (`judged_changes`), gain and

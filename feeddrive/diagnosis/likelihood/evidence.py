@@ -11,7 +11,7 @@ import numpy as np
 
 from feeddrive.diagnosis.calibration.calibration import Whitener, whitener
 from feeddrive.diagnosis.likelihood.band import END_CUT, Band, comparison_band, held, sensor_noise
-from feeddrive.diagnosis.likelihood.encoder_error import Weighing, encoder_error, known_motion_of
+from feeddrive.diagnosis.likelihood.encoder_error import encoder_error, known_motion_of
 from feeddrive.diagnosis.likelihood.lead_map import lead_map
 from feeddrive.diagnosis.likelihood.slow_rows import (
     is_slow,
@@ -20,6 +20,7 @@ from feeddrive.diagnosis.likelihood.slow_rows import (
     refuse_unknown_motion,
     sentence,
 )
+from feeddrive.diagnosis.likelihood.weighing import Weighing
 from feeddrive.diagnosis.suspicion.channel_timing import lagging
 from feeddrive.diagnosis.suspicion.flawed_rows import refuse_little_left, sound_rows, without_copied_position
 from feeddrive.diagnosis.suspicion.torque_channel import with_torque
@@ -115,13 +116,19 @@ class Evidence:
             series: channel to measurement, prediction or their difference, (n,) each.
             rows: the samples, (n,).
         """
+        every = self.thinning if np.count_nonzero(rows[:: self.thinning]) == np.count_nonzero(rows) else 1
+        asked = rows[::every]
         return np.concatenate(
-            [self.without_open(name, self.evened(name, series[name])[rows], rows) for name in self.channels]
+            [self.without_open(name, self.evened(name, series[name], every)[asked], rows) for name in self.channels]
         )
 
     def in_band(self, series: FloatArray) -> FloatArray:
         """A series, (n,), as it shows in the comparison."""
         return series
+
+    def thinly_in_band(self, series: FloatArray) -> FloatArray:
+        """A series, (n,), as it shows in the comparison, at the samples that carry all of it; not at its ends."""
+        return series[:: self.thinning]
 
     def known_to(self, name: str) -> float:
         """Rms of what the sensors add to a channel in the band."""
@@ -131,9 +138,9 @@ class Evidence:
         """Error of a channel that counts as one: its noise, or more where more is left of it than any name explains."""
         return self.noise[name] * self.left.get(name, 1.0)
 
-    def evened(self, name: str, series: FloatArray) -> FloatArray:
-        """A channel, (n,), with each frequency weighed by how well it is known there."""
-        return series
+    def evened(self, name: str, series: FloatArray, every: int) -> FloatArray:
+        """A channel, (n,), at every k-th sample, each frequency weighed by how well it is known there."""
+        return series[::every]
 
     def without_open(self, name: str, part: FloatArray, rows: BoolArray) -> FloatArray:
         """One channel over its noise, (k,), without what its sensor leaves open: the zero of a scale."""
@@ -253,6 +260,10 @@ class AxisEvidence(Evidence):
         """A series or columns, (n,), in the band of the comparison."""
         return self.band.filter(series)
 
+    def thinly_in_band(self, series: FloatArray) -> FloatArray:
+        """A series, (n,), in the band of the comparison, at the samples that carry all of it; not at its ends."""
+        return self.band.thinned(series)
+
     def weighted(self, series: dict[str, FloatArray], rows: BoolArray) -> FloatArray:
         """Channels at some samples as any are, less what motion that is not known, or a lead map, may make of them."""
         weighted = super().weighted(series, rows)
@@ -289,16 +300,19 @@ class AxisEvidence(Evidence):
         """Rms of what sensor and encoder add to a channel in the band."""
         return math.hypot(self.noise[name], self.added.get(name, 0.0))
 
-    def evened(self, name: str, series: FloatArray) -> FloatArray:
-        """A channel, (n,), with each frequency weighed by sensor noise over that and the encoder's error."""
+    def evened(self, name: str, series: FloatArray, every: int) -> FloatArray:
+        """A channel, (n,), at every k-th sample, each frequency weighed by sensor noise over that and the encoder's."""
         if name not in self.gains:
-            return series
+            return series[::every]
         known = np.isfinite(series)
         inside = known & self._between_ends
         mean = float(np.mean(series[inside])) if inside.any() else 0.0  # apart, so that gaps do not make steps
         filled = np.where(inside, series - mean, 0.0)
-        weighed = self._weighing[name](filled)
-        return np.where(known, weighed + self.gains[name][0] * mean, series)
+        key = (name, every)
+        if key not in self._weighing:
+            self._weighing[key] = Weighing.of(self.gains[name], len(self.counted), every)
+        weighed = self._weighing[key](filled)
+        return np.where(known[::every], weighed + self.gains[name][0] * mean, series[::every])
 
     @cached_property
     def _between_ends(self) -> BoolArray:
@@ -311,8 +325,9 @@ class AxisEvidence(Evidence):
         return inside
 
     @cached_property
-    def _weighing(self) -> dict[str, Weighing]:
-        return {name: Weighing.of(gains, len(self.counted)) for name, gains in self.gains.items()}
+    def _weighing(self) -> dict[tuple[str, int], Weighing]:
+        """By channel and every how many samples are asked for."""
+        return {}
 
     def placed(self, plant: Plant) -> Plant:
         """The plant with its nut where it stood: simulated positions count from the zero of the motor angle."""
@@ -417,6 +432,21 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
         encoder.unsure if encoder is not None else {},
         lead_map=band.filter(lead_map(raw["table_position"], plant.chain.radius)) if "table_position" in raw else None,
     )
+
+
+def weighed_by(evidence: Evidence, plant: Plant) -> Evidence:
+    """The evidence with the encoder's error as a plant shows it: at its resonances, not at those of the declared one.
+
+    Args:
+        evidence: prepared for the declared plant.
+        plant: nearer to the machine.
+    """
+    if not isinstance(evidence, AxisEvidence) or not evidence.gains or evidence.scaled_from:
+        return evidence
+    encoder = encoder_error(_placed(plant, evidence.zero), evidence.recording, evidence.band, evidence.noise)
+    if encoder is None:
+        return evidence
+    return replace(evidence, gains=encoder.gains, added=encoder.added, unsure=encoder.unsure)
 
 
 def _from_zero(recording: Recording) -> FloatArray:

@@ -4,12 +4,13 @@ Every screw has one beside the line: ISO 3408-3 allows 23 µm of it within 300 m
 of a law says it, and what is left of it makes others look needed: an asymmetry, a stiffness along the stroke. So every
 comparison of names is without
 
-    P_k(s),   k = 2, 3;   s = (2 x - x_max - x_min) / (x_max - x_min)
+    P_k(s) - a - b s,   k = 2, 3;   s = (2 x - x_max - x_min) / (x_max - x_min)
 
 | symbol | meaning | unit |
 |---|---|---|
 | x | measured table position | m |
-| P_k | Legendre polynomial, k half waves over the stroke; the line k = 1 is `lead_error_cumulative` | 1 |
+| P_k | Legendre polynomial, k half waves over the stroke | 1 |
+| a, b | line through it over all samples; a line is `lead_error_cumulative` | 1 |
 
 Once the names are found the map counts again: it is told and carried as a table of the travel over position.
 """
@@ -43,4 +44,7 @@ def lead_map(position: FloatArray, radius: float) -> FloatArray:
     if not seen:
         return np.zeros((len(position), 0))
     place = 2 * (position - low) / stroke - 1
-    return np.column_stack([SIZE * np.polynomial.Legendre.basis(k)(place) for k in seen])
+    line = np.column_stack([np.ones(len(place)), place])
+    curves = np.column_stack([np.polynomial.Legendre.basis(k)(place) for k in seen])
+    beside: FloatArray = curves - line @ np.linalg.lstsq(line, curves, rcond=None)[0]
+    return SIZE * beside

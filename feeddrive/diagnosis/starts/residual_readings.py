@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,6 +23,10 @@ LEAST_PERIODS = 5
 
 FEWEST_PERIODS = 2
 """Periods in the travel from which a sine is told from a line over the stroke, once both are fitted together."""
+
+SKIRT = math.sqrt(2)
+"""Frequency over the edge of the band up to which a sine is looked for: a sixteenth of it passes the filter, and a
+ripple of a drive stands far above its noise."""
 
 LONGEST_PERIOD = 2.0
 """Revolutions of the longest period that is looked for beside a line: a longer one is a curve along the stroke."""
@@ -197,10 +202,10 @@ def strongest_sines(
 ) -> list[Sine]:
     """Sines that take most of a residual, each looked for at the samples at which it is in the band.
 
-    An order n shows where n |speed| is below the edge: a high one at low speed alone, where the fast strokes, in which
-    it is filtered off, or sampled as another one, are noise. So octaves of orders are looked for, each where the speed
-    is so low that the whole octave is in the band; what each takes of the square is compared (of noise the best takes
-    as much of few samples as of many).
+    An order n shows where n |speed| is below the edge, or little above: a high one at low speed alone, where the fast
+    strokes, in which it is filtered off, or sampled as another one, are noise. So octaves of orders are looked for,
+    each where the speed is so low that the whole octave is in the band; what each takes of the square is compared (of
+    noise the best takes as much of few samples as of many).
 
     Args:
         angle: shape (n,) [rad].
@@ -215,15 +220,18 @@ def strongest_sines(
     fastest, square = float(np.max(np.abs(speed), initial=0.0)), float(residual @ residual)
     if fastest == 0.0 or square == 0.0:
         return []
-    found, lowest, highest = _longest_sine(angle, residual), 0.0, 2 * np.pi * edge / fastest
+    seen = 2 * np.pi * SKIRT * edge
+    found, lowest, highest = _longest_sine(angle, residual), 0.0, seen / fastest
     while lowest < BINS_PER_TURN / 4:
-        slow = np.abs(speed) * highest <= 2 * np.pi * edge * (1 + 1e-9)
+        slow = np.abs(speed) * highest <= seen * (1 + 1e-9)
         if not slow.any():
             break
         there, left = angle[slow], residual[slow]
         for order in strongest_orders(there, left, highest, count, lowest):
-            amplitude, phase = sine_at(there, left, order)
-            found.append(Sine(order, amplitude, phase, 0.5 * amplitude**2 * len(left) / square))
+            columns = np.column_stack([np.sin(order * there), np.cos(order * there), np.ones(len(there))])
+            # of some slow samples at the reversals a sine of any size passes near, and takes no more than is there
+            (taken, (a, b, _)), (level, _) = _taken(columns, left), _taken(columns[:, 2:], left)
+            found.append(Sine(order, float(np.hypot(a, b)), float(np.arctan2(b, a)), (taken - level) / square))
         lowest, highest = highest, 2 * highest
     return sorted(found, key=lambda one: -one.share)[:count]
 

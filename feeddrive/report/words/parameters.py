@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from feeddrive.diagnosis.certainty.one_sided import OPEN
 from feeddrive.diagnosis.judging.result import EffectResult, ParameterResult
 from feeddrive.report.words.number_text import (
     Scale,
@@ -19,9 +20,6 @@ from feeddrive.report.words.words import effect_words, headline_parameters, plai
 
 _LONGEST_LIST = 9
 _HEADLINE_DIGITS = 4
-OPEN = 1000.0
-"""End of an interval over its other one from which a value is told by the lower alone."""
-
 _SIZES = {"width", "amplitude", "mass", "delay", "slope", "strain", "stiffness", "inertia", "power", "growth"}
 _SPEAKING = _SIZES | {"force", "delta_force", "delta_viscous", "conductance"}
 """Keys that go without saying beside the effect's name."""
