@@ -102,7 +102,7 @@ TEXTS: list[tuple[str, str, tuple[str, ...]]] = [
     ("comma_and_point", SEMICOLONS.replace("0.005;", "0,005;"), ("--decimal", "row 7")),
     ("semicolon_rows", table(good_rows(), separator=";"), ("row 2", "1 cells")),
     ("round_brackets", table(good_rows(), HEADER.replace("time [s]", "Time (s)")), ("round", "\"time [s]\"")),
-    ("prose", "This is a letter.\nIt has no numbers.\n", ("no row of headings", "did you mean")),
+    ("prose", "This is a letter.\nIt has no numbers.\n", ("no row of headings", "put # before")),
     ("header_of_brackets", table(good_rows(), "[s],[N m],[m]"), ("not a column heading", "name [unit]")),
     ("no_header", table(good_rows()).split("\n", 1)[1], ("no header row",)),
 ]  # fmt: skip
