@@ -11,60 +11,9 @@ from dataclasses import dataclass, replace
 
 from feeddrive.errors import InputError
 from feeddrive.recording.channels import CHANNEL_UNITS, channel_unit
+from feeddrive.recording.traces.spellings import SPELLINGS, in_english
 from feeddrive.recording.traces.trace import Signal
 from feeddrive.units.quantity import Conversion, unit_conversion
-
-_SPELLINGS = {
-    "ampere": "A",
-    "amp": "A",
-    "amps": "A",
-    "nm": "N m",
-    "n.m": "N m",
-    "n·m": "N m",
-    "1/min": "rev/min",
-    "min-1": "rev/min",
-    "min^-1": "rev/min",
-    "u/min": "rev/min",
-    "rpm": "rev/min",
-    "r/min": "rev/min",
-    "grad": "deg",
-    "degree": "deg",
-    "degrees": "deg",
-    "°": "deg",
-    "grad/s": "deg/s",
-    "°/s": "deg/s",
-    "mm/sec": "mm/s",
-    "sec": "s",
-    "inch": "in",
-    "inch/min": "in/min",
-    "inches": "in",
-    "rad/sec": "rad/s",
-    "u": "rev",
-    "umdr": "rev",
-    "turns": "rev",
-    "upm": "rev/min",
-    "min⁻¹": "rev/min",
-    "giri/min": "rev/min",
-    "newton meter": "N m",
-    "newtonmeter": "N m",
-    "c": "degC",
-    "°c": "degC",
-    "celsius": "degC",
-    "ma": "mA",
-    "a": "A",
-    "n": "N",
-    "kn": "kN",
-    "sek": "s",
-    "secs": "s",
-    "second": "s",
-    "seconds": "s",
-    "msec": "ms",
-    "usec": "µs",
-} | {
-    unit.lower(): unit
-    for unit in ("mm", "µm", "um", "mm/s", "mm/min", "m/s", "m/min", "in", "in/min", "deg/s", "rad/s")
-}
-"""Units as controls write them, in small letters -> as feeddrive reads them."""
 
 UNIT_BEHIND = re.compile(r"^(.*\S)\s*[\[(]([^\])\[(]{1,20})[\])]$")
 """A name with brackets behind it."""
@@ -215,31 +164,6 @@ _NOT_MEASURED = re.compile(
     r"|load|trig(?:ger)?)\b"
 )
 _COMMANDED = re.compile(rf"\b{_NOMINAL}\b")
-_WORDS = {
-    "实际": "actual", "反馈": "actual", "指令": "set", "设定": "set", "给定": "set", "位置": "position",
-    "速度": "velocity",
-    "转速": "speed", "转矩": "torque", "扭矩": "torque", "力矩": "torque", "电流": "current", "电机": "motor",
-    "工作台": "table",
-    "误差": "error", "偏差": "error", "时间": "time",
-    "positionsistwert": "actual position", "momentenistwert": "actual torque", "coppia motore": "motor torque",
-    "corrente motore": "motor current", "velocità motore": "motor speed", "giri motore": "motor speed",
-    "posizione": "position", "velocità": "velocity", "coppia": "torque", "corrente": "current", "motore": "motor",
-    "tavola": "table", "errore": "error", "effettiva": "actual", "effettivo": "actual", "reale": "actual",
-    "misurata": "measured", "comandata": "commanded", "nominale": "nominal", "giri": "speed", "tempo": "time",
-    "ist position": "actual position", "antriebsmoment": "motor torque", "motormoment": "motor torque",
-    "motorstrom": "motor current", "motordrehzahl": "motor speed", "motorlage": "motor position",
-    "motorwinkel": "motor angle", "lageist": "actual position", "lagesoll": "set position",
-    "drehmomentist": "actual torque", "stromist": "actual current", "drehzahlist": "actual speed",
-    "lageistwert": "actual position", "lagesollwert": "set position", "tischposition": "table position",
-    "tischlage": "table position",
-}  # fmt: skip
-"""Words of Chinese and Italian, and German ones that are written together -> English."""
-_FOREIGN_WORD = re.compile(
-    "|".join(
-        re.escape(word) if ord(word[0]) > 0x3000 else rf"\b{re.escape(word)}\b"  # Chinese has no word boundaries
-        for word in sorted(_WORDS, key=len, reverse=True)
-    )
-)
 _SUFFIX = re.compile(r"(.*[A-Za-z\d])_(mm|um|µm|nm|deg|rad|rpm|Nm|NM|mA|mm_s|mm_min|m_s|m_min|rad_s|deg_s|degC|mps)")
 _WITH_NOT_MEASURED = re.compile(r"^(?:load (?:pos|position|velo|velocity|speed))\b")
 _AXIS = re.compile(
@@ -294,7 +218,7 @@ def known_unit(text: str) -> str:
     plain = text.strip().replace("\u03bc", "µ")
     if plain[:1] + plain[-1:] in ("[]", "()", "{}"):
         plain = plain[1:-1].strip()
-    unit = _SPELLINGS.get(plain.lower(), plain)
+    unit = SPELLINGS.get(plain.lower(), plain)
     if not unit or unit in ("-", "1", "%"):
         return unit if unit == "%" else ""
     for channel in ("m", "rad", "m/s", "rad/s", "N m", "A", "degC", "N", "s"):
@@ -314,7 +238,7 @@ def conversion(unit: str, needed: str) -> Conversion | None:
 def plain_words(name: str) -> str:
     """Return a name in small letters, its words divided by single blanks: `nckServoDataMeasPos1 [u1, 7]`."""
     apart = re.sub(r"([a-z0-9])([A-Z])", r"\1 \2", name.replace("_", " ").replace("|", " at "))
-    apart = _FOREIGN_WORD.sub(lambda word: f" {_WORDS[word[0]]} ", apart.lower())
+    apart = in_english(apart.lower())
     return re.sub(r"[^a-z0-9äöüß]+", " ", apart.lower()).strip()
 
 
