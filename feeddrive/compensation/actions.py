@@ -9,6 +9,7 @@ from typing import cast
 
 from feeddrive.compensation.compensate import Compensated, Wishes, compensate_plant
 from feeddrive.compensation.cures import cure, in_order
+from feeddrive.compensation.lost_motion import lost_motion
 from feeddrive.diagnosis.judging.result import Diagnosis
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
@@ -78,9 +79,17 @@ def values_to_set(after: Plant) -> dict[str, str]:
             found[one.name] = f"moving mass {format_quantity(after.chain_values()['table_mass'], 'kg')}"
         elif one.name == "constant_force":
             found[one.name] = f"torque offset {format_quantity(radius * cast(float, one.values['force']), 'N m')}"
-        elif one.name == "backlash":
+        elif one.name == "backlash" and not _rests(after):
             found[one.name] = f"until then, backlash value {format_quantity(cast(float, one.values['width']), 'm')}"
     return found
+
+
+def _rests(plant: Plant) -> bool:
+    """Whether a load holds the table on one flank of its play, which a backlash value would only put in."""
+    try:
+        return lost_motion(plant).rests
+    except InputError:  # no steady motion in the middle of the stroke
+        return False
 
 
 def unsure_of_play(effects: Iterable[tuple[str, bool]], ambiguous: Iterable[Sequence[str]]) -> str:

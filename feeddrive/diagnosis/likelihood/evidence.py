@@ -308,6 +308,9 @@ class AxisEvidence(Evidence):
         inside = known & self._between_ends
         mean = float(np.mean(series[inside])) if inside.any() else 0.0  # apart, so that gaps do not make steps
         filled = np.where(inside, series - mean, 0.0)
+        if inside.any():  # nor does a slow error end in one
+            first, last = np.flatnonzero(inside)[[0, -1]]
+            filled[:first], filled[last + 1 :] = filled[first], filled[last]
         key = (name, every)
         if key not in self._weighing:
             self._weighing[key] = Weighing.of(self.gains[name], len(self.counted), every)
