@@ -12,6 +12,7 @@ import casadi as ca
 import numpy as np
 import pytest
 
+from feeddrive.diagnosis.judging.veto import friction_that_pushes
 from feeddrive.diagnosis.likelihood.fit import Problem, fit
 from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
 from feeddrive.effects.base import Effect, FrictionEffect, Motion, Port, Value, listed
@@ -293,3 +294,16 @@ def test_fit_stays_where_friction_takes_power() -> None:
     assert -60.0 < found[0].values["delta_force"] < -45.0  # type: ignore[operator]
     # A start outside is no plant that a file may hold; the search gives it up (`attempt.started`).
     assert not problem.possible([start.with_values(delta_force=-70.0)])
+
+
+def test_names_with_which_friction_would_push_are_told() -> None:
+    problem = Problem(BENCH, (), AxisPredictor())
+    deep, slight = _effect("stribeck", delta_force=-70.0, velocity=0.02), _effect("coulomb_asymmetry", delta_force=-5.0)
+    ripple = _effect("torque_ripple", amplitude=1.0, order=3.0, phase=0.0)
+    # without the deep drop friction resists, without the slight asymmetry it does not
+    told = friction_that_pushes(problem, [slight, ripple, deep])
+    assert told[:2] == ["", ""] and "push" in told[2]
+    assert friction_that_pushes(problem, [slight, ripple]) == ["", ""]
+    # two that push each by itself
+    steep = _effect("coulomb_asymmetry", delta_force=-80.0)
+    assert all(friction_that_pushes(problem, [steep, deep]))

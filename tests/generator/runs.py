@@ -106,8 +106,8 @@ def changes(one: Run, without: tuple[Effect, ...], machine: Machine | None = Non
     torque, angle, table = one.exact()
     late = one.states[one.rows, 0] - angle
     d_torque, d_position = torque - asked[one.rows], table - position[one.rows]
-    if one.constants.angle_lateness > 0.0:
-        # The other plant would be led by the recorded angle, which is behind.
+    if one.constants.angle_lateness > 0.0 or one.constants.torque_lateness > 0.0:
+        # The other plant would be led by the recorded angle, which is behind, or read later beside a late torque.
         d_position = d_position + one.machine.radius * late
         d_torque = d_torque + transmitted(one.machine, late, one.machine.row_time)[0]
     return d_torque, d_position

@@ -15,9 +15,9 @@ import pytest
 from feeddrive.plant.file.plant_file import read_plant
 from tests.generator.constants import declared_constants
 from tests.generator.drawn_effects import MAKERS, OFF_GROUPS, TOLERANCES
-from tests.generator.effects import Payload
+from tests.generator.effects import ChannelDelay, Payload
 from tests.generator.machines import drawn_machine
-from tests.generator.runs import impedance
+from tests.generator.runs import changes, impedance, run
 from tests.generator.telling import (
     beyond,
     calibration,
@@ -147,6 +147,19 @@ def test_a_value_is_told_by_what_is_beyond_its_tolerance(pair: Case) -> None:
         loaded = dataclasses.replace(bare, effects=(payload,), constants=payload.planted(bare.constants))
         told[share] = from_declared(loaded, "payload", floor)
     assert told[0.04] < 0 < told[0.2]
+
+
+def test_a_late_torque_shows_in_the_torque_alone(pair: Case) -> None:
+    """By a third of a cycle: angle and table are read later together, and the one follows from the other."""
+    one = pair.runs[0]
+    cycle = one.machine.axis.sample_time
+    late = run(one.machine, (ChannelDelay("motor_torque", cycle / 3),), one.setpoint, np.zeros(len(one.setpoint)))
+    torque, position = changes(late, ())
+    speed = np.abs(late.states[late.rows, 5])
+    assert np.sqrt(np.mean(position**2)) < 0.02 * np.sqrt(np.mean(speed**2)) * 2 * cycle / 3
+    # of what changes it is told by the time that it lags
+    rate = np.gradient(late.torque, cycle)[late.rows]
+    assert abs(torque @ rate / (rate @ rate)) == pytest.approx(cycle / 3, rel=0.5)
 
 
 def test_simulated_slopes_are_the_quasi_static_ones_below_the_resonance(pair: Case) -> None:
