@@ -132,8 +132,9 @@ BYTES: list[tuple[str, bytes, str]] = [
     ("empty.csv", b"", "empty"),
     ("spaces.csv", b" \n\n", "empty"),
     ("garbage.csv", bytes(range(256)) * 40, "not a text file"),
-    ("workbook.csv", b"PK\x03\x04" + b"\x00" * 100, "save the sheet as CSV"),
-    ("renamed.csv", b"MATLAB 5.0 MAT-file" + b"\x00" * 200, "mapping"),
+    ("workbook.csv", b"PK\x03\x04" + b"\x00" * 26 + b"[Content_Types].xml", "save the sheet as CSV"),
+    ("dump.csv", b"PK\x03\x04" + b"\x00" * 26 + b"day/a.csv", "unpack it and name a file of it"),
+    ("renamed.csv", b"MATLAB 5.0 MAT-file" + b"\x00" * 200, "damaged MATLAB file"),
     ("cut.csv.gz", gzip.compress(table(good_rows()).encode())[:-40], "damaged or cut short"),
     ("empty.csv.gz", gzip.compress(b""), "empty"),
     ("false.csv.gz", b"\x1f\x8bnothing of the kind", "damaged"),
@@ -218,7 +219,7 @@ def test_mat_file_without_mapping_says_what_it_holds(tmp_path: Path) -> None:
     savemat(tmp_path / "a.mat", {"q": np.arange(3.0)})
     message = refusal(tmp_path / "a.mat")
     assert "it holds q" in message
-    assert "--map" in message
+    assert "--channel" in message
 
 
 @pytest.mark.parametrize("data", [b"MATLAB 7.3 MAT-file".ljust(512) + b"\x89HDF\r\n\x1a\n", b"\x89HDF\r\n\x1a\n"])

@@ -4,6 +4,9 @@ The machine is that of `trend_machine`, whose drag falls as it warms up. Stretch
 and speed), of production (one part program over and over, with a dwell in each) and long rests follow one another. A
 move is a polynomial of fifth degree from rest to rest. No more than a block is in memory.
 
+Friction holds the table until a flank of the nut is met: it lags as the play operator has it (M. Krasnosel'skii and
+A. Pokrovskii, Systems with Hysteresis, 1989, section 2), and in between, or braked, nothing is transmitted against it.
+
     python -m tests.recovery.long_production long.csv --hours 7.7 --seed 5 --play 6
 """
 
@@ -75,18 +78,16 @@ def blocks(hours: float, seed: int, play: float) -> Iterator[Array]:
     rows = round(hours * 3600 / STEP)
     plan = moves(rows, seed)
     ends = np.concatenate([[0], np.cumsum([one[0] for one in plan])])
-    random, side, radius = np.random.default_rng(seed + 1), 1.0, machine.LEAD / (2 * math.pi)
+    random, radius = np.random.default_rng(seed + 1), machine.LEAD / (2 * math.pi)
+    lags, begins = _lags(plan, play), np.array([one[1] for one in plan])
     cuts = [*range(0, rows, BLOCK), rows]
     for first, last in pairwise(cuts):
         row = np.arange(first, last)
-        x, v, a = _motion(plan, ends, row.astype(np.float64))
-        _, v_mid, a_mid = _motion(plan, ends, row + 0.5)
-        force, middle = _force(v, a), _force(v_mid, a_mid)
-        turned = np.where(np.abs(force) > 1.0, np.sign(force), 0.0)  # a flank holds until the other is pressed
-        known = np.maximum.accumulate(np.where(turned != 0, np.arange(len(row)), -1))
-        flank = np.where(known >= 0, turned[known], side)
-        side = float(flank[-1])
-        table = x + machine.lead_map(x) - 0.5 * play * flank - force / machine.STIFFNESS
+        number = np.searchsorted(ends, row, side="right") - 1
+        (x, v, a), (x_mid, v_mid, a_mid) = (_motion(plan, ends, row + late) for late in (0.0, 0.5))
+        lag, force = _on_flank(x - begins[number], lags[number], play, _force(v, a), v)
+        _, middle = _on_flank(x_mid - begins[number], lags[number], play, _force(v_mid, a_mid), v_mid)
+        table = x + machine.lead_map(x) + lag - force / machine.STIFFNESS
         drag = machine.DRAG * (1 + WARM_SHARE * np.expm1(-row * STEP / WARM)) * (1 + machine.friction_map(x))
         torque = machine.INERTIA * a_mid / radius + drag * np.tanh(v_mid / machine.SMOOTH) + radius * middle
         yield np.column_stack([
@@ -112,6 +113,23 @@ def _motion(plan: list[Move], ends: Array, row: Array) -> tuple[Array, Array, Ar
     v = way / time * 30 * share**2 * (1 - share) ** 2
     a = way / time**2 * 60 * share * (1 - share) * (1 - 2 * share)
     return x, v, a
+
+
+def _lags(plan: list[Move], play: float) -> Array:
+    """How far the table is ahead of the motor before each move [m]: half the play behind at first, as after +."""
+    lags = [-0.5 * play]
+    for _, begin, end in plan:
+        lags.append(min(max(lags[-1] - (end - begin), -0.5 * play), 0.5 * play))
+    return np.array(lags)
+
+
+def _on_flank(moved: Array, lag: Array, play: float, force: Array, v: Array) -> tuple[Array, Array]:
+    """How far the table is ahead of the motor in a move [m], and the force of the flank that pushes it [N]."""
+    after = lag - moved
+    if play == 0:
+        return np.zeros_like(after), force
+    pushed = np.where(v > 0, after <= -0.5 * play, after >= 0.5 * play) & (np.sign(force) == np.sign(v))
+    return np.clip(after, -0.5 * play, 0.5 * play), np.where(pushed, force, 0.0)
 
 
 def _force(v: Array, a: Array) -> Array:

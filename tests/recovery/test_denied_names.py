@@ -11,6 +11,7 @@ import pytest
 from feeddrive.diagnosis.calibration.calibrate import calibrated
 from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.finding.search import Search
+from feeddrive.diagnosis.judging import veto
 from feeddrive.diagnosis.judging.judge import Judged, prepared_for_judging
 from feeddrive.diagnosis.judging.veto import ends_reached, not_worse_than_declared, without_denied, worse_by
 from feeddrive.diagnosis.likelihood.coordinates import read_coordinates, write_coordinates
@@ -147,3 +148,28 @@ def test_torque_is_not_given_up_for_a_lead_map_that_no_name_explains(tmp_path: P
     # weighed by what is left of each channel, not given up: fitted values are nearer than the declared ones
     assert kept.problem.calibration is not None and kept.problem.calibration.values
     assert not_worse_than_declared(kept, again, judge)[0] is kept
+
+
+def test_no_name_goes_for_what_fitted_values_do(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A lead map pulls the declared values, the torque is worse than as declared: its slope has no part in that."""
+    (tmp_path / "plant.toml").write_text(machine.PLANT, encoding="utf-8")
+    plant = read_plant(tmp_path / "plant.toml")
+    one, other = (machine.recording(machine.State(seed=seed, start=1.3 * seed), name=f"{seed}") for seed in range(2))
+    problem, evidence, _ = prepared(plant, [one], [other], 0.75)
+    problem = calibrated(problem)
+    slope = find_effect("lead_error_cumulative").of(slope=-1.5e-5)  # of a quarter wave of 4 µm over 0.35 m and back
+    found = Search(problem, fit(problem, [slope]), (), (), {})
+
+    def judge(search: Search) -> list[Judged]:
+        settled = search.problem.settled(search.fit.effects)
+        after = settled.machine(search.fit.effects)
+        return [prepared_for_judging(settled, one, plant, after) for one in evidence]
+
+    judged = judge(found)
+    assert worse_by(problem, judged, "motor_torque") > 0
+    kept, again = without_denied(found, judged, judge)
+    assert worse_by(kept.problem, again, "motor_torque") < 0
+    assert [effect.name for effect in kept.fit.effects] == ["lead_error_cumulative"]
+    monkeypatch.setattr(veto, "not_worse_than_declared", lambda found, judged, judge: (found, judged))
+    gone, _ = without_denied(found, judged, judge)
+    assert gone.fit.effects == () and "motor_torque" in gone.impossible["lead_error_cumulative"]

@@ -18,8 +18,11 @@ from feeddrive.diagnosis.likelihood.cross_validation import (
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit, linear_step
 from feeddrive.diagnosis.likelihood.folds import FOLDS, block_numbers
 from feeddrive.diagnosis.likelihood.predictability import has_play
-from feeddrive.effects.base import Effect
+from feeddrive.effects.base import Effect, number
+from feeddrive.effects.friction.viscous_warmup import ViscousWarmup
+from feeddrive.effects.travel.thermal_growth import ThermalGrowth
 from feeddrive.errors import InputError
+from feeddrive.recording.long.joined import first_stretch
 from feeddrive.typing import FloatArray
 
 JOINT_ITERATIONS = 4
@@ -130,9 +133,24 @@ def _usable(scene: Scene, problem: Problem, name: str, result: Fit) -> Attempt:
         raise InputError(f"{name} could not be simulated", name)
     if not problem.possible(result.effects):
         raise InputError(f"{name} would have friction push the axis", name)
+    refuse_over_at_once(problem, result.effects[-1:])
     if has_play(result.effects[-1:]):
         problem = with_predictable(scene.problem, result.effects)
     return compared(problem, name, result, scene.found)
+
+
+def refuse_over_at_once(problem: Problem, effects: Sequence[Effect]) -> None:
+    """Refuse what warms up and is over in the first of many stretches: no other one shows that it ever changed.
+
+    Over hours it stays as it is, and its first seconds take what else is not named at the places of one stretch.
+
+    Raises:
+        InputError: there is such an effect.
+    """
+    first = min(first_stretch(e.recording) for e in problem.evidence)
+    for effect in effects:
+        if isinstance(effect, ThermalGrowth | ViscousWarmup) and number(effect.values["time_constant"]) < first:
+            raise InputError(f"{effect.name} is over within the first stretch of the recording", effect.name)
 
 
 def _one_linear_step(fitted: Fit) -> Fit:

@@ -6,8 +6,11 @@ An effect that the search took is not reported as found where
 - it does not lower the error on the judged data; where they could hardly show it, or it lowers it by no more than the
   gain's scatter, the gain on blocks left out of the fit must be three times its scatter instead;
 - the intervals of all its sizes hold the absent effect (no amplitude, a factor of one);
+- with it friction would push the axis, which no plant file may hold, and without it not;
 - a channel is predicted worse with what was found than as declared, by more than the scatter of its rms, and this
   effect worsens it most.
+
+Declared values are asked first: no name goes for a channel that is as good with values fitted otherwise.
 
 One name goes at a time, that with the least gain of those that are denied: of two that say the same the other may then
 stand. An effect that differs between the fitted recordings may be absent from the judged one, and is denied by the last
@@ -26,6 +29,7 @@ from scipy.special import chdtri
 
 from feeddrive.diagnosis.calibration.beyond import without_effects
 from feeddrive.diagnosis.calibration.calibrate import weighed_by_rest, with_kept
+from feeddrive.diagnosis.certainty.one_sided import one_sided
 from feeddrive.diagnosis.certainty.uncertainty import certainty
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging.judge import Judged, Share, error_series, judged_channels, share_beyond, share_of
@@ -36,21 +40,18 @@ from feeddrive.diagnosis.likelihood.coordinates import (
     read_coordinates,
     write_coordinates,
 )
-from feeddrive.diagnosis.likelihood.cross_validation import Comparison, compare_left_out
+from feeddrive.diagnosis.likelihood.cross_validation import Comparison, worse_beyond_scatter
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit, linear_step
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between, regained
 from feeddrive.diagnosis.likelihood.tolerances import SURE
 from feeddrive.diagnosis.recordings.compared import judged_changes
 from feeddrive.diagnosis.recordings.recordings import RecordingShift, is_shift, without_shifts
-from feeddrive.effects.base import ChainEffect, Effect
+from feeddrive.effects.base import ChainEffect, Effect, FrictionEffect
 from feeddrive.typing import FloatArray, IntegerArray
 from feeddrive.units.quantity import format_quantity, percent
 
 CLEARLY_NEEDED = 0.1
 """Share of the squared error that an effect must bring, by one linear step, not to be refitted without it."""
-
-SCATTER = 2.0
-"""Standard deviations by which a channel must be worse: one of forty by chance."""
 
 
 @dataclass(frozen=True)
@@ -72,7 +73,10 @@ def without_denied(
         judged: recordings with the found effects in.
         judge: judges other effects.
     """
-    while (denied := _first_denied(found, judged)) is not None:
+    while True:
+        found, judged = not_worse_than_declared(found, judged, judge)  # no name is to go for what fitted values do
+        if (denied := _first_denied(found, judged)) is None:
+            return found, judged
         effects = found.fit.effects
         gone = effects[denied.place]
         rest = _without_lost_shifts([effect for i, effect in enumerate(effects) if i != denied.place])
@@ -81,7 +85,6 @@ def without_denied(
         problem = without_effects(found.problem, [gone], rest)
         found = replace(found, problem=problem, fit=fit(problem, rest), impossible=reasons)
         judged = judge(found)
-    return found, judged
 
 
 def not_worse_than_declared(
@@ -128,10 +131,12 @@ def _first_denied(found: Search, judged: Sequence[Judged]) -> Denied | None:
         idle = ["" if stood else reason for reason, stood in zip(idle, stands, strict=True)]
         worst = _worst_channel(other.problem, other.allowed)
     at_end, around_none = ends_reached(problem, found.fit), sizes_around_none(problem, found.fit)
+    pushing = friction_that_pushes(problem, effects)
+    reasons = [at_end[i] or idle[i] or around_none[i] or pushing[i] for i in named]
     denied = [
-        Denied(i, shares[i].comparison.gain, at_end[i] or idle[i] or around_none[i])
-        for i in named
-        if (at_end[i] or idle[i] or around_none[i]) and not _differs(effects, i)
+        Denied(i, shares[i].comparison.gain, reason)
+        for i, reason in enumerate(reasons)
+        if reason and not _differs(effects, i)
     ]
     if worst and not denied:
         place = min(named, key=lambda i: shares[i].explains[worst])
@@ -250,7 +255,7 @@ def sizes_around_none(problem: Problem, fitted: Fit) -> list[str]:
     """Per effect, a sentence where the 95 % intervals of all its sizes hold the absent effect; else empty.
 
     Of components and nodes that belong together the whole is asked: their squares over their variances, against the
-    same quantile.
+    same quantile. Of a size whose slope tells nothing the likelihood is asked (`one_sided`).
     """
     if not fitted.effects:
         return []
@@ -259,12 +264,13 @@ def sizes_around_none(problem: Problem, fitted: Fit) -> list[str]:
     beyond = fitted.coordinates - absent
     half = np.sqrt(np.diag(known.half_covariance))
     result, at = [], 0
-    for effect in fitted.effects:
+    for place, effect in enumerate(fitted.effects):
         count = len(read_coordinates([effect], problem.plant))
         places = range(at, at + count)
         sizes = sorted({int(groups[i]) for i in places if not math.isnan(absent[i])})
         sure = [_is_not_none(known.half_covariance, beyond, half, np.flatnonzero(groups == group)) for group in sizes]
-        result.append("" if any(sure) or not sizes or is_shift(effect) else "its interval holds no effect at all")
+        denied = not (any(sure) or not sizes or is_shift(effect)) and one_sided(problem, fitted, place) is None
+        result.append("its interval holds no effect at all" if denied else "")
         at += count
     return result
 
@@ -279,6 +285,17 @@ def _is_not_none(covariance: FloatArray, beyond: FloatArray, half: FloatArray, g
     return square > float(chdtri(len(group), 0.05))
 
 
+def friction_that_pushes(problem: Problem, effects: Sequence[Effect]) -> list[str]:
+    """Per effect, a sentence where friction pushes the axis with it and not without; where none is alone, for all."""
+    there = problem.settled(effects)
+    if there.possible(effects):
+        return [""] * len(effects)
+    rubs = [isinstance(effect, FrictionEffect) for effect in effects]
+    alone = [rub and there.possible([*effects[:i], *effects[i + 1 :]]) for i, rub in enumerate(rubs)]
+    told = alone if any(alone) else rubs
+    return ["with it friction would push the axis somewhere within its reach" if one else "" for one in told]
+
+
 def _worst_channel(problem: Problem, judged: Sequence[Judged]) -> str:
     """The channel that is worse than declared by the most, beyond its scatter; empty where none is."""
     worse = {name: worse_by(problem, judged, name) for name in judged_channels(judged)}
@@ -287,12 +304,7 @@ def _worst_channel(problem: Problem, judged: Sequence[Judged]) -> str:
 
 
 def worse_by(problem: Problem, judged: Sequence[Judged], name: str) -> float:
-    """Share by which a channel's squared error as declared is smaller, beyond its scatter; negative where it is not.
-
-    It is the gain of the declared plant over the corrected one: of what they differ by, only the product with the
-    declared plant's own error is chance, however few blocks hold it. Both scatters count: that of the gain between
-    blocks, and that of a mean square of 2 B T independent values.
-    """
+    """Share by which a channel's squared error as declared is smaller, beyond its scatter; negative where it is not."""
     before, after, blocks, first, values = [], [], [], 0, 0.0
     for one in judged:
         if name not in one.evidence.channels:
@@ -305,6 +317,4 @@ def worse_by(problem: Problem, judged: Sequence[Judged], name: str) -> float:
         blocks.append(first + numbers)
         first += int(numbers.max(initial=-1)) + 1
         values += 2 * one.evidence.edge * float(rows.sum()) * step
-    gain = compare_left_out(np.concatenate(after), np.concatenate(before), np.concatenate(blocks), 0.0)
-    scatter = max(gain.standard_error, math.sqrt(2 / max(values, 1.0)))
-    return gain.gain - SCATTER * scatter
+    return worse_beyond_scatter(np.concatenate(before), np.concatenate(after), np.concatenate(blocks), values)

@@ -280,6 +280,8 @@ def _is_other(before: dict[str, Any] | None, now: ParameterResult) -> bool:
     if now.unit == "rad":  # counted from an encoder's zero, whole turns apart alike
         return False
     first, last = float(before["value"]), now.value
-    spans = [before.get("ci95") or (first, first), now.ci95 or (last, last)]
-    apart = max(low for low, _ in spans) > min(high for _, high in spans)
+    earlier, span = before.get("ci95") or (first, first), now.ci95 or (last, last)
+    if not isinstance(span[0], float) or not isinstance(span[1], float):
+        return False
+    apart = max(earlier[0], span[0]) > min(earlier[1], span[1])
     return bool(apart and abs(last - first) >= LEAST_CHANGE * max(abs(first), abs(last)))

@@ -15,6 +15,7 @@ Source: Stone, J. Roy. Statist. Soc. B 36 (1974) 111; Hoerl and Kennard, Technom
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -48,6 +49,9 @@ class Comparison:
         """Whether the gain is large enough to add an effect: more than the least, and more than its noise."""
         return self.gain > self.least and self.gain > SIGNIFICANCE * self.standard_error
 
+
+SCATTER = 2.0
+"""Standard deviations by which a channel must be worse: one of forty by chance."""
 
 LEAST_GAIN = 0.005
 """Least share of the squared error that an effect must take away; the largest seen on null recordings is 0.001."""
@@ -153,6 +157,37 @@ def compare_left_out(
     return Comparison((total - float(after @ after)) / total, error / total, least)
 
 
+def worse_beyond_scatter(before: FloatArray, after: FloatArray, blocks: IntegerArray, values: float) -> float:
+    """Share by which the first squared error is smaller than the second, beyond its scatter; negative where it is not.
+
+    It is the gain of the first model over the second: of what they differ by, only the product with the first one's own
+    error is chance, however few blocks hold it. Both scatters count: that of the gain between blocks, and that of a
+    mean square of so many independent values.
+
+    Args:
+        before, after: errors of one channel, (m,).
+        blocks: block of every row, (m,).
+        values: independent values that the rows hold, 2 B T of T seconds in a band B.
+    """
+    gain = compare_left_out(after, before, blocks, 0.0)
+    return gain.gain - SCATTER * max(gain.standard_error, math.sqrt(2 / max(values, 1.0)))
+
+
+def compare_levelled(
+    before: FloatArray, after: FloatArray, blocks: IntegerArray, least: float = LEAST_GAIN
+) -> Comparison:
+    """As `compare_left_out`, every block over the level of what both models leave of it, all of shape (m,).
+
+    The variance of a block is not known where no model reaches it. As likely as any, it makes of the block's part
+    n/2 log of its square, and of two that are near each other their difference over their mean: no block counts for
+    more than its rows.
+    """
+    rows = np.bincount(blocks)
+    level = np.sqrt(np.bincount(blocks, weights=0.5 * (before**2 + after**2)) / np.maximum(rows, 1))
+    level = np.where(level > 0, level, 1.0)[blocks]
+    return compare_left_out(before / level, after / level, blocks, least)
+
+
 def least_gain(problem: Problem, before: FloatArray, after: FloatArray) -> float:
     """Gain that is asked for: half a percent, or more where chance or the model's own error does as much.
 
@@ -187,7 +222,7 @@ def model_error_rows(evidence: Sequence[Evidence], rows: Sequence[BoolArray]) ->
     whole: dict[str, float] = {}
     for one, chosen in zip(evidence, rows, strict=True):
         for name, error in one.model_error.items():
-            whole[name] = whole.get(name, 0.0) + float(np.sum(chosen)) * (error / one.spread(name)) ** 2
+            whole[name] = whole.get(name, 0.0) + float(np.sum(chosen)) * (error / one.unit(name)) ** 2
     parts = [
         np.full(int(np.sum(chosen)), whole.get(name, 0.0))
         for one, chosen in zip(evidence, rows, strict=True)

@@ -77,9 +77,10 @@ def weights_to_fit(plant: Plant, evidence: AxisEvidence) -> BoolArray | FloatArr
     if not has_play(plant.effects):
         return np.ones(len(evidence.recording), dtype=bool)
     missed = _missed(plant, evidence)
-    lost, noise = _lost(missed, evidence), evidence.noise.get("table_position")
-    if noise is None or (not lost.any() and np.max(missed.table) <= LINEAR * missed.cause):
+    lost = _lost(missed, evidence)
+    if "table_position" not in evidence.noise or (not lost.any() and np.max(missed.table) <= LINEAR * missed.cause):
         return ~lost
+    noise = evidence.unit("table_position")
     beyond = np.maximum(missed.table**2 - (LINEAR * missed.cause) ** 2, 0.0)
     weights: FloatArray = np.where(lost, 0.0, noise / np.sqrt(noise**2 + beyond))
     return weights

@@ -168,6 +168,7 @@ def judged_changes(found: Search, judged: Sequence[Judged]) -> JudgedChanges | N
     apart = [one for one in judged if not one.evidence.fitted.any()]
     if not apart:
         return None
+    known: JudgedChanges
     for effects, after, known in found.asked:  # every name that is denied asks, and the report
         if effects == found.fit.effects and after == [one.after for one in judged]:
             return known

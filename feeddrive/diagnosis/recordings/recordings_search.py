@@ -159,8 +159,8 @@ def _better(first: Searched, second: Searched) -> Searched:
 
     Where they predict different samples, the likelier.
     """
-    levels = first.search.problem.evidence[0].levels
-    a, b = (_weighed(one.search, levels) for one in (first, second))
+    left = first.search.problem.evidence[0].left
+    a, b = (_weighed(one.search, left) for one in (first, second))
     if not same_samples(a.problem, b.problem):
         return second if odds_between(a, b, len(a.problem.predictor.candidates)) > 0 else first
     errors = [one.fit.squared_error / len(one.fit.residual) for one in (a, b)]
@@ -169,9 +169,9 @@ def _better(first: Searched, second: Searched) -> Searched:
     return min((first, second), key=lambda one: len(one.search.fit.coordinates))
 
 
-def _weighed(found: Search, levels: dict[str, float]) -> Standing:
+def _weighed(found: Search, left: dict[str, float]) -> Standing:
     """A set that was found, its channels weighed as those of another."""
-    problem = found.problem.weighed(levels)
+    problem = found.problem.weighed(left)
     return Standing(problem, found.fit if problem is found.problem else fit(problem, found.fit.effects, iterations=0))
 
 

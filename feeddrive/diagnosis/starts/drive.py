@@ -85,5 +85,5 @@ def _shifted_errors(evidence: Evidence, channel: str, residual: FloatArray, way:
         error = measured[rows] - predicted[np.clip(rows - way * k, 0, len(measured) - 1)]
         if channel in evidence.floating:
             error = error - error.mean()
-        errors[k] = float(error @ error) / evidence.noise[channel] ** 2
+        errors[k] = float(error @ error) / evidence.unit(channel) ** 2
     return errors

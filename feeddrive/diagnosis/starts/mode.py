@@ -99,7 +99,7 @@ class _Spectra:
         kept = (every > 0) & (every < evidence.edge)
         self.frequency: FloatArray = every[kept].astype(np.float64)
         self.edge = evidence.edge
-        noise = np.array([evidence.noise[name] for name in evidence.channels])[:, None]
+        noise = np.array([evidence.unit(name) for name in evidence.channels])[:, None]
         if isinstance(evidence, AxisEvidence) and evidence.gains:
             noise = noise / np.array([evidence.gains[name][kept] for name in evidence.channels])
         self.left = np.array([np.fft.rfft(window * residual[n])[kept] for n in evidence.channels]) / noise

@@ -29,6 +29,7 @@ from feeddrive.effects.source.torque_ripple import TorqueRipple
 from feeddrive.effects.transmission.backlash import Backlash
 from feeddrive.effects.travel.lead_error_periodic import LeadErrorPeriodic
 from feeddrive.effects.travel.thermal_growth import ThermalGrowth
+from feeddrive.recording.long.joined import clock
 from feeddrive.typing import FloatArray
 
 TABLE_NODES = 12
@@ -192,5 +193,6 @@ def ball_pass_ripple(scene: Scene) -> list[list[Effect]]:
 
 def _time_constants(scene: Scene) -> list[float]:
     evidence = scene.problem.evidence[scene.longest]
-    duration = float(evidence.fit_rows.sum()) * evidence.recording.sample_time
+    since = clock(evidence.recording)[evidence.fit_rows]  # of hours, what was left out counts as well
+    duration = float(np.ptp(since)) + evidence.recording.sample_time
     return [share * duration for share in SHARES_OF_DURATION]

@@ -203,7 +203,9 @@ def refuse_known_binary(data: bytes, where: str) -> None:
     if is_hdf5(data) or data.startswith(b"MATLAB"):
         raise InputError("is a .mat file by its content", where, "give it the ending .mat and a mapping (--map)")
     if data.startswith(b"PK\x03\x04"):
-        raise InputError("is a workbook or zip archive, not CSV", where, "save the sheet as CSV")
+        if any(part in data[:4000] for part in (b"[Content_Types].xml", b"xl/", b"mimetype")):
+            raise InputError("is a workbook, not CSV", where, "save the sheet as CSV")
+        raise InputError("is a zip archive", where, "unpack it and name a file of it; feeddrive watch reads archives")
 
 
 _CONTROLS = re.compile("[\x00-\x08\x0b\x0e-\x19\x1b-\x1f]")  # tab, line ends, form feed; 0x1a ends some DOS files

@@ -20,10 +20,12 @@ from feeddrive.recording.checks.unusable_samples import (
     clock_notes,
     mean_sample_time,
 )
+from feeddrive.recording.files.cells import with_dates
 from feeddrive.recording.files.channel_mapping import FileMapping, read_mapping
 from feeddrive.recording.files.csv_file import Layout, TextTable, find_table, is_number
 from feeddrive.recording.files.foreign import mapped_columns, read_variables, table_variables
 from feeddrive.recording.files.opening import FileContent, TextFile, first_bytes, open_file
+from feeddrive.recording.formats import matlab5
 from feeddrive.recording.frequency_response import FrequencyResponse
 from feeddrive.recording.recording import Recording
 from feeddrive.recording.traces.channel_choice import Wishes
@@ -51,7 +53,8 @@ def read_recording(path: Path, mapping: Path | None = None, *, decimal: str | No
     if decimal not in (None, ".", ","):
         raise InputError(f"{decimal!r} is not a decimal sign", "--decimal", "write . or ,")
     known = read_mapping(Path(mapping)) if mapping is not None else None
-    if could_be_trace(first_bytes(path)):
+    start = first_bytes(path)
+    if could_be_trace(start) and not (known is not None and matlab5.recognises(start)):  # mapped by its variables
         content = open_file(path)
         trace = read_trace(content, Wishes(sample_time=known.sample_time if known else None))
         if trace is not None:
@@ -94,14 +97,14 @@ def _canonical(
     if isinstance(source, FileContent):
         held = ", ".join(quoted(name, 40) for name in list(read_variables(source))[:12])
         raise InputError(f"a .mat file has no units (it holds {held})", where, "name its mapping file by --map")
-    text_table = find_table(source.blocks(), Layout(), where)
+    text_table, dated = with_dates(find_table(source.blocks(), Layout(), where))
     headings = _headings(text_table, where)
     table = text_table.numbers(decimal)
     columns = dict(zip((heading.channel for heading in headings), table.columns, strict=True))
     with np.errstate(all="ignore"):  # a number beyond all bounds is refused where its row is known
         for heading in headings:
             columns[heading.channel] = heading.conversion.apply(columns[heading.channel])
-    return columns, table.first_row, (*source.notes, *table.notes)
+    return columns, table.first_row, (*source.notes, *dated, *table.notes)
 
 
 def _headings(table: TextTable, where: str) -> list[Heading]:

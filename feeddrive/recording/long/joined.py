@@ -79,6 +79,12 @@ def recorded(recording: Recording) -> BoolArray:
     return found
 
 
+def first_stretch(recording: Recording) -> float:
+    """Time [s] that the first stretch of a joined recording lasts; 0 for one that is whole."""
+    own = recorded(recording)
+    return 0.0 if own.all() else float(np.argmin(own)) * recording.sample_time
+
+
 def _ended_slowly(position: FloatArray, windows: list[Rows], sample_time: float) -> list[Rows]:
     """The stretches with both ends moved inwards to where the motion is slowest nearby."""
     reach = round(SLOWEST_WITHIN / sample_time)
