@@ -14,6 +14,7 @@ from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.finding.attempt import with_predictable
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging.judge import prepared_for_judging
+from feeddrive.diagnosis.likelihood.evidence import AxisEvidence
 from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.likelihood.predictability import predictable_samples
 from feeddrive.diagnosis.preparation import prepared
@@ -71,6 +72,7 @@ def test_the_settled_half_of_every_stroke_is_predictable_with_a_worn_screw(tmp_p
     plant, worn = declared(axis, tmp_path), recorded(axis, -15, tmp_path)
     problem, _, _ = prepared(plant, [worn], [], 0.75)
     (evidence,) = problem.evidence
+    assert isinstance(evidence, AxisEvidence)
     predictable = predictable_samples(plant.with_effects(Backlash.of(width=axis.days[-15].play)), evidence)
     speed = np.abs(evidence.motion_speed)
     steady = speed > 0.99 * np.median(speed[speed > 0.5 * speed.max()])
