@@ -14,6 +14,7 @@ from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.finding.attempt import with_predictable
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging.judge import prepared_for_judging
+from feeddrive.diagnosis.likelihood.evidence import AxisEvidence
 from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.likelihood.predictability import predictable_samples
 from feeddrive.diagnosis.preparation import prepared
@@ -27,7 +28,7 @@ from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording, read_recording
 from tests.recovery.fleet.plant_text import plant_text
-from tests.recovery.fleet.production import BLOCKS, TOLERANCES, Production, production
+from tests.recovery.fleet.production import BLOCKS, CYCLES, ROW, TOLERANCES, Production, production
 
 
 def test_play_and_reversals_are_where_the_truth_has_them() -> None:
@@ -71,6 +72,7 @@ def test_the_settled_half_of_every_stroke_is_predictable_with_a_worn_screw(tmp_p
     plant, worn = declared(axis, tmp_path), recorded(axis, -15, tmp_path)
     problem, _, _ = prepared(plant, [worn], [], 0.75)
     (evidence,) = problem.evidence
+    assert isinstance(evidence, AxisEvidence)
     predictable = predictable_samples(plant.with_effects(Backlash.of(width=axis.days[-15].play)), evidence)
     speed = np.abs(evidence.motion_speed)
     steady = speed > 0.99 * np.median(speed[speed > 0.5 * speed.max()])
@@ -120,7 +122,7 @@ LAWS: tuple[Effect, ...] = (
 
 def changes_beside(plant: Plant, fitted: Recording, judged: Recording, given: Sequence[Effect]) -> JudgedChanges:
     """What is told of a judged recording, where these effects were found in the fitted one."""
-    problem, (evidence,), _ = prepared(plant, [fitted], [judged], 0.75)
+    problem, (evidence,), _ = prepared(plant, [fitted], [judged], 0.75, ROW / CYCLES)
     problem, effects = at_declared(calibrated(problem)), tuple(given)
     for _ in range(2):
         problem = with_predictable(problem, effects)
@@ -143,7 +145,9 @@ def test_play_that_is_another_is_told_of_a_recording_that_is_judged(
     axis = production(3)
     play = Backlash.of(width=axis.days[before].play)
     fitted, judged = (recorded(axis, day, tmp_path) for day in (before, after))
-    changes = changes_beside(declared(axis, tmp_path), fitted, judged, (*LAWS[:2], play, *LAWS[2:]))
+    # a play of 0.18 mm hides the bristles: the search does not find them beside it
+    given = (*LAWS[:2], play, *(LAWS[2:] if before > 0 else ()))
+    changes = changes_beside(declared(axis, tmp_path), fitted, judged, given)
     other = axis.days[after].play - axis.days[before].play
     (change,) = changes.stated
     assert (change.effect, change.parameter) == ("backlash", "width")
