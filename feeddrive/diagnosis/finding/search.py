@@ -141,16 +141,16 @@ def search(
                 continue
             if beyond is None:
                 break
+            met.add(_members(found))  # back at it, it would be asked the same once more
             problem, found = beyond
             trials.append(Trial(len(rounds), found.effects[-1].name, 0.0, 0.0, True))
             continue
         problem = without_effects(taken.problem, found.effects, taken.fit.effects)
         problem, found = _refitted(problem, taken.fit)
         progress(f"found so far: {', '.join(effect.name for effect in found.effects)}")
-        members = tuple(sorted(effect.name for effect in found.effects))
-        if members in met:  # they only take each other's place
+        if _members(found) in met:  # they only take each other's place
             break
-        met.add(members)
+        met.add(_members(found))
     problem, found = _refitted(problem, fit(problem, found.effects), ends=True)
     small = [one for one in found.effects if not is_material(one, problem.plant)]
     if small:
@@ -160,6 +160,11 @@ def search(
         impossible |= dict.fromkeys((one.name for one in small), SMALL)
     found = with_usual_sizes(problem, found)
     return Search(problem, found, tuple(trials), tuple(rounds), impossible, near, begun)
+
+
+def _members(found: Fit) -> tuple[str, ...]:
+    """Names of a set."""
+    return tuple(sorted(effect.name for effect in found.effects))
 
 
 def _likelier(
