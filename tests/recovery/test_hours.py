@@ -11,7 +11,7 @@ import pytest
 from feeddrive.diagnosis.calibration import calibrate
 from feeddrive.diagnosis.calibration.calibrate import calibrated, weighed_alike
 from feeddrive.diagnosis.calibration.known import TOLERANCE
-from feeddrive.diagnosis.finding.attempt import refuse_over_at_once
+from feeddrive.diagnosis.finding.attempt import refuse_no_warming
 from feeddrive.diagnosis.finding.scene import scene_of
 from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.diagnosis.likelihood.set_evidence import same_samples
@@ -96,11 +96,26 @@ def test_growth_that_one_stretch_alone_shows_is_none(problem: Problem) -> None:
     ends = joined.first_stretch(problem.evidence[0].recording)
     assert 5.0 < ends < 30.0
     with pytest.raises(InputError, match="first stretch"):
-        refuse_over_at_once(problem, [growth.of(strain=1e-5, time_constant=0.5 * ends)])
-    refuse_over_at_once(problem, [growth.of(strain=1e-5, time_constant=2 * ends)])
+        refuse_no_warming(problem, [growth.of(strain=1e-5, time_constant=0.5 * ends)])
+    with pytest.raises(InputError, match="does not grow"):  # a longer one is asked of its size
+        refuse_no_warming(problem, [growth.of(strain=1e-5, time_constant=2 * ends)])
     whole = replace(problem.evidence[0].recording, flaws=())
     brief = replace(problem, evidence=(replace(problem.evidence[0], recording=whole),))
-    refuse_over_at_once(brief, [growth.of(strain=1e-5, time_constant=0.5)])
+    refuse_no_warming(brief, [growth.of(strain=1e-5, time_constant=0.5)])
+
+
+def test_growth_is_what_the_same_place_has_at_other_hours(problem: Problem) -> None:
+    """Beside a lead map of any shape: none where nothing grows, however well places and hours go together."""
+    (evidence,) = problem.evidence
+    lasted = float(np.ptp(evidence.recording.time))
+    growth = find_effect("thermal_growth").of(strain=3e-5, time_constant=lasted)
+    effects = [find_effect("backlash").of(width=PLAY), growth]
+    with pytest.raises(InputError, match="does not grow"):
+        refuse_no_warming(problem, effects)
+    x, since = evidence.measured["table_position"], evidence.recording.time - evidence.recording.time[0]
+    grown = x * (1 - 3e-5 * np.expm1(-since / lasted))
+    other = replace(evidence, measured={**evidence.measured, "table_position": grown})
+    refuse_no_warming(replace(problem, evidence=(other,)), effects)
 
 
 def test_nut_crosses_its_play_before_the_table_follows() -> None:
