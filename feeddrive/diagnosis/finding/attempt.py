@@ -21,9 +21,11 @@ from feeddrive.diagnosis.likelihood.predictability import has_play
 from feeddrive.diagnosis.starts.residual_readings import BINS
 from feeddrive.effects.base import Effect, number
 from feeddrive.effects.friction.viscous_warmup import ViscousWarmup
+from feeddrive.effects.transmission.backlash import Backlash
+from feeddrive.effects.transmission.preload_loss import PreloadLoss
 from feeddrive.effects.travel.thermal_growth import ThermalGrowth
 from feeddrive.errors import InputError
-from feeddrive.recording.long.joined import clock, first_stretch
+from feeddrive.recording.long.joined import first_stretch
 from feeddrive.typing import FloatArray, IntegerArray
 
 JOINT_ITERATIONS = 4
@@ -134,18 +136,18 @@ def _usable(scene: Scene, problem: Problem, name: str, result: Fit) -> Attempt:
         raise InputError(f"{name} could not be simulated", name)
     if not problem.possible(result.effects):
         raise InputError(f"{name} would have friction push the axis", name)
-    refuse_no_warming(problem, result.effects)
+    refuse_of_no_hours(problem, result.effects)
     if has_play(result.effects[-1:]):
         problem = with_predictable(scene.problem, result.effects)
     return compared(problem, name, result, scene.found)
 
 
-def refuse_no_warming(problem: Problem, effects: Sequence[Effect]) -> None:
-    """Refuse what warms up and is over in the first of many stretches, or grows as no same place does.
+def refuse_of_no_hours(problem: Problem, effects: Sequence[Effect]) -> None:
+    """Refuse what recordings of hours do not bear out: what is over in one stretch, or is a lead error.
 
-    What is over there no other stretch shows to have changed: over hours it stays as it is, and its first seconds take
-    what else is not named at the places of one stretch. A growth of which less than half remains beside a lead error of
-    any shape over the stroke is nearer to none.
+    What has warmed up within the first stretch no other one shows to have changed: over hours it stays as it is, and
+    its first seconds take what else is not named at the places of one stretch. Growth and lost motion of which less
+    than half remains beside a lead error of any shape over the stroke are nearer to none.
 
     Raises:
         InputError: there is such an effect.
@@ -155,32 +157,34 @@ def refuse_no_warming(problem: Problem, effects: Sequence[Effect]) -> None:
         if isinstance(effect, ThermalGrowth | ViscousWarmup) and number(effect.values["time_constant"]) < first:
             raise InputError(f"{effect.name} is over within the first stretch of the recording", effect.name)
     for place, effect in enumerate(effects):
-        if first > 0 and isinstance(effect, ThermalGrowth):
-            beside = _strain_beside_a_map(problem, effects, place)
-            if not beside * number(effect.values["strain"]) > 0.5 * number(effect.values["strain"]) ** 2:
-                raise InputError(f"{effect.name}: a lead error over the stroke that does not grow says it", effect.name)
+        by_map = first > 0 and isinstance(effect, ThermalGrowth | Backlash | PreloadLoss)
+        if by_map and not _left_beside_a_map(problem, effects, place) > 0.5:
+            raise InputError(f"{effect.name}: a lead error over the stroke says it as well", effect.name)
 
 
-def _strain_beside_a_map(problem: Problem, effects: Sequence[Effect], place: int) -> float:
-    """Strain [m/m] of a growth in a set where the table position has any lead error over the stroke beside it.
+def _left_beside_a_map(problem: Problem, effects: Sequence[Effect], place: int) -> float:
+    """Share of an effect of a set that remains where the table position has any lead error over the stroke beside it.
 
-    Stretches of different hours lie at different places, so that what is other from place to place seems to grow;
-    growth is what the same place has at different hours. With P the means over cells of the stroke taken out, s the
-    strain and g what a strain of one makes: s + (P g)'(P r) / |P g|^2, r being left by the set.
+    Stretches of different hours lie at different places, and some are passed one way more often than the other. So what
+    is other from place to place seems to grow, or to lag; growth is what the same place has at different hours, and
+    lost motion what it has in both directions. With P the means over cells of the stroke taken out and g what the
+    effect makes: 1 + (P g)'(P r) / |P g|^2, r being left by the set.
     """
-    growth, total, square = effects[place], 0.0, 0.0
-    plant = problem.machine(effects)
+    rest = [*effects[:place], *effects[place + 1 :]]
+    total, square = 0.0, 0.0
     for e in problem.evidence:
         if "table_position" not in e.channels:
             continue
-        rows = e.fit_rows
-        x, since = e.measured["table_position"][rows], clock(e.recording)[rows]
-        left = x - problem.predictor.predict(plant, e)["table_position"][rows]
-        grown = -np.expm1(-since / number(growth.values["time_constant"])) * x
+        rows, measured = e.fit_rows, e.measured["table_position"]
+        having, lacking = (
+            problem.predictor.predict(problem.machine(some), e)["table_position"][rows] for some in (effects, rest)
+        )
+        x = measured[rows]
         cells = np.digitize(x, np.linspace(x.min(), x.max(), BINS + 1)[1:-1])
-        own = grown - _means(grown, cells)
-        total, square = total + float(own @ left), square + float(own @ own)
-    return number(growth.values["strain"]) + (total / square if square > 0 else -np.inf)
+        made = having - lacking
+        own = made - _means(made, cells)
+        total, square = total + float(own @ (x - having)), square + float(own @ own)
+    return 1.0 + total / square if square > 0 else 0.0
 
 
 def _means(series: FloatArray, cells: IntegerArray) -> FloatArray:

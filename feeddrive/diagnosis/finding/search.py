@@ -15,7 +15,7 @@ import numpy as np
 from feeddrive.diagnosis.calibration.beyond import beyond_tolerance, without_effects
 from feeddrive.diagnosis.calibration.calibrate import at_declared, calibrated, recalibrated, recalibrated_by_rest
 from feeddrive.diagnosis.calibration.known import TOLERANCE
-from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, Attempt, compared, refuse_no_warming, started
+from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, Attempt, compared, refuse_of_no_hours, started
 from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.finding.round import Round, one_round
 from feeddrive.diagnosis.finding.scene import scene_of
@@ -211,7 +211,7 @@ def _fitted(at_hand: Standing, one: Neighbour, attempts: Sequence[Attempt], coun
         again = regained(own, result.effects)
         if again is not own:  # what the play could not predict is to be predicted again
             own, result = again, fit(again, result.effects, iterations=JOINT_ITERATIONS)
-        refuse_no_warming(own, result.effects)
+        refuse_of_no_hours(own, result.effects)
         odds = odds_between(at_hand, Standing(own, result), count)
         if one.added and not one.dropped and not compared(own, name, result, found.effects).comparison.pays:
             return None
