@@ -58,14 +58,13 @@ def find_plant(name_or_path: str) -> Path:
 
     Args:
         name_or_path: path of a file, or of the folder of a diagnosis, whose `plant_after.toml` is meant, or the name
-            of a shipped plant with or without `.toml`. A file wins over a name.
+            of a shipped plant with or without `.toml`. A file wins over a name, and a name over a folder: `emps` is the
+            shipped plant and `./emps` the folder of a diagnosis.
 
     Raises:
         InputError: neither a file nor a shipped plant; names the nearest shipped plants.
     """
     path = Path(name_or_path)
-    if os.path.isfile(path / DIAGNOSED):
-        return path / DIAGNOSED
     # Not Path.is_file: it raises where a name is too long for the file system.
     if os.path.isfile(path):
         return path
@@ -73,6 +72,8 @@ def find_plant(name_or_path: str) -> Path:
     name = name_or_path.removesuffix(_SUFFIX)
     if name in by_name:
         return by_name[name]
+    if os.path.isfile(path / DIAGNOSED):
+        return path / DIAGNOSED
     what = "is a folder, not a plant file" if os.path.isdir(path) else "neither a file nor the name of a shipped plant"
     raise InputError(what, where=name_or_path, mend=_nearest(path.stem, list(by_name)))
 

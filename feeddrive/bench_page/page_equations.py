@@ -21,7 +21,7 @@ from feeddrive.bench_page.javascript import javascript
 from feeddrive.effects.base import TimingEffect, TransmissionEffect
 from feeddrive.engine.program import CELL, DEEPEST, TOLERANCE
 from feeddrive.engine.step.linear_part import FORGETTING
-from feeddrive.engine.step.step_constants import CONVERGED, FULL_SCALE
+from feeddrive.engine.step.step_constants import FULL_SCALE, converged
 from feeddrive.errors import InputError
 from feeddrive.plant.analysis.ode import OUTPUTS, ode
 from feeddrive.plant.chain.chain import symbolic
@@ -77,7 +77,7 @@ def bench_equations(plant: Plant, cascade: Cascade) -> tuple[str, dict[str, Any]
         "measured": [list(OUTPUTS).index(name) for name in controller.measurements],
         "controller_states": len(controller.initial), "signals": list(controller.signals),
         "references": list(controller.references), "cell": CELL, "deepest": DEEPEST, "tolerance": TOLERANCE,
-        "full_scale": FULL_SCALE, "converged": CONVERGED, "forgetting": FORGETTING, "varies": program.varies,
+        "full_scale": FULL_SCALE, "converged": converged(layout), "forgetting": FORGETTING, "varies": program.varies,
         "measurements": len(MEASUREMENTS),
     }  # fmt: skip
     return text, numbers

@@ -15,8 +15,9 @@ from feeddrive.diagnosis.certainty.ambiguity import Rival, ambiguous_sets, other
 from feeddrive.diagnosis.certainty.correlation import correlation
 from feeddrive.diagnosis.certainty.inclusion import asserted, odds_for, possible_effects
 from feeddrive.diagnosis.certainty.next_experiment import next_experiments
+from feeddrive.diagnosis.certainty.one_sided import all_intervals
 from feeddrive.diagnosis.certainty.preferred import with_the_preferred
-from feeddrive.diagnosis.certainty.uncertainty import certainty, intervals
+from feeddrive.diagnosis.certainty.uncertainty import certainty
 from feeddrive.diagnosis.finding.search import Search, search
 from feeddrive.diagnosis.judging.effect_results import effect_results, refused_effects
 from feeddrive.diagnosis.judging.judge import Judged, channel_results, judged_recordings, prepared_for_judging, share_of
@@ -118,7 +119,7 @@ def diagnose(
     settled, hold = settle(begun), declared
     if hold is None and may_be_logged(every):
         found = settled.searched.search
-        spans = intervals(found.problem, found.fit, certainty(found.problem, found.fit))
+        spans = all_intervals(found.problem, found.fit, certainty(found.problem, found.fit))
         hold = hold_of(found.fit.effects, spans, every)
         if hold is not None and allowed.skips("a torque that is logged more slowly than the drive holds it"):
             hold = None
@@ -147,7 +148,7 @@ def _reported(
     alike = ambiguous_sets(found, settled.rivals)
     rest = explain_rest(found.problem, found.fit.effects, judged, channel_results(found.problem, judged))
     compared, known = compared_recordings(searched, judged), certainty(found.problem, found.fit)
-    spans = intervals(found.problem, found.fit, known)
+    spans = all_intervals(found.problem, found.fit, known)
     effects = machine_as_last(searched, compared.listed)
     count = len(without_shifts(found.fit.effects))
     shares = [share_of(found.problem, judged, found.fit.effects, i) for i in range(count)]

@@ -113,7 +113,7 @@ class StepReport:
         refused: steps taken again at half their length.
         sweeps: Newton corrections.
         finest: shortest step, as halvings of the longest.
-        last_sweep: largest last correction, over its limit of 1e-9 of the force or of full scale; below 1.
+        last_sweep: largest last correction, over its limit (`step_constants.converged`); below 1.
         over: steps that stayed above the tolerance at the finest level: at jumps of a force.
         excess: sum of the errors estimated there [m].
         tolerance: error of the table position allowed per step [m].

@@ -150,11 +150,12 @@ class _Parts:
         held = ca.SX.sym("held", self.layout.inputs)
         free = ca.SX.sym("free", len(self.early) + self.layout.states)
         base, guess = step.open(self.memory, held, 0, self.fixed, free)
-        changes = []
-        for _ in range(self.sweeps):
-            guess, change = step.iterate(self.memory, base, guess, time, self.fixed, self.values)
-            changes.append(change)
+        guess, first = step.iterate(self.memory, base, guess, time, self.fixed, self.values)
+        change = first
+        for _ in range(self.sweeps - 1):  # taken where it is needed alone, as the compiled driver does
+            again, smaller = step.iterate(self.memory, base, guess, time, self.fixed, self.values)
+            guess, change = (ca.if_else(change < 1.0, old, new) for old, new in ((guess, again), (change, smaller)))
         kept, error = step.close(self.memory, guess, self.fixed)
-        results = [guess[: 2 * len(self.layout.forced)], kept, ca.vertcat(changes[0], changes[-1], error)]
+        results = [guess[: 2 * len(self.layout.forced)], kept, ca.vertcat(first, change, error)]
         given = [self.state, held, self.fed, free, self.fixed, self.values]
         return ca.Function("solved", given, ca.cse(results))

@@ -123,8 +123,26 @@ CENTRING_STEPS = 8
 """Gauss-Newton steps for the least-squares circle; each squares the relative error of the centre."""
 
 
+def whole_turns(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """The middle of a path that is whole turns: an instrument begins before and ends behind them, as far on both sides.
+
+    In the overshoot the axes start and stop, and points there would weigh twice.
+
+    Args:
+        x, y: points in their order in time, shape (n,) [m].
+    """
+    centre, _ = least_squares_circle(x, y)
+    angle = np.abs(np.unwrap(np.arctan2(y - centre[1], x - centre[0])) - math.atan2(y[0] - centre[1], x[0] - centre[0]))
+    turned, gap = float(angle[-1]), float(angle[-1]) / max(1, len(angle) - 1)
+    over = turned - 2 * math.pi * math.floor((turned + 2 * gap) / (2 * math.pi))
+    if turned < 2 * math.pi or over <= 2 * gap:
+        return x, y
+    within = (angle >= 0.5 * (over - gap)) & (angle <= turned - 0.5 * (over - gap))
+    return x[within], y[within]
+
+
 def circular_path(x: FloatArray, y: FloatArray, nominal: float) -> CircularPath:
-    """The figures of points along a circle, one whole turn at least.
+    """The figures of points along a circle, one whole turn at least; an overshoot before and behind is left out.
 
     Args:
         x, y: points in their order in time, shape (n,) [m].
@@ -133,6 +151,7 @@ def circular_path(x: FloatArray, y: FloatArray, nominal: float) -> CircularPath:
     Raises:
         InputError: fewer than 36 points, or less than one turn.
     """
+    x, y = whole_turns(x, y)
     centre, radius = least_squares_circle(x, y)
     angle = np.unwrap(np.arctan2(y - centre[1], x - centre[0]))
     turned = float(angle[-1] - angle[0])

@@ -5,7 +5,8 @@
 Level and viscous force are sums of what the effects of a port add, each of which reads one of position, speed and time
 besides the direction, and is monotone between its turning points (`FrictionEffect.turning_points`). A sum of monotone
 functions lies above the sum of their lesser ends in every interval; the intervals are divided until that bound and the
-least value found agree. What repeats along the way, and what follows the load, enters by its own least value.
+least value found agree. What repeats along the way, and what follows the load, enters by its own least value; several
+ripples of one screw, harmonics of each other most of all, by the least that they have together within the stroke.
 
 Reached are the declared stroke (all positions without one), every time, and speeds up to the declared maximum of table
 or motor. A bristle divides by its level, which has to stay above zero where it acts.
@@ -25,6 +26,7 @@ import casadi as ca
 import numpy as np
 
 from feeddrive.effects.base import BristleEffect, Effect, FrictionEffect, Motion, Port, listed, number
+from feeddrive.effects.source.ball_pass_ripple import BallPassRipple
 from feeddrive.errors import InputError
 from feeddrive.plant.least_sum import least_sum
 from feeddrive.plant.plant import Plant
@@ -40,6 +42,13 @@ LEAST_BREAK_AWAY = 1e-12
 
 _ROUNDS = 12
 """In which an interval is divided by four at most: to 6e-8 of its length."""
+
+_IN_A_PERIOD = 32
+"""Angles in a period of the highest order at which ripples are added up: between two of them a sine of amplitude A lies
+below its chord by A (2 pi / 32)^2 / 8 at most, half a per cent of it, which is taken off."""
+
+_MOST_ANGLES = 500_000
+"""Above so many angles each ripple enters by its own least."""
 
 _POSITIONS, _SPEEDS, _TIMES = "position", "speed", "time"
 
@@ -195,6 +204,9 @@ class _Way:
         taken: FloatArray = np.bincount(self.owners, self._levels({})[:, 0], len(self.effects)).astype(np.float64)
         for i, lowest in enumerate(self.lowest):
             taken[i] = taken[i] if lowest is None else lowest * self.factors[i]
+        ripples = [i for i, effect in enumerate(self.effects) if isinstance(effect, BallPassRipple)]
+        if len(ripples) > 1 and (alone := float(taken[ripples].sum())) < 0:
+            taken[ripples] *= self._least_together(ripples, alone) / alone
         reading = {variable: self._reading(variable) for variable in (_POSITIONS, _SPEEDS, _TIMES)}
         level = sum(taken[i] for i in range(len(taken)) if not any(i in effects for effects in reading.values()))
         for variable, effects in reading.items():
@@ -211,6 +223,21 @@ class _Way:
             self.port, float(level), force, needed, self.direction, at.get(_POSITIONS), at.get(_SPEEDS),
             at.get(_TIMES), {effect.label: float(part) for effect, part in zip(self.effects, taken, strict=True)},
         )  # fmt: skip
+
+    def _least_together(self, ripples: Sequence[int], alone: float) -> float:
+        """Least sum of several ripples within the stroke [N m], of either sign of the angle."""
+        if self.plant.stroke is None:
+            return alone
+        low, high = self.plant.stroke
+        reach = max(abs(low), abs(high), high - low) / self.plant.chain.radius
+        values = [self.effects[i].values for i in ripples]
+        amplitude, order, phase = (np.array([one[key] for one in values]) for key in ("amplitude", "order", "phase"))
+        step = 2 * math.pi / (_IN_A_PERIOD * float(order.max()))
+        if 2 * reach / step > _MOST_ANGLES:
+            return alone
+        angle = np.arange(-reach, reach + step, step)
+        together = sum(a * np.sin(n * angle + p) for a, n, p in zip(amplitude, order, phase, strict=True))
+        return max(alone, float(np.min(together) - step**2 / 8 * (amplitude @ order**2)))
 
     def _reading(self, variable: str) -> list[int]:
         """Effects whose level follows from turning points of a variable."""

@@ -113,4 +113,6 @@ def read_heading(text: str, where: str) -> Heading:
     needed = channel_unit(name, where)
     if not unit or not unit.strip():
         raise InputError(f'column "{name}" has no unit', where, f'write "{name} [{needed}]" in the header')
+    if name == "motor_torque" and unit.strip() == "%":
+        raise InputError(f'column "{name}" is in %', where, 'call it "motor_torque_share [%]"')
     return Heading(name, unit_conversion(unit, needed, f'{where}, column "{name}"'))

@@ -13,13 +13,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.optimize import minimize, minimize_scalar
 from scipy.special import logsumexp
 
-from feeddrive.trend.series_evidence import JUMP, ODD, SETTLING, SLOPE, Atom, Series
+from feeddrive.trend.series_evidence import JUMP, ODD, SETTLING, SLOPE, Atom, Series, before_gap
 from feeddrive.typing import FloatArray
 
 ASSERTED = 100.0
@@ -54,6 +54,7 @@ class Found:
         size, deviation: of the course and its standard deviation: the height of a jump, the mean rate of a slope.
         time_constants: interval with 95 %, of a course that settles.
         settles: log odds of a course that settles against a slope, wherever either begins; 0 of a sudden one.
+        since: of each possible date of a jump the recording before it, where a gap lies between, (d,); else the date.
     """
 
     atom: Atom
@@ -64,6 +65,7 @@ class Found:
     deviation: float
     time_constants: tuple[float, float] = (0.0, 0.0)
     settles: float = 0.0
+    since: FloatArray = field(default_factory=lambda: np.empty(0))
 
 
 @dataclass(frozen=True)
@@ -106,8 +108,9 @@ def course_of(series: Series, quantities: int) -> Course:
     for i, atom in enumerate(atoms):
         posterior, settles = search.dates(atoms, i)
         size, deviation = float(mean[1 + i]), float(np.sqrt(spread[1 + i, 1 + i]))
-        found.append(Found(atom, search.odds_of(atoms, i), most_likely(*posterior), posterior, size, deviation,
-                           search.time_constants(atoms, i), settles))  # fmt: skip
+        since = before_gap(series.line.time, posterior[0]) if atom.kind == JUMP else posterior[0]
+        found.append(Found(atom, search.odds_of(atoms, i), most_likely(*posterior, since), posterior, size, deviation,
+                           search.time_constants(atoms, i), settles, since))  # fmt: skip
     return Course((float(mean[0]), float(np.sqrt(spread[0, 0]))), scatter, tuple(found), columns @ mean, band)
 
 
@@ -255,12 +258,18 @@ class _Search:
         return tuple(float(atom.time_constant * np.exp(mean + s * 1.96 * deviation)) for s in (-1, 1))  # type: ignore[return-value]
 
 
-def most_likely(dates: FloatArray, logs: FloatArray) -> tuple[float, float]:
-    """The interval that holds a date with 95 %, from log probabilities, (d,) each; the likeliest dates first."""
+def most_likely(dates: FloatArray, logs: FloatArray, since: FloatArray) -> tuple[float, float]:
+    """The interval that holds a date with 95 %, from log probabilities, (d,) each; the likeliest dates first.
+
+    Args:
+        dates: possible ones.
+        logs: of their probability.
+        since: of each the beginning of the gap in which it is, or the date.
+    """
     weights = np.exp(logs - logsumexp(logs))
     order = np.argsort(-weights)
     held = order[: int(np.searchsorted(np.cumsum(weights[order]), 0.95)) + 1]
-    return float(dates[held].min()), float(dates[held].max())
+    return float(since[held].min()), float(dates[held].max())
 
 
 def _around(near: list[Atom], atom: Atom) -> list[Atom]:

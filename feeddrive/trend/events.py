@@ -80,10 +80,11 @@ def _event(group: list[Change]) -> Event:
     if group[0].found.atom.kind != JUMP:  # one kind of wear or warming moves all of these quantities
         kind = SETTLING if sum(change.found.settles for change in group) > 0 else SLOPE
     dates, logs = _together_dated([change.found for change in group])
+    since = np.min([np.interp(dates, one.found.posterior[0], one.found.since) for one in group], axis=0)
     return Event(
         kind,
         ordered,
-        most_likely(dates, logs),
+        most_likely(dates, logs, np.minimum(since, dates) if kind == JUMP else dates),
         float(dates[int(np.searchsorted(np.cumsum(np.exp(logs)), 0.5))]),
         _causes(ordered, kind),
     )

@@ -39,7 +39,9 @@ _DOTTED = re.compile(
     r"(?<!\d)(?P<day>0?[1-9]|[12]\d|3[01])\.(?P<month>0?[1-9]|1[0-2])\.(?P<year>(?:19|20)\d\d)" + _CLOCK
 )
 _TOLD = re.compile(r"start|date|datum|time|zeit|record|created|stamp", re.IGNORECASE)
-_FILETIME = re.compile(r"Starttime of export\"?[\t;, ]+\"?(\d{17,19})(?!\d)")
+_FILETIME = re.compile(r"Starttime of export\"?[\t;:, ]+\"?(\d{17,19})(?!\d)")
+_UNIX = re.compile(r"^%TIME=(\d{9,10})\s*$.*?(?:^%DIFFTIMEUTC=(-?\d{1,6})\s*$|\[)", re.MULTILINE | re.DOTALL)
+_XML_START = re.compile(r"<frameHeader\b[^>]*\bstartTime=\"([^\"]{10,40})\"")
 _LINES = 60
 """Lines at the beginning of a file in which its date is looked for; a header ends before."""
 
@@ -82,8 +84,17 @@ def _from_content(head: str) -> datetime | None:
     filetime = _FILETIME.search(head)
     if filetime is not None:  # 100 ns since 1601
         return datetime(1601, 1, 1) + timedelta(microseconds=int(filetime[1]) // 10)
+    unix = _UNIX.search(head)
+    if unix is not None:  # TNCscope: s since 1970, and what the control's own time is ahead of UTC
+        return datetime(1970, 1, 1) + timedelta(seconds=int(unix[1]) + int(unix[2] or 0))
+    started = _XML_START.search(head)
+    match = None if started is None else _ISO.search(started[1])
+    if match is not None and _moment(match) is not None:
+        return _moment(match)
+    told = False
     for line in head.split("\n")[:_LINES]:
-        if not _TOLD.search(line):
+        below, told = told, _TOLD.search(line) is not None
+        if not told and not below:  # a date below the word is the first of a column
             continue
         for pattern in (_ISO, _DOTTED):
             match = pattern.search(line)

@@ -36,6 +36,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from scipy.linalg import cholesky, solve_triangular
@@ -93,7 +94,7 @@ def candidates(time: FloatArray) -> tuple[Atom, ...]:
     count = len(time)
     inner = time[FEWEST_AFTER : count - FEWEST_AFTER + 1]
     found = [Atom(JUMP, float(date)) for date in inner]
-    found += [Atom(SLOPE, float(date), 0.0, power) for date in time[: count - FEWEST_AFTER] for power in POWERS]
+    found += [Atom(SLOPE, date, 0.0, power) for date in _beginnings(time) for power in POWERS]
     found += [Atom(ODD, float(date)) for date in time]
     usual, span = float(np.median(np.diff(time))), float(time[-1] - time[0])
     dates = time[np.unique(np.linspace(0, count - 1 - FEWEST_AFTER, SETTLING_DATES).astype(int))]
@@ -103,6 +104,36 @@ def candidates(time: FloatArray) -> tuple[Atom, ...]:
         constants = np.geomspace(1.5 * usual, 2 * span, TIME_CONSTANTS)
         found += [Atom(SETTLING, float(date), float(tau)) for tau in constants if tau <= 2 * left]
     return tuple(found)
+
+
+LONG = 1.5
+"""Usual distances of recordings beyond which there is a gap."""
+
+IN_A_GAP = 12
+"""Dates in a gap at most: wear that began in it is dated to a tenth of it."""
+
+
+def _beginnings(time: FloatArray) -> list[float]:
+    """Dates at which a slope may begin: of the recordings, and between two that lie far apart."""
+    usual = float(np.median(np.diff(time)))
+    found: list[float] = []
+    for date, later in pairwise(time[: len(time) - FEWEST_AFTER + 1]):
+        steps = min(IN_A_GAP, int((later - date) / usual)) if later - date > LONG * usual else 1
+        found += [float(date + (later - date) * step / steps) for step in range(steps)]
+    return found
+
+
+def before_gap(time: FloatArray, dates: FloatArray) -> FloatArray:
+    """The recording before each date of a jump where a gap lies between, else the date itself, (d,).
+
+    Args:
+        time: of the recordings, ascending, (n,).
+        dates: of recordings after the first, (d,).
+    """
+    usual, at = float(np.median(np.diff(time))), np.searchsorted(time, dates)
+    earlier = time[np.maximum(at - 1, 0)]
+    found: FloatArray = np.where(dates - earlier > LONG * usual, earlier, dates)
+    return found
 
 
 def courses(atoms: tuple[Atom, ...] | list[Atom], time: FloatArray) -> FloatArray:

@@ -154,3 +154,12 @@ def test_jump_among_averaged_recordings_is_no_ramp() -> None:
     (jump,) = found.found
     np.testing.assert_allclose(found.fitted, np.where(times >= jump.atom.date, 1.0, 0.0), atol=0.02)
     assert abs(jump.atom.date - 600) <= 3  # as coarse as the averages
+
+
+def test_a_slope_that_begins_between_recordings_is_drawn_from_there() -> None:
+    times = np.array([0.0, 1.0, 2.0, 12.0, 13.0])
+    line = np.array([5.0, 5.0, 5.0, 7.0, 8.0])
+    at, drawn, band = with_steps(times, line, np.full(5, 0.1), [], [10.0, 1.0])
+    assert at.tolist() == [0.0, 1.0, 2.0, 10.0, 12.0, 13.0]
+    assert drawn.tolist() == [5.0, 5.0, 5.0, 5.0, 7.0, 8.0]
+    assert band.size == 6

@@ -103,3 +103,32 @@ def test_a_value_beyond_its_tolerance_holds_no_other() -> None:
     found = known(of(0.5, 1.0))
     beyond = replace(found, at=np.array([2 * math.log(0.5) / math.log1p(SHARE), 0.0]))
     assert found.interval(1)[0] > beyond.interval(1)[0] + 1.0
+
+
+@pytest.mark.parametrize("coordinate", [-1.5, 0.0, 2.5])
+def test_a_value_is_inside_its_interval(coordinate: float) -> None:
+    """However far from what the slopes at hand say: by 1.96 of its deviations, beside all that they say."""
+    found = known(of(0.84, 1.0))
+    half = 1.96 * math.sqrt(found.covariance[0, 0])
+    low, high = found.interval(0)
+    ends = found.interval_about(0, coordinate)
+    assert ends[0] <= min(low, found.c(0, found.u(0, coordinate) - half)) < coordinate
+    assert ends[1] >= max(high, found.c(0, found.u(0, coordinate) + half)) > coordinate
+    assert min(abs(ends[0] - low), abs(ends[1] - high)) < 1e-12  # one end is the recordings' own
+
+
+def test_intervals_hold_the_truth_as_often_as_they_say() -> None:
+    """Six values that six numbers tell, true ones anywhere within their tolerances: 95 % and more, and not all."""
+    random, inside, asked = np.random.default_rng(3), 0, 0
+    deviation = 0.5 * math.log1p(0.05)
+    values = tuple(CalibratedValue(f"m{i}", "m", "kg", 1.0, deviation, "", "") for i in range(6))
+    for _ in range(60):
+        slopes = random.normal(0.0, 1.0, (6, 6)) * 10.0 ** random.uniform(-0.5, 1.0, 6)
+        true = random.uniform(-2.0, 2.0, 6)
+        found = Known(values, np.zeros(6), slopes, slopes @ true + random.normal(0.0, 1.0, 6))
+        likeliest = found.covariance @ (slopes.T @ found.right_side)
+        for place in range(6):
+            low, high = found.interval_about(place, found.c(place, float(likeliest[place])))
+            inside += found.u(place, low) <= true[place] <= found.u(place, high)
+            asked += 1
+    assert 0.94 < inside / asked < 1.0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -101,6 +102,23 @@ def test_refused_on_reading(blocks: list[str], told: list[str], tmp_path: Path) 
 )  # fmt: skip
 def test_what_takes_power_is_allowed(effects: list[Effect]) -> None:
     refuse_active_friction(BENCH.with_effects(*effects), "machine.toml")
+
+
+def test_ripple_and_its_harmonic_are_least_together() -> None:
+    """A drag ripple of 0.24 N m with 0.14 N m of twice the order leaves some of 0.35 N m, or not, by their phases."""
+    angle = np.linspace(0.0, 2 * np.pi, 10_001)
+    for phase in (0.0, 0.5 * np.pi):
+        least = 0.35 + float(np.min(0.24 * np.sin(angle) + 0.14 * np.sin(2 * angle + phase)))
+        effects = [
+            replace(_effect("ball_pass_ripple", amplitude=amplitude, order=order, phase=at), label=f"ripple_{order:g}")
+            for amplitude, order, at in ((0.24, 3.1, 0.0), (0.14, 6.2, phase))
+        ]
+        plant = replace(BENCH, stroke=(0.0, 0.6)).with_effects(*effects)
+        assert is_passive(plant) == (least > 0)
+        screw = next(one for one in least_friction(plant) if one.port == "screw")
+        assert least - 0.005 * 0.38 < screw.level <= least + 1e-9
+        # without a stroke every phase may meet every other
+        assert not is_passive(replace(plant, stroke=None))
 
 
 def test_shipped_plants_and_their_stroke() -> None:

@@ -89,7 +89,7 @@ def test_play_and_length_are_read() -> None:
     play = Moved("backlash", Port.TRANSMISSION, "width", "m", *(Measure(value, 1e-7) for value in (9e-6, 4e-6, 5e-6)))
     assert "wear" in change_reading(play, [play])
     told = change_statement(play, "b", "a")
-    assert told == "backlash width 5 µm (± 0.1 µm) higher in b than in a: 9 µm after 4 µm"
+    assert told == "free play grew from 4 to 9 µm (± 0.1 µm): a, then b"
     growth = Moved(
         "lead_error_cumulative",
         Port.TRANSMISSION,

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy.signal import butter, sosfiltfilt
 
-from feeddrive.diagnosis.likelihood.band import Band
+from feeddrive.diagnosis.likelihood.band import END_CUT, Band
 from feeddrive.diagnosis.likelihood.evidence import prepare
 from feeddrive.files import find_plant
 from feeddrive.plant.file.plant_file import read_plant
@@ -31,6 +31,20 @@ def test_one_series_in_the_band(edge: float, rate: float, count: int) -> None:
         return
     for one in (series, series[::-1]):
         np.testing.assert_array_equal(band.filter(one), sosfiltfilt(sections, one))
+
+
+@pytest.mark.parametrize("count", [24_000, 24_841])
+@pytest.mark.parametrize(("edge", "rate"), [(150.0, 2000.0), (25.0, 250.0), (3.0, 4000.0)])
+def test_thinned_series_in_the_band(edge: float, rate: float, count: int) -> None:
+    """Equal to rounding where the filter has forgotten the ends."""
+    series = 3.0 + np.cumsum(np.random.default_rng(count).standard_normal(count))
+    band, cut = Band(edge, rate), int(END_CUT * rate)
+    rows = np.flatnonzero((np.arange(count) >= cut) & (np.arange(count) < count - cut))
+    rows = rows[rows % band.thinning == 0]
+    found, expected = band.thinned(series), band.filter(series)
+    assert len(found) == len(expected[:: band.thinning])
+    # exp(-2 pi 0.38 * 12.5) = 1e-13 is left of an end that differs by the range of the series
+    assert np.abs(found[rows // band.thinning] - expected[rows]).max() < 2e-13 * np.ptp(series)
 
 
 @pytest.mark.parametrize("substeps", [1, 3])

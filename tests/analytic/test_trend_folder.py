@@ -37,6 +37,17 @@ from tests.recovery.trend_files import write_recording
         ("2026-02-01.csv", "Start: 2026-01-31 06:00\n", "", "2026-01-31 06:00:00"),  # content before name
         # 100 ns since 1601: 116444736000000000 is the beginning of 1970
         ("a.csv", "Name\tx\nStarttime of export\t116444736610000000\n", "", "1970-01-01 00:01:01"),
+        ("a.csv", "Name:x\nStarttime of export:116444736610000000:Montag\n", "", "1970-01-01 00:01:01"),
+        # TNCscope: s since 1970, and the control's own time an hour ahead of UTC
+        ("a.sco", "%TNCscopeNT data file\n%TIME=1769869805\n%DIFFTIMEUTC=3600\n%[CURVE1]\n", "", "2026-01-31 15:30:05"),
+        # SINUMERIK Operate: behind a long set-up of the display
+        (
+            "a.xml",
+            200 * "<signal/>\n" + '<frameHeader startTime="2026-01-31T14:30:05.613Z"/>',
+            "",
+            "2026-01-31 14:30:05",
+        ),
+        ("a.csv", "time,table_position [mm]\n2026-01-31 14:30:05.001,1.5\n", "", "2026-01-31 14:30:05"),
     ],
 )
 def test_dates(name: str, head: str, pattern: str, expected: str) -> None:
@@ -234,3 +245,19 @@ def test_search_of_two_recordings_does_not_contradict_all_of_them(
     assert "play jumps by +4" in watched.verdict and said in watched.verdict
     assert fd.watch(folder, axis, search=True).verdict == watched.verdict
     assert asked == [["x_2026-01-07.csv", "x_2026-01-09.csv"]]
+
+
+def test_a_file_of_another_axis_is_not_mixed_in(tmp_path: Path, axis: fd.Axis) -> None:
+    """Of the same form, but with another lead: it is listed with both leads and moves no value."""
+    folder = tmp_path / "days"
+    folder.mkdir()
+    for number in range(3):
+        write_recording(folder / f"x_2026-01-{number + 1:02d}.csv", day(number))
+    other = day(7)
+    halved = other.channels | {"motor_angle": 2.0 * other.channels["motor_angle"]}
+    write_recording(folder / "y_2026-01-02.csv", replace(other, channels=halved))
+    found = fd.watch(folder, axis).trend
+    assert statuses(found)["y_2026-01-02.csv"] == "broken"
+    assert len(found.used) == 3
+    (entry,) = [one for one in found.entries if one.key == "y_2026-01-02.csv"]
+    assert "moves 5 mm per revolution" in entry.reason and "lead is 10 mm" in entry.reason

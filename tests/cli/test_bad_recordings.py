@@ -102,7 +102,7 @@ TEXTS: list[tuple[str, str, tuple[str, ...]]] = [
     ("comma_and_point", SEMICOLONS.replace("0.005;", "0,005;"), ("--decimal", "row 7")),
     ("semicolon_rows", table(good_rows(), separator=";"), ("row 2", "1 cells")),
     ("round_brackets", table(good_rows(), HEADER.replace("time [s]", "Time (s)")), ("round", "\"time [s]\"")),
-    ("prose", "This is a letter.\nIt has no numbers.\n", ("unknown channel", "did you mean")),
+    ("prose", "This is a letter.\nIt has no numbers.\n", ("no row of headings", "put # before")),
     ("header_of_brackets", table(good_rows(), "[s],[N m],[m]"), ("not a column heading", "name [unit]")),
     ("no_header", table(good_rows()).split("\n", 1)[1], ("no header row",)),
 ]  # fmt: skip
@@ -132,8 +132,9 @@ BYTES: list[tuple[str, bytes, str]] = [
     ("empty.csv", b"", "empty"),
     ("spaces.csv", b" \n\n", "empty"),
     ("garbage.csv", bytes(range(256)) * 40, "not a text file"),
-    ("workbook.csv", b"PK\x03\x04" + b"\x00" * 100, "save the sheet as CSV"),
-    ("renamed.csv", b"MATLAB 5.0 MAT-file" + b"\x00" * 200, "mapping"),
+    ("workbook.csv", b"PK\x03\x04" + b"\x00" * 26 + b"[Content_Types].xml", "save the sheet as CSV"),
+    ("dump.csv", b"PK\x03\x04" + b"\x00" * 26 + b"day/a.csv", "unpack it and name a file of it"),
+    ("renamed.csv", b"MATLAB 5.0 MAT-file" + b"\x00" * 200, "damaged MATLAB file"),
     ("cut.csv.gz", gzip.compress(table(good_rows()).encode())[:-40], "damaged or cut short"),
     ("empty.csv.gz", gzip.compress(b""), "empty"),
     ("false.csv.gz", b"\x1f\x8bnothing of the kind", "damaged"),
@@ -218,7 +219,7 @@ def test_mat_file_without_mapping_says_what_it_holds(tmp_path: Path) -> None:
     savemat(tmp_path / "a.mat", {"q": np.arange(3.0)})
     message = refusal(tmp_path / "a.mat")
     assert "it holds q" in message
-    assert "--map" in message
+    assert "--channel" in message
 
 
 @pytest.mark.parametrize("data", [b"MATLAB 7.3 MAT-file".ljust(512) + b"\x89HDF\r\n\x1a\n", b"\x89HDF\r\n\x1a\n"])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import numpy as np
 import pytest
@@ -19,8 +19,12 @@ from feeddrive.effects.timing.drive_delay import DriveDelay
 from feeddrive.effects.transmission.backlash import Backlash
 from feeddrive.effects.transmission.preload_loss import PreloadLoss
 from feeddrive.effects.transmission.stiffness_vs_position import StiffnessVsPosition
+from feeddrive.engine.engine import forget_constants
+from feeddrive.engine.program import TOLERANCE
+from feeddrive.engine.step import step_constants
 from feeddrive.engine.step.linear_part import SimulationError
 from feeddrive.plant.plant import Plant
+from feeddrive.plant.structure import forget_machines
 from feeddrive.simulate.driven import motor_motion, simulate_driven
 from feeddrive.simulate.held_torque import simulate_torque
 from feeddrive.typing import FloatArray
@@ -54,6 +58,33 @@ def test_position_does_not_depend_on_the_steps(case: str) -> None:
     # 5 nm, half a step of a good scale, after 0.3 s in which nothing but friction holds the axis to its place
     assert np.abs(run.position - fine.position).max() < 5e-9
     assert run.report.last_sweep < 1 and run.report.over == 0
+
+
+@pytest.fixture
+def to_the_last_digit(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[], None]]:
+    """Lets Newton go on to a billionth, a hundredth of that with bristles, as long as the test lasts."""
+
+    def begin() -> None:
+        monkeypatch.setattr(step_constants, "CONVERGED", 1e-9)
+        monkeypatch.setattr(step_constants, "CONVERGED_WITH_BRISTLES", 1e-11)
+        forget_machines()
+        forget_constants()
+
+    yield begin
+    forget_machines()
+    forget_constants()
+
+
+@pytest.mark.parametrize("case", [case for case in CASES if "play" not in case])
+def test_newton_is_not_asked_for_more_than_shows(case: str, to_the_last_digit: Callable[[], None]) -> None:
+    plant = bench(*CASES[case])
+    time, torque = torque_curve(300)
+    run = simulate_torque(plant, time, torque)
+    to_the_last_digit()
+    exact = simulate_torque(plant, time, torque)
+    assert exact.report.sweeps > run.report.sweeps  # it did go on
+    # a hundredth of what one of the 300 steps may miss by itself
+    assert np.abs(run.position - exact.position).max() < 0.01 * TOLERANCE
 
 
 def test_free_play_does_not_depend_on_the_steps() -> None:

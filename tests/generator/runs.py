@@ -93,12 +93,12 @@ def at_rest(setpoint: float, c: Constants) -> State:
     return state._replace(position=state.position - stretched)
 
 
-def changes(one: Run, without: tuple[Effect, ...]) -> tuple[Array, Array]:
+def changes(one: Run, without: tuple[Effect, ...], machine: Machine | None = None) -> tuple[Array, Array]:
     """Return how much torque [N m] and table position [m] at the rows differ from those of the plant with `without`.
 
-    Under the same motor motion, as it is recorded; (rows,) each.
+    Under the same motor motion, as it is recorded; (rows,) each. `machine`: of that plant, where its values are other.
     """
-    other = PlantedEffects(without).planted(declared_constants(one.machine.axis))
+    other = PlantedEffects(without).planted(declared_constants((machine or one.machine).axis))
     longest = min(longest_step(c, one.machine.axis.top_speed) for c in (one.constants, other))
     s = sampling_of(one.machine.axis, one.constants, longest)
     starts = (at_rest(one.setpoint[0], one.constants), at_rest(one.setpoint[0], other))

@@ -6,6 +6,7 @@ recorded motor angle, misses of the recording, and compared there: lengths are s
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from dataclasses import dataclass
 
@@ -14,9 +15,11 @@ import numpy.typing as npt
 from scipy import signal
 from scipy.ndimage import uniform_filter1d
 
-from tests.generator.drawn_effects import OFF_GROUPS, TOLERANCES
+from tests.generator.constants import declared_constants
+from tests.generator.drawn_effects import OFF_GROUPS, TOLERANCES, TOUCHED
 from tests.generator.driven import driven
 from tests.generator.effects import Effect
+from tests.generator.machines import Machine
 from tests.generator.runs import Array, Run, at_rest, changes, longest_step
 
 HIGHEST = 150.0
@@ -65,9 +68,46 @@ class Visible:
 
 
 def from_declared(run: Run, name: str, floor: Missed) -> float:
-    """Return how far the planted effect of this name is from declared values that are off within their tolerance."""
+    """Return how far the planted effect of this name is from declared values that are off within their tolerance.
+
+    Of an effect that says that a declared value is other, what has to be told is what of it is beyond the tolerance,
+    and from all other values: from what they do in a simulation, as a mass and a stiffness move a resonance alike.
+    """
     without: tuple[Effect, ...] = tuple(other for other in run.effects if other.name != name)
-    return distance(whitened(floor, *changes(run, without)), calibration(run, floor), free=0)
+    target = whitened(floor, *changes(run, without))
+    if name not in TOUCHED:
+        return distance(target, calibration(run, floor), free=0)
+    shares = beyond(next(one for one in run.effects if one.name == name), run.machine)
+    return max(shares.values()) * distance(target, simulated_calibration(run, floor, tuple(shares)), free=0)
+
+
+def beyond(effect: Effect, machine: Machine) -> dict[str, float]:
+    """Return, for every value that an effect says to be other, the share of that which is beyond its tolerance."""
+    before = declared_constants(machine.axis)
+    after, kinds = effect.planted(before), {name: kind for names, kind in OFF_GROUPS for name in names}
+    off = {name: abs(math.log(getattr(after, name) / getattr(before, name))) for name in TOUCHED[effect.name]}
+    return {name: 1.0 - math.log1p(TOLERANCES[kinds[name]]) / by for name, by in off.items() if by > 0.0}
+
+
+STEP = 0.2
+"""Tolerances by which a value is off in a simulation that its slope is taken from: small in what a resonance moves by,
+large to what an integrator misses."""
+
+
+def simulated_calibration(run: Run, floor: Missed, without: tuple[str, ...]) -> Array:
+    """Return what `calibration` does of every group but those `without`, from simulations, (k, groups)."""
+    columns = [calibration(run, floor, tuple(name for names, _ in OFF_GROUPS for name in names))]
+    for names, kind in OFF_GROUPS:
+        if set(names) & set(without):
+            continue
+        step, none = STEP * TOLERANCES[kind], np.zeros(len(run.torque[run.rows]))
+        parts = step * run.torque[run.rows], none
+        if kind != "torque_constant":
+            other = run.machine.axis.off_by(dict.fromkeys(names, 1.0 + step))
+            torque, position = changes(run, run.effects, dataclasses.replace(run.machine, axis=other))
+            parts = -torque, -position
+        columns.append(whitened(floor, *parts)[:, None] / STEP)
+    return np.hstack(columns)
 
 
 def calibration(run: Run, floor: Missed, without: tuple[str, ...] = ()) -> Array:

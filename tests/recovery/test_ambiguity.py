@@ -3,24 +3,33 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from feeddrive.diagnosis.calibration.beyond import said_by_effects
+from feeddrive.diagnosis.calibration.calibrate import calibrated
 from feeddrive.diagnosis.certainty.ambiguity import ambiguous_sets, at_its_limit, rivals_of
 from feeddrive.diagnosis.certainty.inclusion import asserted, odds_for, possible_effects
 from feeddrive.diagnosis.certainty.next_experiment import distance, hardly_known, next_experiments
 from feeddrive.diagnosis.certainty.noise_colour import independent_share
 from feeddrive.diagnosis.certainty.preferred import with_the_preferred
 from feeddrive.diagnosis.certainty.rehearsal import Rehearsal, rehearsals
-from feeddrive.diagnosis.judging.judge import share_of
+from feeddrive.diagnosis.finding import search as searching
+from feeddrive.diagnosis.finding.attempt import compared
+from feeddrive.diagnosis.finding.search import Search
+from feeddrive.diagnosis.judging.judge import prepared_for_judging, share_of
+from feeddrive.diagnosis.judging.result import Trial
 from feeddrive.diagnosis.likelihood.cross_validation import compare_left_out
 from feeddrive.diagnosis.likelihood.evidence import AxisEvidence, prepare
 from feeddrive.diagnosis.likelihood.fit import Problem, fit
 from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
 from feeddrive.effects.base import Effect, Port
 from feeddrive.effects.catalogue import EFFECTS
+from feeddrive.files import plants_folder
 from feeddrive.plant.analysis.modes import inertia_at_motor
+from feeddrive.plant.file.plant_file import read_plant
 from tests.recovery.drawn import drawn, settled
 from tests.recovery.planted import axis_plant, pair
 
@@ -75,6 +84,49 @@ def test_small_effect_is_not_alike_to_whatever_costs_less_than_5_per_cent() -> N
     alike = ambiguous_sets(found, rivals_of(found, judged))
     # where nothing hangs, a constant force and an offset of the recorded torque are one
     assert [one.names for one in alike] == [("constant_force", "channel_offset")]
+
+
+@pytest.fixture
+def heavier(tmp_path: Path) -> tuple[Problem, AxisEvidence]:
+    """A mass 2.3 deviations beyond what is declared: fitted with its tolerance, and the judged recording."""
+    text = (plants_folder() / "bench_axis.toml").read_text(encoding="utf-8")
+    weighed = tmp_path / "weighed.toml"
+    weighed.write_text(text.replace('"134 kg"', '{ value = "134 kg", tolerance = "10 %" }'), encoding="utf-8")
+    plant, payload = read_plant(weighed), EFFECTS["payload"].of(mass=134 * np.expm1(2.3 * 0.05))
+    fitted, judged = (prepare(one, plant, share) for one, share in zip(pair("bench", "null"), (1.0, 0.0), strict=True))
+    problem = calibrated(Problem(plant, (drawn(plant, fitted, [payload], 3),), AxisPredictor()))
+    assert problem.calibration is not None and [value.key for value in problem.calibration.values] == ["table_mass"]
+    return problem, drawn(plant, judged, [payload], 4)
+
+
+def test_what_explains_nothing_beside_a_value_within_its_tolerance_is_no_rival(
+    heavier: tuple[Problem, AxisEvidence],
+) -> None:
+    """Naming the mass is worth some 14 to 1; with an idle name in its place it is fitted again, at that price alone."""
+    problem, judged = heavier
+    rest, (taken,) = said_by_effects(problem, [EFFECTS["payload"].of(mass=0.0)])
+    found, ripple = fit(rest, [taken]), EFFECTS["torque_ripple"].of(amplitude=1e-4, order=3.0, phase=0.0)
+    tried = compared(rest, ripple.name, fit(rest, [ripple]), [])
+    tried = replace(tried, comparison=replace(tried.comparison, gain=1.0, standard_error=0.0))
+    search = Search(rest, found, (Trial(1, "payload", 1.0, 0.0, True),), ((tried,),), {})
+    after = rest.plant.with_effects(*found.effects)
+    seen = [prepared_for_judging(rest, judged, rest.plant, after)]
+    assert ambiguous_sets(search, rivals_of(search, seen)) == ()
+
+
+def test_a_value_beyond_its_tolerance_is_named_where_that_lowers_the_error(
+    heavier: tuple[Problem, AxisEvidence], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    problem, _ = heavier
+    found = fit(problem, [])
+    freed, (payload,) = said_by_effects(problem, [EFFECTS["payload"].of(mass=0.0)])
+    monkeypatch.setattr(searching, "beyond_tolerance", lambda *_: (freed, payload))
+    taken = searching._with_value_beyond(problem, found)
+    assert taken is not None and [effect.name for effect in taken[1].effects] == ["payload"]
+    assert taken[1].squared_error < found.squared_error
+    # slopes that say so of what is idle, while the mass is held as declared
+    monkeypatch.setattr(searching, "beyond_tolerance", lambda *_: (freed, EFFECTS["drive_delay"].of(delay=0.0)))
+    assert searching._with_value_beyond(problem, found) is None
 
 
 def test_set_is_led_by_the_member_with_fewest_parameters() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 import tomllib
 from collections import Counter
@@ -12,12 +13,22 @@ import numpy as np
 import pytest
 
 from feeddrive.plant.file.plant_file import read_plant
+from tests.generator.constants import declared_constants
 from tests.generator.drawn_effects import MAKERS, OFF_GROUPS, TOLERANCES
+from tests.generator.effects import Payload
 from tests.generator.machines import drawn_machine
 from tests.generator.runs import impedance
-from tests.generator.telling import calibration, distance, from_declared, missed, visible
+from tests.generator.telling import (
+    beyond,
+    calibration,
+    distance,
+    from_declared,
+    missed,
+    simulated_calibration,
+    visible,
+)
 from tests.recovery.fleet.case import LEAST_TOLD, SHARES, Case, case, encoder_null_seeds, kind_of
-from tests.recovery.fleet.floor import SLOWEST_CYCLE, true_errors
+from tests.recovery.fleet.floor import true_errors
 from tests.recovery.fleet.run import cases_done
 from tests.recovery.fleet.state import state_files
 from tests.recovery.fleet.table import section, wilson
@@ -78,15 +89,16 @@ def test_what_is_recorded_is_the_true_machine_and_its_sensors() -> None:
     assert np.std(smooth) == pytest.approx(noise / math.sqrt(20), rel=0.15)
 
 
-def test_rows_slower_than_a_drive_are_taken_from_the_exact_motion() -> None:
-    """At 250 Hz and 22 bits the sensors' noise is left, not what a spline through the rows makes of the motion."""
+def test_rows_slower_than_a_drive_tell_the_motion_at_most_of_them() -> None:
+    """At 250 Hz and 22 bits the sensors' noise is left at most rows; where the motor turns between rows more is."""
     drawn = case(SLOW)
-    assert drawn.true.row_time > SLOWEST_CYCLE
+    assert drawn.true.row_time > 2e-3
     sensors, left = drawn.true.axis.sensors, true_errors(drawn)
     torque = math.hypot(sensors.torque_noise, sensors.torque_step / math.sqrt(12))
-    assert np.std(left["motor_torque"]) == pytest.approx(torque, rel=0.1)
+    assert 0.9 < np.median(np.abs(left["motor_torque"])) / (0.6745 * torque) < 1.5
     position = math.hypot(sensors.scale_noise, sensors.scale_step / math.sqrt(12))
-    assert np.std(left["table_position"]) < 2 * position
+    of_zero = left["table_position"] - np.median(left["table_position"])
+    assert np.median(np.abs(of_zero)) < 2 * 0.6745 * position
 
 
 def test_spoilt_recordings_keep_their_channels() -> None:
@@ -121,6 +133,34 @@ def test_planted_effects_are_told_from_declared_values(pair: Case) -> None:
     columns = calibration(pair.runs[0], floor)
     assert distance(0.5 * columns[:, 0], columns, free=0) <= 0.5
     assert distance(np.ones(len(columns)), columns, free=0) > 0.5 * math.sqrt(len(columns))
+
+
+def test_a_value_is_told_by_what_is_beyond_its_tolerance(pair: Case) -> None:
+    """Of a table a fifth heavier 73 % are beyond 5 %, and told from every value but the mass; within, nothing is."""
+    machine, one, seed = pair.declared, pair.runs[0], pair.seed
+    heavy = Payload(0.2 * machine.axis.table_mass)
+    assert beyond(heavy, machine) == pytest.approx({"table_mass": 1 - math.log(1.05) / math.log(1.2)})
+    bare = dataclasses.replace(one, machine=machine, effects=(), constants=declared_constants(machine.axis))
+    floor, told = missed(bare, seed), {}
+    for share in (0.04, 0.2):
+        payload = Payload(share * machine.axis.table_mass)
+        loaded = dataclasses.replace(bare, effects=(payload,), constants=payload.planted(bare.constants))
+        told[share] = from_declared(loaded, "payload", floor)
+    assert told[0.04] < 0 < told[0.2]
+
+
+def test_simulated_slopes_are_the_quasi_static_ones_below_the_resonance(pair: Case) -> None:
+    """Up to 5 Hz, for the masses, the frictions and the springs; what a spring's damper does there is nothing."""
+    one = pair.runs[0]
+    floor = missed(one, pair.seed)
+    simulated = simulated_calibration(one, floor, ())[:, 2:]
+    quasi_static = calibration(one, floor)[:, :-2]
+    slow = np.tile(floor.hertz[floor.inside] <= 5.0, 2 * len(floor.densities))
+    for place, (names, _) in enumerate(OFF_GROUPS):
+        if names[0].endswith("damping"):
+            continue
+        a, b = simulated[slow, place], quasi_static[slow, place]
+        assert a @ b > 0.98 * np.linalg.norm(a) * np.linalg.norm(b), names
 
 
 def test_impedance_at_low_frequency_is_the_inertia() -> None:

@@ -7,7 +7,9 @@ from typing import Any
 import pytest
 
 from tests.recovery.page import with_section, with_sections_of
-from tests.recovery.parts.cases import MACHINES, WHAT, Case
+from tests.recovery.parts.__main__ import KINDS, asked, main
+from tests.recovery.parts.cases import MACHINES, NULLS, WHAT, Case
+from tests.recovery.parts.responses import ResponseCase, ResponseRow
 from tests.recovery.parts.run import Row
 from tests.recovery.parts.table import section
 
@@ -55,6 +57,42 @@ def test_a_part_within_its_tolerance_is_held_by_the_interval(low: float, high: f
     assert Row(one).right is right
     assert Row(record("nut", [effect("stiffness_deviation", "nut", factor=0.8)])).right
     assert not Row(record("nut", [effect("stiffness_deviation", "drive", factor=0.8)])).right
+
+
+def response(what: str, **more: Any) -> dict[str, Any]:
+    """A record of a frequency response in which everything is right."""
+    case = ResponseCase(MACHINES[1], what, 0)
+    told = {"planted": [], "found": [], "values": [], "frequency_off": [0.001, -0.002], "stiffness_off": 0.01}
+    kept = {"key": case.key, "kind": case.kind, "state": "abc", "machine": case.machine, "what": what, "draw": 0}
+    return kept | told | {"error": 0.02, "scatter": 0.02, "outcome": "done", "cpu": 30.0} | more
+
+
+def test_what_is_right_of_a_response() -> None:
+    assert ResponseRow(response("nothing")).right
+    assert not ResponseRow(response("nothing", found=[{"name": "table.mass"}])).right
+    assert not ResponseRow(response("nothing", frequency_off=[0.001, -0.006])).right
+    assert not ResponseRow(response("nothing", stiffness_off=0.04)).right
+    assert not ResponseRow(response("nothing", error=0.03)).right
+    assert not ResponseRow(response("mode")).right
+    mode = response("mode", found=[{"name": "structural_mode"}], values=[["frequency", 80.0, 79.0, 81.0]])
+    assert ResponseRow(mode).right and "frequency 80 [79, 81]" in ResponseRow(mode).line
+
+
+def test_the_whole_table_has_every_kind_and_begins_with_the_cheap() -> None:
+    whole = asked(200)
+    assert len({case.key for case in whole}) == len(whole)
+    kinds = [case.kind for case in whole if case.what == "nothing"]
+    assert [kinds.count(kind) for kind in KINDS] == [NULLS, NULLS, len(MACHINES)]
+    planted = {(case.kind, case.what) for case in whole if case.what != "nothing"}
+    assert planted == {("recording", what) for what in WHAT[1:]} | {("response", "mode")}
+    assert max(case.cost for case in whole if case.what == "nothing") < min(
+        case.cost for case in whole if case.what == "backlash"
+    )
+    assert {case.what for case in asked(3, 1, ["payload"])} == {"payload"}
+    part = section([record("nothing", []), record("nothing", [], kind="lumped"), response("mode")])
+    assert f"3 of {len(whole)} cases" in part and part.count("\n| --- |") == 4
+    with pytest.raises(SystemExit):
+        main(["--out", "nowhere", "--what", "backslash"])
 
 
 def test_sections_stand_beside_each_other() -> None:

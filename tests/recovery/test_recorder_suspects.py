@@ -87,6 +87,21 @@ def test_a_torque_of_another_scale(rigid: Plant, seed: int) -> None:
     assert found.ci95 is not None and found.ci95[0] < found.value < found.ci95[1]
 
 
+@pytest.mark.parametrize("seed", [21, pytest.param(22, marks=pytest.mark.slow)])
+def test_a_torque_whose_zero_drifts(rigid: Plant, seed: int) -> None:
+    # the whole drift is a tenth to a half of what friction asks for
+    rate = float(np.random.default_rng(seed).choice([-1, 1]) * np.random.default_rng(seed).uniform(5e-4, 2e-3))
+    one, other = (
+        with_torque(run, run["motor_torque"] + rate * (run.time - run.time[0])) for run in runs(seed, Truth())
+    )
+    result, effects = diagnose(rigid, [one], [other])
+    assert (result.effects, effects) == ((), ())
+    found = told(result)
+    assert (found.kind, found.channel, found.mended) == ("channel_drift", "motor_torque", True)
+    assert found.value == pytest.approx(rate, rel=0.1)
+    assert found.ci95 is not None and found.ci95[0] < found.value < found.ci95[1]
+
+
 @pytest.mark.parametrize("seed", [7, pytest.param(8, marks=pytest.mark.slow), pytest.param(9, marks=pytest.mark.slow)])
 def test_a_torque_that_the_recorder_repeats(rigid: Plant, seed: int) -> None:
     every = int(np.random.default_rng(seed).integers(2, 10))

@@ -178,3 +178,37 @@ def test_warm_up_seen_by_a_scale_of_a_micrometre(axis: fd.Axis, tmp_path: Path, 
     o, s = grown(12 * 249 / 250)
     assert growth.fixed_point is not None
     assert growth.fixed_point[0] == pytest.approx(-o / s, rel=0.03)
+
+
+def with_a_gap(days: list[int], states: list[machine.State], axis: fd.Axis) -> Trend:
+    """What recordings of these states say that were made on these days."""
+    entries, grid = {}, None
+    for number, (day, state) in enumerate(zip(days, states, strict=True)):
+        recording = machine.recording(state, seconds=5.0)
+        grid = grid or grid_for(axis.plant, recording)
+        moment = (datetime(2026, 1, 1) + timedelta(days=day)).isoformat()
+        passes = linear_pass(recording, axis.plant, grid)
+        entries[str(number)] = Entry(f"{number:04d}", 1, 1.0, USED, "", moment, str(number), passes)
+    return trend_of(axis.plant, axis.entries, Options(), Checkpoint("", grid, entries), ())
+
+
+@pytest.mark.parametrize("wears", [True, False])
+def test_change_within_weeks_without_recordings(axis: fd.Axis, wears: bool) -> None:
+    """A jump is told with both ends of the gap; the dates of wear that began in it hold its day."""
+    random = np.random.default_rng(61)
+    days = [*range(0, 30, 2), *range(60, 96, 2)]
+    lost = [0.006 * max(0, day - 45) if wears else 0.0 for day in days]
+    states = [
+        machine.State(
+            preload=1 - share, play=1e-6 + (0.0 if wears else 3e-6 * (day >= 45)),
+            drag=1 + 0.02 * random.standard_normal(),
+            slope=1e-6 * random.standard_normal(), seed=6100 + day, start=random.uniform(0, 3.7),
+        )
+        for day, share in zip(days, lost, strict=True)
+    ]  # fmt: skip
+    (event,) = with_a_gap(days, states, axis).events
+    if wears:
+        assert event.kind == "slope" and event.causes[0] == "preload_loss"
+        assert event.dates[0] <= 45 <= event.dates[1]
+    else:
+        assert event.kind == "jump" and event.dates == (28.0, 60.0)

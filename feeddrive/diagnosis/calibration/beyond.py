@@ -45,11 +45,34 @@ def beyond_tolerance(problem: Problem, found: Fit) -> tuple[Problem, Effect] | N
     alike = [i for i in able if gained[i] > most - AGAINST]
     costs = {i: known.likeliest(i, BEYOND / known.values[i].deviation) for i in alike}
     place = min(alike, key=lambda i: costs[i][1])
-    likeliest = np.array([known.c(i, float(u)) for i, u in enumerate(costs[place][0])])
-    there = replace(problem, calibration=replace(problem.calibration, coordinates=likeliest))
+    there = _with_free_value(problem, found.effects, place)
     freed, (effect,) = said_by_effects(there, [as_effect(problem.plant, known.values[place], 0.0)])
     freed, together = fitted_together(freed, (*found.effects, effect))
     return freed, together[-1]
+
+
+def _with_free_value(problem: Problem, effects: Sequence[Effect], place: int) -> Problem:
+    """The problem with one of its values free of its tolerance, all fitted in common steps.
+
+    The others have stood in for it and go back with it: in turn, neither gets far.
+    """
+    known = problem.calibration
+    assert known is not None
+    value = known.values[place]
+    wider = np.ones(len(known.values))
+    wider[place] = max(BEYOND / value.deviation, 1.0)
+    values = [*known.values]
+    values[place] = replace(value, deviation=value.deviation * float(wider[place]))
+    slopes = {of: {name: rows * wider for name, rows in one.items()} for of, one in known.slopes.items()}
+    more = known.number_slopes * wider if known.number_slopes.size else known.number_slopes
+    free = Calibration(tuple(values), known.coordinates / wider, slopes, known.variance, more)
+    problem = replace(problem, calibration=free)
+    for _ in range(PASSES):
+        before = problem
+        problem = recalibrated(problem, effects)
+        if np.max(np.abs(moved(before, problem)), initial=0.0) < ENOUGH:
+            break
+    return problem
 
 
 def fitted_together(problem: Problem, effects: Sequence[Effect], passes: int = PASSES) -> tuple[Problem, list[Effect]]:

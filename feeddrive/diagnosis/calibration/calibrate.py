@@ -10,10 +10,10 @@ import numpy as np
 
 from feeddrive.diagnosis.calibration.calibration import Calibration
 from feeddrive.diagnosis.calibration.declared import CalibratedValue, calibrated_values
-from feeddrive.diagnosis.calibration.known import known_values
+from feeddrive.diagnosis.calibration.known import TOLERANCE, known_values
 from feeddrive.diagnosis.certainty.noise_colour import score_covariance
-from feeddrive.diagnosis.likelihood.evidence import Evidence
-from feeddrive.diagnosis.likelihood.fit import Fit, Problem
+from feeddrive.diagnosis.likelihood.evidence import Evidence, weighed_by
+from feeddrive.diagnosis.likelihood.fit import UNEXPLAINED, Fit, Problem
 from feeddrive.diagnosis.likelihood.predictability import has_play
 from feeddrive.effects.base import Effect
 from feeddrive.recording import Recording
@@ -22,6 +22,12 @@ from feeddrive.typing import FloatArray
 
 STEP = 1e-3
 """Change of the logarithm of a value from which its slope is taken; ten times that of a coordinate of size one."""
+
+SHORT, SHORTEST = 1.0, STEP / 30
+"""Deviations of the noise by which the step of a slope moves all rows together at most, and the shortest step. What a
+fine scale sees of a mass or a stiffness bends with the resonance: over a thousandth its slope was two per cent off, and
+values that weigh against each other, an inertia, a mass, a torque constant, could not move together. Shorter ones show
+where the solver changes its steps."""
 
 LONG = 30 * STEP
 """Change of the logarithm where a prediction goes from cell to cell, or a table bounces (`fit.COARSE`)."""
@@ -33,8 +39,8 @@ PASSES = 8
 """New slopes at most, before anything is found and beside a value that is beyond its tolerance."""
 
 UNSEEN = 0.1
-"""Deviations by which a value within its tolerance moves all rows together, below which they do not see it: its
-interval would be narrower than its tolerance by half a per cent."""
+"""Deviations of the noise by which a value within its tolerance moves all rows together, below which they do not see
+it: its interval would be narrower than its tolerance by half a per cent."""
 
 
 def calibrated(problem: Problem) -> Problem:
@@ -45,14 +51,22 @@ def calibrated(problem: Problem) -> Problem:
     if not values:
         return problem
     start = replace(problem, calibration=Calibration(values, np.zeros(len(values)), {}, 1.0))
-    if any(is_joined(e.recording) for e in problem.evidence):  # hours hold much that has no name
+    if of_hours(problem):
         return weighed_by_rest(_without_unseen(weighed_by_rest(start, ())), ())
     start = _without_unseen(recalibrated(start, (), rough=True))
     for turn in range(PASSES):
         before, start = start, recalibrated(start, (), rough=turn == 0)
         if turn > 0 and np.max(np.abs(moved(before, start)), initial=0.0) < ENOUGH:
             break
-    return recalibrated(start.levelled(), ())
+    plant = start.machine(())
+    weighed = tuple(weighed_by(e, plant) for e in start.evidence)
+    if any(a is not b for a, b in zip(weighed, start.evidence, strict=True)):
+        start = recalibrated(replace(start, evidence=weighed), ())
+    start = recalibrated(start.levelled(), ())
+    assert start.calibration is not None
+    if np.max(np.abs(start.calibration.coordinates), initial=0.0) <= TOLERANCE or start.plain_error(()) < UNEXPLAINED:
+        return start
+    return recalibrated(at_declared(start), ())  # they stand in for what is to be found
 
 
 def recalibrated(problem: Problem, effects: Sequence[Effect], rough: bool = False) -> Problem:
@@ -87,6 +101,11 @@ def at_declared(problem: Problem) -> Problem:
     return replace(problem, calibration=replace(known, coordinates=np.zeros(len(known.values))))
 
 
+def of_hours(problem: Problem) -> bool:
+    """Whether a recording is cut out of hours, which hold much that has no name."""
+    return any(is_joined(e.recording) for e in problem.evidence)
+
+
 def weighed_by_rest(problem: Problem, effects: Sequence[Effect]) -> Problem:
     """The problem with no channel weighed by more than what is left of it, its declared values fitted anew from there.
 
@@ -106,7 +125,7 @@ def weighed_by_rest(problem: Problem, effects: Sequence[Effect]) -> Problem:
 
 def recalibrated_by_rest(problem: Problem, effects: Sequence[Effect]) -> Problem:
     """The problem as `recalibrated`, where channels are weighed by what is left of them by what these effects leave."""
-    if not any(e.left for e in problem.evidence):
+    if not of_hours(problem):
         return recalibrated(problem, effects)
     return _weighed_in_turn(problem, effects)
 
@@ -190,8 +209,12 @@ def slopes_of(
     bounces = has_play(effects) and evidence.lost is not None
     smooth, base = problem.predictor.smooth(problem.plant) and not bounces, at(0, 0.0)
     slopes = {name: np.empty((len(base[name]), len(known.values))) for name in evidence.channels}
+    sizes = np.zeros(len(known.values))
+    if smooth and not rough and known.slopes and problem.whitener is not None:
+        sizes = np.linalg.norm(problem.whitener.columns, axis=0)
     for i, value in enumerate(known.values):
         step = (STEP if smooth else LONG) / value.deviation
+        step = max(min(step, SHORT / sizes[i]), SHORTEST / value.deviation) if sizes[i] > 0 else step
         after, before, apart = at(i, step), base, step
         if not smooth and not rough:
             before, apart = at(i, -step), 2 * step
@@ -221,10 +244,13 @@ def _variance(problem: Problem, residual: FloatArray) -> float:
 
 
 def _without_unseen(problem: Problem) -> Problem:
-    """The problem without values that its recordings do not see."""
-    assert problem.calibration is not None and problem.whitener is not None
-    seen = np.sum(problem.whitener.columns**2, axis=0) > UNSEEN**2 * problem.calibration.variance
-    return with_kept(problem, seen)
+    """The problem without values that its recordings would not see if nothing but noise were left.
+
+    What is left at the declared values is no measure: a value that is not seen beside an inertia off by half is seen
+    once that is named, and an effect that says the same would be named for it.
+    """
+    assert problem.whitener is not None
+    return with_kept(problem, np.sum(problem.whitener.columns**2, axis=0) > UNSEEN**2)
 
 
 def with_kept(problem: Problem, kept: Sequence[bool] | np.ndarray[tuple[int], np.dtype[np.bool_]]) -> Problem:
@@ -258,7 +284,7 @@ class Calibrated:
         value: which.
         coordinate: most likely, as the plant has it.
         deviation: of the coordinate, given the recordings and the tolerances of all as deviations.
-        ends: of its 95 % interval as coordinates, all others within their tolerances (`known`).
+        ends: of its 95 % interval as coordinates, the value inside (`Known.interval_about`).
     """
 
     value: CalibratedValue
@@ -286,7 +312,6 @@ def calibrated_list(problem: Problem, found: Fit) -> tuple[Calibrated, ...]:
     deviations = np.sqrt(np.diag(known.covariance))
     result = []
     for i, value in enumerate(known.values):
-        coordinate, (low, high) = float(settled.coordinates[i]), known.interval(i)
-        ends = min(low, coordinate), max(high, coordinate)
-        result.append(Calibrated(value, coordinate, float(deviations[i]), ends))
+        coordinate = float(settled.coordinates[i])
+        result.append(Calibrated(value, coordinate, float(deviations[i]), known.interval_about(i, coordinate)))
     return tuple(result)

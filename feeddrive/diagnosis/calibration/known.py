@@ -127,6 +127,17 @@ class Known:
                         if abs(far) < MOST else far))  # fmt: skip
         return self.c(place, ends[0]), self.c(place, ends[1])
 
+    def interval_about(self, place: int, coordinate: float) -> tuple[float, float]:
+        """Ends of the interval that is told with a value, as c: it holds what either reading of a tolerance allows.
+
+        Read as ends, tolerances leave what `interval` says; read as deviations, as the value was fitted, what is within
+        1.96 of its own about the value. The two are weighed otherwise, by the colour of the residual and by one
+        variance, so that the value itself may be at an end of the first, or outside.
+        """
+        low, high = self.interval(place)
+        at, half = self.u(place, coordinate), NORMAL_95 * math.sqrt(float(self.covariance[place, place]))
+        return min(low, self.c(place, at - half)), max(high, self.c(place, at + half))
+
 
 def _freed(ends: FloatArray, *free: int) -> FloatArray:
     ends = ends.copy()

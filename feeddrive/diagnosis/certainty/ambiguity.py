@@ -21,6 +21,7 @@ from feeddrive.diagnosis.certainty.rival_odds import Residuals, odds_and_distanc
 from feeddrive.diagnosis.certainty.same_by_law import twins_of
 from feeddrive.diagnosis.finding.attempt import Attempt
 from feeddrive.diagnosis.finding.search import Search
+from feeddrive.diagnosis.finding.sets import odds_of_members
 from feeddrive.diagnosis.judging.judge import Judged
 from feeddrive.diagnosis.likelihood.coordinates import at_its_limit
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
@@ -223,13 +224,14 @@ def _in_place(found: Search, judged: Sequence[Judged], place: int, rival: Effect
     """A rival in the place of an effect, all refitted; None where the plant cannot hold or follow it.
 
     Where one of them says that a declared value is other, what was named is one of the fitted values again, and what
-    the rival is about none: beside each, all others are free within their tolerances.
+    the rival is about none: beside each, all others are free within their tolerances. A rival that brings nothing
+    beside that value is none.
     """
     effects, problem, named = [*found.fit.effects], found.problem, found.fit.effects[place]
     effects[place] = rival
     try:
-        freed, said = said_by_effects(problem, effects)
-        freed = given_back(freed, named)
+        stated, said = said_by_effects(problem, effects)
+        freed = given_back(stated, named)
         if _keys(freed) != _keys(problem):
             problem, effects = fitted_together(freed, said, PASSES)
         problem = regained(problem, effects)
@@ -240,6 +242,8 @@ def _in_place(found: Search, judged: Sequence[Judged], place: int, rival: Effect
             level = min(float(mine.fitted @ mine.fitted), there.squared_error) / max(len(mine.fitted), 1)
             beyond = excess_beyond(Standing(problem, swapped), Standing(found.problem, found.fit), level)
         its = Residuals.of(problem, there, [(j.with_effects(problem, there.effects), j) for j in judged])
+        if _keys(freed) != _keys(stated) and _is_idle(problem, swapped, place):
+            return None
     except InputError:
         return None
     if not np.all(np.isfinite(its.fitted)):
@@ -247,6 +251,11 @@ def _in_place(found: Search, judged: Sequence[Judged], place: int, rival: Effect
     odds, distance = odds_and_distance(found.problem, judged, mine, its, beyond)
     ratio = float(np.linalg.norm(its.judged) / np.linalg.norm(mine.judged))
     return Rival(place, swapped, odds, distance, ratio, problem)
+
+
+def _is_idle(problem: Problem, swapped: Fit, place: int) -> bool:
+    """Whether a rival says nothing beside a declared value that is free again: it is the value that does as well."""
+    return odds_of_members(problem, swapped, len(problem.predictor.candidates))[place] <= 0
 
 
 def _keys(problem: Problem) -> tuple[str, ...]:

@@ -39,7 +39,7 @@ def imitations_of(effect: Effect, plant: Plant) -> tuple[Effect, ...]:
     if number(effect.values["width"]) <= 0:
         return ()
     force = 0.5 * number(effect.values["width"]) * nut_stiffness(plant) * SOFTENED / (1 - SOFTENED)
-    return (PreloadLoss.of(ratio=SOFTENED, force=force),)
+    return (PreloadLoss.of(ratio=SOFTENED, force=min(force, PreloadLoss.parameter("force").maximum)),)
 
 
 def lost_motion(ratio: float, force: float, plant: Plant) -> float:

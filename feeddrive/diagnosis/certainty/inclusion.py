@@ -85,7 +85,8 @@ def possible_effects(found: Search, rivals: Sequence[Sequence[Rival]]) -> tuple[
     for near in found.near:
         if near.name in known or near.gain <= -OPEN:
             continue
-        longer = (OPEN - near.gain + near.speaks) / near.speaks if near.speaks > 0 else 0.0
+        # Half a nat a value is what chance gives: a motion that promises less does not speak of the effect.
+        longer = (OPEN - near.gain + near.speaks) / near.speaks if near.speaks > 0.5 else 0.0
         if longer > 1:
             settles = f"a recording of the same motion {math.ceil(10 * longer) / 10:g} times as long"
         else:

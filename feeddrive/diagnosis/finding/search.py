@@ -8,13 +8,21 @@ all effects together, and the likeliest of them is taken if what it adds also lo
 from __future__ import annotations
 
 from collections.abc import Callable, Container, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
 from feeddrive.diagnosis.calibration.beyond import beyond_tolerance, without_effects
-from feeddrive.diagnosis.calibration.calibrate import at_declared, calibrated, recalibrated, recalibrated_by_rest
+from feeddrive.diagnosis.calibration.calibrate import (
+    at_declared,
+    calibrated,
+    of_hours,
+    recalibrated,
+    recalibrated_by_rest,
+)
 from feeddrive.diagnosis.calibration.known import TOLERANCE
+from feeddrive.diagnosis.certainty.one_sided import with_usual_sizes
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, Attempt, compared, refuse_of_no_hours, started
 from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.finding.round import Round, one_round
@@ -24,8 +32,8 @@ from feeddrive.diagnosis.finding.spring_law import LAWS, soft_everywhere, with_l
 from feeddrive.diagnosis.heat.heat_candidates import is_another
 from feeddrive.diagnosis.judging.result import Trial
 from feeddrive.diagnosis.likelihood.coordinates import write_coordinates
-from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
-from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between, regained, same_samples
+from feeddrive.diagnosis.likelihood.fit import UNEXPLAINED, Fit, Problem, fit
+from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between, odds_between, regained, same_samples
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 
@@ -57,6 +65,7 @@ class Search:
         impossible: candidate to why the recordings cannot show it.
         near: effects that may come beside those found, the likeliest first.
         begun: problem and fit that the search began with; None for one that is made of a fit.
+        asked: what was asked of the judged recordings beside it and beside sets made of it (`recordings.compared`).
     """
 
     problem: Problem
@@ -66,6 +75,7 @@ class Search:
     impossible: dict[str, str]
     near: tuple[Near, ...] = ()
     begun: tuple[Problem, Fit] | None = None
+    asked: list[Any] = field(default_factory=list, compare=False)
 
 
 @dataclass(frozen=True)
@@ -102,6 +112,7 @@ def search(
     problem = calibrated(problem)
     found = fit(problem, start.fit.effects if start is not None else ())
     begun = (problem, found) if start is None or start.begun is None else start.begun
+    problem, found = _balanced(problem, found)
     trials: list[Trial] = [*start.trials] if start is not None else []
     rounds: list[tuple[Attempt, ...]] = [*start.rounds] if start is not None else []
     denied = {**start.impossible} if start is not None else {}
@@ -111,7 +122,7 @@ def search(
     while len(rounds) < MOST_ROUNDS and not (rounds and problem.budget.skips("further rounds of the search")):
         progress(f"round {len(rounds) + 1}: {len(found.effects)} effects so far")
         now = one_round(scene_of(problem, found.effects), found, impossible, denied, len(rounds) + 1)
-        taken, near = _likelier(problem, found, now)
+        taken, near = _likelier(problem, found, now, denied)
         taken = _of_likelier_law(taken, now.count, denied)
         rounds.append(tuple(attempt.for_the_record() for attempt in now.attempts))
         names = taken.name.split(" with ") if taken is not None else []
@@ -125,14 +136,13 @@ def search(
             problem, found = _refitted(problem, fit(problem, rest))
         if taken is None:
             left_out = problem.budget.skips("declared values beyond their tolerances")
-            beyond = None if left_out else beyond_tolerance(problem, found)
+            beyond = None if left_out else _with_value_beyond(problem, found)
             if beyond is None and others:
                 continue
             if beyond is None:
                 break
-            problem, effect = beyond
-            problem, found = _refitted(problem, fit(problem, (*found.effects, effect)))
-            trials.append(Trial(len(rounds), effect.name, 0.0, 0.0, True))
+            problem, found = beyond
+            trials.append(Trial(len(rounds), found.effects[-1].name, 0.0, 0.0, True))
             continue
         problem = without_effects(taken.problem, found.effects, taken.fit.effects)
         problem, found = _refitted(problem, taken.fit)
@@ -141,17 +151,20 @@ def search(
         if members in met:  # they only take each other's place
             break
         met.add(members)
-    problem, found = _refitted(problem, fit(problem, found.effects))
+    problem, found = _refitted(problem, fit(problem, found.effects), ends=True)
     small = [one for one in found.effects if not is_material(one, problem.plant)]
     if small:
         rest = [one for one in found.effects if not any(one is other for other in small)]
         problem = without_effects(problem, small, rest)
         found = fit(problem, rest)
         impossible |= dict.fromkeys((one.name for one in small), SMALL)
+    found = with_usual_sizes(problem, found)
     return Search(problem, found, tuple(trials), tuple(rounds), impossible, near, begun)
 
 
-def _likelier(problem: Problem, found: Fit, now: Round) -> tuple[_Taken | None, tuple[Near, ...]]:
+def _likelier(
+    problem: Problem, found: Fit, now: Round, denied: Container[str]
+) -> tuple[_Taken | None, tuple[Near, ...]]:
     """The likeliest of the sets near one, fitted, None where none is likelier; and what comes near beside it."""
     here = [attempt for attempt in now.attempts if same_samples(attempt.problem, problem)]
     sets = neighbours(problem, found, here, now.count)
@@ -161,12 +174,14 @@ def _likelier(problem: Problem, found: Fit, now: Round) -> tuple[_Taken | None, 
     tried: list[_Taken | None] = []
     for one in chosen:  # the likeliest in any case
         if not tried or not problem.budget.skips("sets of effects that came near"):
-            tried.append(_fitted(at_hand, one, here, now.count))
+            tried.append(_fitted(at_hand, one, here, now.count, denied))
     for attempt in now.attempts:
         if not same_samples(attempt.problem, problem):  # some samples tell less of it: compared on the others
             there = fit(attempt.problem, found.effects, iterations=0)
             away = neighbours(attempt.problem, there, [attempt], now.count)
-            tried += [_fitted(at_hand, one, [attempt], now.count) for one in away[:1] if one.gain > 0 and one.added]
+            tried += [
+                _fitted(at_hand, one, [attempt], now.count, denied) for one in away[:1] if one.gain > 0 and one.added
+            ]
     best = _best((one for one in tried if one is not None and one.odds > 0), now.count)
     beside = [one for one in sets if not one.dropped and len(one.added) == 1 and one.speaks > 0]
     return best, tuple(Near(here[one.added[0]].name, one.gain, one.speaks) for one in beside)
@@ -194,8 +209,14 @@ def _best(likelier: Iterable[_Taken], count: int) -> _Taken | None:
     return best
 
 
-def _fitted(at_hand: Standing, one: Neighbour, attempts: Sequence[Attempt], count: int) -> _Taken | None:
-    """A set fitted; None where it cannot be simulated, or what it adds does not pay on blocks left out."""
+def _fitted(
+    at_hand: Standing, one: Neighbour, attempts: Sequence[Attempt], count: int, denied: Container[str]
+) -> _Taken | None:
+    """A set fitted; None where it cannot be simulated, or what it adds does not pay on blocks left out.
+
+    A law of the nut's spring that does not pay is asked once more from the declared values on: those fitted without it
+    stand in for it.
+    """
     problem, found = at_hand.problem, at_hand.fit
     kept = [effect for place, effect in enumerate(found.effects) if place not in one.dropped]
     added = [attempts[i] for i in one.added]
@@ -212,12 +233,15 @@ def _fitted(at_hand: Standing, one: Neighbour, attempts: Sequence[Attempt], coun
         if again is not own:  # what the play could not predict is to be predicted again
             own, result = again, fit(again, result.effects, iterations=JOINT_ITERATIONS)
         refuse_of_no_hours(own, result.effects)
-        odds = odds_between(at_hand, Standing(own, result), count)
-        if one.added and not one.dropped and not compared(own, name, result, found.effects).comparison.pays:
+        taken = _Taken(own, result, name, odds_between(at_hand, Standing(own, result), count))
+        if not one.added or one.dropped or compared(own, name, result, found.effects).comparison.pays:
+            return taken
+        anew = _of_likelier_law(taken, count, denied)
+        if anew is None or anew is taken or not gain_between(at_hand, anew).pays:
             return None
+        return replace(anew, odds=odds_between(at_hand, anew, count))
     except InputError:
         return None
-    return _Taken(own, result, name, odds)
 
 
 def _restarted(problem: Problem, kept: Sequence[Effect], first: Attempt, second: Attempt) -> list[Effect]:
@@ -238,22 +262,53 @@ def _error(problem: Problem, effects: Sequence[Effect]) -> float:
     return fit(problem, effects, error_only=True).squared_error
 
 
-def _refitted(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
+def _refitted(problem: Problem, found: Fit, ends: bool = False) -> tuple[Problem, Fit]:
     """Declared values and effects fitted in turn, with new slopes of the values.
 
-    Values gone beyond their tolerances may have stood in for what was missing: they begin as declared as well.
+    Values gone beyond their tolerances may have stood in for what was missing: they begin as declared as well. While
+    much is left and the search goes on they still do, and what is missing would be sought beside them: then they begin
+    as declared in any case.
     """
     if problem.calibration is None:
-        return problem, found if not found.held else fit(problem, found.effects, iterations=0)
+        return _balanced(problem, found if not found.held else fit(problem, found.effects, iterations=0))
     there = recalibrated_by_rest(problem, found.effects)
     result = there, fit(there, found.effects, iterations=JOINT_ITERATIONS)
     assert there.calibration is not None
-    weighed = any(e.left for e in there.evidence)  # begun as declared, and other weights are no lower error
-    if not weighed and np.max(np.abs(there.calibration.coordinates), initial=0.0) > TOLERANCE:
+    # That of hours has begun as declared, and other weights are no lower error.
+    if not of_hours(there) and np.max(np.abs(there.calibration.coordinates), initial=0.0) > TOLERANCE:
         anew = recalibrated(at_declared(problem), found.effects)
         other = anew, fit(anew, found.effects, iterations=JOINT_ITERATIONS)
-        result = min(result, other, key=lambda one: one[1].squared_error)
-    return result
+        stand_in = not ends and there.plain_error(found.effects) > UNEXPLAINED
+        result = other if stand_in else min(result, other, key=lambda one: one[1].squared_error)
+    return _balanced(*result)
+
+
+def _balanced(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
+    """Each channel weighed by what is left of it, and the set fitted so."""
+    if of_hours(problem):
+        return problem, found
+    for _ in range(JOINT_ITERATIONS):
+        there = problem.balanced(found.effects)
+        if there is problem:
+            break
+        problem, found = there, fit(there, found.effects, iterations=JOINT_ITERATIONS)
+    return problem, found
+
+
+def _with_value_beyond(problem: Problem, found: Fit) -> tuple[Problem, Fit] | None:
+    """A set with the declared value as an effect that is beyond its tolerance; None where none is.
+
+    Free of its tolerance a value can only lower the error. Where it does not, slopes alone said so: beside a free play
+    a step of a value moves the contacts, and what the slope then tells holds for that step.
+    """
+    beyond = beyond_tolerance(problem, found)
+    if beyond is None:
+        return None
+    freed, effect = beyond
+    there, result = _refitted(freed, fit(freed, (*found.effects, effect)), ends=True)
+    alike = there.weighed(problem.evidence[0].left)
+    error = (result if alike is there else fit(alike, result.effects, iterations=0)).squared_error
+    return (there, result) if error < found.squared_error else None
 
 
 def _trial(number: int, attempt: Attempt, taken: bool) -> Trial:

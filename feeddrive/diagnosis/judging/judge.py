@@ -11,6 +11,7 @@ from feeddrive.diagnosis.judging.result import ChannelResult, ChannelSeries, Jud
 from feeddrive.diagnosis.likelihood.cross_validation import (
     Comparison,
     compare_left_out,
+    compare_levelled,
     gain_of_model_error,
     model_error_rows,
 )
@@ -119,11 +120,13 @@ class Share:
         explains: channel to 1 - (rms with / rms without)^2.
         comparison: of the plants without and with it.
         size: what it predicts there, in standard deviations of the noise; infinite where nothing is left to chance.
+        levelled: the comparison with every block over what is left of it.
     """
 
     explains: dict[str, float]
     comparison: Comparison
     size: float
+    levelled: Comparison
 
     @property
     def shows(self) -> bool:
@@ -148,8 +151,14 @@ class Share:
         the d of 3 that the search asks for, a false one passes in less than one of a hundred cases. The share of the
         error that the search asks for is not asked for again: a long or noisy recording would refuse by it what it
         shows beyond doubt, and a real effect that just met it would fail every second time.
+
+        One block that no law of ours reaches, an end stop or a torque beyond all that was fitted, may hold more than
+        all others together, and alone make that scatter. So where the effect lowers the error at all, the same is asked
+        with every block over its own level.
         """
-        return self.comparison.gain > max(self.comparison.least, self.comparison.standard_error)
+        gain, asked = self.comparison.gain, max(self.comparison.least, self.comparison.standard_error)
+        evenly = self.levelled.gain > max(self.levelled.least, self.levelled.standard_error)
+        return gain > asked or (gain > self.comparison.least and evenly)
 
 
 def share_of(problem: Problem, judged: Sequence[Judged], effects: Sequence[Effect], index: int) -> Share:
@@ -185,7 +194,8 @@ def share_beyond(problem: Problem, judged: Sequence[Judged], refitted: Sequence[
     comparison = compare_left_out(before, after, blocks, gain_of_model_error(rows, before, after))
     # of a difference d the chance part of the gain scatters by 2 |d|, so this is |d|
     predicted, chance = float(np.sum((before - after) ** 2)), comparison.standard_error * float(before @ before)
-    return Share(explains, comparison, 2 * predicted / chance if chance > 0 else float("inf"))
+    size = 2 * predicted / chance if chance > 0 else float("inf")
+    return Share(explains, comparison, size, compare_levelled(before, after, blocks, comparison.least))
 
 
 def _pooled(problem: Problem, pairs: Sequence[tuple[Plant, Evidence]], name: str) -> float:

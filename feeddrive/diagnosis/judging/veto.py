@@ -6,6 +6,7 @@ An effect that the search took is not reported as found where
 - it does not lower the error on the judged data; where they could hardly show it, or it lowers it by no more than the
   gain's scatter, the gain on blocks left out of the fit must be three times its scatter instead;
 - the intervals of all its sizes hold the absent effect (no amplitude, a factor of one);
+- with it friction would push the axis, which no plant file may hold, and without it not;
 - a channel is predicted worse with what was found than as declared, by more than the scatter of its rms, and this
   effect worsens it most.
 
@@ -28,6 +29,7 @@ from scipy.special import chdtri
 
 from feeddrive.diagnosis.calibration.beyond import without_effects
 from feeddrive.diagnosis.calibration.calibrate import weighed_by_rest, with_kept
+from feeddrive.diagnosis.certainty.one_sided import one_sided
 from feeddrive.diagnosis.certainty.uncertainty import certainty
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging.judge import Judged, Share, error_series, judged_channels, share_beyond, share_of
@@ -44,7 +46,7 @@ from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between, 
 from feeddrive.diagnosis.likelihood.tolerances import SURE
 from feeddrive.diagnosis.recordings.compared import judged_changes
 from feeddrive.diagnosis.recordings.recordings import RecordingShift, is_shift, without_shifts
-from feeddrive.effects.base import ChainEffect, Effect
+from feeddrive.effects.base import ChainEffect, Effect, FrictionEffect
 from feeddrive.typing import FloatArray, IntegerArray
 from feeddrive.units.quantity import format_quantity, percent
 
@@ -129,10 +131,12 @@ def _first_denied(found: Search, judged: Sequence[Judged]) -> Denied | None:
         idle = ["" if stood else reason for reason, stood in zip(idle, stands, strict=True)]
         worst = _worst_channel(other.problem, other.allowed)
     at_end, around_none = ends_reached(problem, found.fit), sizes_around_none(problem, found.fit)
+    pushing = friction_that_pushes(problem, effects)
+    reasons = [at_end[i] or idle[i] or around_none[i] or pushing[i] for i in named]
     denied = [
-        Denied(i, shares[i].comparison.gain, at_end[i] or idle[i] or around_none[i])
-        for i in named
-        if (at_end[i] or idle[i] or around_none[i]) and not _differs(effects, i)
+        Denied(i, shares[i].comparison.gain, reason)
+        for i, reason in enumerate(reasons)
+        if reason and not _differs(effects, i)
     ]
     if worst and not denied:
         place = min(named, key=lambda i: shares[i].explains[worst])
@@ -251,7 +255,7 @@ def sizes_around_none(problem: Problem, fitted: Fit) -> list[str]:
     """Per effect, a sentence where the 95 % intervals of all its sizes hold the absent effect; else empty.
 
     Of components and nodes that belong together the whole is asked: their squares over their variances, against the
-    same quantile.
+    same quantile. Of a size whose slope tells nothing the likelihood is asked (`one_sided`).
     """
     if not fitted.effects:
         return []
@@ -260,12 +264,13 @@ def sizes_around_none(problem: Problem, fitted: Fit) -> list[str]:
     beyond = fitted.coordinates - absent
     half = np.sqrt(np.diag(known.half_covariance))
     result, at = [], 0
-    for effect in fitted.effects:
+    for place, effect in enumerate(fitted.effects):
         count = len(read_coordinates([effect], problem.plant))
         places = range(at, at + count)
         sizes = sorted({int(groups[i]) for i in places if not math.isnan(absent[i])})
         sure = [_is_not_none(known.half_covariance, beyond, half, np.flatnonzero(groups == group)) for group in sizes]
-        result.append("" if any(sure) or not sizes or is_shift(effect) else "its interval holds no effect at all")
+        denied = not (any(sure) or not sizes or is_shift(effect)) and one_sided(problem, fitted, place) is None
+        result.append("its interval holds no effect at all" if denied else "")
         at += count
     return result
 
@@ -278,6 +283,17 @@ def _is_not_none(covariance: FloatArray, beyond: FloatArray, half: FloatArray, g
     # half widths are 1.96 standard deviations
     square = float(beyond[group] @ np.linalg.pinv(part, hermitian=True) @ beyond[group]) * 1.96**2
     return square > float(chdtri(len(group), 0.05))
+
+
+def friction_that_pushes(problem: Problem, effects: Sequence[Effect]) -> list[str]:
+    """Per effect, a sentence where friction pushes the axis with it and not without; where none is alone, for all."""
+    there = problem.settled(effects)
+    if there.possible(effects):
+        return [""] * len(effects)
+    rubs = [isinstance(effect, FrictionEffect) for effect in effects]
+    alone = [rub and there.possible([*effects[:i], *effects[i + 1 :]]) for i, rub in enumerate(rubs)]
+    told = alone if any(alone) else rubs
+    return ["with it friction would push the axis somewhere within its reach" if one else "" for one in told]
 
 
 def _worst_channel(problem: Problem, judged: Sequence[Judged]) -> str:

@@ -18,11 +18,12 @@ from typing import Any
 from feeddrive import __version__
 from feeddrive.diagnosis.judging.result import Diagnosis, EffectResult, ParameterResult
 from feeddrive.diagnosis.likelihood.outputs import diagnosis_record
+from feeddrive.diagnosis.recordings.change_candidates import LEAST_CHANGE
+from feeddrive.diagnosis.recordings.change_words import from_to
 from feeddrive.effects.base import Effect, Port
 from feeddrive.effects.catalogue import THERMAL_EFFECTS, find_effect
 from feeddrive.errors import InputError
 from feeddrive.files import write_text_atomically
-from feeddrive.units.quantity import format_quantity
 
 FORMAT = "feeddrive-ledger/1"
 NAME = "ledger.json"
@@ -251,9 +252,11 @@ def changed_since(before: Sequence[dict[str, Any]], now: Sequence[EffectResult])
         if place not in old:
             reported.append(f"{place} is new")
             continue
-        values = [_moved(key, old[place]["parameters"].get(key), p) for key, p in one.parameters.items()]
-        moved = [value for value in values if value]
-        reported.append(f"{place} is confirmed" + (f": {', '.join(moved)}" if moved else ""))
+        pairs = [(key, old[place]["parameters"].get(key), now) for key, now in one.parameters.items()]
+        other = [_moved(*pair) for pair in pairs if _is_other(*pair[1:])]
+        moved = [text for text in (_moved(*pair) for pair in pairs) if text]
+        said, values = ("is another one", other) if other else ("is confirmed", moved)
+        reported.append(f"{place} {said}{': ' if values else ''}{', '.join(values)}")
     reported += [f"{place} no longer pays with all recordings" for place in old if place not in new]
     return tuple(reported)
 
@@ -267,4 +270,18 @@ def _place(name: str, parameters: dict[str, Any]) -> str:
 def _moved(key: str, before: dict[str, Any] | None, now: ParameterResult) -> str:
     if before is None or not isinstance(now.value, float) or not isinstance(before["value"], float):
         return ""
-    return f"{key} {format_quantity(before['value'], now.unit)} → {format_quantity(now.value, now.unit)}"
+    return f"{key} {from_to(before['value'], now.value, now.unit)}"
+
+
+def _is_other(before: dict[str, Any] | None, now: ParameterResult) -> bool:
+    """Whether a value is clearly another than before: intervals apart, by as much as counts as a change."""
+    if before is None or not isinstance(now.value, float) or not isinstance(before["value"], float):
+        return False
+    if now.unit == "rad":  # counted from an encoder's zero, whole turns apart alike
+        return False
+    first, last = float(before["value"]), now.value
+    earlier, span = before.get("ci95") or (first, first), now.ci95 or (last, last)
+    if not isinstance(span[0], float) or not isinstance(span[1], float):
+        return False
+    apart = max(earlier[0], span[0]) > min(earlier[1], span[1])
+    return bool(apart and abs(last - first) >= LEAST_CHANGE * max(abs(first), abs(last)))

@@ -271,6 +271,13 @@ def absent_coordinates(effects: Sequence[Effect], plant: Plant) -> tuple[FloatAr
     return np.array(absent, dtype=float), np.array(groups, dtype=np.int64)
 
 
+def is_absent(effect: Effect, plant: Plant) -> bool:
+    """Whether an effect does nothing with the values that it has."""
+    absent, _ = absent_coordinates([effect], plant)
+    known = ~np.isnan(absent)
+    return bool(known.any()) and bool(np.all(read_coordinates([effect], plant)[known] == absent[known]))
+
+
 def coordinate_ends(effects: Sequence[Effect], plant: Plant) -> tuple[FloatArray, FloatArray]:
     """Ends of what is physical on this plant, lower and upper, of every coordinate; (k,) each."""
     low: list[float] = []

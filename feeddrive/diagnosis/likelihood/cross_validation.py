@@ -173,6 +173,21 @@ def worse_beyond_scatter(before: FloatArray, after: FloatArray, blocks: IntegerA
     return gain.gain - SCATTER * max(gain.standard_error, math.sqrt(2 / max(values, 1.0)))
 
 
+def compare_levelled(
+    before: FloatArray, after: FloatArray, blocks: IntegerArray, least: float = LEAST_GAIN
+) -> Comparison:
+    """As `compare_left_out`, every block over the level of what both models leave of it, all of shape (m,).
+
+    The variance of a block is not known where no model reaches it. As likely as any, it makes of the block's part
+    n/2 log of its square, and of two that are near each other their difference over their mean: no block counts for
+    more than its rows.
+    """
+    rows = np.bincount(blocks)
+    level = np.sqrt(np.bincount(blocks, weights=0.5 * (before**2 + after**2)) / np.maximum(rows, 1))
+    level = np.where(level > 0, level, 1.0)[blocks]
+    return compare_left_out(before / level, after / level, blocks, least)
+
+
 def least_gain(problem: Problem, before: FloatArray, after: FloatArray) -> float:
     """Gain that is asked for: half a percent, or more where chance or the model's own error does as much.
 

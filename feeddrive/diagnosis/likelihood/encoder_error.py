@@ -34,7 +34,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.fft import irfft, next_fast_len, rfft
 from scipy.ndimage import uniform_filter
 from scipy.signal.windows import hann
 
@@ -42,6 +41,7 @@ from feeddrive.diagnosis.likelihood.band import END_CUT, Band
 from feeddrive.diagnosis.likelihood.unsure_motion import unsure_motions, without_share
 from feeddrive.diagnosis.suspicion.torque_channel import scale_of
 from feeddrive.engine.step.linear_part import SimulationError
+from feeddrive.plant.analysis.modes import braked_modes
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 from feeddrive.recording.checks.flaws import quantisation_step
@@ -99,41 +99,6 @@ class EncoderError:
     unsure: dict[str, FloatArray]
 
 
-@dataclass(frozen=True)
-class Weighing:
-    """Gains on the frequencies of a series, for many series of one length.
-
-    A length with large prime factors takes several times longer to transform. The gains are a circular convolution
-    then, and are done as one of twice the length or more, folded back.
-
-    Attributes:
-        spectrum: gains at the frequencies of `size` samples.
-        count: samples of a series.
-        size: samples that are transformed.
-    """
-
-    spectrum: ComplexArray | FloatArray
-    count: int
-    size: int
-
-    @classmethod
-    def of(cls, gains: FloatArray, count: int) -> Weighing:
-        """Ready a gain at each frequency of a series of so many samples, (count // 2 + 1,)."""
-        if next_fast_len(count, real=True) == count:
-            return cls(gains, count, count)
-        size = next_fast_len(2 * count, real=True)
-        return cls(rfft(irfft(gains, count), size), count, size)
-
-    def __call__(self, series: FloatArray) -> FloatArray:
-        """The series, (count,), with its frequencies weighed."""
-        found: FloatArray = irfft(rfft(series, self.size) * self.spectrum, self.size)
-        if self.size == self.count:
-            return found
-        folded = found[: self.count]
-        folded[:-1] += found[self.count : 2 * self.count - 1]
-        return folded
-
-
 def encoder_error(
     plant: Plant, recording: Recording, band: Band, noise: dict[str, float], proportional: bool = False
 ) -> EncoderError | None:
@@ -176,7 +141,8 @@ def encoder_error(
         return None
     gains = {name: gain / (1 + (share / SMALL) ** 2) for name, gain in gains.items()}
     unsure: dict[str, list[FloatArray]] = {name: [] for name in noise}
-    for part in unsure_motions(expected, share, sample_time, band.edge):
+    held = braked_modes(plant, plant.middle).poles
+    for part in unsure_motions(expected, share, sample_time, band.edge, [p for p in held if p.imag > 0]):
         try:
             run = simulate_driven(plant, motor_motion(time, expected + part))
         except SimulationError:

@@ -11,7 +11,8 @@ import numpy as np
 
 from feeddrive.diagnosis.calibration.calibration import Whitener, whitener
 from feeddrive.diagnosis.likelihood.band import END_CUT, Band, comparison_band, held, sensor_noise
-from feeddrive.diagnosis.likelihood.encoder_error import Weighing, encoder_error, known_motion_of
+from feeddrive.diagnosis.likelihood.encoder_error import encoder_error, known_motion_of
+from feeddrive.diagnosis.likelihood.lead_map import lead_map
 from feeddrive.diagnosis.likelihood.slow_rows import (
     is_slow,
     known_motion,
@@ -19,6 +20,7 @@ from feeddrive.diagnosis.likelihood.slow_rows import (
     refuse_unknown_motion,
     sentence,
 )
+from feeddrive.diagnosis.likelihood.weighing import Weighing
 from feeddrive.diagnosis.suspicion.channel_timing import lagging
 from feeddrive.diagnosis.suspicion.flawed_rows import refuse_little_left, sound_rows, without_copied_position
 from feeddrive.diagnosis.suspicion.torque_channel import with_torque
@@ -64,7 +66,8 @@ class Evidence:
         floating: channels whose zero is not known, and taken out of every error.
         model_error: channel to the rms of what the model itself may miss; channels left out are predicted exactly.
         lost: samples that would count, but that a free play of the plant leaves unpredictable, (n,); None for none.
-        left: channel to what is left of it over its noise, where it weighs no more than that (`weighed_by_rest`).
+        left: channel to what is left of it over its noise, where it weighs no more than that (`Problem.balanced`,
+            `weighed_by_rest`).
     """
 
     recording: Recording
@@ -113,13 +116,19 @@ class Evidence:
             series: channel to measurement, prediction or their difference, (n,) each.
             rows: the samples, (n,).
         """
+        every = self.thinning if np.count_nonzero(rows[:: self.thinning]) == np.count_nonzero(rows) else 1
+        asked = rows[::every]
         return np.concatenate(
-            [self.without_open(name, self.evened(name, series[name])[rows], rows) for name in self.channels]
+            [self.without_open(name, self.evened(name, series[name], every)[asked], rows) for name in self.channels]
         )
 
     def in_band(self, series: FloatArray) -> FloatArray:
         """A series, (n,), as it shows in the comparison."""
         return series
+
+    def thinly_in_band(self, series: FloatArray) -> FloatArray:
+        """A series, (n,), as it shows in the comparison, at the samples that carry all of it; not at its ends."""
+        return series[:: self.thinning]
 
     def known_to(self, name: str) -> float:
         """Rms of what the sensors add to a channel in the band."""
@@ -129,9 +138,9 @@ class Evidence:
         """Error of a channel that counts as one: its noise, or more where more is left of it than any name explains."""
         return self.noise[name] * self.left.get(name, 1.0)
 
-    def evened(self, name: str, series: FloatArray) -> FloatArray:
-        """A channel, (n,), with each frequency weighed by how well it is known there."""
-        return series
+    def evened(self, name: str, series: FloatArray, every: int) -> FloatArray:
+        """A channel, (n,), at every k-th sample, each frequency weighed by how well it is known there."""
+        return series[::every]
 
     def without_open(self, name: str, part: FloatArray, rows: BoolArray) -> FloatArray:
         """One channel over its noise, (k,), without what its sensor leaves open: the zero of a scale."""
@@ -145,6 +154,11 @@ class Evidence:
     def weighs_as(self, other: Self) -> bool:
         """Whether samples weigh as much in another evidence of this recording."""
         return self.left == other.left
+
+    @property
+    def mapped(self) -> Self:
+        """The evidence in which the lead map counts."""
+        return self
 
     @property
     def whole(self) -> Self:
@@ -185,6 +199,7 @@ class AxisEvidence(Evidence):
         drawn: motions with the encoder's error once more; as `gains`.
         weights: channel to the weight of every sample, (n,): noise over noise and what the encoder's error makes of a
             free play there; channels left out are predicted alike everywhere.
+        lead_map: what a lead map may be of the table position, in the band, (n, k); None where it counts.
         unsure: channel to what motion that may not be makes of it, in the band, (n, k); as `gains`.
         torque_rows: rows that the recorder writes a torque for, and the first row of one (`suspicion.logged_rows`);
             None where the torque is what the drive holds.
@@ -200,6 +215,7 @@ class AxisEvidence(Evidence):
     unsure: dict[str, FloatArray] = field(default_factory=dict)
     torque_rows: tuple[int, int] | None = None
     weights: dict[str, FloatArray] = field(default_factory=dict)
+    lead_map: FloatArray | None = None
 
     def where_predictable(self, predictable: BoolArray | FloatArray) -> Self:
         """The evidence without the samples of weight 0, the table position weighed at the others."""
@@ -244,18 +260,36 @@ class AxisEvidence(Evidence):
         """A series or columns, (n,), in the band of the comparison."""
         return self.band.filter(series)
 
+    def thinly_in_band(self, series: FloatArray) -> FloatArray:
+        """A series, (n,), in the band of the comparison, at the samples that carry all of it; not at its ends."""
+        return self.band.thinned(series)
+
     def weighted(self, series: dict[str, FloatArray], rows: BoolArray) -> FloatArray:
-        """Channels at some samples as any are, less what motion that is not known may make of them."""
+        """Channels at some samples as any are, less what motion that is not known, or a lead map, may make of them."""
         weighted = super().weighted(series, rows)
-        if not self.unsure or not rows.any():
+        parts = self._open
+        if not parts or not rows.any():
             return weighted
         key = rows.tobytes()
         if key not in self._sure:
-            count = next(iter(self.unsure.values())).shape[1]
-            parts = [{name: columns[:, i] for name, columns in self.unsure.items()} for i in range(count)]
             columns = np.column_stack([super(AxisEvidence, self).weighted(part, rows) for part in parts])
-            self._sure[key] = whitener(columns, np.zeros(count), 1.0)
+            self._sure[key] = whitener(columns, np.zeros(len(parts)), 1.0)
         return self._sure[key].applied(weighted)
+
+    @cached_property
+    def _open(self) -> list[dict[str, FloatArray]]:
+        """Series of all channels, (n,) each, that a recording may hold, as far as a deviation of one goes."""
+        count = next(iter(self.unsure.values())).shape[1] if self.unsure else 0
+        parts = [{name: columns[:, i] for name, columns in self.unsure.items()} for i in range(count)]
+        if self.lead_map is not None:
+            none = dict.fromkeys(self.channels, np.zeros(len(self.counted)))
+            parts += [{**none, "table_position": column} for column in self.lead_map.T]
+        return parts
+
+    @property
+    def mapped(self) -> Self:
+        """The evidence in which the lead map counts."""
+        return replace(self, lead_map=None)
 
     @cached_property
     def _sure(self) -> dict[bytes, Whitener]:
@@ -266,19 +300,34 @@ class AxisEvidence(Evidence):
         """Rms of what sensor and encoder add to a channel in the band."""
         return math.hypot(self.noise[name], self.added.get(name, 0.0))
 
-    def evened(self, name: str, series: FloatArray) -> FloatArray:
-        """A channel, (n,), with each frequency weighed by sensor noise over that and the encoder's error."""
+    def evened(self, name: str, series: FloatArray, every: int) -> FloatArray:
+        """A channel, (n,), at every k-th sample, each frequency weighed by sensor noise over that and the encoder's."""
         if name not in self.gains:
-            return series
+            return series[::every]
         known = np.isfinite(series)
-        mean = float(np.mean(series[known])) if known.any() else 0.0  # apart, so that gaps do not make steps
-        filled = np.where(known, series - mean, 0.0)
-        weighed = self._weighing[name](filled)
-        return np.where(known, weighed + self.gains[name][0] * mean, series)
+        inside = known & self._between_ends
+        mean = float(np.mean(series[inside])) if inside.any() else 0.0  # apart, so that gaps do not make steps
+        filled = np.where(inside, series - mean, 0.0)
+        key = (name, every)
+        if key not in self._weighing:
+            self._weighing[key] = Weighing.of(self.gains[name], len(self.counted), every)
+        weighed = self._weighing[key](filled)
+        return np.where(known[::every], weighed + self.gains[name][0] * mean, series[::every])
 
     @cached_property
-    def _weighing(self) -> dict[str, Weighing]:
-        return {name: Weighing.of(gains, len(self.counted)) for name, gains in self.gains.items()}
+    def _between_ends(self) -> BoolArray:
+        """Samples from the first that counts to the last, (n,).
+
+        A simulation begins at rest without stretch: what it does until that is forgotten would be carried on.
+        """
+        counted = self.counted if self.lost is None else self.counted | self.lost
+        inside: BoolArray = np.logical_or.accumulate(counted) & np.logical_or.accumulate(counted[::-1])[::-1]
+        return inside
+
+    @cached_property
+    def _weighing(self) -> dict[tuple[str, int], Weighing]:
+        """By channel and every how many samples are asked for."""
+        return {}
 
     def placed(self, plant: Plant) -> Plant:
         """The plant with its nut where it stood: simulated positions count from the zero of the motor angle."""
@@ -381,7 +430,23 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
         encoder.added if encoder is not None else {},
         encoder.drawn if encoder is not None else (),
         encoder.unsure if encoder is not None else {},
+        lead_map=band.filter(lead_map(raw["table_position"], plant.chain.radius)) if "table_position" in raw else None,
     )
+
+
+def weighed_by(evidence: Evidence, plant: Plant) -> Evidence:
+    """The evidence with the encoder's error as a plant shows it: at its resonances, not at those of the declared one.
+
+    Args:
+        evidence: prepared for the declared plant.
+        plant: nearer to the machine.
+    """
+    if not isinstance(evidence, AxisEvidence) or not evidence.gains or evidence.scaled_from:
+        return evidence
+    encoder = encoder_error(_placed(plant, evidence.zero), evidence.recording, evidence.band, evidence.noise)
+    if encoder is None:
+        return evidence
+    return replace(evidence, gains=encoder.gains, added=encoder.added, unsure=encoder.unsure)
 
 
 def _from_zero(recording: Recording) -> FloatArray:

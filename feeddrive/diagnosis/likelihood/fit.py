@@ -21,6 +21,7 @@ import numpy as np
 from feeddrive.diagnosis.budget import Budget
 from feeddrive.diagnosis.calibration.calibration import Calibration, Whitener, whitener
 from feeddrive.diagnosis.calibration.declared import with_values
+from feeddrive.diagnosis.finding.remembered import Remembered, effects_key
 from feeddrive.diagnosis.likelihood.coordinates import (
     coordinate_ends,
     longest_steps,
@@ -54,6 +55,10 @@ cell: the cells leave some hundredths. What declared values do as well is whiten
 enough for a prediction shows nothing but cells in what is left of it. With free play it is the move of the median row:
 a table that bounces goes elsewhere however short the step, and of its rows the slope tells nothing."""
 
+BENT_AT = 0.1
+"""Share of a step at which its bend is read: a hundredth of that of the whole, and still some deviations of the noise
+where a step fails."""
+
 STRAIGHT = 0.03
 """Bend of the prediction over a step, as a share of the step, below which the slope before it still holds after it."""
 
@@ -63,6 +68,12 @@ BENT = 0.5
 LEVEL = 0.8
 """Residual over the noise that a channel is stated to have, below which the noise is put right: a level read from
 the quietest tenth of the blocks is known to some per cent."""
+
+PREDICTIONS = 8_000_000
+"""Bytes of predictions that a problem keeps: some twenty of a minute at 2 kHz."""
+
+UNEXPLAINED = 1.3
+"""Weighted squared error per sample beyond which much is left; noise alone gives one."""
 
 FREE = 1e-6
 """Damping that does not hold a step back."""
@@ -163,6 +174,51 @@ class Problem:
             evidence.append(replace(e, noise=noise))
         return replace(self, evidence=tuple(evidence))
 
+    def balanced(self, effects: Sequence[Effect]) -> Problem:
+        """The problem with each channel weighed by what is left of it, beside the channel that is met best.
+
+        A channel whose noise is far below what the model reaches, a current with ripple and structure beside a scale,
+        holds an error of the model, whose variance is not known: the most likely one is its mean square, n/2 log r'r in
+        place of r'r / 2 σ². Weighed by its noise it would lead everything that the other channel tells astray.
+
+        Args:
+            effects: found, with the declared values as they are.
+        """
+        plain = self.plain
+        if len({name for e in self.evidence for name in e.channels}) < 2 or not self.predictor.of_motion:
+            return plain
+        residual, first = plain.residual(effects), 0
+        squares: dict[str, list[FloatArray]] = {}
+        for e in self.evidence:
+            count = int(e.thinned(e.fit_rows).sum())
+            for name in e.channels:
+                squares.setdefault(name, []).append(residual[first : first + count] ** 2)
+                first += count
+        left = {name: math.sqrt(float(np.mean(np.concatenate(parts)))) for name, parts in squares.items()}
+        if not all(np.isfinite(one) for one in left.values()):
+            return self
+        least = max(1.0, min(left.values()))
+        used = self.evidence[0].left
+        if all(LEVEL < left[name] / least / used.get(name, 1.0) < 1 / LEVEL for name in left):
+            return self  # as it is weighed, but for a few
+        return self.weighed({name: one / least for name, one in left.items() if one * LEVEL > least})
+
+    def weighed(self, left: dict[str, float]) -> Problem:
+        """The problem with other factors on the noise of channels."""
+        if all(e.left == left for e in self.evidence):
+            return self
+        return replace(self, evidence=tuple(replace(e, left=left) for e in self.evidence))
+
+    @property
+    def plain(self) -> Problem:
+        """The problem with every channel weighed by its noise."""
+        return self.weighed({})
+
+    def plain_error(self, effects: Sequence[Effect]) -> float:
+        """Weighted squared error per row, every channel weighed by its noise."""
+        residual = self.plain.residual(effects)
+        return float(residual @ residual) / max(len(residual), 1)
+
     def unwhitened(self, effects: Sequence[Effect]) -> FloatArray:
         """Measured less predicted over the noise at the fitted samples of all recordings."""
         plant, parts = self.machine(effects), []
@@ -179,14 +235,24 @@ class Problem:
         return self.numbers.predicted(self.machine(effects))
 
     def predicted(self, effects: Sequence[Effect]) -> FloatArray:
-        """Weighted prediction at the fitted samples of all recordings, whitened."""
+        """Weighted prediction at the fitted samples of all recordings, whitened; to be read only."""
+        return self._predictions.found(None, effects_key(effects), lambda: self._predicted(effects))
+
+    @cached_property
+    def _predictions(self) -> Remembered[FloatArray]:
+        """The latest predictions: every candidate of a round asks for the set at hand again."""
+        return Remembered(lambda rows: rows.nbytes, PREDICTIONS)
+
+    def _predicted(self, effects: Sequence[Effect]) -> FloatArray:
         plant = self.machine(effects)
         rows = np.concatenate(
             [e.weighted(self.predictor.predict(plant, e), e.thinned(e.fit_rows)) for e in self.evidence]
             + ([self._numbers(effects)] if len(self.numbers) else [])
         )
         known = self.whitener
-        return rows if known is None else known.applied(rows - known.offset)
+        found = rows if known is None else known.applied(rows - known.offset)
+        found.flags.writeable = False
+        return found
 
     def possible(self, effects: Sequence[Effect]) -> bool:
         """Whether the plant with these effects is one that a file may hold: its friction takes power everywhere."""
@@ -213,22 +279,50 @@ class Problem:
     def stepped(self, effects: Sequence[Effect], residual: FloatArray) -> Problem:
         """The problem at the most likely declared values, or as far towards them as the error falls.
 
+        Where the straight step takes less than half of what its slopes promise, what its tenth bends the prediction by
+        is fitted as well, and the values go along c + s d + s^2 a: values that stand in for each other, an inertia, a
+        mass and a torque constant, lie in a narrow valley, straight for some of them in the values and for others in
+        their logarithms. Source: Transtrum and Sethna, arXiv:1201.5885 (2012), section 3.
+
         Args:
             effects: beside them.
             residual: not whitened, with the values as they are, (m,).
         """
-        known = self.calibration
-        if known is None or self.whitener is None or not np.all(np.isfinite(residual)):
+        known, slopes = self.calibration, self.whitener
+        if known is None or slopes is None or not np.all(np.isfinite(residual)):
             return self
-        wanted = self.whitener.most_likely(residual)
-        before = float(residual @ residual) + known.variance * float(known.coordinates @ known.coordinates)
-        for share in (1.0, 0.5, 0.1):
-            coordinates = known.coordinates + share * (wanted - known.coordinates)
+        step = slopes.most_likely(residual) - known.coordinates
+        possible = self.possible(effects)
+
+        def at(share: float, bend: FloatArray) -> tuple[float, Problem, FloatArray]:
+            coordinates = known.coordinates + share * step + share**2 * bend
             there = replace(self, calibration=replace(known, coordinates=coordinates))
+            if possible and not there.possible(effects):  # friction that an effect takes more than all of
+                return math.inf, there, residual
             left = there.unwhitened(effects)
-            if np.all(np.isfinite(left)) and left @ left + known.variance * float(coordinates @ coordinates) < before:
-                return there
-        return self
+            cost = float(left @ left) + known.variance * float(coordinates @ coordinates)
+            return cost if math.isfinite(cost) else math.inf, there, left
+
+        straight = np.zeros(len(step))
+        before = float(residual @ residual) + known.variance * float(known.coordinates @ known.coordinates)
+        promised = residual - slopes.columns @ step
+        least = float(promised @ promised) + known.variance * float(np.sum((known.coordinates + step) ** 2))
+        whole, there, _ = at(1.0, straight)
+        if before - whole >= 0.5 * (before - least):
+            return there
+        best, other, left = at(BENT_AT, straight)
+        if not math.isfinite(best):
+            return there if whole < before else self
+        best, there = min((whole, there), (best, other), key=lambda one: one[0])
+        bent = (left - residual) / BENT_AT**2 + slopes.columns @ step / BENT_AT
+        bend = slopes.most_likely(bent - slopes.offset)
+        for share in (1.0, 0.5, 0.25):
+            cost, other, _ = at(share, bend)
+            if cost > best and best < before:
+                break
+            if cost < best:
+                best, there = cost, other
+        return there if best < before else self
 
     @property
     def difference(self) -> float:
@@ -368,8 +462,9 @@ def _lower(problem: Problem, at: _State, free: Sequence[bool], jacobian: FloatAr
     moved = [effect for effect, is_free in zip(at.effects, free, strict=True) if is_free]
     start = read_coordinates(moved, problem.plant)
     low, high = coordinate_ends(moved, problem.plant)
+    prior = _prior(moved, problem.plant)
     for _ in range(5):
-        step = inside_step(jacobian, at.residual, damping, low - start, high - start)
+        step = inside_step(jacobian, at.residual, damping, low - start, high - start, prior)
         vector = start + step
         effects = _placed(at.effects, free, write_coordinates(moved, problem.plant, vector))
         if not problem.possible(effects) and problem.possible(at.effects):
@@ -383,9 +478,18 @@ def _lower(problem: Problem, at: _State, free: Sequence[bool], jacobian: FloatAr
     return _Lower(None, step, damping)
 
 
+def _prior(moved: Sequence[Effect], plant: Plant) -> FloatArray:
+    """Information that a step is damped by, (k,): of a free play that of its size, of others none.
+
+    Where a load holds the play on one flank no slope tells its width, and a step along one goes anywhere.
+    """
+    return np.array([float(has_play([effect])) for effect in moved for _ in read_coordinates([effect], plant)])
+
+
 def inside_step(
-    jacobian: FloatArray, residual: FloatArray, damping: float, low: FloatArray, high: FloatArray
-) -> FloatArray:
+    jacobian: FloatArray, residual: FloatArray, damping: float, low: FloatArray, high: FloatArray,
+    prior: FloatArray | None = None,
+) -> FloatArray:  # fmt: skip
     """Damped Gauss-Newton step that stays inside its ends, each column damped by a share of its own square.
 
     A coordinate that would leave its range is set to the end of it, and the others are solved for again.
@@ -395,6 +499,7 @@ def inside_step(
         residual: shape (m,).
         damping: share of each column's square.
         low, high: ends of the step, shape (k,).
+        prior: information of each coordinate, shape (k,), that damps those of which the residual tells less.
 
     Returns:
         The step, shape (k,); 0 along columns of zeros, or that no number can hold.
@@ -403,6 +508,9 @@ def inside_step(
     step = np.zeros(len(length))
     free = length > 0
     known = columns.T @ columns + damping * np.eye(len(length))
+    if prior is not None:
+        hardly = free & (length**2 < prior)
+        known += np.diag(np.where(hardly, prior / np.where(hardly, length, 1.0) ** 2, 0.0))
     wanted = columns.T @ residual
     while free.any():
         held = known[np.ix_(free, ~free)] @ (step * length)[~free]

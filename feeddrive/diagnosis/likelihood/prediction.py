@@ -10,6 +10,7 @@ import numpy as np
 from feeddrive.diagnosis.finding.candidates import CANDIDATES
 from feeddrive.diagnosis.finding.remembered import Remembered, effects_key
 from feeddrive.diagnosis.finding.scene import Candidate
+from feeddrive.diagnosis.likelihood.coordinates import is_absent
 from feeddrive.diagnosis.likelihood.evidence import AxisEvidence
 from feeddrive.diagnosis.likelihood.predictability import predictable_samples, weights_to_fit
 from feeddrive.diagnosis.likelihood.predictor import Predictor
@@ -149,8 +150,12 @@ def _simulated(plant: Plant, evidence: AxisEvidence) -> LoadMotion:
 
 
 def _load_side(plant: Plant) -> Plant:
-    """The plant as the load side sees it: chain effects in the chain's values, nothing that acts at the motor alone."""
-    kept = tuple(e for e in plant.motion_effects if not (_at_motor_alone(e) or _in_values(e)))
+    """The plant as the load side sees it: chain effects in the chain's values, nothing that acts at the motor alone.
+
+    What does nothing with the values that it has is left out as well: a candidate that begins with none of it is the
+    machine without it.
+    """
+    kept = tuple(e for e in plant.motion_effects if not (_at_motor_alone(e) or _in_values(e) or is_absent(e, plant)))
     values = plant.chain_values()
     chain = replace(plant.chain, values={key: values[key] for key in plant.chain.values})
     return replace(plant, mechanics=chain, effects=kept)

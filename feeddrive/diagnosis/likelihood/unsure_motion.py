@@ -8,22 +8,26 @@ frequency, is not A in the mean but
 | symbol | meaning | unit |
 |---|---|---|
 | S_error, S_A | spectra of the errors that are drawn, and of A | rad² s |
-| κ | straight between nodes, `SPACING` apart in log f | 1 |
+| κ | straight in log f between nodes: `SPACING` apart, and closer about the poles with the motor held | 1 |
 
 κ is nothing where the error is independent of A, one where it is independent of the motion (Carroll et al., Measurement
 Error in Nonlinear Models (2006), chapter 3: attenuation). Under a drive it is neither: the loop answers the steps, the
 motor moves with that, and κ is the sensitivity 1 / (1 + L) of the loop, complex, of size one, and up to two in a loop
 that rings (Forssell and Ljung, Automatica 35 (1999) 1215). A plant that answers the motor as a filter does (a further
 mode, a softer spring, another mass) lowers the error by what κ ρ takes from A, on blocks left out as well, as loop and
-encoder are the same there. So (1 - ρ) A is simulated, and what the declared plant makes of ρ A around every node is a
-column that each comparison is without, as far as a deviation of one goes, at once and a quarter of a period later.
-Neither names nor declared values are told by it.
+encoder are the same there. At a pole of the load with the motor held the motor is hardly moved, L is nothing, and the
+sensitivity goes to one and back: over the width 1 / |L| of the frequency, which is nobody's to know, the pole's own at
+least. Nodes stand at the pole, its half width away and twice as far each time until they are as far apart as all are.
+
+So (1 - ρ) A is simulated, and what the declared plant makes of ρ A around every node is a column that each comparison
+is without, as far as a deviation of one goes, at once and a quarter of a period later. Neither names nor declared
+values are told by it.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
@@ -43,7 +47,9 @@ LEAST = 1e-3
 tell from none."""
 
 
-def unsure_motions(angle: FloatArray, share: FloatArray, sample_time: float, edge: float) -> Iterator[FloatArray]:
+def unsure_motions(
+    angle: FloatArray, share: FloatArray, sample_time: float, edge: float, poles: Sequence[complex] = ()
+) -> Iterator[FloatArray]:
     """Parts of a motion that may not be, or may be late, one for each node and phase.
 
     Args:
@@ -51,6 +57,7 @@ def unsure_motions(angle: FloatArray, share: FloatArray, sample_time: float, edg
         share: ρ at the frequencies of n samples, (n // 2 + 1,).
         sample_time: [s].
         edge: of the band of the comparison [Hz].
+        poles: of the load with the motor held [1/s].
 
     Yields:
         Angle [rad], (n,).
@@ -60,12 +67,24 @@ def unsure_motions(angle: FloatArray, share: FloatArray, sample_time: float, edg
     seen = frequency[(shares >= LEAST) & (frequency <= edge)]
     if not len(seen):
         return
-    first = max(seen[0], frequency[1])
-    place = np.log(np.maximum(frequency, frequency[1]) / first) / math.log(SPACING)
-    for node in range(math.ceil(math.log(edge / first) / math.log(SPACING)) + 2):
-        hat = np.clip(1 - np.abs(place - node), 0.0, None)
+    first, floor = max(seen[0], frequency[1]), 1 / (len(angle) * sample_time)
+    count = math.ceil(math.log(edge / first) / math.log(SPACING)) + 2
+    nodes = [first * SPACING**node for node in range(-1, count + 1)]
+    for pole in poles:
+        width = max(-pole.real / (2 * math.pi), floor)
+        centre = abs(pole.imag) / (2 * math.pi)
+        nodes.append(centre)
+        while width < 0.5 * (SPACING - 1) * centre:
+            nodes += [centre - width, centre + width]
+            width *= 2
+    inside = [node for node in nodes if nodes[0] <= node <= nodes[count + 1]]
+    places, at = np.unique(np.log(inside)), np.log(np.maximum(frequency, frequency[1]))
+    for hat in np.eye(len(places))[1:-1]:
+        part = shares * np.interp(at, places, hat)
+        if not part.any():
+            continue
         for phase in (1.0, 1j):
-            yield irfft(spectrum * shares * hat * phase)[: len(angle)]
+            yield irfft(spectrum * part * phase)[: len(angle)]
 
 
 def without_share(angle: FloatArray, share: FloatArray, sample_time: float) -> FloatArray:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from feeddrive.diagnosis.recordings.change_result import Measure
 from feeddrive.effects.base import Port
-from feeddrive.units.quantity import format_quantity
+from feeddrive.units.quantity import format_quantity, shown_unit
 
 EXPANSION = 11.7e-6
 """Expansion of steel [1/K], by which a change of lead is read as a temperature."""
@@ -23,6 +23,9 @@ WORDS = {
     ("stiffness_deviation", Port.TRANSMISSION, "factor"): "axial stiffness",
 }
 """What a parameter is called in a sentence about a change; others by their own names."""
+
+SIZES = {("backlash", "width"): "free play", ("preload_loss", "force"): "force up to which preload is lost"}
+"""Parameters that grow and shrink: both values are stated, in one unit."""
 
 FACTORS = ("coulomb_factor", "viscous_factor", "factor")
 """Parameters whose change is stated in per cent."""
@@ -82,10 +85,23 @@ def change_statement(moved: Moved, recording: str, against: str) -> str:
     if moved.key in FACTORS and moved.there.value > 0:
         percent = _percent(abs(moved.by) / moved.there.value, moved.difference.half / moved.there.value)
         return f"{subject} {percent} {way} {places}"
+    if (moved.effect, moved.key) in SIZES:
+        grown = "grew" if moved.by > 0 else "shrank"
+        values = from_to(moved.there.value, moved.here.value, moved.unit)
+        spread = _short(moved.difference.half, moved.unit)
+        return f"{SIZES[moved.effect, moved.key]} {grown} {values} (± {spread}): {against}, then {recording}"
     size, spread = _short(abs(moved.by), moved.unit), _short(moved.difference.half, moved.unit)
     # a level counts from what is declared, so that its values alone would say nothing
     values = "" if name else f": {_short(moved.here.value, moved.unit)} after {_short(moved.there.value, moved.unit)}"
     return f"{subject} {size} (± {spread}) {way} {places}{values}"
+
+
+def from_to(first: float, last: float, unit: str) -> str:
+    """Two values in the unit of the smaller that is not zero; in that of the larger, where it is beyond four digits."""
+    small, large = sorted((abs(first), abs(last)))
+    factor, _, label = shown_unit(small if small > 1e-4 * large else large, unit)
+    a, b = (f"{value * factor:.4g}" for value in (first, last))
+    return f"from {a} to {b} {label}".rstrip()
 
 
 def _short(value: float, unit: str) -> str:

@@ -18,7 +18,7 @@ from feeddrive.diagnosis.calibration.beyond import said_by_effects
 from feeddrive.diagnosis.finding.attempt import SCANNED_ITERATIONS, with_predictable
 from feeddrive.diagnosis.likelihood.coordinates import read_coordinates
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison
-from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
+from feeddrive.diagnosis.likelihood.fit import UNEXPLAINED, Fit, Problem, fit
 from feeddrive.diagnosis.likelihood.predictability import has_play
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between
 from feeddrive.diagnosis.recordings.change_candidates import (
@@ -40,6 +40,7 @@ from feeddrive.diagnosis.recordings.recordings import (
 from feeddrive.effects.base import Effect
 from feeddrive.effects.base import number as number_of
 from feeddrive.effects.friction.friction_deviation import FrictionDeviation
+from feeddrive.effects.transmission.backlash import Backlash
 from feeddrive.units.quantity import percent
 
 REFERENCE_STEPS, JOINT_STEPS = 8, 10
@@ -51,11 +52,11 @@ FALSE_ALARMS = 0.05
 OFFERS = 2
 """Parameters that are fitted before the recordings are taken to share the rest."""
 
-UNEXPLAINED = 1.3
-"""Weighted squared error per sample beyond which much is left; noise alone gives one."""
-
 LAGS = (2.0, 1.4, 0.7, 3.0)
 """Differences of a free play that are tried, over the rms of what the table lags: half of one, either way, at rest."""
+
+NO_PLAY = Backlash.of(width=0.0)
+"""What a machine without free play has, that may have worn since."""
 
 MOST_CHANGES = 6
 """Parameters that may differ; a machine on which more did is another machine."""
@@ -111,8 +112,9 @@ def _forward(
     """Parameters that pay when set free, the likeliest first; what each brings is noted in `ranked`."""
     taken: list[Target] = []
     current = common
-    for one in movables(given, problem):
-        apart = _play_apart(problem, given, one, recordings) if has_play([given[one.effect]]) else None
+    having = given if has_play(given) or not _may_have_play(problem, common, recordings) else [*given, NO_PLAY]
+    for one in movables(having, problem):
+        apart = _play_apart(problem, having, one, recordings) if has_play([having[one.effect]]) else None
         if apart is None:
             continue
         comparison = gain_between(Standing(problem, common), apart, in_folds=False)
@@ -144,6 +146,22 @@ def _forward(
         else:
             break
     return problem, current, taken
+
+
+def _may_have_play(problem: Problem, common: Fit, recordings: Sequence[int]) -> bool:
+    """Whether so much is left of the table position in some recordings, beside the others, as a free play leaves."""
+    if not problem.predictor.of_motion or not problem.plant.chain.elastic:
+        return False
+    predictor, plant = problem.predictor, problem.machine(common.effects)
+    assert isinstance(predictor, RecordingPredictor)
+    left: dict[bool, list[float]] = {True: [], False: []}
+    for e in problem.evidence:
+        if "table_position" not in e.channels:
+            return False
+        error = e.measured["table_position"] - predictor.predict(plant, e)["table_position"]
+        square = float(np.var(error[e.fit_rows])) / e.known_to("table_position") ** 2
+        left[predictor.numbers[e.recording] in recordings].append(square)
+    return max(left[True]) > UNEXPLAINED * max(1.0, *left[False])
 
 
 def _play_apart(problem: Problem, given: Sequence[Effect], one: Movable, recordings: Sequence[int]) -> Standing | None:

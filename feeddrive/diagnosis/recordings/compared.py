@@ -168,6 +168,17 @@ def judged_changes(found: Search, judged: Sequence[Judged]) -> JudgedChanges | N
     apart = [one for one in judged if not one.evidence.fitted.any()]
     if not apart:
         return None
+    known: JudgedChanges
+    for effects, after, known in found.asked:  # every name that is denied asks, and the report
+        if effects == found.fit.effects and after == [one.after for one in judged]:
+            return known
+    result = _judged_changes(found, judged, apart)
+    found.asked.append((found.fit.effects, [one.after for one in judged], result))
+    return result
+
+
+def _judged_changes(found: Search, judged: Sequence[Judged], apart: Sequence[Judged]) -> JudgedChanges:
+    """What differs in the judged recordings; `apart` are those of which nothing was fitted."""
     # fitted and judged recordings in one problem, all of them fitted
     more = [replace(one.evidence, fitted=np.ones(len(one.evidence.fitted), dtype=bool)) for one in apart]
     problem = with_recordings(numbered(found.problem, more), found.fit.effects, more)

@@ -17,21 +17,29 @@ from feeddrive.diagnosis.finding.attempt import with_predictable
 from feeddrive.diagnosis.finding.search import Search, search
 from feeddrive.diagnosis.finding.sets import needed_members
 from feeddrive.diagnosis.likelihood.evidence import Evidence
-from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
+from feeddrive.diagnosis.likelihood.fit import UNEXPLAINED, Fit, Problem, fit
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between, same_samples
 from feeddrive.diagnosis.recordings.change_candidates import levels
 from feeddrive.diagnosis.recordings.change_words import FACTORS
-from feeddrive.diagnosis.recordings.changes import UNEXPLAINED, Changes, find_changes
+from feeddrive.diagnosis.recordings.changes import Changes, find_changes
 from feeddrive.diagnosis.recordings.recordings import (
     RecordingPredictor,
     RecordingShift,
+    in_recording,
     is_shift,
+    shift_of,
     without_shifts,
 )
 from feeddrive.effects.base import Effect, listed, number
 
 SAME = 0.01
 """Relative difference of squared errors that counts as none."""
+
+EXPLAINED = "what was found earlier, and what differs, leave no more than noise: it was not searched"
+"""Why an effect was not tried that is not among those found earlier."""
+
+TURNED = 2
+"""Steps of a fit that begins where another one of the same machine has ended."""
 
 LEAST_FACTOR = 0.3
 """Least factor on declared friction or stiffness that is believed with no effect found yet; its inverse is the most."""
@@ -95,19 +103,45 @@ def _followed(problem: Problem, held: Changes, earlier: Sequence[int], progress:
 
 
 def _continued(problem: Problem, start: Sequence[Effect], progress: Callable[[str], None]) -> Searched:
-    """The effects found earlier, those that still pay; then what else is lacking, and what differs."""
+    """The effects found earlier, those that still pay; then what else is lacking, and what differs.
+
+    They are those of the machine before: what differs is asked of the last recording, with these values held.
+    """
     progress("asking again for the effects found earlier")
-    problem = with_predictable(problem, start)
-    earlier = range(len(problem.evidence) - 1)
-    again = find_changes(problem, fit(problem, start).effects, earlier)
+    last = len(problem.evidence) - 1
+    again = _as_last(find_changes(with_predictable(problem, start), start, [last] if last else []), last)
+    if last > 1 and again.problem.plain_error(again.fit.effects) > UNEXPLAINED:  # those before differ as well
+        again = find_changes(again.problem, without_shifts(again.fit.effects), range(last))
     needed = _still_needed(again.problem, again.fit)
     again = replace(again, problem=needed.problem, fit=needed.fit)
+    if again.problem.plain_error(again.fit.effects) < UNEXPLAINED:
+        every = dict.fromkeys((one.name for one in problem.predictor.candidates), EXPLAINED)
+        return Searched(Search(again.problem, again.fit, (), (), every), again)
     more = _searched(needed.problem, again, progress)
+    if not more.fit.effects:
+        return Searched(replace(more, problem=again.problem, fit=again.fit), again)
     effects = (*without_shifts(again.fit.effects), *more.fit.effects)
-    changes = find_changes(more.problem, effects, earlier)
+    changes = find_changes(more.problem, effects, range(last))
     needed = _still_needed(changes.problem, fit(changes.problem, changes.fit.effects))
     changes = replace(changes, problem=needed.problem, fit=needed.fit)
     return Searched(replace(more, problem=changes.problem, fit=changes.fit), changes)
+
+
+def _as_last(changes: Changes, last: int) -> Changes:
+    """What differs in the last recording, as what differs in all others from the machine as it is in the last."""
+    if not changes.targets:
+        return changes
+    problem, effects = changes.problem, changes.fit.effects
+    back = [
+        shift_of(one.target, number, len(listed(one.values["shift"]))).with_values(
+            shift=tuple(-by for by in listed(one.values["shift"]))
+        )
+        for one in effects
+        if isinstance(one, RecordingShift)
+        for number in range(last)
+    ]
+    turned = fit(problem, [*in_recording(effects, problem.plant, last), *back], iterations=TURNED)
+    return replace(changes, fit=turned)
 
 
 def _still_needed(problem: Problem, found: Fit) -> Standing:
@@ -125,17 +159,24 @@ def _better(first: Searched, second: Searched) -> Searched:
 
     Where they predict different samples, the likelier.
     """
-    a, b = (Standing(one.search.problem, one.search.fit) for one in (first, second))
+    left = first.search.problem.evidence[0].left
+    a, b = (_weighed(one.search, left) for one in (first, second))
     if not same_samples(a.problem, b.problem):
         return second if odds_between(a, b, len(a.problem.predictor.candidates)) > 0 else first
-    errors = [one.search.fit.squared_error / len(one.search.fit.residual) for one in (first, second)]
+    errors = [one.fit.squared_error / len(one.fit.residual) for one in (a, b)]
     if abs(errors[0] - errors[1]) > SAME * min(errors):
         return first if errors[0] < errors[1] else second
     return min((first, second), key=lambda one: len(one.search.fit.coordinates))
 
 
+def _weighed(found: Search, left: dict[str, float]) -> Standing:
+    """A set that was found, its channels weighed as those of another."""
+    problem = found.problem.weighed(left)
+    return Standing(problem, found.fit if problem is found.problem else fit(problem, found.fit.effects, iterations=0))
+
+
 def _explained(one: Searched) -> bool:
-    return one.search.fit.squared_error < UNEXPLAINED * len(one.search.fit.residual)
+    return one.search.problem.plain_error(one.search.fit.effects) < UNEXPLAINED
 
 
 def _nothing(problem: Problem) -> Changes:

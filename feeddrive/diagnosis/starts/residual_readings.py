@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,11 +24,19 @@ LEAST_PERIODS = 5
 FEWEST_PERIODS = 2
 """Periods in the travel from which a sine is told from a line over the stroke, once both are fitted together."""
 
+SKIRT = math.sqrt(2)
+"""Frequency over the edge of the band up to which a sine is looked for: a sixteenth of it passes the filter, and a
+ripple of a drive stands far above its noise."""
+
 LONGEST_PERIOD = 2.0
 """Revolutions of the longest period that is looked for beside a line: a longer one is a curve along the stroke."""
 
 OVERSAMPLING = 8
 """Zero padding, so that a peak is met to an eighth of the resolution."""
+
+TOLD = 1e-6
+"""Share of their product by which sine and cosine stand apart on the samples: below it both are one column, but for
+rounding, and what they take is none of either."""
 
 
 def residual_force(scene: Scene, at: int) -> FloatArray:
@@ -114,9 +123,12 @@ def bump_of(curve: PositionCurve, count: int = 3) -> list[tuple[float, float, fl
 def strongest_orders(
     angle: FloatArray, residual: FloatArray, highest: float = BINS_PER_TURN / 4, count: int = 3, lowest: float = 0.0
 ) -> list[float]:
-    """Orders per revolution of the largest peaks.
+    """Orders per revolution of the sines that take most of a residual, by least squares beside a mean.
 
-    The residual is averaged per angle bin first, so that rests and slow strokes do not weigh by their duration.
+    The residual is averaged per angle bin first, so that rests and slow strokes do not weigh by their duration. Bins
+    that no sample met, between slow reversals and at speed, count for nothing: of a curve drawn across them, or of
+    zeros in their place, the largest peaks would be those of the gaps. Source: Zechmeister and Kuerster, Astron.
+    Astrophys. 496 (2009) 577, equations 4 to 15, the bins tapered so that a trend does not leak into high orders.
 
     Args:
         angle: shape (n,) [rad].
@@ -135,18 +147,37 @@ def strongest_orders(
     if turns < 2:
         return []
     samples = np.bincount(bins, minlength=size)
-    filled = np.flatnonzero(samples)
-    mean = np.bincount(bins, weights=residual - np.mean(residual), minlength=size)[filled] / samples[filled]
-    # at speed whole bins are jumped over; left at zero they would put a comb of false orders into the spectrum
-    even = np.interp(np.arange(size), filled, mean)
-    padded = OVERSAMPLING * size
-    spectrum = np.abs(np.fft.rfft(even * np.hanning(size), padded))
-    orders = np.arange(len(spectrum)) * BINS_PER_TURN / padded
+    mean = np.bincount(bins, weights=residual, minlength=size) / np.maximum(samples, 1)
+    weight = np.where(samples > 0, np.hanning(size + 2)[1:-1], 0.0)
+    share = _shares_of_sines(mean, weight / weight.sum())
+    orders = np.arange(len(share)) * BINS_PER_TURN / (OVERSAMPLING * size)
     allowed = (orders > max(lowest, LEAST_PERIODS / turns)) & (orders < min(highest, BINS_PER_TURN / 4))
-    spectrum = np.where(allowed, spectrum, 0.0)
-    peaks, _ = find_peaks(spectrum, distance=OVERSAMPLING)
-    best = peaks[np.argsort(spectrum[peaks])[::-1][:count]]
+    share = np.where(allowed, share, 0.0)
+    peaks, _ = find_peaks(share, distance=OVERSAMPLING)
+    best = peaks[np.argsort(share[peaks])[::-1][:count]]
     return [float(orders[i]) for i in best]
+
+
+def _shares_of_sines(values: FloatArray, weight: FloatArray) -> FloatArray:
+    """Share of the weighted square about the mean that a sine of each frequency takes, `OVERSAMPLING` times as fine.
+
+    Args:
+        values: at even places, (n,).
+        weight: of each, (n,), one together; 0 where there is no value.
+    """
+    size = OVERSAMPLING * len(values)
+    beyond = np.where(weight > 0, values - float(weight @ values), 0.0)
+    square = float(weight @ beyond**2)
+    taken, window = np.fft.rfft(weight * beyond, size), np.fft.fft(weight, size)
+    once, twice = window[: len(taken)], window[2 * np.arange(len(taken)) % size]
+    # sums of cos, sin, cos^2, sin^2 and cos sin about their means; transforms are of exp(-i)
+    cosine, sine = once.real, -once.imag
+    cosines, sines = 0.5 * (1 + twice.real) - cosine**2, 0.5 * (1 - twice.real) - sine**2
+    both = -0.5 * twice.imag - cosine * sine
+    along = sines * taken.real**2 + cosines * taken.imag**2 + 2 * both * taken.real * taken.imag
+    apart = cosines * sines - both**2
+    told = apart > TOLD * cosines * sines  # else a mean and one column do as well
+    return np.where(told, along, 0.0) / np.where(told, apart * max(square, np.finfo(float).tiny), 1.0)
 
 
 def sine_at(angle: FloatArray, residual: FloatArray, order: float) -> tuple[float, float]:
@@ -171,10 +202,10 @@ def strongest_sines(
 ) -> list[Sine]:
     """Sines that take most of a residual, each looked for at the samples at which it is in the band.
 
-    An order n shows where n |speed| is below the edge: a high one at low speed alone, where the fast strokes, in which
-    it is filtered off, or sampled as another one, are noise. So octaves of orders are looked for, each where the speed
-    is so low that the whole octave is in the band; what each takes of the square is compared (of noise the best takes
-    as much of few samples as of many).
+    An order n shows where n |speed| is below the edge, or little above: a high one at low speed alone, where the fast
+    strokes, in which it is filtered off, or sampled as another one, are noise. So octaves of orders are looked for,
+    each where the speed is so low that the whole octave is in the band; what each takes of the square is compared (of
+    noise the best takes as much of few samples as of many).
 
     Args:
         angle: shape (n,) [rad].
@@ -189,15 +220,18 @@ def strongest_sines(
     fastest, square = float(np.max(np.abs(speed), initial=0.0)), float(residual @ residual)
     if fastest == 0.0 or square == 0.0:
         return []
-    found, lowest, highest = _longest_sine(angle, residual), 0.0, 2 * np.pi * edge / fastest
+    seen = 2 * np.pi * SKIRT * edge
+    found, lowest, highest = _longest_sine(angle, residual), 0.0, seen / fastest
     while lowest < BINS_PER_TURN / 4:
-        slow = np.abs(speed) * highest <= 2 * np.pi * edge * (1 + 1e-9)
+        slow = np.abs(speed) * highest <= seen * (1 + 1e-9)
         if not slow.any():
             break
         there, left = angle[slow], residual[slow]
         for order in strongest_orders(there, left, highest, count, lowest):
-            amplitude, phase = sine_at(there, left, order)
-            found.append(Sine(order, amplitude, phase, 0.5 * amplitude**2 * len(left) / square))
+            columns = np.column_stack([np.sin(order * there), np.cos(order * there), np.ones(len(there))])
+            # of some slow samples at the reversals a sine of any size passes near, and takes no more than is there
+            (taken, (a, b, _)), (level, _) = _taken(columns, left), _taken(columns[:, 2:], left)
+            found.append(Sine(order, float(np.hypot(a, b)), float(np.arctan2(b, a)), (taken - level) / square))
         lowest, highest = highest, 2 * highest
     return sorted(found, key=lambda one: -one.share)[:count]
 

@@ -37,7 +37,7 @@ class Quality:
     """One thing that a recording is not, or may not be.
 
     Attributes:
-        kind: clock_rate, channel_gain, channel_offset, channel_delay, channel_hold, or that of a flaw.
+        kind: clock_rate, channel_gain, channel_drift, channel_offset, channel_delay, channel_hold, or that of a flaw.
         channel: it is about; time for the clock.
         value: of the fault [unit]; NaN where it has none.
         unit: SI unit.

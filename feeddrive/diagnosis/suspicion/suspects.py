@@ -4,10 +4,11 @@
 |---|---|---|
 | clock_rate | time stamps exp(c) times the true ones | time / exp(c) |
 | channel_gain | torque exp(c) times the true one | torque / exp(c) |
+| channel_drift | torque with a zero that moves, by c t | torque - c t |
 
 Each is one column beside the slopes of a fitted set: for the clock the change of the residual when the recording is
-prepared with other time stamps, for a gain the predicted torque. What a column brings on blocks left out is compared as
-for any effect (`cross_validation`), and two questions are asked of it:
+prepared with other time stamps, for a gain the predicted torque, for a drift the time. What a column brings on blocks
+left out is compared as for any effect (`cross_validation`), and two questions are asked of it:
 
     alone    with nothing found, is it worth as much as the best single effect was?
     beside   with all effects found, does it pay?
@@ -48,10 +49,11 @@ from feeddrive.diagnosis.suspicion.quality import Quality
 from feeddrive.recording import Recording
 from feeddrive.typing import FloatArray
 
-CLOCK, GAIN = "clock_rate", "channel_gain"
+CLOCK, GAIN, DRIFT = "clock_rate", "channel_gain", "channel_drift"
 
-LEAST = {CLOCK: 1e-3, GAIN: 5e-3}
-"""Logarithm of a factor that is a fault: a quartz misses by 1e-4 at most, a calibrated current by half a per cent."""
+LEAST = {CLOCK: 1e-3, GAIN: 5e-3, DRIFT: 1e-12}
+"""Logarithm of a factor that is a fault: a quartz misses by 1e-4 at most, a calibrated current by half a per cent. A
+drift [N m/s] is one where it is told at all: no machine has a torque that moves on whatever it does."""
 
 STEP = 1e-3
 """Change of the logarithm of a clock from which its column is taken."""
@@ -69,8 +71,8 @@ class Suspect:
     """A fault of the recorder with its size.
 
     Attributes:
-        kind: `CLOCK` or `GAIN`.
-        size: c.
+        kind: `CLOCK`, `GAIN` or `DRIFT`.
+        size: c [1, 1, N m/s].
         deviation: of c.
         comparison: what it brings on blocks left out.
     """
@@ -85,6 +87,9 @@ class Suspect:
         factor = math.exp(-self.size)
         if self.kind == CLOCK:
             return replace(recording, time=recording.time * factor, sample_time=recording.sample_time * factor)
+        if self.kind == DRIFT:
+            moved = self.size * (recording.time - recording.time[0])
+            return recording.with_channels({"motor_torque": recording["motor_torque"] - moved})
         names = [name for name in ("motor_torque", "motor_current", "motor_torque_share") if name in recording]
         return recording.with_channels({name: factor * recording[name] for name in names})
 
@@ -93,6 +98,12 @@ class Suspect:
         factor = math.exp(self.size)
         low, high = (math.exp(self.size + way * 1.96 * self.deviation) for way in (-1, 1))
         explains = self.comparison.gain
+        if self.kind == DRIFT:
+            span = self.size - 1.96 * self.deviation, self.size + 1.96 * self.deviation
+            total = self.size * recordings[0].duration
+            what = f"the zero of the torque moves by {total:+.3g} N m in {recordings[0].duration:.3g} s, whatever runs"
+            mend = "record at rest before and after, and take the line between the two zeros off the torque"
+            return Quality(DRIFT, "motor_torque", self.size, "N m/s", what, mend, span, explains, mended=True)
         if self.kind == CLOCK:
             off = f"{100 * (factor - 1):+.3g} % off"
             what = f"the clock of the recording is {off}: {factor:.6g} s are written for each second"
@@ -146,7 +157,7 @@ def is_better(fault: Suspect, mended: Search, found: Search) -> bool:
 
     As much is what chance does for the effects that are spared: for each, less than is asked of any.
     """
-    before, after = (one.fit.squared_error / max(len(one.fit.residual), 1) for one in (found, mended))
+    before, after = (one.problem.plain_error(one.fit.effects) for one in (found, mended))
     if len(mended.fit.coordinates) + 1 < len(found.fit.coordinates):
         spared = max(1, len(found.fit.effects) - len(mended.fit.effects))
         return after <= (1 + spared * fault.comparison.least) * before
@@ -165,7 +176,9 @@ def _asked(problem: Problem, found: Fit) -> list[Suspect]:
         return []  # recordings that differ are compared with each other, not with a clock
     if any("motor_torque" not in e.channels or e.scaled_from for e in problem.evidence):  # type: ignore[attr-defined]
         return []
-    columns = {CLOCK: _clock_column(problem, found), GAIN: _gain_column(problem, found)}
+    columns = {
+        CLOCK: _clock_column(problem, found), GAIN: _gain_column(problem, found), DRIFT: _drift_column(problem),
+    }  # fmt: skip
     return [_beside(problem, found, kind, column) for kind, column in columns.items() if column is not None]
 
 
@@ -196,6 +209,18 @@ def _gain_column(problem: Problem, found: Fit) -> FloatArray:
         predicted = problem.predictor.predict(plant, e)
         only = {name: s if name == "motor_torque" else np.zeros_like(s) for name, s in predicted.items()}
         parts.append(e.weighted(only, e.thinned(e.fit_rows)))
+    return _whitened(problem, np.concatenate(parts))
+
+
+def _drift_column(problem: Problem) -> FloatArray | None:
+    """The time since the first row as a torque, whitened, (m,); None where the torque is no torque as it is written."""
+    if any("motor_torque" not in e.recording for e in problem.evidence):
+        return None
+    parts = []
+    for e in problem.evidence:
+        series = {name: np.zeros(len(e.counted)) for name in e.channels}
+        series["motor_torque"] = e.in_band(e.recording.time - e.recording.time[0])
+        parts.append(e.weighted(series, e.thinned(e.fit_rows)))
     return _whitened(problem, np.concatenate(parts))
 
 

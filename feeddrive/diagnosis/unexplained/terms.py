@@ -100,7 +100,7 @@ def columns_in(view: View, term: Term) -> FloatArray:
     evidence = view.evidence
     if term not in view.shown:
         # one by one, and thinned at once, which bounds the memory of long recordings
-        columns = [evidence.in_band(column)[:: evidence.thinning] for column in term.columns(view.values).T]
+        columns = [evidence.thinly_in_band(column) for column in term.columns(view.values).T]
         view.shown[term] = np.column_stack(columns)
     return view.shown[term][view.rows[:: evidence.thinning]]
 

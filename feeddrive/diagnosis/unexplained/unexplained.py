@@ -81,6 +81,9 @@ def explain_rest(
         judged: recordings that were not fitted.
         channels: errors with the named effects.
     """
+    names_alone = problem, judged
+    problem = replace(problem, evidence=tuple(e.mapped for e in problem.evidence))
+    judged = [replace(j, evidence=j.evidence.mapped) for j in judged]
     first = analyses_of(problem, effects, judged, channels)
     carried: list[Carried] = []
     reasons: dict[str, list[str]] = {channel.name: [] for channel in channels}
@@ -102,7 +105,7 @@ def explain_rest(
     if len(carried) > 1:
         carried = _together(problem, effects, judged, carried)
     asked = len(effects) >= FEWEST and not problem.budget.skips("a table in place of the names")
-    other = table_against(problem, effects, judged, channels) if asked else None
+    other = table_against(names_alone[0], effects, names_alone[1], channels) if asked else None
     left = {}
     for c in channels:
         instead = other if other is not None and other.as_good and other.carried.channel == c.name else None

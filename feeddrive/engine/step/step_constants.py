@@ -23,8 +23,14 @@ from feeddrive.typing import Expression, FloatArray
 FULL_SCALE = 10.0
 """Acceleration of the full scale of effect forces [m/s^2]."""
 
-CONVERGED = 1e-9
-"""Newton ends where its last correction is below this share of the force, or of full scale."""
+CONVERGED = 1e-5
+"""Newton ends where its last correction is below this share of the force, or of full scale: each is as the square of
+the one before, in shares of what bends the force. 1e-4 m/s^2 over half a millisecond are 50 nm/s, a ten-thousandth of
+the 0.5 mm/s within which friction turns round. A further one would only say so, and takes a third of a run."""
+
+CONVERGED_WITH_BRISTLES = 1e-9
+"""The same with bristles: forces are compared, and a stiff bristle that breaks away bends within 10 nm, which the last
+hundred-thousandth of its force crosses."""
 
 BRISTLE_SCALE = 1e-8
 """Deflection that counts as full scale where bristles alone are solved [m]."""
@@ -34,6 +40,11 @@ _CURVATURE = np.array([1.0, -4.0, 3.0])
 
 _CUBIC_SHARE = 1 / 36
 """Impulse that the two nodes miss of a force whose curvature at the start changes by 1 from step to step."""
+
+
+def converged(layout: Layout) -> float:
+    """Share of the force, or of full scale, below which Newton's last correction ends it."""
+    return CONVERGED_WITH_BRISTLES if layout.bristles else CONVERGED
 
 
 def propagator_shapes(layout: Layout) -> list[tuple[int, int]]:
@@ -111,9 +122,9 @@ def _weights(
         on_bristle = np.full(layout.bristles, step / 12 / (1e-2 * BRISTLE_SCALE))
         if not np.isfinite(tolerance):
             on_bristle[:] = 0.0
-        return np.full(layout.bristles, CONVERGED * BRISTLE_SCALE), on_bristle, on_bristle
+        return np.full(layout.bristles, converged(layout) * BRISTLE_SCALE), on_bristle, on_bristle
     own = np.array([1 / linear.inverse[i, i] for i in (k - int(layout.driven) for k in layout.forced)])
-    scales = CONVERGED * FULL_SCALE * np.sqrt(own * linear.felt_mass)
+    scales = converged(layout) * FULL_SCALE * np.sqrt(own * linear.felt_mass)
     scales = np.concatenate([scales, np.zeros(max(0, layout.bristles - count))])
     moved, moving = (_energy_norm(linear, curved[rows]) for rows in (slice(0, n), slice(n, 2 * n)))
     by_curvature = moved + moving / linear.forgetting

@@ -21,7 +21,7 @@ import casadi as ca
 import numpy as np
 
 from feeddrive.engine.step.propagators import NODES, RADAU, part, solved_in_pairs
-from feeddrive.engine.step.step_constants import CONVERGED
+from feeddrive.engine.step.step_constants import converged
 from feeddrive.engine.step.step_symbols import StepSymbols
 from feeddrive.typing import Expression
 
@@ -64,9 +64,9 @@ class NodeEquations:
         correction[pairs] = solved_in_pairs(self._jacobian()[pairs, pairs], self._residual()[pairs])
         improved = s.guess - correction
         count = 2 * (s.forced or s.layout.bristles)
-        largest: Expression = ca.SX(0)
+        largest, share = ca.SX(0), converged(s.layout)
         for k in range(count):
-            limit = ca.fmax(CONVERGED * ca.fabs(improved[k]), s.scales[k % (count // 2)])
+            limit = ca.fmax(share * ca.fabs(improved[k]), s.scales[k % (count // 2)])
             largest = ca.fmax(largest, ca.fabs(correction[k]) / limit)
         return improved, largest
 

@@ -11,7 +11,7 @@ from feeddrive.interface.quantities import Quantity, positive
 from feeddrive.recording.channels import channel_unit
 from feeddrive.recording.files.channel_mapping import read_mapping
 from feeddrive.recording.files.opening import FileContent, first_bytes, open_file
-from feeddrive.recording.files.reading import checked_trace, read_recording
+from feeddrive.recording.files.reading import checked_trace, mapped_by_variables, read_recording
 from feeddrive.recording.frequency_response import FrequencyResponse
 from feeddrive.recording.recording import Recording
 from feeddrive.recording.traces.channel_choice import Wishes
@@ -64,8 +64,9 @@ def inspect(
         None if sample_time is None else positive(sample_time, "s", "sample_time", "1 ms"),
         tuple(columns),
     )
-    is_trace = could_be_trace(first_bytes(Path(path)))
+    start = first_bytes(Path(path))
     known = None if map is None else read_mapping(Path(map))
+    is_trace = could_be_trace(start) and not mapped_by_variables(Path(path), start, known)
     if known is not None and known.sample_time is not None and wishes.sample_time is None:
         wishes = Wishes(sample_time=known.sample_time, columns=wishes.columns)
     found = read_trace(content := open_file(Path(path)), wishes) if is_trace else None

@@ -184,7 +184,22 @@ def circle_test(readings: Readings, radius: float | None) -> CircleTest:
         x, y = length * np.cos(angle), length * np.sin(angle)
     if "direction" in readings:
         sides = readings.si("direction", "1")
-        paths = [(x[sides == side], y[sides == side]) for side in (1.0, -1.0) if np.any(sides == side)]
+        if not np.isin(sides, (1.0, -1.0)).all():
+            what = "a direction is neither 1 nor -1"
+            raise InputError(what, readings.where, "write 1 counter-clockwise, -1 clockwise")
+        paths = []
+        for side in (1.0, -1.0):
+            path = x[sides == side], y[sides == side]
+            if len(path[0]) and side * _turns(*path) < 0.0:
+                what = f"the rows of direction {side:g} turn the other way"
+                raise InputError(what, readings.where, "list them in their order in time, or correct the direction")
+            paths += [path] if len(path[0]) else []
     else:
         paths = [(x, y)]
     return CircleTest(tuple(paths), nominal)
+
+
+def _turns(x: FloatArray, y: FloatArray) -> float:
+    """Twice the area that a path goes round, (n,) points: positive counter-clockwise."""
+    x, y = x - np.mean(x), y - np.mean(y)
+    return float(np.sum(x[:-1] * y[1:] - x[1:] * y[:-1]))

@@ -9,7 +9,7 @@ import numpy as np
 
 from feeddrive.errors import InputError
 from feeddrive.metrology.axis_heating import AxisHeating, axis_heating
-from feeddrive.metrology.circular import CircularPath, circular_path, least_squares_circle
+from feeddrive.metrology.circular import CircularPath, circular_path, least_squares_circle, whole_turns
 from feeddrive.metrology.positioning import OneDirection, Positioning, one_direction, positioning
 from feeddrive.typing import FloatArray
 
@@ -107,7 +107,8 @@ class CircleTest:
         """G(b), the range of the radius over both directions about their common centre [m]; None for one direction."""
         if {one.direction for one in self.circles} != {1, -1}:
             return None
-        x, y = (np.concatenate([path[i] for path in self.paths]) for i in (0, 1))
+        turns = [whole_turns(x, y) for x, y in self.paths]
+        x, y = (np.concatenate([path[i] for path in turns]) for i in (0, 1))
         centre, _ = least_squares_circle(x, y)
         return float(np.ptp(np.hypot(x - centre[0], y - centre[1])))
 

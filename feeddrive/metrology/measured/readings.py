@@ -25,7 +25,8 @@ from pathlib import Path
 import numpy as np
 
 from feeddrive.errors import InputError, quoted
-from feeddrive.recording.files.csv_file import Layout, find_table
+from feeddrive.recording.files.cells import with_numbers
+from feeddrive.recording.files.csv_file import Layout, find_table, is_number
 from feeddrive.recording.files.opening import TextFile, decode, first_bytes, head_of, open_file
 from feeddrive.typing import FloatArray
 from feeddrive.units.quantity import parse, unit_conversion
@@ -92,7 +93,8 @@ _REMARK = re.compile(r"#\s*(?P<key>[A-Za-z_ ]+?)\s*=\s*(?P<value>[^,;\t]+)")
 
 _SIDES = {"up": "up", "forward": "up", "fwd": "up", "vor": "up", "vorwärts": "up", "+": "up", "↑": "up",
           "down": "down", "backward": "down", "reverse": "down", "rev": "down", "bwd": "down", "zurück": "down",
-          "rückwärts": "down", "-": "down", "↓": "down"}  # fmt: skip
+          "rückwärts": "down", "-": "down", "↓": "down", "ccw": "up", "cw": "down", "avanti": "up", "indietro": "down",
+          "正向": "up", "反向": "down"}  # fmt: skip
 _RUN = re.compile(
     r"(?:(?:run|lauf) ?)?(?P<before>\d*) ?(?P<side>"
     + "|".join(map(re.escape, sorted(_SIDES, key=len, reverse=True)))
@@ -102,6 +104,8 @@ _SPELLINGS = {
     "nominal": "target", "nominal position": "target", "target position": "target", "soll": "target",
     "sollposition": "target", "zielposition": "target", "actual position": "position", "measured position": "position",
     "istposition": "position", "error": "deviation", "abweichung": "deviation", "deviation error": "deviation",
+    "posizione": "target", "posizione nominale": "target", "quota": "target", "scostamento": "deviation",
+    "errore": "deviation", "direzione": "direction", "目标位置": "target", "偏差": "deviation", "方向": "direction",
     "richtung": "direction", "lauf": "run", "zeit": "time", "winkel": "angle", "radius deviation": "radial",
 }  # fmt: skip
 """Words of lasers' programs and of people for the names that `forms` knows."""
@@ -137,7 +141,10 @@ class Readings:
             raise InputError(f'no column "{name}"', self.where, f"it has {held}")
         written, values = self.columns[name]
         if not written and unit != "1":
-            raise InputError(f'column "{name}" has no unit', self.where, f'write "{name} [{unit}]" in the header')
+            usual = {"m": "mm" if name in ("target", "position", "x", "y", "radius") else "µm", "rad": "deg"}.get(
+                unit, unit
+            )
+            raise InputError(f'column "{name}" has no unit', self.where, f'write "{name} [{usual}]" in the header')
         return unit_conversion(written or "1", unit, f'{self.where}, column "{name}"').apply(values)
 
     def remark(self, key: str, unit: str) -> float | None:
@@ -163,7 +170,11 @@ def read_readings(path: Path, decimal: str | None = None) -> Readings:
         return Readings(where, laser_columns(decode(content)[0], where), {}, content.sha256)
     remarks = _remarks(head)
     source = TextFile(path)
-    table = find_table(source.blocks(), Layout(), where).numbers(decimal)
+    text_table = find_table(source.blocks(), Layout(), where)
+    for column, heading in enumerate(text_table.names):
+        if plain_name(re.sub(r"\s*[\[(].*", "", heading)) == "direction":
+            text_table = with_numbers(text_table, column, _side)
+    table = text_table.numbers(decimal)
     columns: dict[str, tuple[str, FloatArray]] = {}
     for heading, values in zip(table.names, table.columns, strict=True):
         match = _HEADING.fullmatch(heading.strip())
@@ -177,6 +188,15 @@ def read_readings(path: Path, decimal: str | None = None) -> Readings:
             raise InputError("a reading is not finite", f'{where}, row {row}, column "{name}"', "leave the row away")
         columns[name] = ((match["unit"] or "").strip(), values)
     return Readings(where, columns, remarks, source.sha256)
+
+
+def _side(cell: str, place: str) -> str:
+    """Return a direction as a number, also where it is a word."""
+    word = _SIDES.get(cell.lower())
+    if word is None and not is_number(cell.replace(",", ".")):
+        mend = "write 1 or up from below, -1 or down from above; of a circle 1 counter-clockwise, -1 clockwise"
+        raise InputError(f'"{quoted(cell, 40)}" is no direction', place, mend)
+    return cell if word is None else {"up": "1", "down": "-1"}[word]
 
 
 def plain_name(written: str) -> str:

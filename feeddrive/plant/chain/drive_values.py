@@ -20,6 +20,7 @@ from feeddrive.errors import InputError
 from feeddrive.parts.bearings.supports import Support
 from feeddrive.parts.combined_stiffness import Deformation, combined_stiffness
 from feeddrive.parts.screw.screw_drive import BallScrewDrive
+from feeddrive.plant.chain.linear_chain import Hubs
 from feeddrive.units.quantity import format_quantity
 
 
@@ -84,7 +85,7 @@ def without_brake(drive: BallScrewDrive) -> BallScrewDrive:
     return replace(drive, motor=replace(drive.motor, brake=None))
 
 
-def hubs_between(drive: BallScrewDrive) -> tuple[tuple[float, float], ...]:
+def hubs_between(drive: BallScrewDrive) -> Hubs:
     """(a_j, J_j) of hubs and wheels that ride between motor and screw, in their order [1, kg m^2]."""
     springs = without_brake(drive).torsion_springs(0.0)[1:-1]
     compliance = math.fsum(spring.compliance for spring in springs)

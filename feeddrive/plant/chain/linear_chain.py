@@ -34,6 +34,7 @@ from feeddrive.typing import Expression
 Row = list[Expression]
 Matrix = list[Row]
 Values = Mapping[str, Expression]
+Hubs = tuple[tuple[float, float], ...]
 
 
 _PREFIXES = {"motor": "motor_", "ball_screw": "screw_", "table": "table_"}

@@ -9,12 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import singledispatch
 
 import numpy as np
 
 from feeddrive.plant.analysis.modes import Modes, braked_modes, free_modes
 from feeddrive.plant.chain.distributed_screw import DistributedScrew
 from feeddrive.plant.chain.drive_values import hubs_between
+from feeddrive.plant.chain.linear_chain import Chain
 from feeddrive.plant.chain.standing_waves import ScrewWithWaves, waves_needed
 from feeddrive.plant.plant import Plant
 
@@ -56,12 +58,21 @@ def resolved(plant: Plant, frequency: float, positions: Sequence[float]) -> Plan
         positions: of the table [m].
     """
     chain = plant.chain.without_modes
-    if not isinstance(chain, DistributedScrew):
-        return plant
+    fine = _up_to(chain, plant, frequency, positions)
+    return plant if fine is chain else replace(plant, mechanics=fine)
+
+
+@singledispatch
+def _up_to(chain: Chain, plant: Plant, frequency: float, positions: Sequence[float]) -> Chain:
+    """A chain of the plant whose frequencies hold up to one; itself where it leaves nothing out."""
+    return chain
+
+
+@_up_to.register
+def _(chain: DistributedScrew, plant: Plant, frequency: float, positions: Sequence[float]) -> Chain:
     bare = DistributedScrew(plant.chain_values())
     waves = max(waves_needed(bare, frequency, x, ACCURACY) for x in positions)
-    hubs = hubs_between(plant.drive) if plant.drive is not None else ()
-    return replace(plant, mechanics=ScrewWithWaves(chain.values, 1, waves, hubs))
+    return ScrewWithWaves(chain.values, 1, waves, hubs_between(plant.drive) if plant.drive is not None else ())
 
 
 def resolved_modes(plant: Plant, position: float, count: int = FIRST) -> ResolvedModes:
@@ -76,12 +87,12 @@ def resolved_modes(plant: Plant, position: float, count: int = FIRST) -> Resolve
         InputError: the nut would not be on the screw.
     """
     own = _first(braked_modes(plant, position), count), _first(free_modes(plant, position), count + 1)
-    if not isinstance(plant.chain.without_modes, DistributedScrew):
-        return ResolvedModes(plant.chain.coordinates, *own, float("inf"))
     counts = [len(modes.frequencies) for modes in own]
-    highest = max(float(modes.frequencies[-1]) for modes in own)
+    highest = max((float(f) for modes in own for f in modes.frequencies), default=0.0)
     for _ in range(_ROUNDS):
         fine = resolved(plant, highest, [position])
+        if fine is plant:
+            return ResolvedModes(plant.chain.coordinates, *own, float("inf"))
         found = [_first(modes(fine, position), n) for modes, n in zip((braked_modes, free_modes), counts, strict=True)]
         reached, highest = highest, max(float(modes.frequencies[-1]) for modes in found)
         if highest <= reached:  # it held up to there

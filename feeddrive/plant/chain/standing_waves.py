@@ -40,7 +40,7 @@ from functools import lru_cache
 from scipy.optimize import brentq
 
 from feeddrive.plant.chain.distributed_screw import DistributedScrew
-from feeddrive.plant.chain.linear_chain import Matrix, Spring, Values
+from feeddrive.plant.chain.linear_chain import Hubs, Matrix, Spring, Values
 from feeddrive.typing import Expression
 
 MOST_WAVES = 40
@@ -70,7 +70,7 @@ class ScrewWithWaves(DistributedScrew):
     """
 
     waves: int = 0
-    hubs: tuple[tuple[float, float], ...] = ()
+    hubs: Hubs = ()
 
     @property
     def coordinates(self) -> tuple[str, ...]:

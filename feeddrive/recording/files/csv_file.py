@@ -11,6 +11,7 @@ from itertools import chain
 import numpy as np
 
 from feeddrive.errors import InputError
+from feeddrive.recording.traces.naming import known_unit
 from feeddrive.typing import FloatArray
 
 
@@ -120,6 +121,7 @@ class TextTable:
         separator: one of `,` `;` tab.
         first_row: row in the file of the first row of numbers, 1 for the first.
         where: file name for messages.
+        spare: empty headings behind the last that has a name, as a table program leaves them.
     """
 
     names: tuple[str, ...]
@@ -127,6 +129,7 @@ class TextTable:
     separator: str
     first_row: int
     where: str
+    spare: int = 0
 
     def numbers(self, decimal: str | None) -> Table:
         """Return the table with its numbers; decimal is `.` or `,`, None to find it in the file.
@@ -169,7 +172,27 @@ def find_table(blocks: Iterator[str], layout: Layout, where: str) -> TextTable:
     body = "\n".join(lines[first:])
     sample = lines[header] if 0 <= header < len(lines) else body.split("\n", 1)[0]
     separator = layout.separator or _separator(sample)
-    return TextTable(_names(sample, separator, header >= 0, where), chain((body,), blocks), separator, first + 1, where)
+    written = _names(sample, separator, header >= 0, where)
+    names = tuple(written[: next((i for i in range(len(written), 1, -1) if written[i - 1]), 1)])
+    if header >= 0 and layout.first_row is None:
+        with_units = _with_units(names, body.split("\n", 1)[0], separator)
+        if with_units is not None:
+            names, body, first = with_units, body.partition("\n")[2], first + 1
+    return TextTable(names, chain((body,), blocks), separator, first + 1, where, len(written) - len(names))
+
+
+def _with_units(names: tuple[str, ...], below: str, separator: str) -> tuple[str, ...] | None:
+    """Return names with the units that stand in a row of their own below them; None where that row is none of units."""
+    cells = [cell.strip() for cell in below.replace('"', "").split(separator)]
+    units = [re.sub(r"^[\[(](.*)[\])]$", r"\1", cell) for cell in cells]
+    plain = ("", "-", "1")
+    if len(units) < len(names) or any("[" in name for name in names) or all(unit in plain for unit in units):
+        return None
+    if any(unit not in plain and (is_number(unit.replace(",", ".")) or not known_unit(unit)) for unit in units):
+        return None
+    return tuple(
+        f"{name} [{unit}]" if unit not in ("", "-") else name for name, unit in zip(names, units, strict=False)
+    )
 
 
 def _header_index(text: str, layout: Layout) -> int | None:
@@ -195,13 +218,12 @@ def _separator(header: str) -> str:
     return next((separator for separator in ("\t", ";", ",") if separator in outside), ",")
 
 
-def _names(sample: str, separator: str, is_header: bool, where: str) -> tuple[str, ...]:
-    """Return the column names; an empty last one stands for a separator at the end of each line."""
+def _names(sample: str, separator: str, is_header: bool, where: str) -> list[str]:
+    """Return the column names; empty last ones stand for separators at the end of each line."""
     if sample.count(separator) > MOST_COLUMNS:
         raise InputError(f"a row of {sample.count(separator) + 1} columns", where, _NOT_A_TABLE)
     cells = _cells_outside_brackets(sample.replace('"', ""), separator)
-    names = [cell.strip() for cell in cells] if is_header else [str(i + 1) for i in range(len(cells))]
-    return tuple(names[:-1] if len(names) > 1 and not names[-1] else names)
+    return [cell.strip() for cell in cells] if is_header else [str(i + 1) for i in range(len(cells))]
 
 
 def _cells_outside_brackets(line: str, separator: str) -> list[str]:
@@ -278,7 +300,8 @@ class _RowReader:
         if self.first:
             self.ended = re.search(re.escape(separator) + "$", body.split("\n", 1)[0]) is not None
         if self.ended:
-            body = re.sub(re.escape(separator) + r"[ ]*$", "", body, flags=re.MULTILINE)
+            most = max(1, self.table.spare)
+            body = re.sub(rf"(?:{re.escape(separator)}[ ]*){{1,{most}}}$", "", body, flags=re.MULTILINE)
         values = _numbers(body, separator, self.table.names, self.row, self.table.where)
         self.row, self.first = self.row + values.shape[0], False
         return values

@@ -187,11 +187,25 @@ def decode(content: FileContent) -> tuple[str, tuple[str, ...]]:
     try:
         text = data.decode(encoding)
     except UnicodeDecodeError:
-        text, notes = data.decode("latin-1"), ("not UTF-8; read as Latin-1",)
+        text, notes = _other_text(data)
     del data
     if any(ord(letter) < 32 and letter.encode() not in _ALLOWED_CONTROLS for letter in set(text)):
         raise InputError("is not a text file", where, "name a .csv or .csv.gz file, or a .mat file with its mapping")
     return text.replace("\r\n", "\n").replace("\r", "\n").rstrip("\x1a"), notes
+
+
+_DECLARED = re.compile(rb"\s*<\?xml[^>]{0,200}\bencoding=[\"']([A-Za-z0-9._-]{1,40})[\"']")
+
+
+def _other_text(data: bytes) -> tuple[str, tuple[str, ...]]:
+    """Return the text of bytes that are not UTF-8: in the encoding that XML declares, else Latin-1; and a remark."""
+    declared = _DECLARED.match(data)
+    try:
+        if declared is not None:
+            return data.decode(declared[1].decode("ascii")), ()
+    except (UnicodeDecodeError, LookupError):
+        pass
+    return data.decode("latin-1"), ("not UTF-8; read as Latin-1",)
 
 
 def refuse_known_binary(data: bytes, where: str) -> None:
@@ -203,7 +217,9 @@ def refuse_known_binary(data: bytes, where: str) -> None:
     if is_hdf5(data) or data.startswith(b"MATLAB"):
         raise InputError("is a .mat file by its content", where, "give it the ending .mat and a mapping (--map)")
     if data.startswith(b"PK\x03\x04"):
-        raise InputError("is a workbook or zip archive, not CSV", where, "save the sheet as CSV")
+        if any(part in data[:4000] for part in (b"[Content_Types].xml", b"xl/", b"mimetype")):
+            raise InputError("is a workbook, not CSV", where, "save the sheet as CSV")
+        raise InputError("is a zip archive", where, "unpack it and name a file of it; feeddrive watch reads archives")
 
 
 _CONTROLS = re.compile("[\x00-\x08\x0b\x0e-\x19\x1b-\x1f]")  # tab, line ends, form feed; 0x1a ends some DOS files

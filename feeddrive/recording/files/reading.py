@@ -20,10 +20,12 @@ from feeddrive.recording.checks.unusable_samples import (
     clock_notes,
     mean_sample_time,
 )
+from feeddrive.recording.files.cells import with_dates
 from feeddrive.recording.files.channel_mapping import FileMapping, read_mapping
 from feeddrive.recording.files.csv_file import Layout, TextTable, find_table, is_number
 from feeddrive.recording.files.foreign import mapped_columns, read_variables, table_variables
 from feeddrive.recording.files.opening import FileContent, TextFile, first_bytes, open_file
+from feeddrive.recording.formats import matlab5
 from feeddrive.recording.frequency_response import FrequencyResponse
 from feeddrive.recording.recording import Recording
 from feeddrive.recording.traces.channel_choice import Wishes
@@ -51,7 +53,8 @@ def read_recording(path: Path, mapping: Path | None = None, *, decimal: str | No
     if decimal not in (None, ".", ","):
         raise InputError(f"{decimal!r} is not a decimal sign", "--decimal", "write . or ,")
     known = read_mapping(Path(mapping)) if mapping is not None else None
-    if could_be_trace(first_bytes(path)):
+    start = first_bytes(path)
+    if could_be_trace(start) and not mapped_by_variables(path, start, known):
         content = open_file(path)
         trace = read_trace(content, Wishes(sample_time=known.sample_time if known else None))
         if trace is not None:
@@ -62,6 +65,25 @@ def read_recording(path: Path, mapping: Path | None = None, *, decimal: str | No
     else:
         columns, first_row, notes = _canonical(source, decimal)
     return _checked(source, columns, first_row, notes)
+
+
+def mapped_by_variables(path: Path, start: bytes, mapping: FileMapping | None) -> bool:
+    """Tell whether a mapping names variables of a .mat file, single numbers and a time among them, and not its signals.
+
+    Args:
+        path: of the file.
+        start: its first bytes.
+        mapping: of it; None for none.
+
+    Raises:
+        InputError: the file is damaged.
+    """
+    if mapping is None or not matlab5.recognises(start):
+        return False
+    if mapping.time is not None:
+        return True
+    held = {signal.name for signal in matlab5.read(open_file(path), mapping.sample_time).signals}
+    return not all(name in held for variable in mapping.channels.values() for name in variable.names)
 
 
 def _traced(
@@ -94,14 +116,14 @@ def _canonical(
     if isinstance(source, FileContent):
         held = ", ".join(quoted(name, 40) for name in list(read_variables(source))[:12])
         raise InputError(f"a .mat file has no units (it holds {held})", where, "name its mapping file by --map")
-    text_table = find_table(source.blocks(), Layout(), where)
+    text_table, dated = with_dates(find_table(source.blocks(), Layout(), where))
     headings = _headings(text_table, where)
     table = text_table.numbers(decimal)
     columns = dict(zip((heading.channel for heading in headings), table.columns, strict=True))
     with np.errstate(all="ignore"):  # a number beyond all bounds is refused where its row is known
         for heading in headings:
             columns[heading.channel] = heading.conversion.apply(columns[heading.channel])
-    return columns, table.first_row, (*source.notes, *table.notes)
+    return columns, table.first_row, (*source.notes, *dated, *table.notes)
 
 
 def _headings(table: TextTable, where: str) -> list[Heading]:
@@ -109,6 +131,9 @@ def _headings(table: TextTable, where: str) -> list[Heading]:
     if all(is_number(name) for name in table.names):
         mend = f'put one above the numbers, e.g. "time [s]{table.separator}motor_torque [N m]"'
         raise InputError("there is no header row", where, mend)
+    if len(table.names) == 1 and " " in table.names[0].split("[")[0].strip():  # a line of text, as loggers write above
+        mend = "put # before the lines above the headings, or name their row by a mapping: [file] header_row"
+        raise InputError(f'"{quoted(table.names[0], 40)}" is no row of headings', where, mend)
     headings = [read_heading(name, where) for name in table.names]
     seen: set[str] = set()
     for heading in headings:

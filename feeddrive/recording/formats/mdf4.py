@@ -45,15 +45,19 @@ def read(content: FileContent) -> Trace:
         raise InputError(f"this {NAME} holds no numeric channel", where, "record again")
     signals: list[Signal] = []
     times: list[FloatArray] = []
+    notes: list[str] = []
     names = unique_names([row[0] for row in rows])
     for number, (name, (_, unit, about)) in enumerate(zip(names, rows, strict=True)):
         time, values = archive[f"t{number}"], archive[f"v{number}"]
         if time.size != values.size or not np.all(np.diff(time) > 0.0):
-            raise InputError(f"the time of {name} does not increase", where, "record again")
+            notes.append(f"the time of {name} does not increase; it is left out")
+            continue
         time = next((other for other in times if np.array_equal(other, time)), time)
         times.append(time)
         signals.append(Signal(name, time, values, clean(unit), axis_in(name), clean(about)))
-    return Trace(NAME, tuple(signals))
+    if not signals:
+        raise InputError(notes[0], where, "record again")
+    return Trace(NAME, tuple(signals), tuple(notes))
 
 
 def _read_apart(content: FileContent, where: str) -> dict[str, FloatArray]:

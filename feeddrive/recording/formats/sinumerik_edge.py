@@ -38,8 +38,7 @@ def recognises(head: str) -> bool:
 
 def recognises_table(head: str) -> bool:
     """Tell by its first letters whether a text is a table made of a capture."""
-    names = _split(head.lstrip("\ufeff").split("\n", 1)[0])
-    return _CLOCK in names and any("|" in name for name in names)
+    return is_capture(_split(head.lstrip("\ufeff").split("\n", 1)[0]))
 
 
 def read(text: str, where: str, sample_time: float | None = None) -> Trace:
@@ -58,6 +57,8 @@ def read(text: str, where: str, sample_time: float | None = None) -> Trace:
     except (ValueError, RecursionError) as error:
         place = f"{where}, line {error.lineno}" if isinstance(error, json.JSONDecodeError) else where
         raise InputError("is not whole JSON", place, "copy or record it again") from None
+    if isinstance(tree, list) and len(tree) > 1 and all(isinstance(one, Mapping) and "Header" in one for one in tree):
+        raise InputError(f"holds {len(tree)} captures", where, "save each in a file of its own")
     tree = tree[0] if isinstance(tree, list) and len(tree) == 1 else tree
     header = tree.get("Header") if isinstance(tree, Mapping) else None
     listed = header.get("SignalListHFData") if isinstance(header, Mapping) else None
@@ -68,19 +69,56 @@ def read(text: str, where: str, sample_time: float | None = None) -> Trace:
             where,
             "name a file of SINUMERIK Edge, or save the table as CSV",
         )
-    names = [str(signal.get("Name", "")) if isinstance(signal, Mapping) else "" for signal in listed]
-    axes = [str(signal.get("Axis", "")) if isinstance(signal, Mapping) else "" for signal in listed]
+    names, axes = zip(*map(_named, listed), strict=True) if listed else ((), ())
     tables = [item["HFData"] for item in payload if isinstance(item, Mapping) and "HFData" in item]
     values = _table(
         [_numbers(_list(one)) if not isinstance(one, np.ndarray) else one for one in tables], len(names), where
     )
-    given = header.get("CycleTimeMs")
-    cycle, remarks = _cycle(given / 1e3 if isinstance(given, int | float) else None, sample_time, where)
-    trace = _trace(names, axes, values, cycle, remarks, where, "row of HFData")
+    cycle, remarks = _cycle(_milliseconds(header.get("CycleTimeMs"), where), sample_time, where)
+    trace = _trace(list(names), list(axes), values, cycle, remarks, where, "row of HFData")
     stamps = [item["HFTimestamp"] for item in payload if isinstance(item, Mapping) and "HFTimestamp" in item]
     return Trace(
         trace.format, trace.signals, (*trace.notes, *_adapter_clock(stamps, values[:, names.index(_CLOCK)], cycle))
     )
+
+
+def _named(signal: Any) -> tuple[str, str]:
+    """Return name, as NAME|number, and axis of a listed signal; some captures write it as the address alone."""
+    listed = (
+        {str(key).lower(): str(value or "") for key, value in signal.items()} if isinstance(signal, Mapping) else {}
+    )
+    name, address = listed.get("name", ""), listed.get("address", "")
+    if address == _CLOCK or ("|" in address and "|" not in name):
+        name = address
+    number = name.rsplit("|", 1)[-1] if "|" in name else ""
+    return name, listed.get("axis") or number
+
+
+def _milliseconds(written: Any, where: str) -> float | None:
+    """Return the cycle time [s] of a header, None where it holds none."""
+    if written is None:
+        return None
+    try:
+        return float(written) / 1e3
+    except (TypeError, ValueError):
+        raise InputError("CycleTimeMs is not a number", where, "give the cycle by --sample-time") from None
+
+
+def is_capture(names: Sequence[str]) -> bool:
+    """Tell by the names of its columns whether a table was made of a capture."""
+    return _CLOCK in names and any("|" in name for name in names)
+
+
+def capture_of(columns: Mapping[str, FloatArray], where: str, sample_time: float | None) -> Trace:
+    """Return the trace of a table made of a capture: name -> (n,).
+
+    Raises:
+        InputError: as `read_table`.
+    """
+    names = [name for name in columns if name == _CLOCK or "|" in name]
+    cycle, remarks = _cycle(None, sample_time, where)
+    axes = [name.rsplit("|", 1)[-1] if "|" in name else "" for name in names]
+    return _trace(names, axes, np.column_stack([columns[name] for name in names]), cycle, remarks, where, "row")
 
 
 def read_table(text: str, where: str, sample_time: float | None = None) -> Trace:

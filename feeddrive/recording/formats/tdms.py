@@ -12,7 +12,8 @@ import numpy as np
 from feeddrive.errors import InputError
 from feeddrive.recording.files.opening import FileContent
 from feeddrive.recording.traces.container import optional, trace_of
-from feeddrive.recording.traces.naming import axis_in, plain_words
+from feeddrive.recording.traces.naming import axis_in, conversion, known_unit, plain_words
+from feeddrive.recording.traces.stamps import is_time
 from feeddrive.recording.traces.trace import Signal, Trace, clean, unique_names
 from feeddrive.typing import FloatArray
 
@@ -45,36 +46,52 @@ def read(content: FileContent, sample_time: float | None) -> Trace:
     numeric = [(group, channel, values) for group, channel, values in read_ if values is not None and values.size > 1]
     several = len({group for group, _, _ in numeric}) > 1
     names = unique_names([f"{group}/{channel.name}" if several else str(channel.name) for group, channel, _ in numeric])
-    if not any(_step(channel) for _, channel, _ in numeric):
-        arrays = {name: values for name, (_, _, values) in zip(names, numeric, strict=True)}
-        units = {name: _unit(channel) for name, (_, channel, _) in zip(names, numeric, strict=True)}
-        return trace_of(NAME, arrays, units, sample_time, where)
+    values = {name: values for name, (_, _, values) in zip(names, numeric, strict=True)}
+    units = {name: _unit(channel) for name, (_, channel, _) in zip(names, numeric, strict=True)}
+    waves = {name: channel for name, (_, channel, _) in zip(names, numeric, strict=True) if _step(channel)}
+    rest = {name: one for name, one in values.items() if name not in waves}
+    plain = trace_of(NAME, rest, units, sample_time, where) if not waves or _signals(rest) else None
+    if not waves and plain is not None:
+        return plain
     times: dict[tuple[float, float, int], FloatArray] = {}
     signals = []
-    starts = [start for _, channel, _ in numeric if (start := _start(channel)) is not None]
+    starts = [start for channel in waves.values() if (start := _start(channel)) is not None]
     first = min(starts, default=0.0)
-    for name, (group, channel, values) in zip(names, numeric, strict=True):
-        step = _step(channel) or sample_time or 0.0
-        offset = _number(channel.properties.get("wf_start_offset", 0.0))
-        begin = _start(channel)
-        key = (step, offset + ((begin - first) if begin is not None else 0.0), values.size)
+    for name, channel in waves.items():
+        step, begin = _step(channel), _start(channel)
+        offset = _number(channel.properties.get("wf_start_offset", 0.0)) * _seconds(channel)
+        key = (step, offset + ((begin - first) if begin is not None else 0.0), values[name].size)
         if key not in times:
-            times[key] = key[1] + (step or 1.0) * np.arange(values.size, dtype=np.float64)
-        about = clean(f"{group} {channel.properties.get('description', '')}")
-        signals.append(
-            Signal(name, times[key], values, _unit(channel), axis_in(name, plain_words(about)), about, timed=step > 0.0)
-        )
-    return Trace(NAME, tuple(signals))
+            times[key] = key[1] + step * np.arange(values[name].size, dtype=np.float64)
+        about = clean(f"{channel.group_name} {channel.properties.get('description', '')}")
+        axis = axis_in(name, plain_words(about))
+        signals.append(Signal(name, times[key], values[name].astype(np.float64), units[name], axis, about))
+    by_name = {signal.name: signal for signal in [*signals, *(plain.signals if plain is not None else ())]}
+    return Trace(NAME, tuple(by_name[name] for name in names if name in by_name), plain.notes if plain else ())
 
 
-def _values(channel: Any) -> FloatArray | None:
+def _signals(values: dict[str, Any]) -> bool:
+    """Tell whether there is more than times."""
+    return any(one.dtype.kind != "M" and not is_time(name) for name, one in values.items())
+
+
+def _values(channel: Any) -> Any:
     raw = channel[:]
-    return np.ascontiguousarray(raw, dtype=np.float64) if getattr(raw, "dtype", np.dtype("O")).kind in "fiub" else None
+    return raw if getattr(raw, "dtype", np.dtype("O")).kind in "fiubM" else None
 
 
 def _step(channel: Any) -> float:
-    step = _number(channel.properties.get("wf_increment", 0.0))
-    return step if 1e-9 < step < 1e6 else 0.0
+    """Return the distance of a waveform's samples [s]; 0 where it has none, or is none over time."""
+    step = _number(channel.properties.get("wf_increment", 0.0)) * _seconds(channel)
+    unset = step == 1.0 and "wf_start_time" not in channel.properties  # what LabVIEW writes where nobody set it
+    return step if 1e-9 < step < 1e6 and not unset else 0.0
+
+
+def _seconds(channel: Any) -> float:
+    """Return the seconds of a unit of a waveform's axis; 0 where it is none of time."""
+    unit = str(channel.properties.get("wf_xunit_string", "") or "s")
+    to_si = conversion(known_unit(unit) or unit, "s")
+    return 0.0 if to_si is None else to_si.factor
 
 
 def _start(channel: Any) -> float | None:
@@ -86,7 +103,7 @@ def _start(channel: Any) -> float | None:
 
 
 def _unit(channel: Any) -> str:
-    return str(channel.properties.get("unit_string", "") or "")
+    return str(channel.properties.get("unit_string", "") or channel.properties.get("NI_UnitDescription", "") or "")
 
 
 def _number(value: Any) -> float:

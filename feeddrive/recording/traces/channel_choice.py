@@ -145,7 +145,8 @@ def choose(trace: Trace, wishes: Wishes, where: str) -> Choice:
         InputError: an axis, a signal or a unit that the person names and the file does not have.
     """
     axis, question = _axis(trace, wishes, where)
-    signals = [signal for signal in trace.signals if signal.axis in ("", axis)] if not question else []
+    measured = [signal for signal in trace.signals if signal.kind != "time"]
+    signals = [signal for signal in measured if signal.axis in ("", axis)] if not question else []
     named = _wished(trace, wishes, where)
     open_: dict[str, list[tuple[Signal, Candidate]]] = {}
     for signal in signals:
@@ -179,7 +180,8 @@ def choose(trace: Trace, wishes: Wishes, where: str) -> Choice:
             undecided[channel] = asked
     questions += undecided.values()
     if wishes.sample_time is None and any(not pick.signal.timed for pick in picks):
-        questions.insert(0, "the file holds no time: say the distance of its samples by --sample-time '1 ms'")
+        lacks = next((pick.signal.lacks for pick in picks if pick.signal.lacks), "the file holds no time")
+        questions.insert(0, f"{lacks}: say the distance of its samples by --sample-time '1 ms'")
         return Choice(axis, tuple(picks), tuple(questions), findings, questions[0])
     findings = (*(Finding("held", note, 1.0, "", 0.0) for note in sorted(held)), *findings)
     return Choice(axis, tuple(picks), tuple(questions), findings, _blocking(picks, undecided, questions, signals))
@@ -266,7 +268,8 @@ def _pick(channel: str, signal: Signal, found: Candidate, lead: float | None) ->
         if lead is None:
             return None, f'"{signal.name}" is the {found.reason}: its motor_angle needs the lead, --lead "10 mm"'
         if not found.unit:
-            return None, f"\"{signal.name}\" has no unit: say it by --channel 'table_position={signal.name} [mm]'"
+            what = f'is in "{found.foreign}", which is not known' if found.foreign else "has no unit"
+            return None, f"\"{signal.name}\" {what}: say it by --channel 'table_position={signal.name} [mm]'"
         length = conversion(found.unit, "m")
         assert length is not None
         reason = f"{found.reason}, times 2 pi by the lead of {format_quantity(lead, 'm')}"
@@ -274,7 +277,8 @@ def _pick(channel: str, signal: Signal, found: Candidate, lead: float | None) ->
     needed = channel_unit(channel, "")
     if not found.unit:
         usual = {"m": "mm", "rad": "deg", "rad/s": "rev/min", "m/s": "mm/min"}.get(needed, needed)
-        return None, f"\"{signal.name}\" has no unit: say it by --channel '{channel}={signal.name} [{usual}]'"
+        what = f'is in "{found.foreign}", which is not known' if found.foreign else "has no unit"
+        return None, f"\"{signal.name}\" {what}: say it by --channel '{channel}={signal.name} [{usual}]'"
     to_si = conversion(found.unit, needed)
     assert to_si is not None  # candidates are checked against their units
     how = "" if found.stated or found.rank == -2 else f"; {found.unit} assumed, the file does not say"

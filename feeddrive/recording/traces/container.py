@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 import importlib
-import re
 from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from feeddrive.errors import InputError
 from feeddrive.recording.files.opening import FileContent
-from feeddrive.recording.traces.naming import axis_in, conversion, known_unit, plain_words
+from feeddrive.recording.traces.naming import axis_in
+from feeddrive.recording.traces.stamps import clock_for, clocks_of, unit_of
 from feeddrive.recording.traces.trace import Signal, Trace, clean, unique_names
 from feeddrive.typing import FloatArray
-
-_TIME = re.compile(r"^(?:t|time|zeit|timestamps?|time ?axis|time s|time ?vector|x ?time)$")
-_UNIT = re.compile(r"^(.*\S)\s*[\[(]([^\])\[(]{1,20})[\])]$")
 
 
 def optional(module: str, package: str, what: str, where: str) -> Any:
@@ -50,31 +48,86 @@ def refuse_bomb(values: int, content: FileContent) -> None:
         raise InputError(what, str(content.path), "the file is damaged, or holds nothing: copy or save it again")
 
 
-def vectors(arrays: Mapping[str, Any]) -> dict[str, FloatArray]:
+def vectors(arrays: Mapping[str, Any]) -> dict[str, Any]:
     """Return the numeric vectors of a tree of arrays, (n,) each; columns of a matrix by name and number."""
-    found: dict[str, FloatArray] = {}
+    found: dict[str, Any] = {}
     for name, value in arrays.items():
         array = np.asarray(value)
-        if array.dtype.kind not in "fiub" or array.size < 2:
+        if array.dtype.kind not in "fiubMm" or array.size < 2:
             continue
         array = np.squeeze(array)
         if array.ndim == 1:
-            found[name] = np.ascontiguousarray(array, dtype=np.float64)
+            found[name] = array
         elif array.ndim == 2 and min(array.shape) <= 64:
             tall = array if array.shape[0] >= array.shape[1] else array.T
             for column in range(tall.shape[1]):
-                found[f"{name} column {column + 1}"] = np.ascontiguousarray(tall[:, column], dtype=np.float64)
+                found[f"{name} column {column + 1}"] = tall[:, column]
     return found
 
 
+@dataclass
+class Tree:
+    """What a file of nested structs holds; a path is written with dots.
+
+    Attributes:
+        arrays: path -> numbers.
+        units: path -> unit, where the file says one at the array itself.
+        texts: path -> text.
+        objects: paths of what is there and cannot be read.
+    """
+
+    arrays: dict[str, Any] = field(default_factory=dict)
+    units: dict[str, str] = field(default_factory=dict)
+    texts: dict[str, str] = field(default_factory=dict)
+    objects: list[str] = field(default_factory=list)
+
+
+def trace_of_tree(format_: str, tree: Tree, sample_time: float | None, where: str) -> Trace:
+    """Return the trace of the numeric vectors of a tree.
+
+    Raises:
+        InputError: no numeric vector.
+    """
+    what = f"{', '.join(map(clean, tree.objects[:4]))}: a table, timetable or other object of MATLAB, which is not read"
+    mend = "save its columns as vectors, in MATLAB s = table2struct(timetable2table(T), 'ToScalar', true)"
+    arrays = vectors(tree.arrays)
+    if not arrays and tree.objects:
+        raise InputError(f"this {format_} holds {what}", where, mend)
+    trace = trace_of(format_, *_called(arrays, tree), sample_time, where)
+    return replace(trace, notes=(*trace.notes, f"{what}; {mend}")) if tree.objects else trace
+
+
+def _called(arrays: dict[str, Any], tree: Tree) -> tuple[dict[str, Any], dict[str, str]]:
+    """Return vectors and units by the names that a struct means: `rec.speed.data` with its unit is `rec.speed`."""
+    found: dict[str, Any] = {}
+    units: dict[str, str] = {}
+    for path, values in arrays.items():
+        whole, _, column = path.partition(" column ")
+        place, _, last = whole.rpartition(".")
+        name, unit = path, tree.units.get(whole, "")
+        if place and last.lower() in _DATA:
+            label = next((tree.texts[f"{place}.{key}"] for key in _LABELS if tree.texts.get(f"{place}.{key}")), "")
+            name = place.removesuffix(".signals") + (f".{label}" if label else "") + (column and f" column {column}")
+            unit = unit or next((tree.texts[f"{place}.{key}"] for key in _UNITS if f"{place}.{key}" in tree.texts), "")
+        name = path if name in found or name in arrays else name
+        found[name], units[name] = values, unit
+    return found, units
+
+
+_DATA = ("data", "value", "values", "samples", "y")
+_LABELS, _UNITS = ("label", "name", "Name"), ("unit", "units", "Unit", "Units")
+
+
 def trace_of(
-    format_: str, arrays: Mapping[str, FloatArray], units: Mapping[str, str], sample_time: float | None, where: str
+    format_: str, arrays: Mapping[str, Any], units: Mapping[str, str], sample_time: float | None, where: str
 ) -> Trace:
-    """Return the trace of named vectors: those of one length share the time vector of that length.
+    """Return the trace of named vectors: those of one length share the time vector of that length, of their own group.
+
+    A signal that lacks values, as one that is sampled more slowly does in a joined table, has those that are there.
 
     Args:
         format_: what the file is, for people.
-        arrays: name -> (n,).
+        arrays: name -> (n,), numbers; or dates, which are times.
         units: name -> unit, where the file says one.
         sample_time: [s], where the person says it.
         where: file name.
@@ -86,48 +139,32 @@ def trace_of(
         raise InputError(
             f"this {format_} holds no numeric vector", where, "save the signals as vectors of real numbers"
         )
-    notes: list[str] = []
-    clocks: dict[int, tuple[str, FloatArray]] = {}
-    for name, values in arrays.items():
-        if _is_time(name) and values.size not in clocks and bool(np.all(np.diff(values) > 0.0)):
-            clocks[values.size] = name, _seconds(name, values, units.get(name, ""), notes)
+    clocks = clocks_of(arrays, units, sample_time)
+    notes = list(dict.fromkeys(clock.note for clock in clocks if clock.note))
+    names = {clock.name: clock for clock in clocks}
+    shared: dict[tuple[str, bytes], FloatArray] = {}
+    counted: dict[int, FloatArray] = {}
     signals = []
     for name, plain in zip(arrays, unique_names([clean(name) for name in arrays]), strict=True):
-        values = arrays[name]
-        clock = clocks.get(values.size)
-        shown, unit = _unit_of(plain, units.get(name, ""))
-        if clock is not None:
-            time, timed = clock[1], True
+        clock = names.get(name) or clock_for(name, arrays[name].size, clocks)
+        fault = clock.fault if clock is not None else ""
+        numbers = np.ascontiguousarray(arrays[name], dtype=np.float64)
+        if clock is not None and not fault:
+            time, numbers, timed = clock.time, numbers if clock.kept.all() else numbers[clock.kept], True
         else:
-            time = np.arange(values.size, dtype=np.float64) * (sample_time or 1.0)
+            time = counted.setdefault(numbers.size, np.arange(numbers.size, dtype=np.float64) * (sample_time or 1.0))
             timed = sample_time is not None
-        kind = "time" if clock is not None and clock[0] == name else ""
-        about = shown if shown != plain else ""
-        signals.append(Signal(plain, time, values, unit, axis_in(shown), about, kind, timed))
+        there = ~np.isnan(numbers)
+        if not there.all() and name not in names:
+            if np.sum(there) < 2:
+                notes.append(f"{plain} has no values and is left out")
+                continue
+            notes.append(f"{plain} lacks {int(np.sum(~there))} values")
+            key = clock.name if clock is not None else "", there.tobytes()
+            time, numbers = shared.setdefault(key, time[there]), numbers[there]
+        shown, unit = unit_of(plain, units.get(name, ""))
+        about, kind = shown if shown != plain else "", "time" if name in names else ""
+        signals.append(Signal(plain, time, numbers, unit, axis_in(shown), about, kind, timed, fault))
     if all(signal.kind == "time" for signal in signals):
         raise InputError(f"this {format_} holds a time and no signal", where, "save the signals beside it")
     return Trace(format_, tuple(signals), tuple(notes))
-
-
-def _is_time(name: str) -> bool:
-    last = re.split(r"[/.]", name)[-1]
-    match = _UNIT.match(last)
-    return _TIME.match(plain_words(match[1] if match else last)) is not None
-
-
-def _unit_of(name: str, given: str) -> tuple[str, str]:
-    """Return a name without the unit in brackets behind it, and the unit."""
-    match = _UNIT.match(name)
-    if match and known_unit(match[2]) and not given:
-        return match[1], match[2]
-    return name, given
-
-
-def _seconds(name: str, stamps: FloatArray, unit: str, notes: list[str]) -> FloatArray:
-    """Return time stamps in s, (n,)."""
-    _, written = _unit_of(re.split(r"[/.]", name)[-1], unit)
-    to_si = conversion(written, "s") if written else None
-    if to_si is None:
-        notes.append(f"the time {clean(name)} has no unit; s assumed, another by a mapping")
-        return stamps
-    return to_si.apply(stamps)

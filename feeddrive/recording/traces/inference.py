@@ -162,7 +162,8 @@ def _position_unit(taken: Taken, factors: Sequence[tuple[Signal, Fit]], fixed: s
             if _speed_unit(one.factor, unit) == pair:
                 reason = f"{signal.name} / d(position)/dt = {one.factor:.4g}: {unit} and {pair}, not in inches assumed"
                 for channel in ("table_position", "setpoint", MOTOR_SIDE, "motor_angle"):
-                    if channel in taken and not taken[channel][1].unit and channel not in fixed:
+                    open_ = channel in taken and not taken[channel][1].unit and not taken[channel][1].foreign
+                    if open_ and channel not in fixed:
                         where, candidate = taken[channel]
                         needed = "rad" if channel == "motor_angle" else "m"
                         if conversion(unit, needed) is None:
@@ -175,7 +176,11 @@ def _position_unit(taken: Taken, factors: Sequence[tuple[Signal, Fit]], fixed: s
 
 def _give_unit(taken: Taken, signal: Signal, unit: str, one: Fit, fixed: set[str]) -> None:
     for channel in ("motor_speed", "table_velocity"):
-        if channel in taken and taken[channel][0] is signal and not taken[channel][1].unit:
+        if (
+            channel in taken
+            and taken[channel][0] is signal
+            and not (taken[channel][1].unit or taken[channel][1].foreign)
+        ):
             needed = "rad/s" if channel == "motor_speed" else "m/s"
             candidate, reason = taken[channel][1], f"{unit} by its factor {one.factor:.4g} over d(position)/dt"
             if conversion(unit, needed) is not None:

@@ -7,41 +7,16 @@ table, one in degrees of the motor. Only measured values and the position set-po
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from feeddrive.errors import InputError
 from feeddrive.recording.channels import CHANNEL_UNITS, channel_unit
+from feeddrive.recording.traces.spellings import SPELLINGS, in_english
 from feeddrive.recording.traces.trace import Signal
 from feeddrive.units.quantity import Conversion, unit_conversion
 
-_SPELLINGS = {
-    "ampere": "A",
-    "amp": "A",
-    "amps": "A",
-    "nm": "N m",
-    "n.m": "N m",
-    "n·m": "N m",
-    "1/min": "rev/min",
-    "min-1": "rev/min",
-    "min^-1": "rev/min",
-    "u/min": "rev/min",
-    "rpm": "rev/min",
-    "r/min": "rev/min",
-    "grad": "deg",
-    "degree": "deg",
-    "degrees": "deg",
-    "°": "deg",
-    "grad/s": "deg/s",
-    "°/s": "deg/s",
-    "mm/sec": "mm/s",
-    "sec": "s",
-    "inch": "in",
-    "inch/min": "in/min",
-    "inches": "in",
-    "rad/sec": "rad/s",
-    "u": "rev",
-}
-"""Units as controls write them, in small letters -> as feeddrive reads them."""
+UNIT_BEHIND = re.compile(r"^(.*\S)\s*[\[(]([^\])\[(]{1,20})[\])]$")
+"""A name with brackets behind it."""
 
 _LENGTH, _ANGLE, _VELOCITY, _SPEED = "m", "rad", "m/s", "rad/s"
 
@@ -58,6 +33,7 @@ class Candidate:
         rank: among signals that may be the same channel the lowest is taken.
         stated: whether the file itself states the unit.
         sign: -1 where the signal was found to be reversed.
+        foreign: unit that the file states and that is not known, such as increments; empty otherwise.
     """
 
     channel: str
@@ -66,6 +42,7 @@ class Candidate:
     rank: int
     stated: bool
     sign: float = 1.0
+    foreign: str = ""
 
 
 @dataclass(frozen=True)
@@ -97,7 +74,8 @@ def _rule(pattern: str, channels: str, unit: str, reason: str, rank: int = 5) ->
 _SIDES = f"table_position motor_angle {MOTOR_SIDE}"
 _ACTUAL = r"(?:act(?:ual)?|ist|fb|fbk|feedback|meas(?:ured)?|istwert)"
 _NOMINAL = (
-    r"(?:set(?: ?point)?|cmd|command(?:ed)?|nom(?:inal)?|soll(?:wert)?|target|desired|des|demand(?:ed)?|ref(?:erence)?)"
+    r"(?:set(?: ?point)?|cmd|command(?:ed)?|nom(?:inal)?|soll(?:wert)?|target|desired|des(?= ?(?:pos|vel|curr|torq))"
+    r"|demand(?:ed)?|ref(?:erence)?)"
 )
 _POSITION = r"(?:pos(?:ition|n)?|lage)"
 _SPEED_WORD = r"(?:v|velo?|velocity|speed|geschwindigkeit|drehzahl|n)"
@@ -105,17 +83,20 @@ _ROTARY = r"(?:speed|drehzahl|n|velo?|velocity)"
 
 _RULES = (
     # SINUMERIK Edge: NAME|axis
-    _rule(r"^enc2 pos \S+$", "table_position", "mm", "direct encoder (ENC2)", 0),
-    _rule(r"^enc1 pos \S+$", MOTOR_SIDE, "mm", "motor encoder (ENC1), in the unit of the axis", 0),
-    _rule(r"^enc pos \S+$", "table_position", "mm", "active encoder (ENC)", 1),
-    _rule(r"^des pos \S+$", "setpoint", "mm", "set-point", 0),
-    _rule(r"^torque \S+$", "motor_torque", "N m", "torque", 1),
-    _rule(r"^current \S+$", "motor_current", "A", "torque-producing current", 1),
-    # SINUMERIK Operate trace: /Nck/!SD/nckServoData...
-    _rule(r"nck servo data .*meas ?pos ?2", "table_position", "", "direct encoder (measuring system 2)", 0),
-    _rule(r"nck servo data .*meas ?pos ?1", MOTOR_SIDE, "", "motor encoder (measuring system 1)", 0),
-    _rule(r"nck servo data cmd ?pos", "setpoint", "", "set-point", 0),
+    _rule(r"^enc2 pos at \S+$", "table_position", "mm", "direct encoder (ENC2)", 0),
+    _rule(r"^enc1 pos at \S+$", MOTOR_SIDE, "mm", "motor encoder (ENC1), in the unit of the axis", 0),
+    _rule(r"^enc pos at \S+$", "table_position", "mm", "active encoder (ENC)", 1),
+    _rule(r"^des pos at \S+$", "setpoint", "mm", "set-point", 0),
+    _rule(r"^torque at \S+$", "motor_torque", "N m", "torque", 1),
+    _rule(r"^current at \S+$", "motor_current", "A", "torque-producing current", 1),
+    # SINUMERIK Operate trace: /Nck/!SD/nckServoData..., /Nck/!SEMA/measPos...
+    _rule(r"\b(?:meas pos|act pos) ?2(?:nd enc\d*)?\b", "table_position", "", "direct encoder (measuring system 2)", 0),
+    _rule(r"\b(?:meas pos|act pos) ?1(?:st enc\d*)?\b", MOTOR_SIDE, "", "motor encoder (measuring system 1)", 0),
+    _rule(r"\bcmd ?pos ?2nd enc\d*\b", "setpoint", "", "set-point", 0),
+    _rule(r"nck servo data cmd ?pos|nck sema cmd contr pos", "setpoint", "", "set-point", 1),
     _rule(r"nck servo data act (?:pos|curr pos)", "table_position", "", "actual position", 2),
+    _rule(r"nck servo data act vel ?2nd enc", "table_velocity", "", "velocity of the direct encoder", 1),
+    _rule(r"nck servo data act vel ?1st enc", "table_velocity", "", "velocity of the motor encoder", 3),
     _rule(r"nck servo data act curr ?\d", "motor_current", "A", "torque-producing current i_q", 0),
     _rule(r"nck servo data act torq", "motor_torque", "N m", "actual torque", 0),
     _rule(r"nck servo data act ?vel ?mot(?! ?or ?side)", "motor_speed", "", "motor speed", 0),
@@ -180,8 +161,10 @@ _RULES = (
 )
 _NOT_MEASURED = re.compile(
     r"\b(?:ffw|feed ?forward|vorsteuer\w*|limit|max|min|error|err|diff|dev|deviation|window|enable|factor|offset|raw"
-    r"|load)\b"
+    r"|load|trig(?:ger)?)\b"
 )
+_COMMANDED = re.compile(rf"\b{_NOMINAL}\b")
+_SUFFIX = re.compile(r"(.*[A-Za-z\d])_(mm|um|µm|nm|deg|rad|rpm|Nm|NM|mA|mm_s|mm_min|m_s|m_min|rad_s|deg_s|degC|mps)")
 _WITH_NOT_MEASURED = re.compile(r"^(?:load (?:pos|position|velo|velocity|speed))\b")
 _AXIS = re.compile(
     r"(?:axis|achse|joint|joints|axes)[ _.]*(\d+)\b|\baxis[ _.]([a-z])\b"
@@ -191,29 +174,51 @@ _AXIS = re.compile(
 
 
 def candidate(signal: Signal) -> Candidate | None:
-    """Return what a signal is by its name; None if the name says nothing that has a channel."""
-    unit = known_unit(signal.unit)
-    exact = _canonical(signal.name, unit)
-    if exact is not None:
-        return exact
-    for text in (signal.name, signal.about):
+    """Return what a signal is by its name; None if the name says nothing that has a channel.
+
+    The last part of a path is a name as well (`fast/Position`), and a unit may be joined to it (`position_mm`).
+    """
+    last = leaf(signal.name)
+    suffix = _SUFFIX.fullmatch(last)
+    stated = signal.unit or (suffix[2].replace("_", "/").replace("mps", "m/s") if suffix else "")
+    unit = known_unit(stated)
+    foreign = stated.strip() if not unit and stated.strip().lower() not in _NO_UNIT else ""
+    names = list(dict.fromkeys((signal.name, last, suffix[1] if suffix else last)))
+    for name in names:
+        exact = _canonical(name, unit)
+        if exact is not None:
+            return replace(exact, unit="" if foreign else exact.unit, foreign=foreign)
+    for text in (*names, signal.about):
         words = plain_words(text)
         if _NOT_MEASURED.search(words) and not _WITH_NOT_MEASURED.search(words):
             return None
         for rule in _RULES:
-            if rule.pattern.search(words):
-                found = _fitting(rule, unit)
+            if rule.pattern.search(words) and not (rule.rank >= 4 and rule.channels != ("setpoint",)
+                                                   and _COMMANDED.search(words)):  # fmt: skip
+                found = _fitting(rule, unit, foreign) or (_fitting(rule, "nm", "") if stated.strip() == "nm" else None)
                 if found is not None:
                     return found
     return None
 
 
+_NO_UNIT = frozenset(
+    ("", "-", "--", "1", "none", "(none)", "[none]", "[]", "[-]", "()", "(-)", "[1]", "n/a", "?", "unit", "%")
+)
+
+
+def leaf(name: str) -> str:
+    """Return the last part of the path that a name may be: `ActPos` of `drive/ActPos` and of `rec.ActPos`."""
+    match = UNIT_BEHIND.match(name.strip())
+    last = re.split(r"[/.]", match[1] if match else name)[-1].strip()
+    return (f"{last} [{match[2]}]" if match else last) if last else name
+
+
 def known_unit(text: str) -> str:
     """Return a unit of a file as feeddrive writes it; empty where the file gives none, or one that is not known."""
-    plain = text.strip()
+    plain = text.strip().replace("\u03bc", "µ")
     if plain[:1] + plain[-1:] in ("[]", "()", "{}"):
         plain = plain[1:-1].strip()
-    unit = _SPELLINGS.get(plain.lower(), plain)
+    unit = SPELLINGS.get(plain.lower(), plain)
     if not unit or unit in ("-", "1", "%"):
         return unit if unit == "%" else ""
     for channel in ("m", "rad", "m/s", "rad/s", "N m", "A", "degC", "N", "s"):
@@ -232,7 +237,8 @@ def conversion(unit: str, needed: str) -> Conversion | None:
 
 def plain_words(name: str) -> str:
     """Return a name in small letters, its words divided by single blanks: `nckServoDataMeasPos1 [u1, 7]`."""
-    apart = re.sub(r"([a-z0-9])([A-Z])", r"\1 \2", name.replace("_", " "))
+    apart = re.sub(r"([a-z0-9])([A-Z])", r"\1 \2", name.replace("_", " ").replace("|", " at "))
+    apart = in_english(apart.lower())
     return re.sub(r"[^a-z0-9äöüß]+", " ", apart.lower()).strip()
 
 
@@ -265,8 +271,8 @@ def _canonical(name: str, unit: str) -> Candidate | None:
     return Candidate(channel, written, f"it is called {channel}", -1, bool(written))
 
 
-def _fitting(rule: _Rule, unit: str) -> Candidate | None:
-    """Return the first channel of a rule that the unit allows."""
+def _fitting(rule: _Rule, unit: str, foreign: str) -> Candidate | None:
+    """Return the first channel of a rule that the unit allows; a unit that is stated and not known is left open."""
     for channel in rule.channels:
         needed = CHANNEL_UNITS.get(channel, _LENGTH)
         if unit and conversion(unit, needed) is not None:
@@ -274,4 +280,4 @@ def _fitting(rule: _Rule, unit: str) -> Candidate | None:
     if unit:
         return None
     channel = rule.channels[0]
-    return Candidate(channel, rule.unit, rule.reason, rule.rank, False)
+    return Candidate(channel, "" if foreign else rule.unit, rule.reason, rule.rank, False, 1.0, foreign)

@@ -14,11 +14,13 @@ from feeddrive.recording.files.opening import FileContent, decode, head_of, is_h
 from feeddrive.recording.formats import (
     halscope,
     hdf5_file,
+    matlab5,
     mdf4,
     parquet,
     sinumerik_edge,
     sinumerik_frf,
     sinumerik_trace,
+    sinumerik_trace_table,
     tdms,
     tncscope,
     twincat,
@@ -40,6 +42,7 @@ _TEXTS: tuple[tuple[Callable[[str], bool], _Reader], ...] = (
     ),
     (tncscope.recognises, lambda text, where, wishes: tncscope.read(text, where)),
     (sinumerik_trace.recognises, lambda text, where, wishes: sinumerik_trace.read(text, where)),
+    (sinumerik_trace_table.recognises, lambda text, where, wishes: sinumerik_trace_table.read(text, where)),
     (halscope.recognises, lambda text, where, wishes: halscope.read(text, where)),
     (
         halscope.recognises_sampler,
@@ -69,7 +72,7 @@ class Understood:
 
 def could_be_trace(start: bytes) -> bool:
     """Whether the first bytes of a file are those of a known trace format; `read_trace` then reads the file whole."""
-    if is_hdf5(start) or tdms.recognises(start) or mdf4.recognises(start) or parquet.recognises(start):
+    if is_hdf5(start) or any(known.recognises(start) for known in (matlab5, tdms, mdf4, parquet)):
         return True
     head = head_of(start)
     return recognises_response(head) or sinumerik_frf.recognises(head) or any(known(head) for known, _ in _TEXTS)
@@ -126,6 +129,8 @@ def _binary(content: FileContent, wishes: Wishes) -> Trace | None:
     data = content.data
     if is_hdf5(data):
         return hdf5_file.read(content, wishes.sample_time)
+    if matlab5.recognises(data):
+        return matlab5.read(content, wishes.sample_time)
     if tdms.recognises(data):
         return tdms.read(content, wishes.sample_time)
     if mdf4.recognises(data):

@@ -26,6 +26,7 @@ class Signal:
         about: description in the file; empty if there is none.
         kind: class of the unit where the file gives no more than that (`position`, `velocity`, `current`, ...).
         timed: whether the file holds its times; if not, `time` counts samples, or sample times once one is given.
+        lacks: why not, where the file holds stamps that cannot be used; empty otherwise.
     """
 
     name: str
@@ -36,6 +37,7 @@ class Signal:
     about: str = ""
     kind: str = ""
     timed: bool = True
+    lacks: str = ""
 
     @property
     def step(self) -> float:

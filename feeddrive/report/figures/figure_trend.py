@@ -10,7 +10,7 @@ import numpy as np
 
 from feeddrive.report.figures.drawing import AFTER, BEFORE, LEFT_OUT, MEASURED, NOISE, ReportFigure, dress, new_figure
 from feeddrive.report.words.number_text import scale_for_value
-from feeddrive.trend.series_evidence import JUMP, ODD
+from feeddrive.trend.series_evidence import JUMP, ODD, SLOPE
 from feeddrive.trend.watch import Trend
 from feeddrive.trend.watched_quantities import Quantity
 from feeddrive.typing import FloatArray
@@ -68,7 +68,8 @@ def _panel(axes: Axes, trend: Trend, quantity: Quantity, times: FloatArray) -> N
     per_day = float(times[-1] / trend.days[-1]) if trend.days[-1] > 0 else 1.0
     if course is not None and len(course.fitted) == here.sum():
         jumps = [(per_day * one.atom.date, one.size) for one in course.found if one.atom.kind == JUMP]
-        at, line, band = with_steps(times[here], course.fitted, course.band, jumps)
+        begins = [per_day * one.atom.date for one in course.found if one.atom.kind == SLOPE]
+        at, line, band = with_steps(times[here], course.fitted, course.band, jumps, begins)
         line, band = factor * line, 1.96 * factor * band
         axes.plot(at, line, color=AFTER, linewidth=1.2)
         axes.fill_between(at, line - band, line + band, color=AFTER, alpha=0.2, linewidth=0)
@@ -85,7 +86,11 @@ def _panel(axes: Axes, trend: Trend, quantity: Quantity, times: FloatArray) -> N
 
 
 def with_steps(
-    times: FloatArray, line: FloatArray, band: FloatArray, jumps: Sequence[tuple[float, float]]
+    times: FloatArray,
+    line: FloatArray,
+    band: FloatArray,
+    jumps: Sequence[tuple[float, float]],
+    begins: Sequence[float] = (),
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Times, line and band to draw, (m,), with the value before each jump where it begins: no ramp from there on.
 
@@ -93,7 +98,13 @@ def with_steps(
         times: of the recordings, (n,).
         line, band: there, (n,).
         jumps: time, which is that of the first recording after it, and size.
+        begins: times at which a slope begins; one between two recordings bends the line there.
     """
+    for date in begins:
+        after = int(np.searchsorted(times, date))
+        if 0 < after < len(times) and date < times[after]:
+            times, line = np.insert(times, after, date), np.insert(line, after, line[after - 1])
+            band = np.insert(band, after, band[after - 1])
     for date, size in sorted(jumps):
         after = int(np.searchsorted(times, date))
         if 0 < after < len(times):

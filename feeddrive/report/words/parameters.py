@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from feeddrive.diagnosis.certainty.one_sided import OPEN
 from feeddrive.diagnosis.judging.result import EffectResult, ParameterResult
 from feeddrive.report.words.number_text import (
     Scale,
@@ -58,6 +59,7 @@ def _number_text(key: str, value: float, unit: str, ci95: object, most_digits: i
     """Value with as many digits as the interval supports, three significant ones where there is no interval.
 
     Of at most `most_digits` significant ones the interval is left out where both of its ends are then the value's.
+    Where the interval is as good as open above, its lower end is all that is known.
     """
     ends = ci95 if isinstance(ci95, tuple) and len(ci95) == 2 and all(map(math.isfinite, ci95)) else None
     # A value of zero has no size of its own; the interval gives the unit.
@@ -65,6 +67,9 @@ def _number_text(key: str, value: float, unit: str, ci95: object, most_digits: i
     shown = value * scale.factor
     if ends is None:
         return ParameterText(plain(key), with_unit(significant(shown), scale.unit), "")
+    if ends[0] > 0 and ends[1] > OPEN * ends[0]:
+        scale = _scale(key, ends[0], unit)
+        return ParameterText(plain(key), f"at least {with_unit(significant(ends[0] * scale.factor), scale.unit)}", "")
     low, high = (end * scale.factor for end in ends)
     decimals = decimals_for(0.5 * abs(high - low))
     if most_digits is not None and shown:

@@ -49,6 +49,8 @@ def event_sentence(trend: Trend, event: Event) -> str:
     low, high = (date_words(trend, day) for day in event.dates)
     when = date_words(trend, event.day) if low == high else f"{date_words(trend, event.day)} ({low} to {high})"
     begins = "On" if first.found.atom.kind == JUMP else "Since"
+    if begins == "On" and low != high:
+        begins, when = "Between", f"{low} and {high}"
     return f"{begins} {when} {what}, odds {odds}{named}."
 
 
@@ -118,6 +120,9 @@ def quantity_rows(trend: Trend) -> list[list[str]]:
 
 def _dated(trend: Trend, quantity: Quantity, found: Found) -> str:
     since = "on" if found.atom.kind in (JUMP, ODD) else "since"
+    low, high = (date_words(trend, day) for day in found.dates)
+    if found.atom.kind == JUMP and low != high:
+        return f"between {low} and {high} {course_words(quantity, found)}"
     return f"{since} {date_words(trend, found.atom.date)} {course_words(quantity, found)}"
 
 

@@ -12,7 +12,7 @@ from scipy import signal
 
 from feeddrive.diagnosis.judging.result import Diagnosis
 from tests.generator.driven import driven
-from tests.generator.runs import Array, at_rest, longest_step, transmitted
+from tests.generator.runs import Array, at_rest, longest_step
 from tests.recovery.fleet.case import Case
 
 
@@ -37,18 +37,12 @@ def floors(drawn: Case, result: Diagnosis) -> dict[str, float]:
     return found
 
 
-SLOWEST_CYCLE = 2e-3
-"""Time between rows [s] beyond which a spline through the rows is no motion of the motor."""
-
-
 def true_errors(drawn: Case) -> dict[str, Array]:
     """Return recorded less predicted by the true plant, of the recording that is judged, (rows,) each.
 
-    Where rows are further apart than cycles of any drive, a diagnosis picks rows of known motion: the exact motion is
-    taken, and the encoder's error is carried through the linear chain.
+    The plant is led by a spline through the recorded angle, as a diagnosis is, so that the encoder's steps shake its
+    friction as they do there. Rows far apart do not tell the motion between all of them: these are not judged.
     """
-    if drawn.true.row_time > SLOWEST_CYCLE:
-        return _linear_errors(drawn)
     run = drawn.runs[1]
     c = run.constants
     step = longest_step(c, drawn.true.axis.top_speed)
@@ -57,14 +51,4 @@ def true_errors(drawn: Case) -> dict[str, Array]:
     errors = {"motor_torque": drawn.judge["motor_torque"] - torque / factor}
     if "table_position" in drawn.judge:
         errors["table_position"] = drawn.judge["table_position"] - position
-    return errors
-
-
-def _linear_errors(drawn: Case) -> dict[str, Array]:
-    torque, angle, position = drawn.exact
-    by_torque, by_position = transmitted(drawn.true, drawn.judge["motor_angle"] - angle, drawn.true.row_time)
-    factor = drawn.off.get("torque_constant", 1.0)
-    errors = {"motor_torque": drawn.judge["motor_torque"] - torque - by_torque / factor}
-    if "table_position" in drawn.judge:
-        errors["table_position"] = drawn.judge["table_position"] - position - by_position
     return errors

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 from tests.generator.drawn_effects import TOLERANCES
 from tests.generator.machines import Machine
 
 
-def plant_text(machine: Machine, name: str) -> str:
-    """Return the text of the plant file of a machine as it is declared."""
+def plant_text(machine: Machine, name: str, tolerances: Mapping[str, float] = TOLERANCES) -> str:
+    """Return the text of the plant file of a machine as it is declared, with the tolerance of every kind of value."""
     a = machine.axis
 
     def number(value: float, unit: str, kind: str) -> str:
-        return f'{{ value = "{value:.10g} {unit}", tolerance = "{100 * TOLERANCES[kind]:g} %" }}'
+        return f'{{ value = "{value:.10g} {unit}", tolerance = "{100 * tolerances[kind]:g} %" }}'
 
     def drag(name: str, port: str, of: str, coulomb: float, smoothing: str, per: str = "", viscous: float = 0.0) -> str:
         lines = ["[[effect]]", f'name = "{name}"', f'port = "{port}"', f"coulomb = {number(coulomb, of, 'friction')}"]

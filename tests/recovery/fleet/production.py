@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 
+from tests.generator import drawn_effects
 from tests.generator.axis import AxisParameters, Controller, Sensors
 from tests.generator.effects import (
     Backlash,
@@ -105,6 +106,9 @@ class Production:
 
 GUESSED = ("table_mass", "motor_inertia", "screw_inertia", "guide_coulomb", "guide_viscous", "nut_coulomb")
 """Numbers that nobody knows: 0.4 to 2.5 times what is declared."""
+
+TOLERANCES = {**drawn_effects.TOLERANCES, "mass": 1.5, "inertia": 1.5, "friction": 1.5}
+"""What the plant file says of how well its values are known: a guess may be wrong by a factor of 2.5, either way."""
 
 
 def _warm(effect: Effect, day: Day) -> Effect:

@@ -18,6 +18,7 @@ from typing import Any
 
 from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.judging.result import Diagnosis
+from feeddrive.diagnosis.plant_text import with_calibrated_values
 from feeddrive.errors import InputError
 from feeddrive.plant.file.lumped_text import plant_text_with_effects
 from feeddrive.plant.file.plant_file import read_plant
@@ -128,7 +129,8 @@ def diagnosed(drawn: Case, folder: Path, limit: float) -> Record:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            after.write_text(plant_text_with_effects(plant_file.read_text(encoding="utf-8"), effects), encoding="utf-8")
+            text = with_calibrated_values(plant_file.read_text(encoding="utf-8"), result.calibrated)
+            after.write_text(plant_text_with_effects(text, effects), encoding="utf-8")
             read_plant(after)
         found["plant_after"] = "readable"
     except Exception as fault:

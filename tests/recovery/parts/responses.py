@@ -1,17 +1,14 @@
 """Frequency responses of the machines of parts, from the matrices of finite elements, explained with the parts file.
 
-Command line: python -m tests.recovery.parts.responses [--machines M,..] [--what W,..] [--draw D] [--count N].
-
 Relative scatter of 2 % where a line is as large as the median, more below it, as a drive's sensor leaves it, and the
 coherence that belongs to it: it falls at anti-resonances.
 """
 
 from __future__ import annotations
 
-import argparse
 import math
-import sys
 import time
+import traceback
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -27,7 +24,8 @@ from feeddrive.plant.chain.resolution import resolved_modes
 from feeddrive.recording.frequency_response import FrequencyResponse
 from feeddrive.servo.mechanics_response import Case as Point
 from tests.generator.screw_elements import Array, Drive, Friction, drive_of, frequencies, matrices
-from tests.recovery.parts.cases import MACHINES, PUBLISHED
+from tests.recovery.fleet.run import Record, TimeLimitError, time_limit
+from tests.recovery.parts.cases import ALONE, MACHINES, TIMES
 from tests.recovery.parts_runs import MARGIN, friction_of, softer
 
 LINES = np.arange(8.0, 700.0, 4.0)
@@ -37,6 +35,15 @@ AVERAGES, SCATTER = 16, 0.02
 WHAT = ("nothing", "nut", "bearing", "coupling", "payload", "mode")
 PARTS = {"nut": "nut", "bearing": "near", "coupling": "coupling"}
 
+NAMES = {
+    "nothing": ([],), "nut": ([], ["nut.axial_stiffness"]), "bearing": ([], ["bearing.near.axial_stiffness"]),
+    "coupling": ([], ["coupling.torsional_stiffness"]), "payload": (["table.mass"],), "mode": (["structural_mode"],),
+}  # fmt: skip
+"""What may be named; a part that is softer by what its tolerance allows is shared with those it is in series with."""
+
+FREQUENCY, STIFFNESS, NOTHING_LEFT = 0.005, 0.03, 1.1
+"""Asked for: relative error of frequencies and of the static stiffness; what is left over the scatter of the lines."""
+
 
 @dataclass(frozen=True)
 class ResponseCase:
@@ -45,6 +52,17 @@ class ResponseCase:
     machine: str
     what: str
     draw: int
+    kind = "response"
+
+    @property
+    def key(self) -> str:
+        """What a record of it is found by."""
+        return f"{self.machine} {self.what} {self.draw} response"
+
+    @property
+    def cost(self) -> float:
+        """Processor seconds, about."""
+        return ALONE[self.machine] * TIMES[self.what]
 
     @cached_property
     def axis(self) -> Axis:
@@ -113,7 +131,6 @@ class Explained:
 
     case: ResponseCase
     result: ResponseResult
-    seconds: float
 
     @property
     def named(self) -> list[str]:
@@ -146,46 +163,83 @@ class Explained:
         return float(stiffness_budget(self.after.plant, point.position).total / true - 1)
 
     @property
-    def line(self) -> str:
-        """The case in a line."""
-        _, _, planted, _ = self.case.drawn
-        values = ", ".join(
-            f"{p.key} {p.value:.5g} [{p.interval[0]:.5g}, {p.interval[1]:.5g}]"
-            for one in self.result.asserted
-            for p in one.parameters
-        )
-        first, second = (100 * off for off in self.frequency_off)
-        given = ", ".join(f"{one:.5g}" for one in planted) or "nothing"
-        return (
-            f"{self.case.machine} {self.case.what} {self.case.draw}: planted {given}, named {self.named} {values} | "
-            f"frequencies {first:+.3f}, {second:+.3f} %, stiffness {100 * self.stiffness_off:+.2f} % | "
-            f"error {self.result.error_after:.4f}, scatter {self.result.scatter:.4f} | {self.seconds:.0f} s"
-        )
+    def record(self) -> Record:
+        """What the table shows, as JSON holds it."""
+        return {
+            "planted": self.case.drawn[2],
+            "found": [{"name": name} for name in self.named],
+            "values": [[p.key, p.value, *p.interval] for one in self.result.asserted for p in one.parameters],
+            "frequency_off": self.frequency_off,
+            "stiffness_off": self.stiffness_off,
+            "error": self.result.error_after,
+            "scatter": self.result.scatter,
+        }
 
 
 def explained(case: ResponseCase) -> Explained:
     """The case, diagnosed."""
-    axis, begun = case.axis, time.process_time()
+    axis = case.axis
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         result = diagnose_response(axis.entries, axis.path, axis.plant, case.response(), case.drawn[0])
-    return Explained(case, result, time.process_time() - begun)
+    return Explained(case, result)
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """One line a case."""
-    parser = argparse.ArgumentParser(prog="python -m tests.recovery.parts.responses", description=__doc__)
-    parser.add_argument("--machines", type=lambda text: text.split(","), default=[*MACHINES])
-    parser.add_argument("--what", type=lambda text: text.split(","), default=[*WHAT], help=", ".join(WHAT))
-    parser.add_argument("--draw", type=int, default=PUBLISHED, help=f"the first; below {PUBLISHED} for development")
-    parser.add_argument("--count", type=int, default=1, help="draws of each")
-    options = parser.parse_args(arguments)
-    for draw in range(options.draw, options.draw + options.count):
-        for what in options.what:
-            for machine in options.machines:
-                print(explained(ResponseCase(machine, what, draw)).line, flush=True)
-    return 0
+def response_record(case: ResponseCase, limit: float) -> Record:
+    """Record and explain a case; what is raised is kept as its result."""
+    begun = time.process_time()
+    record: Record = {"machine": case.machine, "what": case.what, "draw": case.draw}
+    try:
+        with time_limit(limit):
+            record |= explained(case).record | {"outcome": "done"}
+    except TimeLimitError:
+        record |= {"outcome": "time limit"}
+    except Exception:
+        record |= {"outcome": "raised", "said": traceback.format_exc()}
+    return record | {"cpu": time.process_time() - begun}
 
 
-if __name__ == "__main__":
-    sys.exit(main())
+@dataclass(frozen=True)
+class ResponseRow:
+    """A record with its questions answered."""
+
+    record: Record
+
+    @property
+    def named(self) -> list[str]:
+        """Names that are asserted; a declared value by its key."""
+        return [one["name"] for one in self.record.get("found", ())]
+
+    @property
+    def right(self) -> bool:
+        """Whether what was planted is named, or nothing of a part within its tolerance; and the file is right."""
+        if self.record["outcome"] != "done" or self.named not in NAMES[self.record["what"]]:
+            return False
+        off = max(map(abs, self.record["frequency_off"]))
+        return off < FREQUENCY and abs(self.record["stiffness_off"]) < STIFFNESS and self.over_scatter < NOTHING_LEFT
+
+    @property
+    def over_scatter(self) -> float:
+        """What is left over what the lines scatter."""
+        return float(self.record["error"] / self.record["scatter"])
+
+    @property
+    def told(self) -> str:
+        """Values that are named, with their intervals."""
+        return ", ".join(
+            f"{key} {value:.5g} [{low:.5g}, {high:.5g}]" for key, value, low, high in self.record["values"]
+        )
+
+    @property
+    def line(self) -> str:
+        """The case in a line."""
+        head = f"{self.record['key']:36s} {self.record['cpu']:5.0f} s "
+        if self.record["outcome"] != "done":
+            return head + self.record["outcome"] + " " + str(self.record.get("said", "")).strip()[-300:]
+        first, second = (100 * off for off in self.record["frequency_off"])
+        planted = ", ".join(f"{one:.5g}" for one in self.record["planted"]) or "nothing"
+        return (
+            f"{head}{'right' if self.right else 'WRONG'} planted {planted}, named {self.named} {self.told} | "
+            f"frequencies {first:+.3f}, {second:+.3f} %, stiffness {100 * self.record['stiffness_off']:+.2f} % | "
+            f"error over scatter {self.over_scatter:.3f}"
+        )

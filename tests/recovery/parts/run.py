@@ -16,12 +16,13 @@ from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.judging.result import Diagnosis
 from feeddrive.diagnosis.likelihood.evidence import prepare
 from feeddrive.errors import InputError
-from feeddrive.files import find_plant
-from feeddrive.plant.file.plant_file import read_plant
 from tests.generator.screw_elements import Recorder
-from tests.recovery.fleet.run import TimeLimitError, found_of, time_limit
+from tests.recovery.fleet.run import Record, TimeLimitError, found_of, time_limit
 from tests.recovery.parts.cases import Case
+from tests.recovery.parts.responses import ResponseCase, response_record
 from tests.state import ROOT, digest_of
+
+Asked = Case | ResponseCase
 
 RESULTS = "results.jsonl"
 LARGEST_SET = 3
@@ -40,7 +41,7 @@ def parts_state() -> str:
     return digest_of(sorted(files), ("numpy", "scipy", "casadi", "numba"), ROOT)
 
 
-def records_of(folder: Path, state: str | None = None) -> dict[str, dict[str, Any]]:
+def records_of(folder: Path, state: str | None = None) -> dict[str, Record]:
     """The records of a folder by case, those of one state where it is given; the last of a case counts."""
     path, found = folder / RESULTS, {}
     for line in path.read_text(encoding="utf-8").splitlines() if path.exists() else ():
@@ -54,30 +55,29 @@ def records_of(folder: Path, state: str | None = None) -> dict[str, dict[str, An
 
 
 def run_missing(
-    cases: Sequence[Case], folder: Path, limit: float, minutes: float, resume: bool, said: Callable[[str], None]
+    cases: Sequence[Asked], folder: Path, limit: float, minutes: float, resume: bool, said: Callable[[Record], None]
 ) -> None:
-    """Run the cases without a record of this state; none begins after so many minutes (0: no end)."""
+    """Run the cases without a record of this state, the cheap first; none begins after so many minutes (0: no end)."""
     folder.mkdir(parents=True, exist_ok=True)
     state, begun = parts_state(), time.monotonic()
     done = records_of(folder, state) if resume else {}
-    for case in cases:
-        if case.key in done:
-            continue
+    for case in sorted((one for one in cases if one.key not in done), key=lambda one: one.cost):
         if minutes and time.monotonic() - begun > 60 * minutes:
             break
-        record = {"key": case.key, "state": state, **diagnosed(case, limit)}
+        found = diagnosed(case, limit) if isinstance(case, Case) else response_record(case, limit)
+        record = {"key": case.key, "state": state, "kind": case.kind, **found}
         with (folder / RESULTS).open("a", encoding="utf-8") as file:
             file.write(json.dumps(record, ensure_ascii=False) + "\n")
-        said(Row(record).line)
+        said(record)
 
 
-def diagnosed(case: Case, limit: float) -> dict[str, Any]:
+def diagnosed(case: Case, limit: float) -> Record:
     """Record and diagnose a case; what is raised is kept as its result."""
     _, name, values = case.planted
     record: dict[str, Any] = {"machine": case.machine, "what": case.what, "draw": case.draw, "name": name}
     record["values"] = values
     fitted, judged = case.recordings()
-    plant, begun = read_plant(find_plant(case.machine)), time.process_time()
+    plant, begun = case.plant, time.process_time()
     try:
         with warnings.catch_warnings(), time_limit(limit):
             warnings.simplefilter("ignore")
