@@ -11,7 +11,7 @@ import pytest
 from feeddrive.diagnosis.calibration import calibrate
 from feeddrive.diagnosis.calibration.calibrate import calibrated, weighed_alike
 from feeddrive.diagnosis.calibration.known import TOLERANCE
-from feeddrive.diagnosis.finding.attempt import refuse_over_at_once
+from feeddrive.diagnosis.finding.attempt import refuse_of_no_hours
 from feeddrive.diagnosis.finding.scene import scene_of
 from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.diagnosis.likelihood.set_evidence import same_samples
@@ -96,11 +96,39 @@ def test_growth_that_one_stretch_alone_shows_is_none(problem: Problem) -> None:
     ends = joined.first_stretch(problem.evidence[0].recording)
     assert 5.0 < ends < 30.0
     with pytest.raises(InputError, match="first stretch"):
-        refuse_over_at_once(problem, [growth.of(strain=1e-5, time_constant=0.5 * ends)])
-    refuse_over_at_once(problem, [growth.of(strain=1e-5, time_constant=2 * ends)])
+        refuse_of_no_hours(problem, [growth.of(strain=1e-5, time_constant=0.5 * ends)])
+    with pytest.raises(InputError, match="lead error"):  # a longer one is asked of its size
+        refuse_of_no_hours(problem, [growth.of(strain=1e-5, time_constant=2 * ends)])
     whole = replace(problem.evidence[0].recording, flaws=())
     brief = replace(problem, evidence=(replace(problem.evidence[0], recording=whole),))
-    refuse_over_at_once(brief, [growth.of(strain=1e-5, time_constant=0.5)])
+    refuse_of_no_hours(brief, [growth.of(strain=1e-5, time_constant=0.5)])
+
+
+def test_growth_is_what_the_same_place_has_at_other_hours(problem: Problem) -> None:
+    """Beside a lead map of any shape: none where nothing grows, however well places and hours go together."""
+    (evidence,) = problem.evidence
+    lasted = float(np.ptp(evidence.recording.time))
+    growth = find_effect("thermal_growth").of(strain=3e-5, time_constant=lasted)
+    effects = [find_effect("backlash").of(width=PLAY), growth]
+    with pytest.raises(InputError, match="lead error"):
+        refuse_of_no_hours(problem, effects)
+    x, since = evidence.measured["table_position"], evidence.recording.time - evidence.recording.time[0]
+    grown = x * (1 - 3e-5 * np.expm1(-since / lasted))
+    other = replace(evidence, measured={**evidence.measured, "table_position": grown})
+    refuse_of_no_hours(replace(problem, evidence=(other,)), effects)
+
+
+def test_play_is_what_the_same_place_has_in_both_directions(problem: Problem) -> None:
+    """6 µm are there, against 4 µm of lead map; once they are declared, none is left for another play."""
+    play = find_effect("backlash")
+    refuse_of_no_hours(problem, [play.of(width=1.2 * PLAY)])
+    there = replace(problem, plant=problem.plant.with_effects(play.of(width=PLAY)))
+    (evidence,) = there.evidence
+    left = evidence.measured["table_position"] - there.predictor.predict(there.plant, evidence)["table_position"]
+    declared = problem.predictor.predict(problem.plant, evidence)["table_position"]
+    without = replace(evidence, measured={**evidence.measured, "table_position": declared + left})
+    with pytest.raises(InputError, match="lead error"):
+        refuse_of_no_hours(replace(problem, evidence=(without,)), [play.of(width=1e-6)])
 
 
 def test_nut_crosses_its_play_before_the_table_follows() -> None:

@@ -18,12 +18,15 @@ from feeddrive.diagnosis.likelihood.cross_validation import (
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit, linear_step
 from feeddrive.diagnosis.likelihood.folds import FOLDS, block_numbers
 from feeddrive.diagnosis.likelihood.predictability import has_play
+from feeddrive.diagnosis.starts.residual_readings import BINS
 from feeddrive.effects.base import Effect, number
 from feeddrive.effects.friction.viscous_warmup import ViscousWarmup
+from feeddrive.effects.transmission.backlash import Backlash
+from feeddrive.effects.transmission.preload_loss import PreloadLoss
 from feeddrive.effects.travel.thermal_growth import ThermalGrowth
 from feeddrive.errors import InputError
 from feeddrive.recording.long.joined import first_stretch
-from feeddrive.typing import FloatArray
+from feeddrive.typing import FloatArray, IntegerArray
 
 JOINT_ITERATIONS = 4
 """Steps of a joint fit inside the search; what is left is polished at its end."""
@@ -133,16 +136,18 @@ def _usable(scene: Scene, problem: Problem, name: str, result: Fit) -> Attempt:
         raise InputError(f"{name} could not be simulated", name)
     if not problem.possible(result.effects):
         raise InputError(f"{name} would have friction push the axis", name)
-    refuse_over_at_once(problem, result.effects[-1:])
+    refuse_of_no_hours(problem, result.effects)
     if has_play(result.effects[-1:]):
         problem = with_predictable(scene.problem, result.effects)
     return compared(problem, name, result, scene.found)
 
 
-def refuse_over_at_once(problem: Problem, effects: Sequence[Effect]) -> None:
-    """Refuse what warms up and is over in the first of many stretches: no other one shows that it ever changed.
+def refuse_of_no_hours(problem: Problem, effects: Sequence[Effect]) -> None:
+    """Refuse what recordings of hours do not bear out: what is over in one stretch, or is a lead error.
 
-    Over hours it stays as it is, and its first seconds take what else is not named at the places of one stretch.
+    What has warmed up within the first stretch no other one shows to have changed: over hours it stays as it is, and
+    its first seconds take what else is not named at the places of one stretch. Growth and lost motion of which less
+    than half remains beside a lead error of any shape over the stroke are nearer to none.
 
     Raises:
         InputError: there is such an effect.
@@ -151,6 +156,42 @@ def refuse_over_at_once(problem: Problem, effects: Sequence[Effect]) -> None:
     for effect in effects:
         if isinstance(effect, ThermalGrowth | ViscousWarmup) and number(effect.values["time_constant"]) < first:
             raise InputError(f"{effect.name} is over within the first stretch of the recording", effect.name)
+    for place, effect in enumerate(effects):
+        by_map = first > 0 and isinstance(effect, ThermalGrowth | Backlash | PreloadLoss)
+        if by_map and not _left_beside_a_map(problem, effects, place) > 0.5:
+            raise InputError(f"{effect.name}: a lead error over the stroke says it as well", effect.name)
+
+
+def _left_beside_a_map(problem: Problem, effects: Sequence[Effect], place: int) -> float:
+    """Share of an effect of a set that remains where the table position has any lead error over the stroke beside it.
+
+    Stretches of different hours lie at different places, and some are passed one way more often than the other. So what
+    is other from place to place seems to grow, or to lag; growth is what the same place has at different hours, and
+    lost motion what it has in both directions. With P the means over cells of the stroke taken out and g what the
+    effect makes: 1 + (P g)'(P r) / |P g|^2, r being left by the set.
+    """
+    rest = [*effects[:place], *effects[place + 1 :]]
+    total, square = 0.0, 0.0
+    for e in problem.evidence:
+        if "table_position" not in e.channels:
+            continue
+        rows, measured = e.fit_rows, e.measured["table_position"]
+        having, lacking = (
+            problem.predictor.predict(problem.machine(some), e)["table_position"][rows] for some in (effects, rest)
+        )
+        x = measured[rows]
+        cells = np.digitize(x, np.linspace(x.min(), x.max(), BINS + 1)[1:-1])
+        made = having - lacking
+        own = made - _means(made, cells)
+        total, square = total + float(own @ (x - having)), square + float(own @ own)
+    return 1.0 + total / square if square > 0 else 0.0
+
+
+def _means(series: FloatArray, cells: IntegerArray) -> FloatArray:
+    """At every row the mean over its cell, (n,)."""
+    count = np.maximum(np.bincount(cells), 1)
+    found: FloatArray = (np.bincount(cells, weights=series) / count)[cells]
+    return found
 
 
 def _one_linear_step(fitted: Fit) -> Fit:

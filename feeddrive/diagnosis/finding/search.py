@@ -23,7 +23,7 @@ from feeddrive.diagnosis.calibration.calibrate import (
 )
 from feeddrive.diagnosis.calibration.known import TOLERANCE
 from feeddrive.diagnosis.certainty.one_sided import with_usual_sizes
-from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, Attempt, compared, refuse_over_at_once, started
+from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, Attempt, compared, refuse_of_no_hours, started
 from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.finding.round import Round, one_round
 from feeddrive.diagnosis.finding.scene import scene_of
@@ -237,7 +237,7 @@ def _fitted(
         again = regained(own, result.effects)
         if again is not own:  # what the play could not predict is to be predicted again
             own, result = again, fit(again, result.effects, iterations=JOINT_ITERATIONS)
-        refuse_over_at_once(own, result.effects)
+        refuse_of_no_hours(own, result.effects)
         taken = _Taken(own, result, name, odds_between(at_hand, Standing(own, result), count))
         if not one.added or one.dropped or compared(own, name, result, found.effects).comparison.pays:
             return taken
