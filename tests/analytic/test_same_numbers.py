@@ -81,8 +81,8 @@ def test_what_does_nothing_is_the_machine_without_it() -> None:
     """A candidate begins with none of it: no run of its own, and the numbers of one to rounding."""
     recording = read_recording(Path(__file__).parents[1] / "data" / "bench" / "backlash_train.csv.gz")
     plant = read_plant(find_plant("bench_axis"))
-    problem = Problem(plant, (prepare(recording, plant, 1.0),), AxisPredictor())
-    (evidence,), run = problem.evidence, problem.predictor.load_motion
+    evidence, predictor = prepare(recording, plant, 1.0), AxisPredictor()
+    problem, run = Problem(plant, (evidence,), predictor), predictor.load_motion
     nothing = (ConstantForce.of(force=0.0), CoulombAsymmetry.of(delta_force=0.0), LeadErrorCumulative.of(slope=0.0))
     for one in nothing:
         assert run(plant.with_effects(one), evidence) is run(plant, evidence)
