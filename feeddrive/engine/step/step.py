@@ -20,6 +20,7 @@ from functools import cached_property
 
 import casadi as ca
 
+from feeddrive.effects.base import TransmissionEffect
 from feeddrive.engine.step.linear_part import Layout
 from feeddrive.engine.step.node_forces import Pull, node_forces
 from feeddrive.engine.step.propagators import NODES, part
@@ -67,7 +68,9 @@ def _layout(plant: Plant, symbols: Symbols, driven: bool, lagging: bool) -> Layo
     first = 1 if driven else 0
     forced = tuple(i for i in range(first, n) if not forces[i].is_zero())
     free = n - first
-    return Layout(driven, lagging, free, 2 * free + lagging, forced, bristle_count(plant), 4 if driven else 2)
+    bristles, inputs = bristle_count(plant), 4 if driven else 2
+    sharp = bristles > 0 or any(effect.has_play for effect in plant.effects_of(TransmissionEffect))
+    return Layout(driven, lagging, free, 2 * free + lagging, forced, bristles, inputs, sharp)
 
 
 class StepModel:
