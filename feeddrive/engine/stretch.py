@@ -78,7 +78,7 @@ class _Parts:
         self.program, self.step, self.layout = program, program.step, program.step.layout
         self.sweeps = sweeps
         before = program.before
-        self.sizes = [self.step.begin.size1_in(4), before.size1_in(3), before.size1_in(4)]
+        self.sizes = [self.step.iterate.size1_in(4), before.size1_in(3), before.size1_in(4)]
         self.early = [row for row in self.step.read if row < self.layout.states]
         self.state = ca.SX.sym("state", self.layout.memory + before.size1_in(1))
         self.fed = ca.SX.sym("fed", before.size1_in(2))

@@ -12,12 +12,17 @@ from scipy.signal import butter, sosfiltfilt
 
 from feeddrive.diagnosis.likelihood.band import END_CUT, Band
 from feeddrive.diagnosis.likelihood.evidence import prepare
+from feeddrive.diagnosis.likelihood.fit import Problem
+from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
+from feeddrive.effects.friction.coulomb_asymmetry import CoulombAsymmetry
+from feeddrive.effects.source.constant_force import ConstantForce
+from feeddrive.effects.travel.lead_error_cumulative import LeadErrorCumulative
 from feeddrive.files import find_plant
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.recording import Recording
 from feeddrive.recording.files.reading import read_recording
 from feeddrive.report.figures.drawing import without_formula
-from feeddrive.simulate.driven import motor_motion, motor_motions
+from feeddrive.simulate.driven import TOLERANCE, motor_motion, motor_motions, simulate_driven
 
 
 @pytest.mark.parametrize("count", [2, 15, 16, 17, 4000])
@@ -70,6 +75,24 @@ def test_rows_at_other_times_are_those_of_a_recording_with_such_times(bits: int)
     found, expected = evidence.at_other_times(other).motion, prepare(other, plant, 1.0).motion
     for name in ("time", "angle", "speed", "acceleration"):
         np.testing.assert_array_equal(getattr(found, name), getattr(expected, name))
+
+
+def test_what_does_nothing_is_the_machine_without_it() -> None:
+    """A candidate begins with none of it: no run of its own, and the numbers of one to rounding."""
+    recording = read_recording(Path(__file__).parents[1] / "data" / "bench" / "backlash_train.csv.gz")
+    plant = read_plant(find_plant("bench_axis"))
+    evidence, predictor = prepare(recording, plant, 1.0), AxisPredictor()
+    problem, run = Problem(plant, (evidence,), predictor), predictor.load_motion
+    nothing = (ConstantForce.of(force=0.0), CoulombAsymmetry.of(delta_force=0.0), LeadErrorCumulative.of(slope=0.0))
+    for one in nothing:
+        assert run(plant.with_effects(one), evidence) is run(plant, evidence)
+        alone = simulate_driven(plant.with_effects(one), evidence.motion)
+        # a thousandth of what a step may miss
+        assert np.abs(alone.table_position - run(plant, evidence).table_position).max() < 1e-3 * TOLERANCE
+    assert run(plant.with_effects(ConstantForce.of(force=1.0)), evidence) is not run(plant, evidence)
+    assert problem.predicted(nothing[:1]) is problem.predicted(nothing[:1])
+    with pytest.raises(ValueError, match="read-only"):
+        problem.predicted(())[0] = 0.0
 
 
 def slower(recording: Recording) -> Recording:

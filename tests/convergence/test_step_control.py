@@ -62,11 +62,11 @@ def test_position_does_not_depend_on_the_steps(case: str) -> None:
 
 @pytest.fixture
 def to_the_last_digit(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[], None]]:
-    """Lets Newton go on to a billionth, a hundredth of that with bristles, as long as the test lasts."""
+    """Lets Newton go on to a billionth, a hundredth of that where forces are sharp, as long as the test lasts."""
 
     def begin() -> None:
         monkeypatch.setattr(step_constants, "CONVERGED", 1e-9)
-        monkeypatch.setattr(step_constants, "CONVERGED_WITH_BRISTLES", 1e-11)
+        monkeypatch.setattr(step_constants, "CONVERGED_WHERE_SHARP", 1e-11)
         forget_machines()
         forget_constants()
 

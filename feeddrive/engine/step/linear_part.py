@@ -38,6 +38,7 @@ class Layout:
         forced: coordinates with effect forces that are not identically zero.
         bristles: deflections.
         inputs: held over a step, or the ends of a cubic.
+        sharp: whether a force bends within nanometres: bristles, and the flanks of a free play.
     """
 
     driven: bool
@@ -47,6 +48,7 @@ class Layout:
     forced: tuple[int, ...]
     bristles: int
     inputs: int
+    sharp: bool
 
     @property
     def watched(self) -> int:

@@ -16,10 +16,11 @@ Source: Hairer and Wanner, Solving ODEs II, sections IV.5 (Radau IIA) and IV.8 (
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from functools import cached_property
 
 import casadi as ca
 
+from feeddrive.effects.base import TransmissionEffect
 from feeddrive.engine.step.linear_part import Layout
 from feeddrive.engine.step.node_forces import Pull, node_forces
 from feeddrive.engine.step.propagators import NODES, part
@@ -29,38 +30,6 @@ from feeddrive.plant.equations import bristle_count
 from feeddrive.plant.plant import Plant
 from feeddrive.plant.structure import Symbols, parameter_symbols, without_left_out
 from feeddrive.typing import Expression
-
-
-@dataclass(frozen=True)
-class StepModel:
-    """The functions of a step; `fixed` are the constants of `step_constants`, `values` the plant's parameters.
-
-    Attributes:
-        layout: sizes.
-        read: rows that the effects read of a node's states, behind which come the held inputs, or angle, speed and
-            acceleration of a driven motor.
-        watch: (memory, input, place, time, fixed, values) -> memory, its watched part set from the state. At a start,
-            and where the fixed constants are those of another reference.
-        begin: (memory, input, place, time, fixed) -> (what the coordinates at the nodes are without node forces,
-            first guess of the unknowns).
-        iterate: (memory, base, guess, time, fixed, values) -> (better guess, correction over its limit).
-        tangent: (memory, base, guess, time, fixed, values, then how memory, base, fixed and values change) -> how
-            the solved guess changes.
-        finish: (memory, input, place, guess, fixed) -> (memory after, error over the tolerance).
-        open, close: parts of begin and finish for who has the states without node forces: those read at the first
-            node, then all at the end. (memory, input, place, fixed, these) -> results of begin;
-            (memory, guess, fixed) -> (memory after but for the states, error).
-    """
-
-    layout: Layout
-    read: tuple[int, ...]
-    watch: ca.Function
-    begin: ca.Function
-    iterate: ca.Function
-    tangent: ca.Function
-    finish: ca.Function
-    open: ca.Function
-    close: ca.Function
 
 
 def driven_step(plant: Plant) -> StepModel:
@@ -87,7 +56,7 @@ def torque_step(plant: Plant, lagging: bool = False) -> StepModel:
 def _build(plant: Plant, driven: bool, lagging: bool) -> StepModel:
     symbols = without_left_out(plant, parameter_symbols(plant))
     layout = _layout(plant, symbols, driven, lagging)
-    return _Maker(StepSymbols(plant, symbols, layout)).model()
+    return StepModel(StepSymbols(plant, symbols, layout))
 
 
 def _layout(plant: Plant, symbols: Symbols, driven: bool, lagging: bool) -> Layout:
@@ -99,34 +68,68 @@ def _layout(plant: Plant, symbols: Symbols, driven: bool, lagging: bool) -> Layo
     first = 1 if driven else 0
     forced = tuple(i for i in range(first, n) if not forces[i].is_zero())
     free = n - first
-    return Layout(driven, lagging, free, 2 * free + lagging, forced, bristle_count(plant), 4 if driven else 2)
+    bristles, inputs = bristle_count(plant), 4 if driven else 2
+    sharp = bristles > 0 or any(effect.has_play for effect in plant.effects_of(TransmissionEffect))
+    return Layout(driven, lagging, free, 2 * free + lagging, forced, bristles, inputs, sharp)
 
 
-class _Maker:
-    """The functions of one step."""
+class StepModel:
+    """The functions of a step; `fixed` are the constants of `step_constants`, `values` the plant's parameters.
+
+    Those that compiled runs do not ask for are made when they are.
+
+    Attributes:
+        layout: sizes.
+        read: rows that the effects read of a node's states, behind which come the held inputs, or angle, speed and
+            acceleration of a driven motor.
+        watch: (memory, input, place, time, fixed, values) -> memory, its watched part set from the state. At a start,
+            and where the fixed constants are those of another reference.
+        iterate: (memory, base, guess, time, fixed, values) -> (better guess, correction over its limit).
+    """
 
     def __init__(self, symbols: StepSymbols) -> None:
         self.symbols, self.layout = symbols, symbols.layout
         self.nodes = NodeEquations(symbols)
+        self.read = tuple(self.nodes.read)
+        self.watch = self._watch()
+        given = [symbols.memory, self.nodes.base, symbols.guess, symbols.time, symbols.fixed, symbols.values]
+        self.iterate = ca.Function("feeddrive_iterate", given, list(self.nodes.corrected()))
 
-    def model(self) -> StepModel:
+    @cached_property
+    def begin(self) -> ca.Function:
+        """(memory, input, place, time, fixed) -> (what the coordinates at the nodes are without node forces, first
+        guess of the unknowns).
+        """
         s = self.symbols
-        improved, change = self.nodes.corrected()
-        iterate = [s.memory, self.nodes.base, s.guess, s.time, s.fixed, s.values]
-        opened = self._opened()
-        closed = ca.Function("close", [s.memory, s.guess, s.fixed], self._closed())
-        begin, finish = self._begun(opened), self._finished(closed)
-        return StepModel(
-            self.layout,
-            tuple(self.nodes.read),
-            self._watch(),
-            ca.Function("feeddrive_begin", [s.memory, s.input, s.place, s.time, s.fixed], begin),
-            ca.Function("feeddrive_iterate", iterate, [improved, change]),
-            self.nodes.tangent(),
-            ca.Function("feeddrive_finish", [s.memory, s.input, s.place, s.guess, s.fixed], finish),
-            opened,
-            closed,
-        )
+        return ca.Function("feeddrive_begin", [s.memory, s.input, s.place, s.time, s.fixed], self._begun(self.open))
+
+    @cached_property
+    def finish(self) -> ca.Function:
+        """(memory, input, place, guess, fixed) -> (memory after, error over the tolerance)."""
+        s = self.symbols
+        finished = self._finished(self.close)
+        return ca.Function("feeddrive_finish", [s.memory, s.input, s.place, s.guess, s.fixed], finished)
+
+    @cached_property
+    def open(self) -> ca.Function:
+        """`begin` for who has the states without node forces: those read at the first node, then all at the end.
+
+        (memory, input, place, fixed, these) -> results of begin.
+        """
+        return self._opened()
+
+    @cached_property
+    def close(self) -> ca.Function:
+        """`finish` for the same: (memory, guess, fixed) -> (memory after but for the states, error)."""
+        s = self.symbols
+        return ca.Function("close", [s.memory, s.guess, s.fixed], self._closed())
+
+    @cached_property
+    def tangent(self) -> ca.Function:
+        """(memory, base, guess, time, fixed, values, then how memory, base, fixed and values change) -> how the solved
+        guess changes.
+        """
+        return self.nodes.tangent()
 
     def _watch(self) -> ca.Function:
         """Memory whose watched part belongs to its state, at rest in curvature and slope."""

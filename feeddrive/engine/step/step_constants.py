@@ -28,9 +28,9 @@ CONVERGED = 1e-5
 the one before, in shares of what bends the force. 1e-4 m/s^2 over half a millisecond are 50 nm/s, a ten-thousandth of
 the 0.5 mm/s within which friction turns round. A further one would only say so, and takes a third of a run."""
 
-CONVERGED_WITH_BRISTLES = 1e-9
-"""The same with bristles: forces are compared, and a stiff bristle that breaks away bends within 10 nm, which the last
-hundred-thousandth of its force crosses."""
+CONVERGED_WHERE_SHARP = 1e-9
+"""The same where forces bend within nanometres, which the last hundred-thousandth of a force crosses: a stiff bristle
+that breaks away within 10 nm, the flank of a free play that takes up its damper within 1 nm."""
 
 BRISTLE_SCALE = 1e-8
 """Deflection that counts as full scale where bristles alone are solved [m]."""
@@ -44,7 +44,7 @@ _CUBIC_SHARE = 1 / 36
 
 def converged(layout: Layout) -> float:
     """Share of the force, or of full scale, below which Newton's last correction ends it."""
-    return CONVERGED_WITH_BRISTLES if layout.bristles else CONVERGED
+    return CONVERGED_WHERE_SHARP if layout.sharp else CONVERGED
 
 
 def propagator_shapes(layout: Layout) -> list[tuple[int, int]]:
