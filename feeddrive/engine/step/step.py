@@ -69,7 +69,7 @@ def _layout(plant: Plant, symbols: Symbols, driven: bool, lagging: bool) -> Layo
     forced = tuple(i for i in range(first, n) if not forces[i].is_zero())
     free = n - first
     bristles, inputs = bristle_count(plant), 4 if driven else 2
-    sharp = bristles > 0 or any(effect.has_play for effect in plant.effects_of(TransmissionEffect))
+    sharp = bristles > 0 or any(isinstance(one, TransmissionEffect) and one.has_play for one in plant.effects)
     return Layout(driven, lagging, free, 2 * free + lagging, forced, bristles, inputs, sharp)
 
 
