@@ -4,7 +4,7 @@
 |---|---|---|
 | clock_rate | time stamps exp(c) times the true ones | time / exp(c) |
 | channel_gain | torque exp(c) times the true one | torque / exp(c) |
-| channel_drift | torque with a zero that moves, by c t | torque - c t |
+| channel_drift | torque with a zero that moves, by c t r, r of one largest torque in one recording | torque - c t r |
 
 Each is one column beside the slopes of a fitted set: for the clock the change of the residual when the recording is
 prepared with other time stamps, for a gain the predicted torque, for a drift the time. What a column brings on blocks
@@ -51,9 +51,9 @@ from feeddrive.typing import FloatArray
 
 CLOCK, GAIN, DRIFT = "clock_rate", "channel_gain", "channel_drift"
 
-LEAST = {CLOCK: 1e-3, GAIN: 5e-3, DRIFT: 1e-12}
-"""Logarithm of a factor that is a fault: a quartz misses by 1e-4 at most, a calibrated current by half a per cent. A
-drift [N m/s] is one where it is told at all: no machine has a torque that moves on whatever it does."""
+LEAST = {CLOCK: 1e-3, GAIN: 5e-3, DRIFT: 5e-3}
+"""Logarithm of a factor that is a fault: a quartz misses by 1e-4 at most, a calibrated current by half a per cent, and
+so does its zero, of its range, which is at least the largest torque that was recorded."""
 
 STEP = 1e-3
 """Change of the logarithm of a clock from which its column is taken."""
@@ -72,15 +72,17 @@ class Suspect:
 
     Attributes:
         kind: `CLOCK`, `GAIN` or `DRIFT`.
-        size: c [1, 1, N m/s].
+        size: c.
         deviation: of c.
         comparison: what it brings on blocks left out.
+        rate: r of a drift: largest torque over the duration, of the recordings that were fitted [N m/s].
     """
 
     kind: str
     size: float
     deviation: float = math.inf
     comparison: Comparison = NOT_ASKED
+    rate: float = 0.0
 
     def mended(self, recording: Recording) -> Recording:
         """The recording without the fault."""
@@ -88,7 +90,7 @@ class Suspect:
         if self.kind == CLOCK:
             return replace(recording, time=recording.time * factor, sample_time=recording.sample_time * factor)
         if self.kind == DRIFT:
-            moved = self.size * (recording.time - recording.time[0])
+            moved = self.size * self.rate * (recording.time - recording.time[0])
             return recording.with_channels({"motor_torque": recording["motor_torque"] - moved})
         names = [name for name in ("motor_torque", "motor_current", "motor_torque_share") if name in recording]
         return recording.with_channels({name: factor * recording[name] for name in names})
@@ -99,11 +101,13 @@ class Suspect:
         low, high = (math.exp(self.size + way * 1.96 * self.deviation) for way in (-1, 1))
         explains = self.comparison.gain
         if self.kind == DRIFT:
-            span = self.size - 1.96 * self.deviation, self.size + 1.96 * self.deviation
-            total = self.size * recordings[0].duration
+            low, high = (self.rate * (self.size + way * 1.96 * self.deviation) for way in (-1, 1))
+            total = self.size * self.rate * recordings[0].duration
             what = f"the zero of the torque moves by {total:+.3g} N m in {recordings[0].duration:.3g} s, whatever runs"
             mend = "record at rest before and after, and take the line between the two zeros off the torque"
-            return Quality(DRIFT, "motor_torque", self.size, "N m/s", what, mend, span, explains, mended=True)
+            return Quality(
+                DRIFT, "motor_torque", self.size * self.rate, "N m/s", what, mend, (low, high), explains, mended=True
+            )
         if self.kind == CLOCK:
             off = f"{100 * (factor - 1):+.3g} % off"
             what = f"the clock of the recording is {off}: {factor:.6g} s are written for each second"
@@ -199,7 +203,7 @@ def _beside(problem: Problem, found: Fit, kind: str, column: FloatArray) -> Susp
     score = score_covariance(problem.evidence, [e.fit_rows for e in problem.evidence], residual, alone[:, None])
     square = float(alone @ alone)
     deviation = math.sqrt(float(score[0, 0])) / square if square > 0 else math.inf
-    return Suspect(kind, size, deviation, comparison)
+    return Suspect(kind, size, deviation, comparison, _rate(problem))
 
 
 def _gain_column(problem: Problem, found: Fit) -> FloatArray:
@@ -213,15 +217,22 @@ def _gain_column(problem: Problem, found: Fit) -> FloatArray:
 
 
 def _drift_column(problem: Problem) -> FloatArray | None:
-    """The time since the first row as a torque, whitened, (m,); None where the torque is no torque as it is written."""
+    """A torque that grows with time, whitened, (m,); None where the torque is no torque as it is written."""
     if any("motor_torque" not in e.recording for e in problem.evidence):
         return None
-    parts = []
+    parts, rate = [], _rate(problem)
     for e in problem.evidence:
         series = {name: np.zeros(len(e.counted)) for name in e.channels}
-        series["motor_torque"] = e.in_band(e.recording.time - e.recording.time[0])
+        series["motor_torque"] = e.in_band(rate * (e.recording.time - e.recording.time[0]))
         parts.append(e.weighted(series, e.thinned(e.fit_rows)))
     return _whitened(problem, np.concatenate(parts))
+
+
+def _rate(problem: Problem) -> float:
+    """Largest torque over the duration, of the recordings that have one [N m/s]."""
+    of = [e.recording for e in problem.evidence if "motor_torque" in e.recording]
+    largest = max((float(np.nanmax(np.abs(one["motor_torque"]))) for one in of), default=0.0)
+    return largest / max((one.duration for one in of), default=1.0)
 
 
 def _clock_column(problem: Problem, found: Fit) -> FloatArray | None:
