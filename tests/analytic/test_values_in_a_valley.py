@@ -45,6 +45,10 @@ class Valley(Problem):
         assert self.calibration is not None
         return MEASURED - torque(DEVIATIONS * self.calibration.coordinates)
 
+    def possible(self, effects: Sequence[Effect]) -> bool:
+        """No friction that pushes."""
+        return True
+
     @property
     def whitener(self) -> Whitener:  # type: ignore[override]
         """Slopes as they are."""

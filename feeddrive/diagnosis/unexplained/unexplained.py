@@ -176,7 +176,9 @@ def without_stand_ins(found: Search, judged: Sequence[Judged]) -> Search:
         return found
     table = rival.carried.effect
     its_own = CURVES.get((table.name, table.place), ()) if rival.mostly else ()
-    kept = _needed_beside(found.problem, effects, table, its_own)
+    # a table over position says a lead map as well: names are to pay beside all that it says
+    counting = replace(found.problem, evidence=tuple(e.mapped for e in found.problem.evidence))
+    kept = _needed_beside(counting, effects, table, its_own)
     if len(kept) == len(effects):
         return found
     reason = (
