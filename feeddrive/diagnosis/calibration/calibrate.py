@@ -10,10 +10,10 @@ import numpy as np
 
 from feeddrive.diagnosis.calibration.calibration import Calibration
 from feeddrive.diagnosis.calibration.declared import CalibratedValue, calibrated_values
-from feeddrive.diagnosis.calibration.known import TOLERANCE, known_values
+from feeddrive.diagnosis.calibration.known import known_values
 from feeddrive.diagnosis.certainty.noise_colour import score_covariance
 from feeddrive.diagnosis.likelihood.evidence import Evidence, weighed_by
-from feeddrive.diagnosis.likelihood.fit import UNEXPLAINED, Fit, Problem
+from feeddrive.diagnosis.likelihood.fit import Fit, Problem
 from feeddrive.diagnosis.likelihood.predictability import has_play
 from feeddrive.effects.base import Effect
 from feeddrive.recording import Recording
@@ -62,11 +62,7 @@ def calibrated(problem: Problem) -> Problem:
     weighed = tuple(weighed_by(e, plant) for e in start.evidence)
     if any(a is not b for a, b in zip(weighed, start.evidence, strict=True)):
         start = recalibrated(replace(start, evidence=weighed), ())
-    start = recalibrated(start.levelled(), ())
-    assert start.calibration is not None
-    if np.max(np.abs(start.calibration.coordinates), initial=0.0) <= TOLERANCE or start.plain_error(()) < UNEXPLAINED:
-        return start
-    return recalibrated(at_declared(start), ())  # they stand in for what is to be found
+    return recalibrated(start.levelled(), ())
 
 
 def recalibrated(problem: Problem, effects: Sequence[Effect], rough: bool = False) -> Problem:
@@ -156,7 +152,11 @@ def _left(problem: Problem, effects: Sequence[Effect]) -> list[dict[str, float]]
 
 
 def weighed_alike(evidence: Evidence, like: Sequence[Evidence]) -> Evidence:
-    """A recording with its channels weighed as those of fitted ones are, by the rms of what is left of these."""
+    """A recording with its channels weighed as those of fitted ones are, by the rms of what is left of these.
+
+    Where a lead map is open in these it is open in it.
+    """
+    evidence = evidence.with_map(any(one.open_map for one in like))
     left = {
         name: math.sqrt(float(np.mean([one.left.get(name, 1.0) ** 2 for one in like if name in one.channels] or [1.0])))
         for name in evidence.channels

@@ -20,11 +20,13 @@ from feeddrive.diagnosis.calibration.calibrate import (
     of_hours,
     recalibrated,
     recalibrated_by_rest,
+    with_new_slopes,
 )
 from feeddrive.diagnosis.calibration.known import TOLERANCE
 from feeddrive.diagnosis.certainty.one_sided import with_usual_sizes
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, Attempt, compared, refuse_of_no_hours, started
 from feeddrive.diagnosis.finding.materiality import is_material
+from feeddrive.diagnosis.finding.open_map import log_odds_of_map
 from feeddrive.diagnosis.finding.round import Round, one_round
 from feeddrive.diagnosis.finding.scene import scene_of
 from feeddrive.diagnosis.finding.sets import Neighbour, neighbours
@@ -121,9 +123,20 @@ def search(
     near: tuple[Near, ...] = ()
     while len(rounds) < MOST_ROUNDS and not (rounds and problem.budget.skips("further rounds of the search")):
         progress(f"round {len(rounds) + 1}: {len(found.effects)} effects so far")
-        now = one_round(scene_of(problem, found.effects), found, impossible, denied, len(rounds) + 1)
-        taken, near = _likelier(problem, found, now, denied)
-        taken = _of_likelier_law(taken, now.count, denied)
+        now, taken, near = _asked(problem, found, impossible, denied, len(rounds) + 1)
+        of_map = log_odds_of_map(problem, found, now.count)
+        if of_map > max(taken.odds if taken is not None else 0.0, 0.0):  # no name says it: it is not to look like one
+            problem = replace(problem, evidence=tuple(e.with_map(True) for e in problem.evidence))
+            problem, found = _refitted(problem, fit(problem, found.effects))
+            continue
+        after = None if taken is None else _refitted(*_with_taken(taken, found))
+        begin = _begun_as_declared(problem, found)
+        if begin is not None:
+            again, its, beside = _asked(*begin, impossible, denied, len(rounds) + 1)
+            there = None if its is None else _refitted(*_with_taken(its, begin[1]))
+            here = (problem, found) if after is None else after
+            if there is not None and odds_between(Standing(*here), Standing(*there), now.count) > 0:
+                now, taken, near, after = again, its, beside, there
         rounds.append(tuple(attempt.for_the_record() for attempt in now.attempts))
         names = taken.name.split(" with ") if taken is not None else []
         trials += [_trial(len(rounds), attempt, attempt.name in names) for attempt in rounds[-1]]
@@ -134,7 +147,7 @@ def search(
             impossible |= denied
             rest = [one for one in found.effects if not any(one is other for other in others)]
             problem, found = _refitted(problem, fit(problem, rest))
-        if taken is None:
+        if after is None:
             left_out = problem.budget.skips("declared values beyond their tolerances")
             beyond = None if left_out else _with_value_beyond(problem, found)
             if beyond is None and others:
@@ -145,13 +158,12 @@ def search(
             problem, found = beyond
             trials.append(Trial(len(rounds), found.effects[-1].name, 0.0, 0.0, True))
             continue
-        problem = without_effects(taken.problem, found.effects, taken.fit.effects)
-        problem, found = _refitted(problem, taken.fit)
+        problem, found = after
         progress(f"found so far: {', '.join(effect.name for effect in found.effects)}")
         if _members(found) in met:  # they only take each other's place
             break
         met.add(_members(found))
-    problem, found = _refitted(problem, fit(problem, found.effects), ends=True)
+    problem, found = _refitted(problem, fit(problem, found.effects))
     small = [one for one in found.effects if not is_material(one, problem.plant)]
     if small:
         rest = [one for one in found.effects if not any(one is other for other in small)]
@@ -165,6 +177,34 @@ def search(
 def _members(found: Fit) -> tuple[str, ...]:
     """Names of a set."""
     return tuple(sorted(effect.name for effect in found.effects))
+
+
+def _asked(
+    problem: Problem, found: Fit, impossible: dict[str, str], denied: dict[str, str], number: int
+) -> tuple[Round, _Taken | None, tuple[Near, ...]]:
+    """A round beside a set, the likeliest set near it, None where none is likelier, and what comes near beside it."""
+    now = one_round(scene_of(problem, found.effects), found, impossible, denied, number)
+    taken, near = _likelier(problem, found, now, denied)
+    return now, _of_likelier_law(taken, now.count, denied), near
+
+
+def _with_taken(taken: _Taken, found: Fit) -> tuple[Problem, Fit]:
+    return without_effects(taken.problem, found.effects, taken.fit.effects), taken.fit
+
+
+def _begun_as_declared(problem: Problem, found: Fit) -> tuple[Problem, Fit] | None:
+    """A set beside the values as declared, where one has gone beyond its tolerance and much is left; else None.
+
+    Such values stand in for what is missing, which hides beside them. Or one of them is beyond its tolerance, and then
+    all that is missing beside the declared ones is that: so both are asked, and the likelier goes on.
+    """
+    known = problem.calibration
+    if known is None or of_hours(problem) or np.max(np.abs(known.coordinates), initial=0.0) <= TOLERANCE:
+        return None
+    if problem.plain_error(found.effects) < UNEXPLAINED or problem.budget.skips("rounds beside the declared values"):
+        return None
+    there = with_new_slopes(at_declared(problem), found.effects)
+    return there, fit(there, found.effects, iterations=JOINT_ITERATIONS)
 
 
 def _likelier(
@@ -267,12 +307,10 @@ def _error(problem: Problem, effects: Sequence[Effect]) -> float:
     return fit(problem, effects, error_only=True).squared_error
 
 
-def _refitted(problem: Problem, found: Fit, ends: bool = False) -> tuple[Problem, Fit]:
+def _refitted(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
     """Declared values and effects fitted in turn, with new slopes of the values.
 
-    Values gone beyond their tolerances may have stood in for what was missing: they begin as declared as well. While
-    much is left and the search goes on they still do, and what is missing would be sought beside them: then they begin
-    as declared in any case.
+    Values gone beyond their tolerances may have stood in for what was missing: they begin as declared as well.
     """
     if problem.calibration is None:
         return _balanced(problem, found if not found.held else fit(problem, found.effects, iterations=0))
@@ -283,8 +321,7 @@ def _refitted(problem: Problem, found: Fit, ends: bool = False) -> tuple[Problem
     if not of_hours(there) and np.max(np.abs(there.calibration.coordinates), initial=0.0) > TOLERANCE:
         anew = recalibrated(at_declared(problem), found.effects)
         other = anew, fit(anew, found.effects, iterations=JOINT_ITERATIONS)
-        stand_in = not ends and there.plain_error(found.effects) > UNEXPLAINED
-        result = other if stand_in else min(result, other, key=lambda one: one[1].squared_error)
+        result = min(result, other, key=lambda one: one[1].squared_error)
     return _balanced(*result)
 
 
@@ -310,7 +347,7 @@ def _with_value_beyond(problem: Problem, found: Fit) -> tuple[Problem, Fit] | No
     if beyond is None:
         return None
     freed, effect = beyond
-    there, result = _refitted(freed, fit(freed, (*found.effects, effect)), ends=True)
+    there, result = _refitted(freed, fit(freed, (*found.effects, effect)))
     alike = there.weighed(problem.evidence[0].left)
     error = (result if alike is there else fit(alike, result.effects, iterations=0)).squared_error
     return (there, result) if error < found.squared_error else None

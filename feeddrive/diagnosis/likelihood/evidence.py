@@ -68,6 +68,7 @@ class Evidence:
         lost: samples that would count, but that a free play of the plant leaves unpredictable, (n,); None for none.
         left: channel to what is left of it over its noise, where it weighs no more than that (`Problem.balanced`,
             `weighed_by_rest`).
+        open_map: whether comparisons are without what a lead map may be (`lead_map`).
     """
 
     recording: Recording
@@ -82,6 +83,7 @@ class Evidence:
     model_error: dict[str, float]
     lost: BoolArray | None = field(default=None, kw_only=True)
     left: dict[str, float] = field(default_factory=dict, kw_only=True)
+    open_map: bool = field(default=False, kw_only=True)
 
     @property
     def channels(self) -> tuple[str, ...]:
@@ -156,8 +158,12 @@ class Evidence:
         return self.left == other.left
 
     @property
-    def mapped(self) -> Self:
-        """The evidence in which the lead map counts."""
+    def map_parts(self) -> list[dict[str, FloatArray]]:
+        """Series of all channels, (n,) each, that a lead map may be."""
+        return []
+
+    def with_map(self, is_open: bool) -> Self:
+        """The evidence without what a lead map may be, where it is open; else all of it counts."""
         return self
 
     @property
@@ -199,7 +205,7 @@ class AxisEvidence(Evidence):
         drawn: motions with the encoder's error once more; as `gains`.
         weights: channel to the weight of every sample, (n,): noise over noise and what the encoder's error makes of a
             free play there; channels left out are predicted alike everywhere.
-        lead_map: what a lead map may be of the table position, in the band, (n, k); None where it counts.
+        lead_map: what a lead map may be of the table position, in the band, (n, k); None without a table position.
         unsure: channel to what motion that may not be makes of it, in the band, (n, k); as `gains`.
         torque_rows: rows that the recorder writes a torque for, and the first row of one (`suspicion.logged_rows`);
             None where the torque is what the drive holds.
@@ -226,7 +232,7 @@ class AxisEvidence(Evidence):
 
     def within(self, other: Self) -> Self:
         """The evidence on the samples that another one of this recording has as well, by the lesser of the weights."""
-        kept = super().within(other)
+        kept = super().within(other).with_map(self.open_map or other.open_map)
         weights = {
             name: np.minimum(kept.weights.get(name, 1.0), other.weights.get(name, 1.0))
             for name in (*kept.weights, *other.weights)
@@ -244,6 +250,7 @@ class AxisEvidence(Evidence):
         mine, its = self.weights, other.weights
         return (
             super().weighs_as(other)
+            and self.open_map == other.open_map
             and mine.keys() == its.keys()
             and all(np.array_equal(mine[name], its[name]) for name in mine)
         )
@@ -281,15 +288,17 @@ class AxisEvidence(Evidence):
         """Series of all channels, (n,) each, that a recording may hold, as far as a deviation of one goes."""
         count = next(iter(self.unsure.values())).shape[1] if self.unsure else 0
         parts = [{name: columns[:, i] for name, columns in self.unsure.items()} for i in range(count)]
-        if self.lead_map is not None:
-            none = dict.fromkeys(self.channels, np.zeros(len(self.counted)))
-            parts += [{**none, "table_position": column} for column in self.lead_map.T]
-        return parts
+        return [*parts, *self.map_parts] if self.open_map else parts
 
     @property
-    def mapped(self) -> Self:
-        """The evidence in which the lead map counts."""
-        return replace(self, lead_map=None)
+    def map_parts(self) -> list[dict[str, FloatArray]]:
+        """Series of all channels, (n,) each, that a lead map may be."""
+        none = dict.fromkeys(self.channels, np.zeros(len(self.counted)))
+        return [] if self.lead_map is None else [{**none, "table_position": column} for column in self.lead_map.T]
+
+    def with_map(self, is_open: bool) -> Self:
+        """The evidence without what a lead map may be, where it is open; else all of it counts."""
+        return replace(self, open_map=is_open) if is_open != self.open_map else self
 
     @cached_property
     def _sure(self) -> dict[bytes, Whitener]:
