@@ -90,6 +90,8 @@ class Suspect:
         if self.kind == CLOCK:
             return replace(recording, time=recording.time * factor, sample_time=recording.sample_time * factor)
         if self.kind == DRIFT:
+            if "motor_torque" not in recording:
+                return recording
             moved = self.size * self.rate * (recording.time - recording.time[0])
             return recording.with_channels({"motor_torque": recording["motor_torque"] - moved})
         names = [name for name in ("motor_torque", "motor_current", "motor_torque_share") if name in recording]
