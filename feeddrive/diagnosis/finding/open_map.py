@@ -1,20 +1,22 @@
-"""Odds for a lead map beside a set of effects, as for any further effect of the set."""
+"""Odds for what is of no name beside a set of effects, as for any further effect: a lead map, the form of a law."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, linear_step
+from feeddrive.diagnosis.likelihood.law_curve import law_curves
 from feeddrive.diagnosis.likelihood.set_evidence import log_prior_of_size, variance_along
+from feeddrive.effects.base import Effect
+from feeddrive.typing import FloatArray
 
 
 def log_odds_of_map(problem: Problem, found: Fit, count: int) -> float:
     """Logarithm of the odds for a lead map beside a set; minus infinity where no stroke shows one, or it is open.
-
-    A map is linear in its coordinates, of size one: one step from the set, with all that the set may do, is exact as
-    far as the set is straight. Source: `likelihood.set_evidence`, with a normal prior.
 
     Args:
         problem: recordings.
@@ -23,10 +25,53 @@ def log_odds_of_map(problem: Problem, found: Fit, count: int) -> float:
     """
     if any(e.open_map for e in problem.evidence):
         return float("-inf")
+    return _log_odds(problem, found, count, {e: e.map_parts for e in problem.evidence})
+
+
+def likelier_curve(problem: Problem, found: Fit, count: int, least: float) -> Problem | None:
+    """The problem without what the other forms of a law of a set may make of it; None where no law's is as likely.
+
+    Args:
+        problem: recordings.
+        found: the set.
+        count: candidates and starts that were tried for a name.
+        least: logarithm of the odds for the likeliest name, or for none.
+    """
+    best, chosen = least, None
+    for place, effect in enumerate(found.effects):
+        if any(effect.name in e.curves for e in problem.evidence):
+            continue
+        parts = law_curves(problem, found.effects, place)
+        odds = _log_odds(problem, found, count, parts)
+        if odds > best:
+            best, chosen = odds, (effect.name, parts)
+    if chosen is None:
+        return None
+    name, parts = chosen
+    return replace(problem, evidence=tuple(e.with_curves({**e.curves, name: parts[e]}) for e in problem.evidence))
+
+
+def with_curves_of(problem: Problem, effects: Sequence[Effect]) -> Problem:
+    """The problem with the curves of these laws open alone."""
+    names = {effect.name for effect in effects}
+    if all(e.curves.keys() <= names for e in problem.evidence):
+        return problem
+    kept = ({name: curve for name, curve in e.curves.items() if name in names} for e in problem.evidence)
+    return replace(problem, evidence=tuple(e.with_curves(one) for e, one in zip(problem.evidence, kept, strict=True)))
+
+
+def _log_odds(
+    problem: Problem, found: Fit, count: int, parts_of: Mapping[Evidence, Sequence[dict[str, FloatArray]]]
+) -> float:
+    """Logarithm of the odds for columns of no name beside a set; minus infinity where there are none.
+
+    They are linear in their coordinates, of size one: one step from the set, with all that the set may do, is exact as
+    far as the set is straight. Source: `likelihood.set_evidence`, with a normal prior.
+    """
     rows = [int(e.thinned(e.fit_rows).sum()) * len(e.channels) for e in problem.evidence]
     parts, first, total = [], 0, len(found.residual)
     for e, size in zip(problem.evidence, rows, strict=True):
-        for part in e.map_parts:
+        for part in parts_of.get(e, ()):
             column = np.zeros(total)
             column[first : first + size] = e.weighted(part, e.thinned(e.fit_rows))
             parts.append(column if problem.whitener is None else problem.whitener.applied(column))
@@ -34,12 +79,16 @@ def log_odds_of_map(problem: Problem, found: Fit, count: int) -> float:
     if not parts:
         return float("-inf")
     columns = np.column_stack(parts)
-    wide = np.column_stack([found.jacobian, columns]) if found.jacobian.size else columns
-    residual = found.residual - wide @ linear_step(wide, found.residual)
-    beside = replace(found, residual=residual, jacobian=wide)
+    own = found.jacobian.shape[1]
+    wide = np.column_stack([found.jacobian, columns]) if own else columns
+    straight = found.residual - wide @ linear_step(wide, found.residual)
+    beside = replace(found, residual=straight, jacobian=wide)
     variance = variance_along(problem, beside, found, beside)
+    prior = np.sqrt(variance) * np.eye(wide.shape[1])[own:]  # what a deviation costs: of a size of one, as the noise
+    rest = np.concatenate([found.residual, np.zeros(len(prior))])
+    least = rest - np.vstack([wide, prior]) @ linear_step(np.vstack([wide, prior]), rest)
     volumes = [np.linalg.slogdet(j.T @ j / variance + np.eye(j.shape[1]))[1] for j in (found.jacobian, wide)]
     size = len(found.effects)
     more = log_prior_of_size(size + 1, count) - log_prior_of_size(size, count)
-    excess = found.squared_error - float(residual @ residual)
+    excess = found.squared_error - float(least @ least)
     return float(0.5 * excess / variance - 0.5 * (volumes[1] - volumes[0]) + more)

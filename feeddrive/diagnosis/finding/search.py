@@ -26,7 +26,7 @@ from feeddrive.diagnosis.calibration.known import TOLERANCE
 from feeddrive.diagnosis.certainty.one_sided import with_usual_sizes
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, Attempt, compared, refuse_of_no_hours, started
 from feeddrive.diagnosis.finding.materiality import is_material
-from feeddrive.diagnosis.finding.open_map import log_odds_of_map
+from feeddrive.diagnosis.finding.open_map import likelier_curve, log_odds_of_map, with_curves_of
 from feeddrive.diagnosis.finding.round import Round, one_round
 from feeddrive.diagnosis.finding.scene import scene_of
 from feeddrive.diagnosis.finding.sets import Neighbour, neighbours
@@ -125,9 +125,14 @@ def search(
         progress(f"round {len(rounds) + 1}: {len(found.effects)} effects so far")
         now, taken, near = _asked(problem, found, impossible, denied, len(rounds) + 1)
         of_map = log_odds_of_map(problem, found, now.count)
-        if of_map > max(taken.odds if taken is not None else 0.0, 0.0):  # no name says it: it is not to look like one
+        of_name = max(taken.odds if taken is not None else 0.0, 0.0)
+        if of_map > of_name:  # no name says it: it is not to look like one
             problem = replace(problem, evidence=tuple(e.with_map(True) for e in problem.evidence))
             problem, found = _refitted(problem, fit(problem, found.effects))
+            continue
+        curved = likelier_curve(problem, found, now.count, of_name)
+        if curved is not None:  # a law of another form says it: no second name
+            problem, found = _refitted(curved, fit(curved, found.effects))
             continue
         after = None if taken is None else _refitted(*_with_taken(taken, found))
         begin = _begun_as_declared(problem, found)
@@ -189,7 +194,8 @@ def _asked(
 
 
 def _with_taken(taken: _Taken, found: Fit) -> tuple[Problem, Fit]:
-    return without_effects(taken.problem, found.effects, taken.fit.effects), taken.fit
+    problem = without_effects(taken.problem, found.effects, taken.fit.effects)
+    return with_curves_of(problem, taken.fit.effects), taken.fit
 
 
 def _begun_as_declared(problem: Problem, found: Fit) -> tuple[Problem, Fit] | None:

@@ -166,6 +166,15 @@ class Evidence:
         """The evidence without what a lead map may be, where it is open; else all of it counts."""
         return self
 
+    def with_curves(self, curves: dict[str, list[dict[str, FloatArray]]]) -> Self:
+        """The evidence without what other forms of these laws may make of it; all of it counts where there are none."""
+        return self
+
+    @property
+    def curves(self) -> dict[str, list[dict[str, FloatArray]]]:
+        """Law to the series of all channels, (n,) each, of its other forms, which comparisons are without."""
+        return {}
+
     @property
     def whole(self) -> Self:
         """The evidence with the samples again that a free play left unpredictable."""
@@ -206,6 +215,7 @@ class AxisEvidence(Evidence):
         weights: channel to the weight of every sample, (n,): noise over noise and what the encoder's error makes of a
             free play there; channels left out are predicted alike everywhere.
         lead_map: what a lead map may be of the table position, in the band, (n, k); None without a table position.
+        law_curves: as `curves`.
         unsure: channel to what motion that may not be makes of it, in the band, (n, k); as `gains`.
         torque_rows: rows that the recorder writes a torque for, and the first row of one (`suspicion.logged_rows`);
             None where the torque is what the drive holds.
@@ -222,6 +232,7 @@ class AxisEvidence(Evidence):
     torque_rows: tuple[int, int] | None = None
     weights: dict[str, FloatArray] = field(default_factory=dict)
     lead_map: FloatArray | None = None
+    law_curves: dict[str, list[dict[str, FloatArray]]] = field(default_factory=dict)
 
     def where_predictable(self, predictable: BoolArray | FloatArray) -> Self:
         """The evidence without the samples of weight 0, the table position weighed at the others."""
@@ -233,6 +244,7 @@ class AxisEvidence(Evidence):
     def within(self, other: Self) -> Self:
         """The evidence on the samples that another one of this recording has as well, by the lesser of the weights."""
         kept = super().within(other).with_map(self.open_map or other.open_map)
+        kept = kept.with_curves({**other.curves, **self.curves})
         weights = {
             name: np.minimum(kept.weights.get(name, 1.0), other.weights.get(name, 1.0))
             for name in (*kept.weights, *other.weights)
@@ -251,6 +263,8 @@ class AxisEvidence(Evidence):
         return (
             super().weighs_as(other)
             and self.open_map == other.open_map
+            and self.curves.keys() == other.curves.keys()
+            and all(self.curves[name] is other.curves[name] for name in self.curves)
             and mine.keys() == its.keys()
             and all(np.array_equal(mine[name], its[name]) for name in mine)
         )
@@ -288,6 +302,7 @@ class AxisEvidence(Evidence):
         """Series of all channels, (n,) each, that a recording may hold, as far as a deviation of one goes."""
         count = next(iter(self.unsure.values())).shape[1] if self.unsure else 0
         parts = [{name: columns[:, i] for name, columns in self.unsure.items()} for i in range(count)]
+        parts += [part for curve in self.law_curves.values() for part in curve]
         return [*parts, *self.map_parts] if self.open_map else parts
 
     @property
@@ -299,6 +314,15 @@ class AxisEvidence(Evidence):
     def with_map(self, is_open: bool) -> Self:
         """The evidence without what a lead map may be, where it is open; else all of it counts."""
         return replace(self, open_map=is_open) if is_open != self.open_map else self
+
+    def with_curves(self, curves: dict[str, list[dict[str, FloatArray]]]) -> Self:
+        """The evidence without what other forms of these laws may make of it; all of it counts where there are none."""
+        return replace(self, law_curves=curves) if curves or self.law_curves else self
+
+    @property
+    def curves(self) -> dict[str, list[dict[str, FloatArray]]]:
+        """Law to the series of all channels, (n,) each, of its other forms, which comparisons are without."""
+        return self.law_curves
 
     @cached_property
     def _sure(self) -> dict[bytes, Whitener]:

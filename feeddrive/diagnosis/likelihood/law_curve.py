@@ -1,0 +1,126 @@
+"""The curve of a law: what a law of the same cause and another form makes of a recording beside it.
+
+No law is exactly ours. A drag that differs between the directions grows with a power of the speed, a friction drops with
+another tail, a machine warms up with two time constants. What is left beside the law is then its own, and no second
+effect. Two families hold such forms, each with deviations in proportion to what the law itself does:
+
+    s P_k(u)              law over a variable:      u from -1 to 1 over what the recording visits, k = 1 to 3
+    s(3^m l) - s(l)       law of a scale l:         m = -2, -1, 1, 2
+
+| symbol | meaning | unit |
+|---|---|---|
+| s | what the law makes of the channels beside the other effects | that of the channel |
+| P_k | Legendre polynomial | 1 |
+| u | variable that the law acts over: speed, position, time, force | 1 |
+| l | velocity, time constant, width that the law has | its own |
+
+A form is a law times a factor that changes slowly, or the law at several scales at once: 1 / (1 + x) is the mixture of
+exp(-x y) over y with the weights exp(-y), and two time constants are two scales. A law may be as large as it likes: what
+lies along s is taken out of every column, and is the law's own.
+
+Source: Kennedy and O'Hagan, J. R. Statist. Soc. B 63 (2001) 425 (discrepancy of a model, here in proportion to the law).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from feeddrive.diagnosis.likelihood.evidence import Evidence
+from feeddrive.diagnosis.likelihood.fit import Problem
+from feeddrive.effects.base import Effect, number
+from feeddrive.errors import InputError
+from feeddrive.typing import FloatArray
+
+SHARE = 1 / 3
+"""Deviation of a law's form, of the law [1]: one that deviates by its own size, three deviations, is another law."""
+
+HALF_WAVES = (1, 2, 3)
+"""Half waves of the factor over what is visited: slower than two periods, as a lead map; faster is no form of a law."""
+
+STEPS = (1 / 9, 1 / 3, 3.0, 9.0)
+"""Scales of a mixture, over that of the law: exponentials a factor of three apart follow 1 / (1 + x) to 1 %."""
+
+VARIABLES = {
+    "viscous_asymmetry": "table_velocity",
+    "position_spring": "table_position",
+    "lead_error_cumulative": "table_position",
+    "stiffness_vs_position": "table_position",
+}
+"""Laws over a variable."""
+
+SCALES = {
+    "stribeck": "velocity",
+    "friction_vs_position": "half_width",
+    "viscous_warmup": "time_constant",
+    "thermal_growth": "time_constant",
+}
+"""Laws that have a scale."""
+
+
+def law_curves(problem: Problem, effects: Sequence[Effect], place: int) -> dict[Evidence, list[dict[str, FloatArray]]]:
+    """Per recording, series of all channels, (n,) each, that the form of a law may make; empty for a law without one.
+
+    Args:
+        problem: recordings.
+        effects: fitted.
+        place: of the law among them.
+    """
+    law = effects[place]
+    if not problem.predictor.of_motion or not {law.name} & {*VARIABLES, *SCALES}:
+        return {}
+    others = [effect for i, effect in enumerate(effects) if i != place]
+    plant, without = problem.machine(effects), problem.machine(others)
+    found = {}
+    for e in problem.evidence:
+        with_law, bare = problem.predictor.predict(plant, e), problem.predictor.predict(without, e)
+        own = {name: with_law[name] - bare[name] for name in e.channels}
+        if law.name in SCALES:
+            parts = [
+                {name: series[name] - with_law[name] for name in e.channels}
+                for series in _at_other_scales(problem, others, law, e)
+            ]
+        else:
+            variable = np.abs(problem.predictor.variables(plant, e)[VARIABLES[law.name]])
+            if VARIABLES[law.name] == "table_position":
+                variable = problem.predictor.variables(plant, e)[VARIABLES[law.name]]
+            low, span = float(np.min(variable)), float(np.ptp(variable))
+            u = 2 * (variable - low) / (span or 1.0) - 1
+            parts = [
+                {name: own[name] * np.polynomial.Legendre.basis(k)(u) for name in e.channels} for k in HALF_WAVES
+            ]
+        found[e] = [beside(part, own, e) for part in parts]
+    return found
+
+
+def beside(part: dict[str, FloatArray], own: dict[str, FloatArray], e: Evidence) -> dict[str, FloatArray]:
+    """A deviation of a law, without what lies along the law itself at the samples that count."""
+    dot = square = 0.0
+    for name in e.channels:
+        weight = 1 / e.unit(name) ** 2
+        law = own[name][e.counted] - (np.mean(own[name][e.counted]) if name in e.floating else 0.0)
+        dot += weight * float(part[name][e.counted] @ law)
+        square += weight * float(law @ law)
+    along = dot / square if square > 0 else 0.0
+    return {name: SHARE * (part[name] - along * own[name]) for name in e.channels}
+
+
+def _at_other_scales(
+    problem: Problem, others: Sequence[Effect], law: Effect, e: Evidence
+) -> list[dict[str, FloatArray]]:
+    """Predictions with the law at other scales, those that it may have."""
+    key, found = SCALES[law.name], []
+    for step in STEPS:
+        values = {**law.values, key: number(law.values[key]) * step}
+        try:
+            other = replace(law, values=values)
+            if not problem.possible([*others, other]):
+                continue
+            series = problem.predictor.predict(problem.machine([*others, other]), e)
+        except InputError:  # a scale beyond those of the law
+            continue
+        if all(np.all(np.isfinite(one)) for one in series.values()):
+            found.append(series)
+    return found
