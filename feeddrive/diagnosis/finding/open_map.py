@@ -35,24 +35,38 @@ def likelier_curve(problem: Problem, found: Fit, count: int, least: float) -> Pr
         problem: recordings.
         found: the set.
         count: candidates and starts that were tried for a name.
-        least: logarithm of the odds for the likeliest name, or for none.
+        least: logarithm of the odds for the likeliest name.
     """
-    best, chosen = least, None
+    best, chosen = least, problem
     for place, effect in enumerate(found.effects):
         if any(effect.name in e.curves for e in problem.evidence):
             continue
         parts = law_curves(problem, found.effects, place)
         odds = _log_odds(problem, found, count, parts)
         if odds > best:
-            best, chosen = odds, (effect.name, parts)
-    if chosen is None:
-        return None
-    name, parts = chosen
-    return replace(problem, evidence=tuple(e.with_curves({**e.curves, name: parts[e]}) for e in problem.evidence))
+            opened = (e.with_curves({**e.curves, effect.name: parts[e]}) for e in problem.evidence)
+            best, chosen = odds, replace(problem, evidence=tuple(opened))
+    return chosen if chosen is not problem else None
+
+
+def log_odds_of_curves(problem: Problem, found: Fit, count: int, curved: Problem) -> float:
+    """Logarithm of the odds for the curves that are open in a problem and closed in another.
+
+    Args:
+        problem: where they are closed.
+        found: a set fitted there.
+        count: candidates and starts that were tried for a name.
+        curved: where they are open.
+    """
+    parts = {
+        e: [part for name, curve in its.curves.items() if name not in e.curves for part in curve]
+        for e, its in zip(problem.evidence, curved.evidence, strict=True)
+    }
+    return _log_odds(problem, found, count, parts)
 
 
 def with_curves_of(problem: Problem, effects: Sequence[Effect]) -> Problem:
-    """The problem with the curves of these laws open alone."""
+    """The problem with no curves open but those of these laws."""
     names = {effect.name for effect in effects}
     if all(e.curves.keys() <= names for e in problem.evidence):
         return problem

@@ -26,7 +26,7 @@ from feeddrive.diagnosis.calibration.known import TOLERANCE
 from feeddrive.diagnosis.certainty.one_sided import with_usual_sizes
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, Attempt, compared, refuse_of_no_hours, started
 from feeddrive.diagnosis.finding.materiality import is_material
-from feeddrive.diagnosis.finding.open_map import likelier_curve, log_odds_of_map, with_curves_of
+from feeddrive.diagnosis.finding.open_map import likelier_curve, log_odds_of_curves, log_odds_of_map, with_curves_of
 from feeddrive.diagnosis.finding.round import Round, one_round
 from feeddrive.diagnosis.finding.scene import scene_of
 from feeddrive.diagnosis.finding.sets import Neighbour, neighbours
@@ -130,7 +130,7 @@ def search(
             problem = replace(problem, evidence=tuple(e.with_map(True) for e in problem.evidence))
             problem, found = _refitted(problem, fit(problem, found.effects))
             continue
-        curved = likelier_curve(problem, found, now.count, of_name)
+        curved = likelier_curve(problem, found, now.count, of_name) if taken is not None else None
         if curved is not None:  # a law of another form says it: no second name
             problem, found = _refitted(curved, fit(curved, found.effects))
             continue
@@ -169,6 +169,9 @@ def search(
             break
         met.add(_members(found))
     problem, found = _refitted(problem, fit(problem, found.effects))
+    closed = with_curves_of(problem, ())  # names are weighed, and rivals tried, against all that is left
+    if closed is not problem:
+        problem, found = closed, fit(closed, found.effects, iterations=JOINT_ITERATIONS)
     small = [one for one in found.effects if not is_material(one, problem.plant)]
     if small:
         rest = [one for one in found.effects if not any(one is other for other in small)]
@@ -255,9 +258,15 @@ def _best(likelier: Iterable[_Taken], count: int) -> _Taken | None:
     """The likeliest of sets, compared with each other: all may be far ahead of the set at hand."""
     best: _Taken | None = None
     for one in sorted(likelier, key=lambda one: len(one.fit.coordinates)):
-        if best is None or odds_between(best, one, count) > 0:
+        if best is None or (odds_between(best, one, count) if _as_curved(best, one) else one.odds - best.odds) > 0:
             best = one
     return best
+
+
+def _as_curved(one: Standing, other: Standing) -> bool:
+    """Whether the same laws' curves are open in two problems."""
+    pairs = zip(one.problem.evidence, other.problem.evidence, strict=True)
+    return all(mine.curves.keys() == its.curves.keys() for mine, its in pairs)
 
 
 def _fitted(
@@ -274,6 +283,7 @@ def _fitted(
     # what shows in a brief passage alone is judged in blocks as short
     own = added[0].problem if len(added) == 1 else problem
     name = " with ".join(attempt.name for attempt in added)
+    own = with_curves_of(own, [*kept, *(attempt.fit.effects[-1] for attempt in added)])
     starts = [[*kept, *(attempt.fit.effects[-1] for attempt in added)], [*one.effects]]
     try:
         if len(added) == 2:
@@ -284,7 +294,7 @@ def _fitted(
         if again is not own:  # what the play could not predict is to be predicted again
             own, result = again, fit(again, result.effects, iterations=JOINT_ITERATIONS)
         refuse_of_no_hours(own, result.effects)
-        taken = _Taken(own, result, name, odds_between(at_hand, Standing(own, result), count))
+        taken = _Taken(own, result, name, _odds(at_hand, Standing(own, result), count))
         if not one.added or one.dropped or compared(own, name, result, found.effects).comparison.pays:
             return taken
         anew = _of_likelier_law(taken, count, denied)
@@ -293,6 +303,15 @@ def _fitted(
         return replace(anew, odds=odds_between(at_hand, anew, count))
     except InputError:
         return None
+
+
+def _odds(at_hand: Standing, there: Standing, count: int) -> float:
+    """Logarithm of the odds for a set against the one at hand; a law that goes takes its curve with it."""
+    closed = with_curves_of(at_hand.problem, there.fit.effects)
+    if closed is at_hand.problem:
+        return odds_between(at_hand, there, count)
+    bare = Standing(closed, fit(closed, at_hand.fit.effects, iterations=JOINT_ITERATIONS))
+    return odds_between(bare, there, count) - log_odds_of_curves(closed, bare.fit, count, at_hand.problem)
 
 
 def _restarted(problem: Problem, kept: Sequence[Effect], first: Attempt, second: Attempt) -> list[Effect]:

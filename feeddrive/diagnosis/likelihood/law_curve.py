@@ -1,8 +1,8 @@
 """The curve of a law: what a law of the same cause and another form makes of a recording beside it.
 
-No law is exactly ours. A drag that differs between the directions grows with a power of the speed, a friction drops with
-another tail, a machine warms up with two time constants. What is left beside the law is then its own, and no second
-effect. Two families hold such forms, each with deviations in proportion to what the law itself does:
+No law is exactly ours. A drag that differs between the directions grows with a power of the speed, a friction drops
+with another tail, a machine warms up with two time constants. What is left beside the law is then its own, and no
+second effect. Two families hold such forms, each with deviations in proportion to what the law itself does:
 
     s P_k(u)              law over a variable:      u from -1 to 1 over what the recording visits, k = 1 to 3
     s(3^m l) - s(l)       law of a scale l:         m = -2, -1, 1, 2
@@ -11,14 +11,17 @@ effect. Two families hold such forms, each with deviations in proportion to what
 |---|---|---|
 | s | what the law makes of the channels beside the other effects | that of the channel |
 | P_k | Legendre polynomial | 1 |
-| u | variable that the law acts over: speed, position, time, force | 1 |
+| u | variable that the law acts over: position, or logarithm of a speed or torque, over two decades | 1 |
 | l | velocity, time constant, width that the law has | its own |
 
-A form is a law times a factor that changes slowly, or the law at several scales at once: 1 / (1 + x) is the mixture of
-exp(-x y) over y with the weights exp(-y), and two time constants are two scales. A law may be as large as it likes: what
-lies along s is taken out of every column, and is the law's own.
+A form is a law times a factor that changes slowly, as a power does with the logarithm, or the law at several scales at
+once: 1 / (1 + x) is the mixture of exp(-x y) over y with the weights exp(-y), and two time constants are two scales.
+A law may be as large as it likes: what lies along s is taken out of every column.
 
-Source: Kennedy and O'Hagan, J. R. Statist. Soc. B 63 (2001) 425 (discrepancy of a model, here in proportion to the law).
+Where such a curve is likelier than the likeliest further name, comparisons are without it from there on
+(`finding.open_map`), as long as the law is in the set. Once the names are found all of it counts again.
+
+Source: Kennedy and O'Hagan, J. R. Statist. Soc. B 63 (2001) 425 (discrepancy of a model; here in proportion to the law).
 """
 
 from __future__ import annotations
@@ -43,8 +46,13 @@ HALF_WAVES = (1, 2, 3)
 STEPS = (1 / 9, 1 / 3, 3.0, 9.0)
 """Scales of a mixture, over that of the law: exponentials a factor of three apart follow 1 / (1 + x) to 1 %."""
 
+LEAST = 0.01
+"""Speed or torque over the largest below which the logarithm goes no further: there friction turns."""
+
 VARIABLES = {
+    "coulomb_asymmetry": "table_velocity",
     "viscous_asymmetry": "table_velocity",
+    "torque_constant_droop": "motor_torque",
     "position_spring": "table_position",
     "lead_error_cumulative": "table_position",
     "stiffness_vs_position": "table_position",
@@ -83,16 +91,23 @@ def law_curves(problem: Problem, effects: Sequence[Effect], place: int) -> dict[
                 for series in _at_other_scales(problem, others, law, e)
             ]
         else:
-            variable = np.abs(problem.predictor.variables(plant, e)[VARIABLES[law.name]])
-            if VARIABLES[law.name] == "table_position":
-                variable = problem.predictor.variables(plant, e)[VARIABLES[law.name]]
-            low, span = float(np.min(variable)), float(np.ptp(variable))
-            u = 2 * (variable - low) / (span or 1.0) - 1
-            parts = [
-                {name: own[name] * np.polynomial.Legendre.basis(k)(u) for name in e.channels} for k in HALF_WAVES
-            ]
+            u = _visited({**problem.predictor.variables(plant, e), **with_law}.get(VARIABLES[law.name]), law)
+            if u is None:  # its variable is not predicted here
+                return {}
+            parts = [{name: own[name] * np.polynomial.Legendre.basis(k)(u) for name in e.channels} for k in HALF_WAVES]
         found[e] = [beside(part, own, e) for part in parts]
     return found
+
+
+def _visited(variable: FloatArray | None, law: Effect) -> FloatArray | None:
+    """u of a law's variable, (n,); None without one."""
+    if variable is None or not np.ptp(variable) > 0:
+        return None
+    if VARIABLES[law.name] != "table_position":
+        size = np.abs(variable)
+        variable = np.log(np.maximum(size / np.max(size), LEAST))
+    low, span = float(np.min(variable)), float(np.ptp(variable))
+    return np.asarray(2 * (variable - low) / span - 1) if span > 0 else None
 
 
 def beside(part: dict[str, FloatArray], own: dict[str, FloatArray], e: Evidence) -> dict[str, FloatArray]:

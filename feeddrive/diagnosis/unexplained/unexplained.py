@@ -82,7 +82,7 @@ def explain_rest(
         channels: errors with the named effects.
     """
     names_alone = problem, judged
-    problem = replace(problem, evidence=tuple(e.with_map(False).with_curves({}) for e in problem.evidence))
+    problem = replace(problem, evidence=tuple(e.with_map(False) for e in problem.evidence))
     judged = [replace(j, evidence=j.evidence.with_map(False)) for j in judged]
     first = analyses_of(problem, effects, judged, channels)
     carried: list[Carried] = []
@@ -177,7 +177,7 @@ def without_stand_ins(found: Search, judged: Sequence[Judged]) -> Search:
     table = rival.carried.effect
     its_own = CURVES.get((table.name, table.place), ()) if rival.mostly else ()
     # a table over position says a lead map as well: names are to pay beside all that it says
-    counting = replace(found.problem, evidence=tuple(e.with_map(False).with_curves({}) for e in found.problem.evidence))
+    counting = replace(found.problem, evidence=tuple(e.with_map(False) for e in found.problem.evidence))
     kept = _needed_beside(counting, effects, table, its_own)
     if len(kept) == len(effects):
         return found
