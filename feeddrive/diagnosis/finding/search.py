@@ -35,7 +35,16 @@ from feeddrive.diagnosis.heat.heat_candidates import is_another
 from feeddrive.diagnosis.judging.result import Trial
 from feeddrive.diagnosis.likelihood.coordinates import write_coordinates
 from feeddrive.diagnosis.likelihood.fit import UNEXPLAINED, Fit, Problem, fit
-from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between, odds_between, regained, same_samples
+from feeddrive.diagnosis.likelihood.law_curve import has_curve
+from feeddrive.diagnosis.likelihood.predictability import has_play
+from feeddrive.diagnosis.likelihood.set_evidence import (
+    Standing,
+    gain_between,
+    log_odds,
+    odds_between,
+    regained,
+    same_samples,
+)
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 
@@ -125,14 +134,13 @@ def search(
         progress(f"round {len(rounds) + 1}: {len(found.effects)} effects so far")
         now, taken, near = _asked(problem, found, impossible, denied, len(rounds) + 1)
         of_map = log_odds_of_map(problem, found, now.count)
-        of_name = max(taken.odds if taken is not None else 0.0, 0.0)
-        if of_map > of_name:  # no name says it: it is not to look like one
+        if of_map > max(taken.odds if taken is not None else 0.0, 0.0):  # no name says it: it is not to look like one
             problem = replace(problem, evidence=tuple(e.with_map(True) for e in problem.evidence))
             problem, found = _refitted(problem, fit(problem, found.effects))
             continue
-        curved = likelier_curve(problem, found, now.count, of_name) if taken is not None else None
+        curved = None if taken is None else _of_another_form(taken, now.count)
         if curved is not None:  # a law of another form says it: no second name
-            problem, found = _refitted(curved, fit(curved, found.effects))
+            problem, found = _refitted(*curved)
             continue
         after = None if taken is None else _refitted(*_with_taken(taken, found))
         begin = _begun_as_declared(problem, found)
@@ -194,6 +202,20 @@ def _asked(
     now = one_round(scene_of(problem, found.effects), found, impossible, denied, number)
     taken, near = _likelier(problem, found, now, denied)
     return now, _of_likelier_law(taken, now.count, denied), near
+
+
+def _of_another_form(taken: _Taken, count: int) -> tuple[Problem, Fit] | None:
+    """A likelier set without one of the names that it adds, where the curve of another of its laws is likelier."""
+    effects, added = taken.fit.effects, len(taken.name.split(" with ")) if taken.name else 0
+    problem = with_curves_of(taken.problem, effects)
+    for place in range(len(effects) - added, len(effects)):
+        rest = [effect for i, effect in enumerate(effects) if i != place]
+        if has_curve(rest) and not has_play(effects[place : place + 1]):
+            without = fit(problem, rest, iterations=JOINT_ITERATIONS)
+            opened = likelier_curve(problem, without, count, log_odds(problem, without, taken.fit, count))
+            if opened is not None:
+                return opened, without
+    return None
 
 
 def _with_taken(taken: _Taken, found: Fit) -> tuple[Problem, Fit]:

@@ -2,7 +2,7 @@
 
 No law is exactly ours. A drag that differs between the directions grows with a power of the speed, a friction drops
 with another tail, a machine warms up with two time constants. What is left beside the law is then its own, and no
-second effect. Two families hold such forms, each with deviations in proportion to what the law itself does:
+second effect. Two families hold such forms, with a deviation of one each: as large as what the law itself does.
 
     s P_k(u)              law over a variable:      u from -1 to 1 over what the recording visits, k = 1 to 3
     s(3^m l) - s(l)       law of a scale l:         m = -2, -1, 1, 2
@@ -15,13 +15,13 @@ second effect. Two families hold such forms, each with deviations in proportion 
 | l | velocity, time constant, width that the law has | its own |
 
 A form is a law times a factor that changes slowly, as a power does with the logarithm, or the law at several scales at
-once: 1 / (1 + x) is the mixture of exp(-x y) over y with the weights exp(-y), and two time constants are two scales.
+once: exp(-x) and 1 / (1 + x) are mixtures of exp(-x^2) of other scales, and two time constants are two scales.
 A law may be as large as it likes: what lies along s is taken out of every column.
 
 Where such a curve is likelier than the likeliest further name, comparisons are without it from there on
 (`finding.open_map`), as long as the law is in the set. Once the names are found all of it counts again.
 
-Source: Kennedy and O'Hagan, J. R. Statist. Soc. B 63 (2001) 425 (discrepancy of a model; here in proportion to the law).
+Source: Kennedy and O'Hagan, J. R. Statist. Soc. B 63 (2001) 425 (discrepancy of a model).
 """
 
 from __future__ import annotations
@@ -37,14 +37,11 @@ from feeddrive.effects.base import Effect, number
 from feeddrive.errors import InputError
 from feeddrive.typing import FloatArray
 
-SHARE = 1 / 3
-"""Deviation of a law's form, of the law [1]: one that deviates by its own size, three deviations, is another law."""
-
 HALF_WAVES = (1, 2, 3)
 """Half waves of the factor over what is visited: slower than two periods, as a lead map; faster is no form of a law."""
 
 STEPS = (1 / 9, 1 / 3, 3.0, 9.0)
-"""Scales of a mixture, over that of the law: exponentials a factor of three apart follow 1 / (1 + x) to 1 %."""
+"""Scales of a mixture, over that of the law: beside exp(-x^2) they follow 1 / (1 + x) to 5 % and exp(-x) to 2 %."""
 
 LEAST = 0.01
 """Speed or torque over the largest below which the logarithm goes no further: there friction turns."""
@@ -68,6 +65,11 @@ SCALES = {
 """Laws that have a scale."""
 
 
+def has_curve(effects: Sequence[Effect]) -> bool:
+    """Whether one of these laws has other forms."""
+    return any(effect.name in VARIABLES or effect.name in SCALES for effect in effects)
+
+
 def law_curves(problem: Problem, effects: Sequence[Effect], place: int) -> dict[Evidence, list[dict[str, FloatArray]]]:
     """Per recording, series of all channels, (n,) each, that the form of a law may make; empty for a law without one.
 
@@ -77,7 +79,7 @@ def law_curves(problem: Problem, effects: Sequence[Effect], place: int) -> dict[
         place: of the law among them.
     """
     law = effects[place]
-    if not problem.predictor.of_motion or not {law.name} & {*VARIABLES, *SCALES}:
+    if not problem.predictor.of_motion or not has_curve([law]):
         return {}
     others = [effect for i, effect in enumerate(effects) if i != place]
     plant, without = problem.machine(effects), problem.machine(others)
@@ -119,7 +121,7 @@ def beside(part: dict[str, FloatArray], own: dict[str, FloatArray], e: Evidence)
         dot += weight * float(part[name][e.counted] @ law)
         square += weight * float(law @ law)
     along = dot / square if square > 0 else 0.0
-    return {name: SHARE * (part[name] - along * own[name]) for name in e.channels}
+    return {name: part[name] - along * own[name] for name in e.channels}
 
 
 def _at_other_scales(

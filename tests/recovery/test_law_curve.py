@@ -1,0 +1,105 @@
+"""What a law of another form leaves is its own curve; what a second effect leaves is not."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from feeddrive.diagnosis.finding.open_map import likelier_curve, log_odds_of_curves, with_curves_of
+from feeddrive.diagnosis.likelihood.evidence import prepare
+from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
+from feeddrive.diagnosis.likelihood.law_curve import STEPS, law_curves
+from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
+from feeddrive.diagnosis.likelihood.set_evidence import log_odds
+from feeddrive.effects.base import Effect
+from feeddrive.effects.catalogue import EFFECTS
+from tests.generator.axis import AXES
+from tests.generator.effects import CoulombAsymmetry, PositionSpring, ViscousAsymmetry
+from tests.generator.effects import Effect as Planted
+from tests.generator.effects.relatives import Relative
+from tests.generator.pair import recording_pair
+from tests.recovery.planted import axis_plant
+from tests.recovery.unlisted import recording
+
+COUNT = 40
+"""Candidates and starts of a round."""
+
+POWER = {"asymmetry_power": 0.5, "asymmetry_speed": 0.05}
+
+
+def problem_of(*planted: Planted) -> Problem:
+    """A recording of the bench axis with these effects."""
+    (pair, _) = recording_pair(AXES["bench"], planted, (31, 32), (7.0, 6.0))
+    plant = axis_plant("bench")
+    return Problem(plant, (prepare(recording(pair, "train"), plant, 1.0),), AxisPredictor())
+
+
+def asked(problem: Problem, first: str, second: str) -> tuple[Problem | None, Fit]:
+    """The problem with the curve of the first law open, where that is likelier than the second; and the first alone."""
+    alone = fit(problem, [start(first)])
+    both = fit(problem, [*alone.effects, start(second)])
+    return likelier_curve(problem, alone, COUNT, log_odds(problem, alone, both, COUNT)), alone
+
+
+def start(name: str) -> Effect:
+    """A law to begin a fit at."""
+    values = {"viscous_asymmetry": {"delta_viscous": 50.0}, "coulomb_asymmetry": {"delta_force": 5.0}}
+    values["position_spring"] = {"stiffness": 100.0, "zero": 0.3}
+    return EFFECTS[name].of(**values[name])
+
+
+@pytest.mark.parametrize(
+    ("planted", "first", "second"),
+    [
+        (Relative(ViscousAsymmetry(100.0), "root", POWER), "viscous_asymmetry", "coulomb_asymmetry"),
+        (Relative(PositionSpring(300.0, 0.3), "", {"spring_reach": 0.1}), "position_spring", "viscous_asymmetry"),
+    ],
+)
+def test_a_law_of_another_form_needs_no_second_name(planted: Planted, first: str, second: str) -> None:
+    problem = problem_of(planted)
+    opened, alone = asked(problem, first, second)
+    assert opened is not None
+    # what the second name took is the curve's now: it does not pay any more
+    there = fit(opened, alone.effects)
+    beside = fit(opened, [*there.effects, start(second)])
+    assert log_odds(opened, there, beside, COUNT) < 0
+    # the law does: its curve goes with it
+    bare, without = fit(problem, alone.effects), fit(problem, ())
+    assert log_odds(problem, without, bare, COUNT) + log_odds_of_curves(problem, bare, COUNT, opened) > 20
+    assert with_curves_of(opened, ()).evidence[0].curves == {}
+
+
+@pytest.mark.parametrize(
+    ("planted", "names"),
+    [
+        ((ViscousAsymmetry(100.0), CoulombAsymmetry(10.0)), ("viscous_asymmetry", "coulomb_asymmetry")),
+        ((PositionSpring(300.0, 0.3), ViscousAsymmetry(100.0)), ("position_spring", "viscous_asymmetry")),
+    ],
+)
+def test_a_second_effect_is_no_curve_of_the_first(planted: tuple[Planted, ...], names: tuple[str, str]) -> None:
+    assert asked(problem_of(*planted), *names)[0] is None
+
+
+def test_laws_at_other_scales_follow_a_longer_tail() -> None:
+    x = np.linspace(0.0, 20.0, 2000)
+    scales = np.column_stack([np.exp(-((x / step) ** 2)) for step in (1.0, *STEPS)])
+    for form, most in ((1 / (1 + x), 0.05), (np.exp(-x), 0.02)):
+        shares = np.linalg.lstsq(scales, form, rcond=None)[0]
+        assert np.max(np.abs(scales @ shares - form)) < most
+        assert np.all(np.abs(shares) < 1.0)  # within the deviation of a form
+
+
+def test_a_curve_has_nothing_of_the_law_itself() -> None:
+    problem = problem_of(ViscousAsymmetry(100.0))
+    law = fit(problem, [start("viscous_asymmetry")])
+    (evidence,) = problem.evidence
+    (parts,) = law_curves(problem, law.effects, 0).values()
+    rows = evidence.fit_rows
+    own = problem.residual(()) - problem.residual(law.effects)
+    for part in parts:
+        series = evidence.weighted(part, evidence.thinned(rows))
+        assert abs(series @ own) < 0.02 * np.linalg.norm(series) * np.linalg.norm(own)
+    assert law_curves(problem, [EFFECTS["drive_delay"].of(delay=1e-4)], 0) == {}
+    assert replace(evidence).curves == {}
