@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from feeddrive.diagnosis.finding.open_map import likelier_curve, log_odds_of_curves, with_curves_of
+from feeddrive.diagnosis.finding.open_map import likeliest_curve, log_odds_of_curves, with_curves_of
 from feeddrive.diagnosis.likelihood.evidence import prepare
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
 from feeddrive.diagnosis.likelihood.law_curve import STEPS, law_curves
@@ -40,7 +40,8 @@ def asked(problem: Problem, first: str, second: str) -> tuple[Problem | None, Fi
     """The problem with the curve of the first law open, where that is likelier than the second; and the first alone."""
     alone = fit(problem, [start(first)])
     both = fit(problem, [*alone.effects, start(second)])
-    return likelier_curve(problem, alone, COUNT, log_odds(problem, alone, both, COUNT)), alone
+    odds, opened = likeliest_curve(problem, alone, COUNT)
+    return opened if odds > log_odds(problem, alone, both, COUNT) else None, alone
 
 
 def start(name: str) -> Effect:

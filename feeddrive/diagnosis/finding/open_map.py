@@ -28,16 +28,18 @@ def log_odds_of_map(problem: Problem, found: Fit, count: int) -> float:
     return _log_odds(problem, found, count, {e: e.map_parts for e in problem.evidence})
 
 
-def likelier_curve(problem: Problem, found: Fit, count: int, least: float) -> Problem | None:
-    """The problem without what the other forms of a law of a set may make of it; None where no law's is as likely.
+def likeliest_curve(problem: Problem, found: Fit, count: int) -> tuple[float, Problem]:
+    """The problem without what the other forms of a law of a set may make of it, the law for which the odds are best.
 
     Args:
         problem: recordings.
         found: the set.
         count: candidates and starts that were tried for a name.
-        least: logarithm of the odds for the likeliest name.
+
+    Returns:
+        Logarithm of the odds for the curve, minus infinity where no law has one that is not open; and the problem.
     """
-    best, chosen = least, problem
+    best, chosen = float("-inf"), problem
     for place, effect in enumerate(found.effects):
         if any(effect.name in e.curves for e in problem.evidence):
             continue
@@ -46,7 +48,7 @@ def likelier_curve(problem: Problem, found: Fit, count: int, least: float) -> Pr
         if odds > best:
             opened = (e.with_curves({**e.curves, effect.name: parts[e]}) for e in problem.evidence)
             best, chosen = odds, replace(problem, evidence=tuple(opened))
-    return chosen if chosen is not problem else None
+    return best, chosen
 
 
 def log_odds_of_curves(problem: Problem, found: Fit, count: int, curved: Problem) -> float:

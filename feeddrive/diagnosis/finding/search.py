@@ -26,7 +26,7 @@ from feeddrive.diagnosis.calibration.known import TOLERANCE
 from feeddrive.diagnosis.certainty.one_sided import with_usual_sizes
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, Attempt, compared, refuse_of_no_hours, started
 from feeddrive.diagnosis.finding.materiality import is_material
-from feeddrive.diagnosis.finding.open_map import likelier_curve, log_odds_of_curves, log_odds_of_map, with_curves_of
+from feeddrive.diagnosis.finding.open_map import likeliest_curve, log_odds_of_curves, log_odds_of_map, with_curves_of
 from feeddrive.diagnosis.finding.round import Round, one_round
 from feeddrive.diagnosis.finding.scene import scene_of
 from feeddrive.diagnosis.finding.sets import Neighbour, neighbours
@@ -208,14 +208,16 @@ def _of_another_form(taken: _Taken, count: int) -> tuple[Problem, Fit] | None:
     """A likelier set without one of the names that it adds, where the curve of another of its laws is likelier."""
     effects, added = taken.fit.effects, len(taken.name.split(" with ")) if taken.name else 0
     problem = with_curves_of(taken.problem, effects)
+    best, chosen = 0.0, None
     for place in range(len(effects) - added, len(effects)):
         rest = [effect for i, effect in enumerate(effects) if i != place]
         if has_curve(rest) and not has_play(effects[place : place + 1]):
             without = fit(problem, rest, iterations=JOINT_ITERATIONS)
-            opened = likelier_curve(problem, without, count, log_odds(problem, without, taken.fit, count))
-            if opened is not None:
-                return opened, without
-    return None
+            odds, opened = likeliest_curve(problem, without, count)
+            odds -= log_odds(problem, without, taken.fit, count)
+            if odds > best:
+                best, chosen = odds, (opened, without)
+    return chosen
 
 
 def _with_taken(taken: _Taken, found: Fit) -> tuple[Problem, Fit]:
