@@ -56,6 +56,13 @@ FITTED = 2
 are near by design, so that slopes put the likeliest among the first."""
 
 
+MUCH = 10.0
+"""Squared error over that beyond which no curve is tried: three columns take no nine tenths of what a name leaves."""
+
+HALF_NOISE = 2.0
+"""Squared error over that of the noise below which half of what is left is noise: beyond, more than the form of a law
+is missing, and its curve would take of everything."""
+
 SMALL = "the recordings show it, and it is too small to matter on this machine"
 """Why an effect is not reported that the search met beside the others."""
 
@@ -205,7 +212,12 @@ def _asked(
 
 
 def _of_another_form(taken: _Taken, count: int) -> tuple[Problem, Fit] | None:
-    """A likelier set without one of the names that it adds, where the curve of another of its laws is likelier."""
+    """A likelier set without one of the names that it adds, where the curve of another of its laws is likelier.
+
+    The law and its curve must leave little but noise: where more is left, more than a form is missing.
+    """
+    if _level(taken.problem, taken.fit) > MUCH * HALF_NOISE:
+        return None
     effects, added = taken.fit.effects, len(taken.name.split(" with ")) if taken.name else 0
     problem = with_curves_of(taken.problem, effects)
     best, chosen = 0.0, None
@@ -215,9 +227,16 @@ def _of_another_form(taken: _Taken, count: int) -> tuple[Problem, Fit] | None:
             without = fit(problem, rest, iterations=JOINT_ITERATIONS)
             odds, opened = likeliest_curve(problem, without, count)
             odds -= log_odds(problem, without, taken.fit, count)
-            if odds > best:
+            there = fit(opened, rest, iterations=JOINT_ITERATIONS)
+            if odds > best and _level(opened, there) < HALF_NOISE:
                 best, chosen = odds, (opened, without)
     return chosen
+
+
+def _level(problem: Problem, found: Fit) -> float:
+    """Weighted squared error per row, of the channel that is met worst by its noise."""
+    left = max((value for e in problem.evidence for value in e.left.values()), default=1.0)
+    return left**2 * found.squared_error / max(len(found.residual), 1)
 
 
 def _with_taken(taken: _Taken, found: Fit) -> tuple[Problem, Fit]:

@@ -47,7 +47,6 @@ LEAST = 0.01
 """Speed or torque over the largest below which the logarithm goes no further: there friction turns."""
 
 VARIABLES = {
-    "coulomb_asymmetry": "table_velocity",
     "viscous_asymmetry": "table_velocity",
     "torque_constant_droop": "motor_torque",
     "position_spring": "table_position",
