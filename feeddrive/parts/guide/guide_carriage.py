@@ -140,14 +140,6 @@ def table_friction(
     return GuideForces(one.speed, *parts)
 
 
-def friction_map(
-    guide: BallGuide, coefficients: GuideCoefficients, loads: FloatArray, speeds: FloatArray, seal_drag: float = 0.0
-) -> FloatArray:
-    """Friction of one carriage [N] over vertical load [N] and speed [m/s], shape (loads, speeds)."""
-    rows = [carriage_friction(guide, coefficients, speeds, float(F), seal_drag=seal_drag).total for F in loads]
-    return np.array(rows)
-
-
 def mean_slip_radius(ball_diameter: float, conformity: float, semi_major: float) -> float:
     """<R_d> [m], the mean over Hertz's pressure; 0.2154 a^2/d_b for a small ellipse of conformity 0.52.
 

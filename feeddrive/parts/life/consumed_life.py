@@ -64,11 +64,6 @@ class ConsumedLife:
         return np.asarray(self.rating * (self.total * MILLION / turned) ** (1.0 / self.exponents.load), dtype=float)
 
     @property
-    def survival(self) -> float:
-        """Probability S that a new screw survives the recording [1]."""
-        return float(0.9 ** np.sum(self.total**self.exponents.slope))
-
-    @property
     def repetitions(self) -> float:
         """How often 90 % survive the recording, one after another; infinite where it takes no life."""
         return life_together([1.0 / used if used > 0.0 else math.inf for used in self.total], self.exponents)

@@ -40,11 +40,10 @@ _LEAST_RATIO, _DEEPEST = 1e-6, 1e6  # beyond them the integrals leave the range 
 
 @dataclass(frozen=True)
 class ShearPeak:
-    """Greatest shear stress: tau / p_max [1], its depth and its place along the rolling direction over b [1]."""
+    """Greatest shear stress: tau / p_max [1], and its depth over b [1]."""
 
     relative_stress: float
     relative_depth: float
-    relative_place: float = 0.0
 
 
 def axis_stresses(ratio: float, depth: float, poisson: float = POISSON) -> tuple[float, float, float]:
@@ -124,7 +123,7 @@ def line_shear(place: FloatArray, depth: FloatArray, friction: float) -> FloatAr
 
 
 def greatest_shear_under_line(friction: float) -> ShearPeak:
-    """Greatest shear stress in the plane of rolling under a line contact with traction, and where it is.
+    """Greatest shear stress in the plane of rolling under a line contact with traction, and its depth.
 
     From f of about 0.3 on the surface itself is sheared as much: there tau / p_max = f.
 
@@ -149,4 +148,4 @@ def greatest_shear_under_line(friction: float) -> ShearPeak:
         bounds=((-1.0, 1.0), (0.0, 2.0)),
         options={"xatol": 1e-8, "fatol": 1e-12},
     )
-    return ShearPeak(-float(found.fun), float(found.x[1]), float(found.x[0]))
+    return ShearPeak(-float(found.fun), float(found.x[1]))
