@@ -256,12 +256,8 @@ def _along_rows(size: int, springs: list[tuple[Row, Expression]]) -> Matrix:
     """sum of value row' row."""
     matrix: Matrix = [[0.0] * size for _ in range(size)]
     for row, value in springs:
-        touched = [(i, entry) for i, entry in enumerate(row) if not _is_zero(entry)]
+        touched = [(i, entry) for i, entry in enumerate(row) if not (isinstance(entry, int | float) and entry == 0)]
         for i, left in touched:
             for j, right in touched:
                 matrix[i][j] += left * right * value
     return matrix
-
-
-def _is_zero(entry: Expression) -> bool:
-    return isinstance(entry, int | float) and entry == 0
