@@ -74,14 +74,9 @@ class LinearModel:
 
 
 def linear_model_of(plant: Plant, point: Point) -> LinearModel:
-    """The plant linearised about the steady motion at a point.
+    """The plant linearised about the steady motion at a point, which without a velocity moves at `MOVING`.
 
-    Args:
-        plant: the machine.
-        point: without a velocity the table moves at `feeddrive.plant.analysis.linear.MOVING`.
-
-    Raises:
-        InputError: a point outside the stroke, or where no steady motion is found.
+    Raises InputError: a point outside the stroke, or where no steady motion is found.
     """
     refuse_outside(plant, point, plant.name)
     position, velocity = point.position, point.linearised_at

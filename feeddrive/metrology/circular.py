@@ -124,12 +124,9 @@ CENTRING_STEPS = 8
 
 
 def whole_turns(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """The middle of a path that is whole turns: an instrument begins before and ends behind them, as far on both sides.
+    """The middle of a path (n,) [m] that is whole turns, as an instrument begins before and ends behind them.
 
     In the overshoot the axes start and stop, and points there would weigh twice.
-
-    Args:
-        x, y: points in their order in time, shape (n,) [m].
     """
     centre, _ = least_squares_circle(x, y)
     angle = np.abs(np.unwrap(np.arctan2(y - centre[1], x - centre[0])) - math.atan2(y[0] - centre[1], x[0] - centre[0]))

@@ -112,15 +112,9 @@ class LoadMotion:
 
 
 def motor_motion(time: FloatArray, angle: FloatArray, substeps: int | None = None) -> MotorMotion:
-    """Speed and acceleration of a sampled angle by a quintic spline through the samples.
+    """Speed and acceleration of an angle [rad] at even times [s], (n,), by a quintic spline through the samples.
 
-    Args:
-        time: sample times, evenly spaced [s], shape (n,).
-        angle: motor angle [rad], shape (n,).
-        substeps: grid steps per sample; as many as make them no longer than `GRID` if None.
-
-    Returns:
-        The motion.
+    The grid has `substeps` steps per sample, or as many as make them no longer than `GRID`.
     """
     return motor_motions(time, angle[:, None], substeps)[0]
 
@@ -187,15 +181,11 @@ def on_grid(series: FloatArray, substeps: int) -> FloatArray:
 
 
 def at_rate(series: FloatArray, substeps: int) -> FloatArray:
-    """A series on a grid as samples at a lower rate tell it, (n,): without what would come back as slow there.
+    """A series on a grid of `substeps` a sample, (m,), as samples show it, (n,): without what folds back as slow.
 
     A drive holds its torque from row to row, and the rows of the motor's angle hold what a jump of friction between
-    them did only as far as it moved the motor, that is hardly beyond their own rate. The torque that the plant asks
-    for is taken as far, by a zero-phase filter; read at the rows alone, a jump would be early or late by half a row.
-
-    Args:
-        series: on the grid, (m,).
-        substeps: grid steps per sample.
+    them did only as far as it moved the motor, that is hardly beyond their own rate. The torque that the plant asks for
+    is taken as far, by a zero-phase filter; read at the rows alone, a jump would be early or late by half a row.
     """
     if substeps == 1:
         return series

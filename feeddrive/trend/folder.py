@@ -47,15 +47,9 @@ _LINES = 60
 
 
 def stamp_of(name: str, head: str, pattern: str) -> tuple[datetime, str] | None:
-    """When a recording was made, and where that stands; None where it is not known.
+    """When a recording was made, and where that stands: in its name by a pattern of `strptime`, or its head; or None.
 
-    Args:
-        name: of the file, or of the member of an archive.
-        head: beginning of its text.
-        pattern: of `strptime` for a part of the name, such as "%Y%m%d_%H%M"; empty for none.
-
-    Raises:
-        InputError: a pattern that the name does not hold.
+    Raises InputError for a pattern, such as "%Y%m%d_%H%M", that the name does not hold.
     """
     if pattern:
         return _by_pattern(name, pattern), "name, by the pattern"

@@ -84,19 +84,10 @@ class Trend:
 def follow(
     plant: Plant, text: str, entries: Mapping[str, Any], folder: Path, out: Path, options: Options, progress: Progress
 ) -> tuple[Trend, Checkpoint]:
-    """Read what is new in a folder and say what all of it says.
+    """Read what is new in a folder of recordings and say what all of it says; `out` holds the checkpoint.
 
-    Args:
-        plant: as declared.
-        text: that the plant was made from, so that another plant is noticed.
-        entries: of the plant file, for tolerances.
-        folder: of recordings.
-        out: where the checkpoint is kept.
-        options: how the folder is to be understood.
-        progress: called with a line that says what is going on.
-
-    Raises:
-        InputError: no folder, or no recording in it that can be used.
+    The text that the plant was made from shows another plant, its entries give tolerances; `progress` is called with a
+    line that says what is going on. Raises InputError: no folder, or no recording in it that can be used.
     """
     begun = time.monotonic()
     identity = _identity(text, options)

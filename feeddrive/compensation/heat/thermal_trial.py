@@ -79,12 +79,7 @@ def random_duty(
 ) -> FloatArray:
     """Speeds of stretches of random length, each a rest or one of `speeds`, (rows,) [rad/s].
 
-    Args:
-        generator: of the choices.
-        rows: number of rows.
-        speeds: to choose among [rad/s].
-        longest: rows of a stretch at most; a sixth of it at least.
-        rest: probability of a rest.
+    A stretch has `longest` rows at most and a sixth of it at least; `rest` is the probability of a rest.
     """
     refuse_unless(0 <= rest <= 1, f"{rest:g} is no probability", "rest", "write a number from 0 to 1")
     refuse_unless(longest >= 1 and rows >= 1, "a duty without rows", "rows", "write at least 1")

@@ -63,14 +63,9 @@ def monomial_propagators(a: FloatArray, b: FloatArray, step: float, degree: int)
 
 
 def basis_propagators(propagators: FloatArray, basis: FloatArray) -> FloatArray:
-    """Response to the functions whose monomial coefficients are the rows of `basis`.
+    """Responses (functions, n, m) to functions whose monomial coefficients are the rows of `basis`, from P.
 
-    Args:
-        propagators: P, shape (degree + 1, n, m).
-        basis: shape (functions, degree + 1).
-
-    Returns:
-        Shape (functions, n, m).
+    P is (degree + 1, n, m), the basis (functions, degree + 1).
     """
     responses: FloatArray = np.einsum("fk,knm->fnm", basis, propagators)
     return responses

@@ -98,14 +98,6 @@ def consumed_life(
 
 
 def rigid_nut_forces(axial_force: FloatArray, preload: float) -> FloatArray:
-    """Loads of the two nuts of a rigidly preloaded double nut, (2, n) [N].
-
-    Args:
-        axial_force: that the screw gives to the table, (n,) [N].
-        preload: F_0, 0 or more [N]; 0 for a single nut with play.
-
-    Raises:
-        InputError: a negative preload.
-    """
+    """Loads of a rigidly preloaded double nut under the force on the table, (2, n) [N]; F_0 = 0 is a nut with play."""
     check_values("nut", (PartValue("preload", "N", 0.0, open_ends=False),), {"preload": preload})
     return np.vstack(rigid_sharing(np.asarray(axial_force, dtype=float), preload))

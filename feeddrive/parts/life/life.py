@@ -85,12 +85,7 @@ def survival(revolutions: float, rated: float, exponents: LifeExponents = BALL_S
 
 
 def life_together(lives: Sequence[float], exponents: LifeExponents = BALL_SCREW) -> float:
-    """Life that 90 % of sets of several bodies survive: L^-e is the sum of L_i^-e; infinite where all are.
-
-    Args:
-        lives: rated lives of the bodies, in any unit of work (revolutions, recordings), above 0.
-        exponents: of the life law.
-    """
+    """Life that 90 % of sets of bodies survive: L^-e is the sum of L_i^-e, in any unit; infinite where all are."""
     shortest = min(lives)
     if math.isinf(shortest):
         return math.inf

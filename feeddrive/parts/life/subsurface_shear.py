@@ -81,15 +81,7 @@ def axis_stresses(ratio: float, depth: float, poisson: float = POISSON) -> tuple
 
 
 def greatest_shear_on_axis(ratio: float, poisson: float = POISSON) -> ShearPeak:
-    """Greatest shear stress under an elliptical contact without traction, and its depth.
-
-    Args:
-        ratio: k = b/a, above 0 and at most 1.
-        poisson: Poisson's ratio.
-
-    Raises:
-        InputError: ratio outside its range.
-    """
+    """Greatest shear stress under an elliptical contact without traction, and its depth; k = b/a, up to 1."""
 
     def loss(depth: float) -> float:
         stresses = axis_stresses(ratio, depth, poisson)

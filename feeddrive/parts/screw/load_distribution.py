@@ -102,16 +102,9 @@ class LoadDistribution:
 
 
 def load_distribution(body: NutBody, force: float) -> LoadDistribution:
-    """Loads of all balls under an axial force.
+    """Loads of all balls under an axial force F above 0 [N].
 
     The deflection of the last ball is sought; from it the recursion gives all others, and their sum rises with it.
-
-    Args:
-        body: nut.
-        force: F, above 0 [N].
-
-    Raises:
-        InputError: a force that is not positive.
     """
     check_values("nut", _FORCE, {"force": force})
     alone = _deflection(body, force)

@@ -42,13 +42,8 @@ class Computed:
 def distributed_values(drive: BallScrewDrive, middle: float) -> dict[str, Computed]:
     """Chain values of a distributed screw by their keys, dampers left out.
 
-    Args:
-        drive: the parts.
-        middle: nut in the middle of the stroke, from the near bearing [m]; decides which end counts where force goes to
-            one end at a time.
-
-    Raises:
-        InputError: nothing gives way between motor and screw.
+    The nut in the middle of the stroke, `middle` [m] from the near bearing, decides which end counts where force goes
+    to one at a time. Raises InputError where nothing gives way between motor and screw.
     """
     return {
         **_rotary(drive),

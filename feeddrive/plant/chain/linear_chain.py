@@ -183,12 +183,7 @@ class Chain:
         return self.values
 
     def nut_softened(self, share: float, stiffness: float) -> Mapping[str, float]:
-        """Values with the nut's stiffness times a share.
-
-        Args:
-            share: [1].
-            stiffness: declared, of the nut [N/m]; taken where the chain knows it only in series with others.
-        """
+        """Values with the nut's stiffness times a share [1]; `stiffness` [N/m] counts where it is known in series."""
         return self.values
 
     def positions_on_screw(self) -> tuple[float, float]:

@@ -198,14 +198,9 @@ WEIGHT_KEYS = ("inclination", "counterbalance")
 
 
 def derived_effects(top: Table, before: Sequence[Effect]) -> tuple[Effect, ...]:
-    """Weight and guide friction of a plant file, with their origins noted.
+    """Weight and guide friction of a plant file, with their origins noted, beside the effects that it declares itself.
 
-    Args:
-        top: the file.
-        before: effects that it declares itself.
-
-    Raises:
-        InputError: a value that is missing, without unit or not possible, or friction declared twice.
+    Raises InputError: a value that is missing, without unit or not possible, or friction declared twice.
     """
     made: list[Effect] = []
     for effect, origin in [*_weight(top), *_guide(top, before)]:

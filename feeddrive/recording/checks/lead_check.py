@@ -44,14 +44,10 @@ def check_against_lead(recording: Recording, lead: float, where: str, factor: fl
 
 
 def without_unfollowed_setpoint(recording: Recording, lead: float) -> Recording:
-    """Return the recording without a set-point that the position does not follow, and with a note of it.
+    """Return the recording without a set-point that the position does not follow, and with a note of it; lead in m.
 
     A trace often holds the set-point of another axis, of another unit or before a transformation; what was measured is
     as good without it.
-
-    Args:
-        recording: measured channels.
-        lead: table travel per motor revolution [m].
     """
     position = _position(recording, lead / (2.0 * math.pi)) if "setpoint" in recording else None
     reason = _unfollowed(recording["setpoint"], position) if position is not None else ""

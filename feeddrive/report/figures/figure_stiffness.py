@@ -41,15 +41,7 @@ _LINES = (("#0072b2", "-"), ("#d55e00", "--"), ("#009e73", "-."), ("#cc79a7", ":
 
 
 def stiffness_figures(plant: Plant, position: float) -> tuple[ReportFigure, ...]:
-    """Whose compliance it is at a table position, then the stiffness along the stroke; none without parts of a screw.
-
-    Args:
-        plant: the machine.
-        position: of the table [m].
-
-    Raises:
-        InputError: a position off the screw.
-    """
+    """Whose compliance it is at a position [m], then stiffness along the stroke; none without parts of a screw."""
     if plant.drive is None or not plant.chain.varies:
         return ()
     first, length = plant.chain.nut_at_zero, plant.drive.screw.length
