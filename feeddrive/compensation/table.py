@@ -184,16 +184,9 @@ def _within(places: FloatArray, ends: FloatArray) -> FloatArray:
 def straight_pieces(
     places: FloatArray, values: FloatArray, nodes: FloatArray, weights: FloatArray | None = None
 ) -> FloatArray:
-    """Values at nodes, (k,), whose straight pieces meet values at places, (n,), in least squares.
+    """Values at ascending nodes, (k,), whose straight pieces meet values at places, (n,), in weighted least squares.
 
-    Args:
-        places: shape (n,).
-        values: shape (n,).
-        nodes: ascending, shape (k,).
-        weights: of the squares, shape (n,).
-
-    Raises:
-        InputError: a node that no place tells of.
+    Raises InputError for a node that no place tells of.
     """
     from scipy.linalg import LinAlgError, solveh_banded  # late: takes a moment to import
 

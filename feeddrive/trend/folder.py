@@ -162,14 +162,9 @@ class Source:
 
 
 def sources(folder: Path, own: Path) -> Iterator[Source | tuple[str, str]]:
-    """What lies in a folder and below, by name; a pair of key and reason for an archive that cannot be opened.
+    """What lies in a folder and below, by name, `own` left out; a pair of key and reason for an archive not opened.
 
-    Args:
-        folder: to look into.
-        own: folder of results, which is left out.
-
-    Raises:
-        InputError: no such folder.
+    Raises InputError for no such folder.
     """
     if not folder.is_dir():
         raise InputError("no such folder", str(folder), "name the folder that recordings are added to")

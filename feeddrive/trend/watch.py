@@ -119,17 +119,9 @@ def _dated(kept: Checkpoint, options: Options) -> list[tuple[datetime, Entry]]:
 def trend_of(
     plant: Plant, declared: Mapping[str, Any], options: Options, kept: Checkpoint, notes: tuple[str, ...]
 ) -> Trend:
-    """What all recordings that were passed say.
+    """What all recordings that were passed say; the entries of the plant file give tolerances.
 
-    Args:
-        plant: as declared.
-        declared: entries of the plant file, for tolerances.
-        options: how the folder is to be understood.
-        kept: all passes.
-        notes: remarks beside.
-
-    Raises:
-        InputError: no recording can be used.
+    Raises InputError where no recording can be used.
     """
     dated = _dated(kept, options)
     if not dated:

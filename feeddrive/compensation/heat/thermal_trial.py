@@ -54,17 +54,11 @@ def tried_machine(
     plant: Heat, model: HeatModel, step: float, speeds: FloatArray, ambient: FloatArray, *,
     heat: float = 1.0, film: float = 1.0, others: Mapping[str, FloatArray] | None = None,
 ) -> TriedMachine:  # fmt: skip
-    """Run a machine whose heats and films are not as declared, from a cold start.
+    """Run a machine whose heats and films are not as declared, by factors, from a cold start.
 
-    Args:
-        plant: what the file declares.
-        model: full, of this plant; on another mesh than that of the compensation.
-        step: length of a row [s].
-        speeds: of the screw over each row, (k,) [rad/s].
-        ambient: true, over each row, (k,) [degC].
-        heat: factor on all heats [1].
-        film: factor on all films [1].
-        others: input name to a heat that the plant does not declare, such as a motor's, (k,) [W].
+    Rows of `step` [s] hold speeds of the screw, (k,) [rad/s], and the true ambient, (k,) [degC]. The model is full, on
+    another mesh than that of the compensation; `others` are inputs to heats that the plant does not declare, such as a
+    motor's, (k,) [W].
     """
     rows = deviating(declared_rows(plant, step, speeds, ambient), heat, film, film)
     rows = replace(rows, inputs={**rows.inputs, **(others or {})})

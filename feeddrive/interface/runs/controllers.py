@@ -209,7 +209,7 @@ def sampled(
 
 
 def with_load(machine: control.StateSpace) -> control.StateSpace:
-    """The axis of `sampled` with the force on the table as a further, constant state, for the design of an observer.
+    """The `machine` of `sampled` with the force on the table as a further, constant state, to design an observer.
 
     Its outputs are motor angle and table position.
     """

@@ -115,15 +115,9 @@ def line_shear(place: FloatArray, depth: FloatArray, friction: float) -> FloatAr
 
 
 def greatest_shear_under_line(friction: float) -> ShearPeak:
-    """Greatest shear stress in the plane of rolling under a line contact with traction, and its depth.
+    """Greatest shear stress in the plane of rolling under a line contact with traction f, 0 to 1, and its depth.
 
     From f of about 0.3 on the surface itself is sheared as much: there tau / p_max = f.
-
-    Args:
-        friction: f, 0 to 1.
-
-    Raises:
-        InputError: friction outside its range.
     """
     if not 0.0 <= friction <= 1.0:
         raise InputError(f"a friction coefficient of {friction:g}", "line contact", "0 to 1 is possible")

@@ -47,14 +47,9 @@ class Departure:
 
 
 def with_named_parts(entries: Mapping[str, Any], where: str) -> dict[str, Any]:
-    """The entries of a plant file with the values of the parts that it names put in.
+    """The entries of a plant file, copied, with the values of the parts that it names put in.
 
-    Args:
-        entries: of the file; left as they are.
-        where: its path, for messages.
-
-    Raises:
-        InputError: a part that the catalogue does not hold, or a name that is no text.
+    Raises InputError: a part that the catalogue does not hold, or a name that is no text.
     """
     found = dict(entries)
     for place in _PLACES:

@@ -27,16 +27,10 @@ _MISTAKES = (
 
 
 def check_against_lead(recording: Recording, lead: float, where: str, factor: float = 0.1) -> None:
-    """Refuse channels that contradict the lead; channels that are absent are not judged.
+    """Refuse channels that contradict the lead [m]; channels that are absent are not judged.
 
-    Args:
-        recording: measured channels.
-        lead: table travel per motor revolution [m].
-        where: file name for the message.
-        factor: largest relative difference of the slope table_position / motor_angle from lead / 2pi [1].
-
-    Raises:
-        InputError: another slope (swapped columns, wrong unit, wrong lead).
+    The slope table_position / motor_angle may differ from lead / 2pi by `factor` [1]; beyond it columns are swapped, or
+    unit or lead are wrong.
     """
     radius = lead / (2.0 * math.pi)
     if "motor_angle" in recording and "table_position" in recording:

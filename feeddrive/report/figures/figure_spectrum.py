@@ -40,13 +40,9 @@ def sample_time(time: FloatArray) -> float:
 
 
 def density_spectrum(recordings: list[tuple[JudgedRecording, FloatArray]]) -> Spectrum | None:
-    """Welch amplitude spectral density over all recordings that share the most usual sample time.
+    """Welch amplitude spectral density [unit/sqrt(Hz)] over all recordings of the most usual sample time.
 
-    Args:
-        recordings: recordings with the residual to analyse, shape (n,), NaN where left out.
-
-    Returns:
-        Frequency [Hz] and density [unit/sqrt(Hz)], or None where no stretch is long enough.
+    Residuals are (n,), NaN where left out; None where no stretch is long enough.
     """
     steps = [sample_time(recording.time) for recording, _ in recordings]
     usable = [step for step in steps if np.isfinite(step) and step > 0.0]

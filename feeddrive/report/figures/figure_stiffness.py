@@ -124,14 +124,9 @@ def _participation_caption(found: CombinedStiffness) -> str:
 
 
 def stiffness_position_figure(drives: Mapping[str, BallScrewDrive], positions: FloatArray) -> ReportFigure:
-    """Stiffness and first natural frequency of one or more drives against the nut's place.
+    """Stiffness and first natural frequency of up to four drives, by name, against the nut's place, (n,) [m].
 
-    Args:
-        drives: by the name for the legend; up to four.
-        positions: nut from the near bearing, between the ends of every screw [m], shape (n,).
-
-    Raises:
-        InputError: no drive, more than four, or a position outside a screw.
+    Places count from the near bearing; refuses no drive, more than four, or a place outside a screw.
     """
     if not 0 < len(drives) <= len(_LINES):
         raise InputError(f"{len(drives)} drives in one figure", "drives", f"give one to {len(_LINES)}")

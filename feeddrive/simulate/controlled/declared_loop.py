@@ -197,14 +197,9 @@ class DeclaredLoop:
 
 
 def declared_loop(plant: Plant, sample_time: float) -> DeclaredLoop | None:
-    """The loop that a plant declares; None where it declares no controller.
+    """The loop that a plant declares, for recordings of a sample time [s]; None where it declares no controller.
 
-    Args:
-        plant: with its controller.
-        sample_time: of the recording [s].
-
-    Raises:
-        InputError: a cascade that cannot be read, or whose rate is no whole multiple of the recording's.
+    Raises InputError: a cascade that cannot be read, or whose rate is no whole multiple of the recording's.
     """
     declared = plant.controller
     if declared is None:
