@@ -69,7 +69,6 @@ def test_exponents_of_table_2() -> None:
 
 def test_double_nut() -> None:
     assert double_nut_share() == printed("0.93784")
-    assert double_nut_share(BALL_BEARING) == printed("0.81225")
     assert 2 ** (-1 / BALL_SCREW.slope) == printed("0.8249")
     assert combined_rating((8.0, 10.0)) == printed("7.93654")
 
