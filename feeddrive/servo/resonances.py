@@ -66,11 +66,13 @@ class Extremum:
         kind: peak or dip.
         frequency: of the extremum [Hz].
         decibel: magnitude there [dB].
+        prominence: by which it stands out [dB].
     """
 
     kind: Kind
     frequency: float
     decibel: float
+    prominence: float
 
 
 def resonances(system: control.StateSpace, low: float, high: float) -> tuple[Resonance, ...]:
@@ -98,10 +100,10 @@ def extrema(frequency: FloatArray, values: ComplexArray) -> tuple[Extremum, ...]
     curve: FloatArray = 20 * np.log10(np.maximum(np.abs(values), np.finfo(float).tiny))
     found: list[Extremum] = []
     for kind, sign in ((Kind.RESONANCE, 1.0), (Kind.ANTI_RESONANCE, -1.0)):
-        places, _ = find_peaks(sign * curve, prominence=_PROMINENCE)
-        for place in places:
+        places, properties = find_peaks(sign * curve, prominence=_PROMINENCE)
+        for place, prominence in zip(places, properties["prominences"], strict=True):
             at, height = _vertex(np.log(frequency[place - 1 : place + 2]), curve[place - 1 : place + 2])
-            found.append(Extremum(kind, math.exp(at), height))
+            found.append(Extremum(kind, math.exp(at), height, float(prominence)))
     return tuple(sorted(found, key=lambda one: one.frequency))
 
 
