@@ -100,14 +100,9 @@ def is_passive(plant: Plant) -> bool:
 
 
 def refuse_active_friction(plant: Plant, where: str) -> None:
-    """Refuse a plant whose friction can accelerate it, or take a bristle's level away.
+    """Refuse a plant whose friction can accelerate it, or take a bristle's level away; `where` is its file.
 
-    Args:
-        plant: with all its effects.
-        where: file, for the message.
-
-    Raises:
-        InputError: names the effect, its key, where friction turns negative, and the value that it may have.
+    The InputError names the effect, its key, where friction turns negative, and the value that it may have.
     """
     least = _first_active(plant)
     if least is not None:
