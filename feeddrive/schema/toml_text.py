@@ -53,6 +53,30 @@ def parse_toml(text: str, where: str) -> dict[str, Any]:
     return entries
 
 
+_KINDS = {"plant": "plant", "scenario": "scenario", "controller": "controller", "map": "mapping"}
+"""Word in the first line of a file, after "feeddrive-", to what the file is."""
+
+
+def refuse_other_format(entries: Mapping[str, Any], wanted: str, where: str) -> None:
+    """Refuse a file whose first line does not say the wanted format.
+
+    Args:
+        entries: of the file.
+        wanted: such as "feeddrive-plant/1".
+        where: for the message.
+
+    Raises:
+        InputError: it is another kind of file, by its first line, or none of this version.
+    """
+    written = str(entries.get("format"))
+    if written == wanted:
+        return
+    kind, other = (_KINDS.get(text.removeprefix("feeddrive-").partition("/")[0]) for text in (wanted, written))
+    if other is not None and other != kind:
+        raise InputError(f"is a {other} file, not a {kind} file", where, f"name a {kind} file")
+    raise InputError(f"is not a {kind} file of this version", where, f'write format = "{wanted}" in its first line')
+
+
 def refuse_deep(entries: Mapping[str, Any], where: str) -> None:
     """Refuse tables and lists in more than `MOST_LEVELS` levels, which no file of ours has.
 

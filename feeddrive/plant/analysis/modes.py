@@ -20,7 +20,7 @@ Everything that moves with the motor, seen there, and how far the table stays be
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import eigh, null_space
@@ -64,6 +64,11 @@ def braked_modes(plant: Plant, position: float = 0.0) -> Modes:
     if brake is None:
         return _modes(plant, null_space(motor), position)
     return _modes(plant, np.eye(motor.shape[1]), position, brake.stiffness * motor.T @ motor)
+
+
+def held_modes(plant: Plant, position: float = 0.0) -> Modes:
+    """Modes with the motor held ideally, as a servo holds it, whatever its brake; else as `braked_modes`."""
+    return braked_modes(replace(plant, drive=None), position)
 
 
 def screw_frequency(plant: Plant, position: float = 0.0) -> float:
