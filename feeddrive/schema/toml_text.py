@@ -18,14 +18,9 @@ MOST_LEVELS = 12
 
 
 def read_toml(path: Path, kind: str) -> dict[str, Any]:
-    """Parse a TOML file; a byte order mark is passed over.
+    """Parse a TOML file of a kind, such as "plant file"; a byte order mark is passed over.
 
-    Args:
-        path: of the file.
-        kind: what it is, for messages, such as "plant file".
-
-    Raises:
-        InputError: not found, not readable, not UTF-8, or not TOML (with line and column).
+    Raises InputError: not found, not readable, not UTF-8, or not TOML (with line and column).
     """
     where = str(path)
     try:

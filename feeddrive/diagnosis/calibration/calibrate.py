@@ -84,9 +84,11 @@ def recalibrated(problem: Problem, effects: Sequence[Effect], rough: bool = Fals
     # what is left once the values are as they are most likely tells how much a row is worth
     left = residual - sloped.whitener.columns @ (sloped.whitener.most_likely(residual) - known.coordinates)
     variance = _variance(sloped, left)
-    numbers = problem.numbers.with_variance(variance)
-    sloped = replace(problem, calibration=replace(sloped.calibration, variance=variance), numbers=numbers)
-    return sloped.stepped(effects, sloped.unwhitened(effects) if len(numbers) else residual)
+    sloped = sloped.at_values(known.coordinates, variance)
+    if len(problem.numbers):
+        sloped = replace(sloped, numbers=problem.numbers.with_variance(variance))
+        residual = sloped.unwhitened(effects)
+    return sloped.stepped(effects, residual)
 
 
 def at_declared(problem: Problem) -> Problem:
@@ -94,7 +96,7 @@ def at_declared(problem: Problem) -> Problem:
     known = problem.calibration
     if known is None:
         return problem
-    return replace(problem, calibration=replace(known, coordinates=np.zeros(len(known.values))))
+    return problem.at_values(np.zeros(len(known.values)))
 
 
 def of_hours(problem: Problem) -> bool:
@@ -140,15 +142,11 @@ def _weighed_in_turn(there: Problem, effects: Sequence[Effect]) -> Problem:
 
 def _left(problem: Problem, effects: Sequence[Effect]) -> list[dict[str, float]]:
     """Per recording, channel to the rms of what is left of it over its noise, at least 1."""
-    residual, first, found = problem.unwhitened(effects), 0, []
-    for e in problem.evidence:
-        count, left = int(e.thinned(e.fit_rows).sum()), {}
-        for name in e.channels:
-            rms = math.sqrt(float(np.mean(residual[first : first + count] ** 2)))
-            left[name] = max(rms * e.left.get(name, 1.0), 1.0)
-            first += count
-        found.append(left)
-    return found
+    recordings = problem.by_channel(problem.unwhitened(effects))
+    return [
+        {name: max(math.sqrt(float(np.mean(one**2))) * e.left.get(name, 1.0), 1.0) for name, one in rows.items()}
+        for e, rows in zip(problem.evidence, recordings, strict=True)
+    ]
 
 
 def weighed_alike(evidence: Evidence, like: Sequence[Evidence]) -> Evidence:

@@ -280,15 +280,7 @@ def diagnose(
 
 
 def budget_of(text: str | None, where: str) -> Budget:
-    """The time that a diagnosis may take, from now on.
-
-    Args:
-        text: such as "60 s" or "2 min"; as long as it takes if None.
-        where: for the message.
-
-    Raises:
-        InputError: no time, or none at all.
-    """
+    """The time that a diagnosis may take from now on, such as "60 s" or "2 min"; None for as long as it takes."""
     if text is None:
         return Budget()
     seconds = parse(text, "s", where)

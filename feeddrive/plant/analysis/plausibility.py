@@ -87,12 +87,7 @@ CONTACT = (50.0, 20000.0)
 
 
 def check_plant(plant: Plant, position_gain: float | None = None) -> tuple[Finding, ...]:
-    """Every rule's finding, in the order in which a machine is designed: of its motion, then of its heat.
-
-    Args:
-        plant: the machine.
-        position_gain: of its controller [1/s]; the declared one if not given.
-    """
+    """Every rule's finding, motion first, then heat; `position_gain` [1/s] takes the place of the declared one."""
     on_motion = _of_motion(plant, position_gain) if plant.has_motion else ()
     return (*on_motion, *(_of_heat(plant.heat) if plant.has_heat else ()))
 

@@ -148,14 +148,9 @@ SCENARIO_FORMAT = "feeddrive-scenario/1"
 
 
 def read_controller(path: Path, plant: Plant) -> Cascade:
-    """The controller of a file, for a plant; of a scenario nothing else is read.
+    """The controller of a controller file or a scenario, for a plant, of which lead, torque limit and inertia are used.
 
-    Args:
-        path: of a controller file or of a scenario.
-        plant: gives the lead, the torque limit and the inertia for the feed-forward.
-
-    Raises:
-        InputError: neither kind of file, or a controller that cannot be read.
+    Raises InputError for neither kind of file, or a controller that cannot be read.
     """
     entries = read_toml(path, "scenario or controller file")
     written = entries.get("format")
