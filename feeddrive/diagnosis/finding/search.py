@@ -30,7 +30,7 @@ from feeddrive.diagnosis.finding.open_map import likeliest_curve, log_odds_of_cu
 from feeddrive.diagnosis.finding.round import Round, one_round
 from feeddrive.diagnosis.finding.scene import scene_of
 from feeddrive.diagnosis.finding.sets import Neighbour, neighbours
-from feeddrive.diagnosis.finding.spring_law import LAWS, soft_everywhere, with_likelier_law
+from feeddrive.diagnosis.finding.spring_law import LAWS, play_from_declared, soft_everywhere, with_likelier_law
 from feeddrive.diagnosis.heat.heat_candidates import is_another
 from feeddrive.diagnosis.judging.result import Trial
 from feeddrive.diagnosis.likelihood.coordinates import write_coordinates
@@ -46,6 +46,7 @@ from feeddrive.diagnosis.likelihood.set_evidence import (
     same_samples,
 )
 from feeddrive.effects.base import Effect
+from feeddrive.effects.transmission.backlash import Backlash
 from feeddrive.errors import InputError
 
 MOST_ROUNDS = 12
@@ -208,6 +209,8 @@ def _asked(
     """A round beside a set, the likeliest set near it, None where none is likelier, and what comes near beside it."""
     now = one_round(scene_of(problem, found.effects), found, impossible, denied, number)
     taken, near = _likelier(problem, found, now, denied)
+    if taken is None and Backlash.name not in denied:
+        taken = _with_play(problem, found, now.count)
     return now, _of_likelier_law(taken, now.count, denied), near
 
 
@@ -237,6 +240,15 @@ def _level(problem: Problem, found: Fit) -> float:
     """Weighted squared error per row, of the channel that is met worst by its noise."""
     left = max((value for e in problem.evidence for value in e.left.values()), default=1.0)
     return left**2 * found.squared_error / max(len(found.residual), 1)
+
+
+def _with_play(problem: Problem, found: Fit, count: int) -> _Taken | None:
+    """A likelier set with free play that hides beside the fitted values; None where nothing is left that it may say."""
+    if problem.calibration is None or of_hours(problem) or problem.plain_error(found.effects) < UNEXPLAINED:
+        return None
+    there = play_from_declared(problem, found)
+    odds = odds_between(Standing(problem, found), there, count) if there is not None else 0.0
+    return _Taken(there.problem, there.fit, Backlash.name, odds) if there is not None and odds > 0 else None
 
 
 def _with_taken(taken: _Taken, found: Fit) -> tuple[Problem, Fit]:

@@ -15,7 +15,7 @@ import dataclasses
 import io
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -36,7 +36,7 @@ from tests.generator.effects import Effect
 from tests.generator.effects.relatives import Relative
 from tests.generator.machines import Machine, Random, drawn_machine
 from tests.generator.programmes import KINDS, programme
-from tests.generator.runs import Array, Channels, Run, changes, run, softened, steady
+from tests.generator.runs import Array, Channels, Run, changes, run, softened, steady, steps_of
 from tests.generator.telling import Missed, Visible, calibration, from_declared, missed, visible
 from tests.recovery.fleet.spoilt import spoilings, spoilt
 
@@ -53,6 +53,11 @@ SLOWEST_EXCITED = 1e-3
 """Time between rows [s] beyond which nobody injects torque: the recording would not show what it does."""
 
 TRIES = 12
+
+MOST_STEPS = 2e7
+"""Steps of a run beyond which another machine is drawn: 0.8 µs each with the plant beside it, so that one size of an
+effect would take the 18 s that a whole case may (600 in 90 min on two cores). A bristle that breaks away within a
+micrometre at full speed asks for as many."""
 
 ALIKE = (
     ("payload", "inertia_deviation", "structural_mode", "torque_constant_droop"),
@@ -295,13 +300,8 @@ def _attempt(seed: int, kind: str, names: tuple[str, ...], random: Random, decla
     if planted is None:
         return None
     effects = tuple(one.effect for one in planted)
-    try:
-        runs = run(true, effects, *asked[0]), run(true, effects, *asked[1])
-    except FloatingPointError:
-        return None
-    if not all(steady(one) for one in runs):
-        return None
-    if any(from_declared(runs[0], name, floor) < LEAST_TOLD for name in names):
+    runs = _runs(true, effects, asked, lambda one: not any(from_declared(one, n, floor) < LEAST_TOLD for n in names))
+    if runs is None:
         return None
     factor = off.get("torque_constant", 1.0)
     fit, judge = (one.recorded(noise, factor) for one, noise in zip(runs, seeds[2:], strict=True))
@@ -315,6 +315,20 @@ def _attempt(seed: int, kind: str, names: tuple[str, ...], random: Random, decla
         seed, kind, quiet, true, which, excited, tuple(planted), off, spoiling, text, fit, judge,
         (torque / factor, angle, position), runs,
     )  # fmt: skip
+
+
+def _runs(
+    true: Machine, effects: tuple[Effect, ...], asked: Sequence[tuple[Array, Array]], is_told: Callable[[Run], bool]
+) -> tuple[Run, Run] | None:
+    """The runs that are fitted and judged, if they stay steady and the first tells what is planted."""
+    try:
+        fitted = run(true, effects, *asked[0])
+        if not steady(fitted) or not is_told(fitted):
+            return None
+        judged = run(true, effects, *asked[1])
+    except FloatingPointError:
+        return None
+    return (fitted, judged) if steady(judged) else None
 
 
 def plant_text_of(machine: Machine, seed: int) -> str:
@@ -366,7 +380,7 @@ def _grown(true: Machine, drawn: Drawn, target: float, asked: tuple[Array, Array
     last: Planted | None = None
     for _ in range(5):
         effect = _possible(drawn, factor, true)
-        if effect is None:
+        if effect is None or steps_of(true, (effect,), len(asked[0])) > MOST_STEPS:
             return None
         try:
             one = run(true, (effect,), *asked)
