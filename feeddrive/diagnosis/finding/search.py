@@ -34,7 +34,7 @@ from feeddrive.diagnosis.finding.spring_law import LAWS, play_from_declared, sof
 from feeddrive.diagnosis.heat.heat_candidates import is_another
 from feeddrive.diagnosis.judging.result import Trial
 from feeddrive.diagnosis.likelihood.coordinates import write_coordinates
-from feeddrive.diagnosis.likelihood.fit import UNEXPLAINED, Fit, Problem, fit
+from feeddrive.diagnosis.likelihood.fit import LEVEL, UNEXPLAINED, Fit, Problem, fit
 from feeddrive.diagnosis.likelihood.law_curve import has_curve
 from feeddrive.diagnosis.likelihood.predictability import has_play
 from feeddrive.diagnosis.likelihood.set_evidence import (
@@ -56,13 +56,6 @@ FITTED = 2
 """Sets one move away that are fitted in a round, and one two moves away where slopes say that it is likelier: starts
 are near by design, so that slopes put the likeliest among the first."""
 
-
-MUCH = 10.0
-"""Squared error over that beyond which no curve is tried: three columns take no nine tenths of what a name leaves."""
-
-HALF_NOISE = 2.0
-"""Squared error over that of the noise below which half of what is left is noise: beyond, more than the form of a law
-is missing, and its curve would take of everything."""
 
 SMALL = "the recordings show it, and it is too small to matter on this machine"
 """Why an effect is not reported that the search met beside the others."""
@@ -217,10 +210,8 @@ def _asked(
 def _of_another_form(taken: _Taken, count: int) -> tuple[Problem, Fit] | None:
     """A likelier set without one of the names that it adds, where the curve of another of its laws is likelier.
 
-    The law and its curve must leave little but noise: where more is left, more than a form is missing.
+    The law and its curve must leave what counts as noise (`LEVEL`): where more is left, more than a form is missing.
     """
-    if _level(taken.problem, taken.fit) > MUCH * HALF_NOISE:
-        return None
     effects, added = taken.fit.effects, len(taken.name.split(" with ")) if taken.name else 0
     problem = with_curves_of(taken.problem, effects)
     best, chosen = 0.0, None
@@ -231,7 +222,7 @@ def _of_another_form(taken: _Taken, count: int) -> tuple[Problem, Fit] | None:
             odds, opened = likeliest_curve(problem, without, count)
             odds -= log_odds(problem, without, taken.fit, count)
             there = fit(opened, rest, iterations=JOINT_ITERATIONS)
-            if odds > best and _level(opened, there) < HALF_NOISE:
+            if odds > best and _level(opened, there) * LEVEL**2 < 1:
                 best, chosen = odds, (opened, without)
     return chosen
 
