@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from feeddrive.diagnosis.calibration.beyond import said_by_effects
-from feeddrive.diagnosis.calibration.calibrate import calibrated
+from feeddrive.diagnosis.calibration.calibrate import ENOUGH, at_declared, calibrated, with_new_slopes
 from feeddrive.diagnosis.certainty.ambiguity import ambiguous_sets, at_its_limit, rivals_of
 from feeddrive.diagnosis.certainty.inclusion import asserted, odds_for, possible_effects
 from feeddrive.diagnosis.certainty.next_experiment import distance, hardly_known, next_experiments
@@ -135,6 +135,27 @@ def test_set_is_led_by_the_member_with_fewest_parameters() -> None:
     assert [effect.name for effect in found.fit.effects] == ["lead_error_cumulative"]
     (one,) = ambiguous_sets(found, rivals)
     assert one.names == ("lead_error_cumulative", "thermal_growth")
+
+
+def test_a_member_that_was_exchanged_is_tried_in_the_place_of_what_came_for_it() -> None:
+    """It is none of the candidates of the round in which it went."""
+    found, judged = settled([lead(1e-8)], [growth(1e-8, 1.0)], lead(1e-8), seed=3)
+    (tried,) = found.rounds
+    taken = (replace(found.trials[0], name="lead_error_cumulative"), Trial(2, "thermal_growth", 0.001, 0.0, True))
+    found = replace(found, rounds=(tried, ()), trials=taken)
+    preferred, _ = with_the_preferred(found, rivals_of(found, judged))
+    assert [effect.name for effect in preferred.fit.effects] == ["lead_error_cumulative"]
+
+
+def test_declared_values_come_to_rest_before_anything_is_judged(heavier: tuple[Problem, AxisEvidence]) -> None:
+    problem, _ = heavier
+    assert problem.calibration is not None
+    begun = with_new_slopes(at_declared(problem), [])
+    resting, found = searching._at_rest(begun, fit(begun, []))
+    assert resting.calibration is not None and found.effects == ()
+    # as far as from which on no slopes are taken anew; begun 2.3 deviations away
+    assert resting.calibration.coordinates == pytest.approx(problem.calibration.coordinates, abs=ENOUGH)
+    assert abs(problem.calibration.coordinates[0]) > 2.0
 
 
 def test_name_below_twenty_to_one_may_be_and_is_not_asserted() -> None:

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from feeddrive.diagnosis.calibration.beyond import beyond_tolerance, without_effects
+from feeddrive.diagnosis.calibration.beyond import beyond_tolerance, fitted_together, without_effects
 from feeddrive.diagnosis.calibration.calibrate import (
     at_declared,
     calibrated,
@@ -163,7 +163,7 @@ def search(
         if _members(found) in met:  # they only take each other's place
             break
         met.add(_members(found))
-    problem, found = _refitted(problem, fit(problem, found.effects))
+    problem, found = _at_rest(*_refitted(problem, fit(problem, found.effects)))
     small = [one for one in found.effects if not is_material(one, problem.plant)]
     if small:
         rest = [one for one in found.effects if not any(one is other for other in small)]
@@ -321,8 +321,25 @@ def _refitted(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
     if not of_hours(there) and np.max(np.abs(there.calibration.coordinates), initial=0.0) > TOLERANCE:
         anew = recalibrated(at_declared(problem), found.effects)
         other = anew, fit(anew, found.effects, iterations=JOINT_ITERATIONS)
-        result = min(result, other, key=lambda one: one[1].squared_error)
+        result = min(result, other, key=lambda one: _reached(one[0], one[1].effects))
     return _balanced(*result)
+
+
+def _reached(problem: Problem, effects: Sequence[Effect]) -> float:
+    """Squared error of a set with the declared values where their slopes lead, not as these promise it."""
+    return _error(problem.settled(effects), effects)
+
+
+def _at_rest(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
+    """A set and the declared values beside it, once neither moves the other: what is reported and judged.
+
+    Values that begin as declared beside a new set are a step or two from where they are most likely. Slopes tell the
+    error there well enough to compare sets, and not the prediction: on a fine scale it was two floors off.
+    """
+    if problem.calibration is None or of_hours(problem):
+        return problem, found
+    problem, effects = fitted_together(problem, found.effects)
+    return problem, fit(problem, effects)
 
 
 def _balanced(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
