@@ -158,6 +158,28 @@ def test_declared_values_come_to_rest_before_anything_is_judged(heavier: tuple[P
     assert abs(problem.calibration.coordinates[0]) > 2.0
 
 
+def test_a_set_stands_beside_values_with_which_its_friction_takes_power(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A drag that stood in for an asymmetry leaves less than that takes away, even where its error is the lesser."""
+    text = (plants_folder() / "bench_axis.toml").read_text(encoding="utf-8")
+    loose = tmp_path / "loose.toml"
+    loose.write_text(text.replace('"300 N s/m"', '{ value = "300 N s/m", tolerance = "30 %" }'), encoding="utf-8")
+    plant, asymmetric = read_plant(loose), EFFECTS["viscous_asymmetry"].of(delta_viscous=-290.0)
+    evidence = prepare(pair("bench", "null")[0], plant, 1.0)
+    problem = calibrated(Problem(plant, (evidence,), AxisPredictor()))
+    known = problem.calibration
+    assert known is not None and [value.key for value in known.values] == ["table.viscous"]
+    low = replace(problem, calibration=replace(known, coordinates=np.array([-2.5])))
+    measured = {name: low.predictor.predict(low.machine([asymmetric]), evidence)[name] for name in evidence.channels}
+    fitting = replace(low, evidence=(replace(evidence, measured=measured),))
+    assert not fitting.possible([asymmetric])
+    monkeypatch.setattr(searching, "recalibrated_by_rest", lambda problem, _: problem)
+    monkeypatch.setattr(searching, "recalibrated", lambda problem, _: problem)
+    there, found = searching._refitted(fitting, fit(fitting, [asymmetric], iterations=0))
+    assert there.possible(found.effects)
+
+
 def test_name_below_twenty_to_one_may_be_and_is_not_asserted() -> None:
     """Half a newton on this bench is some two standard deviations beyond what a further name costs."""
     found, _ = settled([force(0.52)], [force(0.52)], force(0.52), seed=7)

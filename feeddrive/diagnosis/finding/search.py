@@ -310,24 +310,27 @@ def _error(problem: Problem, effects: Sequence[Effect]) -> float:
 def _refitted(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
     """Declared values and effects fitted in turn, with new slopes of the values.
 
-    Values gone beyond their tolerances may have stood in for what was missing: they begin as declared as well.
+    Values gone beyond their tolerances may have stood in for what was missing: they begin as declared as well. So do
+    those with which friction would push the axis: a drag that took what a name says now leaves nothing to take it from.
     """
     if problem.calibration is None:
         return _balanced(problem, found if not found.held else fit(problem, found.effects, iterations=0))
     there = recalibrated_by_rest(problem, found.effects)
     result = there, fit(there, found.effects, iterations=JOINT_ITERATIONS)
     assert there.calibration is not None
+    far = np.max(np.abs(there.calibration.coordinates), initial=0.0) > TOLERANCE
     # That of hours has begun as declared, and other weights are no lower error.
-    if not of_hours(there) and np.max(np.abs(there.calibration.coordinates), initial=0.0) > TOLERANCE:
+    if not of_hours(there) and (far or not there.possible(result[1].effects)):
         anew = recalibrated(at_declared(problem), found.effects)
         other = anew, fit(anew, found.effects, iterations=JOINT_ITERATIONS)
         result = min(result, other, key=lambda one: _reached(one[0], one[1].effects))
     return _balanced(*result)
 
 
-def _reached(problem: Problem, effects: Sequence[Effect]) -> float:
-    """Squared error of a set with the declared values where their slopes lead, not as these promise it."""
-    return _error(problem.settled(effects), effects)
+def _reached(problem: Problem, effects: Sequence[Effect]) -> tuple[bool, float]:
+    """Whether friction pushes, and the squared error: with the declared values where slopes lead, not as these say."""
+    there = problem.settled(effects)
+    return not there.possible(effects), _error(there, effects)
 
 
 def _at_rest(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
