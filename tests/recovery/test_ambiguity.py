@@ -23,7 +23,7 @@ from feeddrive.diagnosis.judging.judge import prepared_for_judging, share_of
 from feeddrive.diagnosis.judging.result import Trial
 from feeddrive.diagnosis.likelihood.cross_validation import compare_left_out
 from feeddrive.diagnosis.likelihood.evidence import AxisEvidence, prepare
-from feeddrive.diagnosis.likelihood.fit import Problem, fit
+from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
 from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
 from feeddrive.effects.base import Effect, Port
 from feeddrive.effects.catalogue import EFFECTS
@@ -174,10 +174,14 @@ def test_a_set_stands_beside_values_with_which_its_friction_takes_power(
     measured = {name: low.predictor.predict(low.machine([asymmetric]), evidence)[name] for name in evidence.channels}
     fitting = replace(low, evidence=(replace(evidence, measured=measured),))
     assert not fitting.possible([asymmetric])
+
+    def lesser_where_it_pushes(there: Problem) -> Fit:
+        as_it_is = fit(there, [asymmetric], iterations=0)
+        return replace(as_it_is, residual=as_it_is.residual + (100.0 if there.possible([asymmetric]) else 0.0))
+
     monkeypatch.setattr(searching, "recalibrated_by_rest", lambda problem, _: problem)
     monkeypatch.setattr(searching, "recalibrated", lambda problem, _: problem)
-    # the lesser error where friction pushes
-    monkeypatch.setattr(searching, "_error", lambda problem, effects: float(problem.possible(effects)))
+    monkeypatch.setattr(searching, "fit", lambda problem, effects, iterations: lesser_where_it_pushes(problem))
     there, found = searching._refitted(fitting, fit(fitting, [asymmetric], iterations=0))
     assert there.possible(found.effects)
 

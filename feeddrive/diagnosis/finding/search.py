@@ -335,14 +335,8 @@ def _refitted(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
     if not of_hours(there) and (far or not there.possible(result[1].effects)):
         anew = recalibrated(at_declared(problem), found.effects)
         other = anew, fit(anew, found.effects, iterations=JOINT_ITERATIONS)
-        result = min(result, other, key=lambda one: _reached(one[0], one[1].effects))
+        result = min(result, other, key=lambda one: (not one[0].possible(one[1].effects), one[1].squared_error))
     return _balanced(*result)
-
-
-def _reached(problem: Problem, effects: Sequence[Effect]) -> tuple[bool, float]:
-    """Whether friction pushes, and the squared error: with the declared values where slopes lead, not as these say."""
-    there = problem.settled(effects)
-    return not there.possible(effects), _error(there, effects)
 
 
 def _at_rest(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
