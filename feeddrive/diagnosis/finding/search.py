@@ -322,20 +322,18 @@ def _error(problem: Problem, effects: Sequence[Effect]) -> float:
 def _refitted(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
     """Declared values and effects fitted in turn, with new slopes of the values.
 
-    Values gone beyond their tolerances may have stood in for what was missing: they begin as declared as well. So do
-    those with which friction would push the axis: a drag that took what a name says now leaves nothing to take it from.
+    Values gone beyond their tolerances may have stood in for what was missing: they begin as declared as well.
     """
     if problem.calibration is None:
         return _balanced(problem, found if not found.held else fit(problem, found.effects, iterations=0))
     there = recalibrated_by_rest(problem, found.effects)
     result = there, fit(there, found.effects, iterations=JOINT_ITERATIONS)
     assert there.calibration is not None
-    far = np.max(np.abs(there.calibration.coordinates), initial=0.0) > TOLERANCE
     # That of hours has begun as declared, and other weights are no lower error.
-    if not of_hours(there) and (far or not there.possible(result[1].effects)):
+    if not of_hours(there) and np.max(np.abs(there.calibration.coordinates), initial=0.0) > TOLERANCE:
         anew = recalibrated(at_declared(problem), found.effects)
         other = anew, fit(anew, found.effects, iterations=JOINT_ITERATIONS)
-        result = min(result, other, key=lambda one: (not one[0].possible(one[1].effects), one[1].squared_error))
+        result = min(result, other, key=lambda one: one[1].squared_error)
     return _balanced(*result)
 
 
@@ -343,11 +341,14 @@ def _at_rest(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
     """A set and the declared values beside it, once neither moves the other: what is reported and judged.
 
     Values that begin as declared beside a new set are a step or two from where they are most likely. Slopes tell the
-    error there well enough to compare sets, and not the prediction: on a fine scale it was two floors off.
+    error there well enough to compare sets, and not the prediction: on a fine scale it was two floors off. Values with
+    which friction would push the axis begin as declared: a drag that stood in for what a name now takes leaves nothing
+    to take it from, and steps stay where friction takes power only from where it does.
     """
     if problem.calibration is None or of_hours(problem):
         return problem, found
-    problem, effects = fitted_together(problem, found.effects)
+    begun = problem if problem.possible(found.effects) else at_declared(problem)
+    problem, effects = fitted_together(begun, found.effects)
     return problem, fit(problem, effects)
 
 
