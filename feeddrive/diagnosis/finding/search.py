@@ -15,8 +15,10 @@ import numpy as np
 
 from feeddrive.diagnosis.calibration.beyond import beyond_tolerance, fitted_together, without_effects
 from feeddrive.diagnosis.calibration.calibrate import (
+    ENOUGH,
     at_declared,
     calibrated,
+    moved,
     of_hours,
     recalibrated,
     recalibrated_by_rest,
@@ -347,9 +349,11 @@ def _at_rest(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
     """
     if problem.calibration is None or of_hours(problem):
         return problem, found
-    begun = problem if problem.possible(found.effects) else at_declared(problem)
-    problem, effects = fitted_together(begun, found.effects)
-    return problem, fit(problem, effects)
+    able = problem.possible(found.effects)
+    there, effects = fitted_together(problem if able else at_declared(problem), found.effects)
+    if able and np.max(np.abs(moved(problem, there)), initial=0.0) < ENOUGH:
+        return problem, found
+    return there, fit(there, effects)
 
 
 def _balanced(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
