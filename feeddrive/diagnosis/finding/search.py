@@ -94,10 +94,11 @@ class Near:
 
 @dataclass(frozen=True)
 class _Taken(Standing):
-    """A likelier set: its recordings and fit, what was added, and by how much it is likelier."""
+    """A likelier set: its recordings and fit, what was added, by how much it is likelier, and whether its law is."""
 
     name: str
     odds: float
+    of_law: bool = False
 
 
 def search(
@@ -249,14 +250,14 @@ def _likelier(
 def _of_likelier_law(taken: _Taken | None, count: int, denied: Container[str]) -> _Taken | None:
     """A likelier set with the likelier of free play and lost preload, where it adds one of them."""
     names = taken.name.split(" with ") if taken is not None else []
-    if taken is None or not any(name in LAWS for name in names):
+    if taken is None or taken.of_law or not any(name in LAWS for name in names):
         return taken
     there = with_likelier_law(taken.problem, taken.fit, count, denied)
     if there is None:
         return taken
     (law,) = [effect.name for effect in there.fit.effects if effect.name in LAWS]
     name = " with ".join(law if one in LAWS else one for one in names)
-    return _Taken(there.problem, there.fit, name, taken.odds)
+    return _Taken(there.problem, there.fit, name, taken.odds, True)
 
 
 def _best(likelier: Iterable[_Taken], count: int) -> _Taken | None:
