@@ -79,13 +79,9 @@ def find_plant(name_or_path: str) -> Path:
 
 
 def find_scenario(name: str) -> Path:
-    """Find a scenario file.
+    """Find a scenario file by its path, or a shipped one by its name with or without `.toml`; a file wins over a name.
 
-    Args:
-        name: path of a file, or the name of a shipped scenario with or without `.toml`. A file wins over a name.
-
-    Raises:
-        InputError: neither a file nor a shipped scenario; names the nearest.
+    The InputError names the nearest.
     """
     return _find_toml(name, shipped_scenarios(), "a scenario file", "a shipped scenario")
 
@@ -114,14 +110,7 @@ def _find_toml(name: str, shipped: list[Path], kind: str, shipped_kind: str) -> 
 
 
 def find_scenario_file(relative: str) -> Path:
-    """Find a file that comes with the shipped scenarios.
-
-    Args:
-        relative: path below the folder of scenarios, such as `demo/measured.csv.gz`.
-
-    Raises:
-        InputError: no such file below the folder of scenarios.
-    """
+    """Find a file that comes with the shipped scenarios, such as `demo/measured.csv.gz`."""
     folder = scenarios_folder()
     path = folder / relative
     if os.path.isfile(path) and path.resolve().is_relative_to(folder):

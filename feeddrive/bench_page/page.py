@@ -254,13 +254,8 @@ def _feed_forward(cascade: Cascade) -> list[str]:
 def bench_of_diagnosis(after: Plant, diagnosis: Diagnosis) -> str:
     """The page for the tab of a report: the machine as diagnosed, at its declared or a recommended cascade.
 
-    Args:
-        after: the machine with what was found.
-        diagnosis: what was found.
-
-    Returns:
-        The page; empty where there is nothing to play on: no effect was found, a machine without elastic chain or that
-        declares heat alone, or one whose loop cannot be made or shown.
+    Empty where there is nothing to play on: no effect was found, a machine without elastic chain or that declares heat
+    alone, or one whose loop cannot be made or shown.
     """
     if not after.has_motion or not after.chain.elastic or not diagnosis.effects:
         return ""

@@ -95,9 +95,8 @@ def _rests(plant: Plant) -> bool:
 def unsure_of_play(effects: Iterable[tuple[str, bool]], ambiguous: Iterable[Sequence[str]]) -> str:
     """Why the backlash of a diagnosis may not be taken for play; empty where it may.
 
-    Args:
-        effects: names of what was found, and whether each carries over to data that were not fitted.
-        ambiguous: sets of effects that the recordings cannot tell apart.
+    Takes the names of what was found, each with whether it carries over to data that were not fitted, and the ambiguous
+    sets.
     """
     if ("backlash", False) in effects:
         return _UNSURE.format(reason="it was not confirmed on data that were not fitted")

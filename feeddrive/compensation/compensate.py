@@ -198,16 +198,10 @@ def compensate_plant(
 
 
 def compensate_recording(name: str, found: RecordedDeviations, wishes: Wishes, shortest: float) -> Compensated:
-    """The table of a recording.
+    """The table of a recording, by its name and what it tells.
 
-    Args:
-        name: of the recording.
-        found: what it tells.
-        wishes: form, points, reference; a stroke if less than was recorded is wanted.
-        shortest: period of the screw along the stroke [m]; infinite where it is not known.
-
-    Raises:
-        InputError: limits of the control, or a stroke beyond what was recorded.
+    `shortest` is the period of the screw along the stroke [m], infinite where it is not known. Raises InputError:
+    limits of the control, or a stroke beyond what was recorded.
     """
     wanted = control(wishes.form, wishes.resolution)
     stroke = wishes.stroke or found.ends

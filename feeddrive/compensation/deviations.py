@@ -143,15 +143,11 @@ class RecordedDeviations:
 
 
 def recorded_deviations(recording: Recording, radius: float | None, period: float | None = None) -> RecordedDeviations:
-    """The mean deviation along the stroke.
+    """The mean deviation along the stroke of `table_position` from `motor_angle`, or a `setpoint` with stand-stills.
 
-    Args:
-        recording: `table_position`, and `motor_angle` or a `setpoint` with stand-stills.
-        radius: nominal travel per motor angle [m/rad]; the set-point is compared if None.
-        period: of the screw along the stroke [m], for the distance of the points; that of the stand-stills if None.
-
-    Raises:
-        InputError: no scale, no comparison, or too little motion.
+    `radius` is the nominal travel per motor angle [m/rad], None to compare the set-point; `period` that of the screw
+    along the stroke [m], None for the distance of the stand-stills. Raises InputError: no scale, no comparison, or too
+    little motion.
     """
     if "table_position" not in recording:
         raise InputError("there is no table_position", recording.name, "record the scale, or give a diagnosis")

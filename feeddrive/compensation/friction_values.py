@@ -64,14 +64,9 @@ class FrictionValues:
 def friction_values(
     plant: Plant, cascade: Cascade, circle: Circle, lost: LostMotion, applied: Applied | None = None
 ) -> FrictionValues:
-    """Values for a plant under its controller, tried on a circle.
+    """Values for a plant under its cascade, closed at the motor, tried on a circle beside a table that is in use.
 
-    Args:
-        plant: with what was found.
-        cascade: its controller, closed at the motor.
-        circle: that is driven.
-        lost: its lost motion, which holds the friction.
-        applied: table that is in use beside it.
+    The lost motion holds the friction.
     """
     turning = _TURN / cascade.radius
     plain = replace(cascade, feed_forward=replace(cascade.feed_forward, coulomb=0.0))

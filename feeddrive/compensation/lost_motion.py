@@ -129,15 +129,9 @@ def wind_up_words(lost: LostMotion) -> str:
 
 
 def refuse_wind_up(lost: LostMotion, where: str, least: float) -> None:
-    """Refuse a table for lost motion that is no play.
+    """Refuse a table for lost motion without a play above `least` [m], the step of the control.
 
-    Args:
-        lost: of the axis.
-        where: for the message.
-        least: play below this is none [m], the step of the control.
-
-    Raises:
-        InputError: there is no play; says what the lost motion is, and its cure.
+    The InputError says what the lost motion is, and its cure.
     """
     if lost.play >= least:
         return

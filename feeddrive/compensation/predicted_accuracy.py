@@ -169,17 +169,7 @@ Extra = Callable[[FloatArray, Motion], tuple[FloatArray, FloatArray]]
 
 
 def figures(plant: Plant, cascade: Cascade, test: TestMotion, applied: Applied | None = None) -> Figures:
-    """The figures of a plant under its controller, without or with a table.
-
-    Args:
-        plant: with what was found.
-        cascade: its controller, closed at the motor.
-        test: what is driven.
-        applied: table; none if left out.
-
-    Raises:
-        SimulationError: a motion that cannot be followed.
-    """
+    """The figures of a plant under its cascade, closed at the motor, in a test motion, without or with a table."""
     time, position = run(plant, cascade, test.steps, applied)
     found: dict[float, dict[int, float]] = {}
     for stop in test.steps.stops[1:]:

@@ -129,15 +129,10 @@ class CompensationTable:
 
 
 def grid(stroke: tuple[float, float], step: float, reference: float) -> FloatArray:
-    """Points at whole steps from the reference that cover a stroke, (k,) [m]; the reference is among them.
+    """Points at whole steps from the reference that cover a stroke, (k,) [m]; the reference is among them, all in m.
 
-    Args:
-        stroke: least and greatest position [m].
-        step: distance of the points [m].
-        reference: [m]; beyond the stroke the points reach as far.
-
-    Raises:
-        InputError: a step that is not above zero or longer than the stroke, or more points than memory is worth.
+    From a reference beyond the stroke the points reach as far. Raises InputError: a step that is not above zero or
+    longer than the stroke, or more points than memory is worth.
     """
     low, high = min(stroke[0], reference), max(stroke[1], reference)
     if not 0 < step <= stroke[1] - stroke[0]:
@@ -151,13 +146,9 @@ def grid(stroke: tuple[float, float], step: float, reference: float) -> FloatArr
 
 
 def fitted(deviations: Deviations, positions: FloatArray, reference: float, step: float = 0.0) -> CompensationTable:
-    """The table of least squares at given points.
+    """The table of least squares at ascending positions, (k,) [m], with the mean at the reference [m] set to 0.
 
-    Args:
-        deviations: what is known, straight between its positions.
-        positions: of the table, ascending, (k,) [m].
-        reference: where its mean is set to 0 [m].
-        step: distance of the points where it is even [m].
+    Deviations are straight between their positions; `step` is the distance of the points where it is even [m].
     """
     inner = [np.linspace(a, b, PER_INTERVAL, endpoint=False) for a, b in pairwise(positions.tolist())]
     places = np.unique(np.concatenate([*inner, positions[-1:], _within(deviations.positions, positions)]))
@@ -193,16 +184,9 @@ def _within(places: FloatArray, ends: FloatArray) -> FloatArray:
 def straight_pieces(
     places: FloatArray, values: FloatArray, nodes: FloatArray, weights: FloatArray | None = None
 ) -> FloatArray:
-    """Values at nodes, (k,), whose straight pieces meet values at places, (n,), in least squares.
+    """Values at ascending nodes, (k,), whose straight pieces meet values at places, (n,), in weighted least squares.
 
-    Args:
-        places: shape (n,).
-        values: shape (n,).
-        nodes: ascending, shape (k,).
-        weights: of the squares, shape (n,).
-
-    Raises:
-        InputError: a node that no place tells of.
+    Raises InputError for a node that no place tells of.
     """
     from scipy.linalg import LinAlgError, solveh_banded  # late: takes a moment to import
 

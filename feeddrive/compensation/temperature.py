@@ -75,14 +75,9 @@ class HeatTable:
 
 
 def heat_table(heat: Heat, reference: float | None = None) -> HeatTable:
-    """The table of a machine that declares heat.
+    """The table of a machine that declares heat, about P0, a position of the nut [m], or the low end of its travel.
 
-    Args:
-        heat: the machine, with what a diagnosis found.
-        reference: P0, a position of the nut [m]; the low end of the travel if left out.
-
-    Raises:
-        InputError: a nut that does not travel, or sensors that hardly get warm.
+    Raises InputError: a nut that does not travel, or sensors that hardly get warm.
     """
     travel = heat.rig.travel
     if not travel.high > travel.low:
@@ -131,14 +126,10 @@ def _share(left: LeftOver) -> float:
 
 
 def recorded_heat_table(recording: Recording, reference: float | None = None) -> HeatTable:
-    """The table of a recording of temperatures and growth.
+    """The table of a recording of temperatures and growth, about P0 [m], or the least position.
 
-    Args:
-        recording: `table_growth_<position>mm` at two positions or more, actual minus target, and `*_temperature`.
-        reference: P0 [m]; the least position if left out.
-
-    Raises:
-        InputError: too few growths or temperatures, or a sensor that hardly moves.
+    `table_growth_<position>mm` at two positions or more is actual minus target; the sensors are `*_temperature`. Raises
+    InputError: too few of either, or a sensor that hardly moves.
     """
     growths = sorted(
         (float(match[1]) * 1e-3, name) for name in recording.channels if (match := _GROWTH.fullmatch(name))

@@ -164,13 +164,8 @@ class Effect:
     def of(cls, port: Port | None = None, place: str = "", **values: Value) -> Self:
         """The effect with its values in SI units, checked against the physical range.
 
-        Args:
-            port: where it acts; the first possible port if not given.
-            place: the word under `place_key`; may be left out where there is none.
-            values: parameter key to SI value.
-
-        Raises:
-            InputError: unknown or missing key, a value outside its range, or a port or place it cannot act at.
+        The port is the first possible one if not given; `place` is the word under `place_key`. Raises InputError:
+        unknown or missing key, a value outside its range, or a port or place it cannot act at.
         """
         chosen = cls.ports[0] if port is None else port
         place = place or cls.default_place
@@ -320,13 +315,9 @@ class FrictionEffect(Effect):
         return (self.level(motion, p),)
 
     def least_level(self, radius: float) -> float | None:
-        """What it adds to the level at least, for any motion and load; None where turning points decide.
+        """What it adds to the level at least [N or N m], for any motion; None where turning points decide.
 
-        Args:
-            radius: travel of the nut per angle of the screw [m/rad].
-
-        Returns:
-            [N, or N m at a shaft].
+        `radius` is the travel of the nut per angle of the screw [m/rad].
         """
         return None
 

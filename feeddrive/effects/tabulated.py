@@ -66,14 +66,9 @@ class Tabulated(Effect):
     def of(cls, port: Port | None = None, place: str = "", **values: Value) -> Self:
         """The effect with its values in SI units; a plain number is a table of one.
 
-        Args:
-            port: where it acts; the first possible port if not given.
-            place: the word of the variable; the first if not given.
-            values: key to breakpoints, values at them, and the period of a periodic table.
-
-        Raises:
-            InputError: as `Effect.of`; tables of unequal length; breakpoints that do not ascend, that stand under
-                another variable's key or span the period.
+        Port and place are the first possible ones if not given; values are breakpoints, values at them, and the period
+        of a periodic table. Raises InputError: as `Effect.of`; tables of unequal length; breakpoints that do not
+        ascend, that stand under another variable's key or span the period.
         """
         made = super().of(port, place or cls.places[0], **values)
         wanted = {made.breakpoint_key, *cls.value_keys, *(["period"] if made.periodic else [])}

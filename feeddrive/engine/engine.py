@@ -92,13 +92,7 @@ def machine_of(program: Program) -> Machine:
 
 
 def rested(machine: Machine, states: FloatArray, own: FloatArray) -> Position:
-    """A start from states of the chain, the bristles unloaded.
-
-    Args:
-        machine: that will run.
-        states: of the step, coordinates first, shape (k,); the others are 0.
-        own: of the commands, shape (o,).
-    """
+    """A start from states of the chain, coordinates first, (k,), bristles unloaded, and those of commands, (o,)."""
     memory = np.zeros(machine.program.step.layout.memory)
     memory[: len(states)] = states
     return Position(memory, np.asarray(own, dtype=float))

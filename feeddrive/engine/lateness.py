@@ -61,14 +61,7 @@ class LateChannels:
         return cls(delays, tick, before)
 
     def read(self, series: Mapping[str, FloatArray]) -> tuple[dict[str, FloatArray], LateChannels]:
-        """The late channels at some ticks, and what is held after them.
-
-        Args:
-            series: channels and rates at these ticks, (n,); `motor_torque` as means over the ticks.
-
-        Returns:
-            Late channel to its values, (n,).
-        """
+        """Late channels at some ticks, (n,), and what is held after them; `motor_torque` comes as means of ticks."""
         known = {name: np.concatenate([held, series[name]]) for name, held in self.before.items()}
         late = {name: self._late(name, known) for name in self.delays}
         after = {name: values[len(values) - len(self.before[name]) :] for name, values in known.items()}

@@ -31,15 +31,10 @@ class Stretch:
         self._function = Called(_joined(parts, blocks))
 
     def take(self, begin: FloatArray, fed: FloatArray, still: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """The samples.
+        """The samples `fed`, (n, f), n at most `count`, from memory and own at the first; `still` is constant.
 
-        Args:
-            begin: memory, then own, at the first.
-            fed: shape (n, f), n at most `count`.
-            still: constants of the step, settings, values.
-
-        Returns:
-            Memory and own after every sample; what is seen; first and last correction and error, over their limits.
+        Constants are those of the step, settings, values. Gives memory and own after every sample; what is seen; first
+        and last correction and error, over their limits.
         """
         lacking = self.count - len(fed)
         padded = np.vstack([fed, np.repeat(fed[-1:], lacking, axis=0)]) if lacking else fed

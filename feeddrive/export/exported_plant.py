@@ -39,19 +39,10 @@ class Form(StrEnum):
 
 
 def write_export(plant: Plant, form: Form, point: Point, folder: Path) -> tuple[Path, ...]:
-    """Write the files of one form; nothing is written where one of them cannot be made.
+    """Write the files of one form into a folder, made if need be; none is written where one of them cannot be made.
 
-    Args:
-        plant: the machine.
-        form: which.
-        point: about which is linearised, or at which a nonlinear model starts.
-        folder: where to; made if it is not there.
-
-    Returns:
-        The files.
-
-    Raises:
-        InputError: no steady motion at the point, or a file cannot be written.
+    About the point is linearised, or at it a nonlinear model starts. Raises InputError: no steady motion there, or a
+    file that cannot be written.
     """
     files = _LINEAR[form](plant, point) if form.is_linear else _NONLINEAR[form](model_of(plant, point))
     for name, data in files.items():
@@ -60,16 +51,9 @@ def write_export(plant: Plant, form: Form, point: Point, folder: Path) -> tuple[
 
 
 def write_heat_export(heat: Heat, form: Form, velocity: float, folder: Path) -> tuple[Path, ...]:
-    """Write the heat of a machine in one form: a state space, CasADi, C or FMU; else as `write_export`.
+    """Write the heat of a machine as a state space, CasADi, C or FMU, linearised at a table velocity [m/s].
 
-    Args:
-        heat: the machine.
-        form: which.
-        velocity: of the table, about which is linearised [m/s].
-        folder: where to; made if it is not there.
-
-    Raises:
-        InputError: a form that heat is not written in, or a file that cannot be written.
+    Raises InputError: a form that heat is not written in, or a file that cannot be written.
     """
     if form is Form.SS:
         name = identifier_of(f"{heat.name} heat")

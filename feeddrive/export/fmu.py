@@ -55,14 +55,9 @@ _EARLIEST = (1980, 1, 1, 0, 0, 0)  # of a zip file; the same export gives the sa
 
 
 def fmu_bytes(model: Model, compiler: str | None) -> bytes:
-    """The FMU.
+    """The FMU of equations in the plant's own states, with a binary where there is a C compiler.
 
-    Args:
-        model: the equations, in the plant's own states.
-        compiler: C compiler for the binary of this platform; None for the sources alone.
-
-    Raises:
-        InputError: the compiler fails.
+    Raises InputError where the compiler fails.
     """
     model = beside_table(model)
     name, kinks = model.identifier, kinks_of(model)

@@ -54,14 +54,7 @@ TOLERANCE = 1e-8
 
 
 def description_text(model: Model, guid: str, sources: tuple[str, ...], indicators: int) -> str:
-    """The XML text.
-
-    Args:
-        model: what is described.
-        guid: that of the binary.
-        sources: names of the C files in the folder `sources` that are compiled.
-        indicators: number of event indicators.
-    """
+    """The XML text of a model whose binary has a guid, C files in `sources` and so many event indicators."""
     root = Tree.Element("fmiModelDescription", {
         "fmiVersion": "2.0", "modelName": _one_line(model.name), "guid": guid,
         "description": " | ".join(map(_one_line, model.heading)),

@@ -74,14 +74,9 @@ class LinearModel:
 
 
 def linear_model_of(plant: Plant, point: Point) -> LinearModel:
-    """The plant linearised about the steady motion at a point.
+    """The plant linearised about the steady motion at a point, which without a velocity moves at `MOVING`.
 
-    Args:
-        plant: the machine.
-        point: without a velocity the table moves at `feeddrive.plant.analysis.linear.MOVING`.
-
-    Raises:
-        InputError: a point outside the stroke, or where no steady motion is found.
+    Raises InputError: a point outside the stroke, or where no steady motion is found.
     """
     refuse_outside(plant, point, plant.name)
     position, velocity = point.position, point.linearised_at
@@ -145,7 +140,7 @@ def mat_bytes(model: LinearModel) -> bytes:
     content: dict[str, Any] = {key: getattr(system, key) for key in "ABCD"}
     content |= {"mass_matrix": model.mass, "damping_matrix": model.damping, "stiffness_matrix": model.stiffness}
     for name, rows in (("state", model.states), ("input", model.inputs), ("parameter", parameters(plant))):
-        content |= _names(name, rows) | {f"{name}_values": _column(rows)}
+        content |= _names(name, rows) | {f"{name}_values": np.array([[row.value] for row in rows])}
     content |= _names("output", model.outputs)
     content["coordinate_names"] = _cells([row.name for row in model.states[: len(plant.chain.coordinates)]])
     content["point"] = {"table_position": model.position, "table_velocity": model.velocity}
@@ -158,15 +153,11 @@ def mat_bytes(model: LinearModel) -> bytes:
     content["notes"] = _cells(notes)
     buffer = io.BytesIO()
     savemat(buffer, content, oned_as="column")
-    return _without_date(buffer.getvalue())
+    return f"MATLAB 5.0 MAT-file, made by feeddrive {__version__}".encode("ascii").ljust(116) + buffer.getvalue()[116:]
 
 
 def _names(name: str, rows: Sequence[Quantity]) -> dict[str, Any]:
     return {f"{name}_names": _cells([row.name for row in rows]), f"{name}_units": _cells([row.unit for row in rows])}
-
-
-def _column(rows: Sequence[Quantity]) -> FloatArray:
-    return np.array([[row.value] for row in rows])
 
 
 def _cells(texts: Sequence[str]) -> Any:
@@ -174,8 +165,3 @@ def _cells(texts: Sequence[str]) -> Any:
     cells = np.empty((len(texts), 1), dtype=object)
     cells[:, 0] = texts
     return cells
-
-
-def _without_date(data: bytes) -> bytes:
-    """The first 116 bytes are free text; scipy puts the date there, so that two files of one plant would differ."""
-    return f"MATLAB 5.0 MAT-file, made by feeddrive {__version__}".encode("ascii").ljust(116) + data[116:]

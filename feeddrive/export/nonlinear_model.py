@@ -125,14 +125,9 @@ class Model:
 
 
 def model_of(plant: Plant, point: Point) -> Model:
-    """The equations of motion of a plant, starting at a point.
+    """The equations of motion of a plant, starting at a point: in steady motion, or at rest with its springs loaded.
 
-    Args:
-        plant: the machine.
-        point: start: motion at constant velocity, or rest with the springs bearing what acts on the table.
-
-    Raises:
-        InputError: a point outside the stroke, or where no steady motion is found.
+    Raises InputError: a point outside the stroke, or where no steady motion is found.
     """
     refuse_outside(plant, point, plant.name)
     start = steady_motion(plant, point.starts_at, point.position)

@@ -40,15 +40,10 @@ class Point:
 
 
 def export_point(plant: Plant, text: str = "", where: str = "--at") -> Point:
-    """Read a point such as "x=200 mm,v=3 m/min"; either may be left out.
+    """Read a point such as "x=200 mm,v=3 m/min"; without x the middle of the stroke, or 0 where there is none.
 
-    Args:
-        plant: the machine; without x the table stands in the middle of its stroke, or at 0 where none is declared.
-        text: what was written.
-        where: for messages.
-
-    Raises:
-        InputError: unknown or repeated key, a number without unit, or a position outside the stroke or off the screw.
+    Raises InputError: unknown or repeated key, a number without unit, or a position outside the stroke or off the
+    screw.
     """
     written = written_point(text, where)
     point = Point(written.get("x", plant.middle), written.get("v"))

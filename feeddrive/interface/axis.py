@@ -74,15 +74,7 @@ def load(name: str | Path) -> Axis:
 
 
 def axis_of_text(text: str, path: Path) -> Axis:
-    """The axis of the text of a plant file, checked whole.
-
-    Args:
-        text: TOML.
-        path: of the file, for messages and the name.
-
-    Raises:
-        InputError: as `load`.
-    """
+    """The axis of the text of a plant file, checked whole; `path` is for messages and the name. Errors as `load`."""
     axis = Axis(path, text)
     axis.refuse_unusable()
     return axis

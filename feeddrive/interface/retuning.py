@@ -118,16 +118,7 @@ _FIGURES = {
 
 
 def compare(plant: Plant, present: Cascade, recommended: Cascade, trials: Sequence[Any]) -> Retuned:
-    """Both loops in the same cases.
-
-    Args:
-        plant: the machine.
-        present, recommended: the loops.
-        trials: cases of position, payload and velocity.
-
-    Raises:
-        InputError: a loop that cannot be linearised there.
-    """
+    """Both loops in the same cases of position, payload and velocity; refuses one that cannot be linearised there."""
     before, after = (tuple(try_loop(plant, one, case) for case in trials) for one in (present, recommended))
     wide = [one for one in present.torque_filters if one.kind == "notch" and is_low_pass(*_notch(one))]
     remarks = [
@@ -139,16 +130,9 @@ def compare(plant: Plant, present: Cascade, recommended: Cascade, trials: Sequen
 
 
 def read_present(path: Path, form: str, plant: Plant, drive: Cascade) -> Cascade:
-    """The loop of a file of present settings: a controller file, or the parameters of a drive.
+    """The loop of a file of present settings: a controller file (`.toml`), or the parameters of a drive in a form.
 
-    Args:
-        path: of the file; `.toml` is a controller file.
-        form: of the parameters otherwise.
-        plant: the machine.
-        drive: gives rates, delays, limits and feed-forward where the file holds parameters alone.
-
-    Raises:
-        InputError: a file that cannot be read.
+    `drive` gives rates, delays, limits and feed-forward where the file holds parameters alone.
     """
     if path.suffix.lower() == ".toml":
         return read_controller(path, plant)

@@ -61,16 +61,10 @@ class AxisHeating:
 
 
 def axis_heating(times: FloatArray, error: FloatArray, positions: FloatArray, stop: float) -> AxisHeating:
-    """Evaluate a test.
+    """Evaluate a test: errors (k, p) [m] at ascending times (k,) [s] and two or more ascending positions (p,) [m].
 
-    Args:
-        times: since the start, ascending, (k,) [s]; the error at time 0 counts as zero.
-        error: (k, p) [m].
-        positions: of at least two targets, ascending, (p,) [m].
-        stop: when the axis stops [s].
-
-    Raises:
-        InputError: shapes that do not fit, times that do not ascend, or a stop before an hour or after the last time.
+    The error at time 0 counts as zero; the axis stops at `stop` [s]. Raises InputError: shapes that do not fit, times
+    that do not ascend, or a stop before an hour or after the last time.
     """
     fits = np.shape(error) == (len(times), len(positions)) and len(positions) >= 2
     if not fits or np.any(np.diff(times) <= 0) or np.any(np.diff(positions) <= 0):

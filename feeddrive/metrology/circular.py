@@ -53,15 +53,9 @@ class Circular:
 
 
 def circular(angle: FloatArray, position: FloatArray, radius: float) -> Circular:
-    """The figures from samples over whole turns.
+    """The figures of samples over whole turns, x_set = centre + radius sin(angle), angle rising [rad], lengths in m.
 
-    Args:
-        angle: of the set-point x_set = centre + radius sin(angle) [rad], rising, shape (n,).
-        position: of the table [m], shape (n,).
-        radius: nominal [m].
-
-    Raises:
-        InputError: less than one turn.
+    Raises InputError for less than one turn.
     """
     if len(angle) < 8 or angle[-1] - angle[0] < 2 * math.pi * (1 - 1e-3):
         raise InputError("less than one turn at constant feed", "circular test", "make more turns")
@@ -124,12 +118,9 @@ CENTRING_STEPS = 8
 
 
 def whole_turns(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """The middle of a path that is whole turns: an instrument begins before and ends behind them, as far on both sides.
+    """The middle of a path (n,) [m] that is whole turns, as an instrument begins before and ends behind them.
 
     In the overshoot the axes start and stop, and points there would weigh twice.
-
-    Args:
-        x, y: points in their order in time, shape (n,) [m].
     """
     centre, _ = least_squares_circle(x, y)
     angle = np.abs(np.unwrap(np.arctan2(y - centre[1], x - centre[0])) - math.atan2(y[0] - centre[1], x[0] - centre[0]))
@@ -142,14 +133,9 @@ def whole_turns(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def circular_path(x: FloatArray, y: FloatArray, nominal: float) -> CircularPath:
-    """The figures of points along a circle, one whole turn at least; an overshoot before and behind is left out.
+    """The figures of points (n,) along a circle, one whole turn at least, in their order in time; lengths in m.
 
-    Args:
-        x, y: points in their order in time, shape (n,) [m].
-        nominal: radius [m].
-
-    Raises:
-        InputError: fewer than 36 points, or less than one turn.
+    An overshoot before and behind is left out. Raises InputError: fewer than 36 points, or less than one turn.
     """
     x, y = whole_turns(x, y)
     centre, radius = least_squares_circle(x, y)

@@ -140,14 +140,9 @@ def _circular(result: ScenarioResult, _: Evaluation) -> Circular:
 
 
 def steady_turn(angle: FloatArray, time: FloatArray) -> IntegerArray:
-    """The samples of a circle that are looked at: whole turns at constant feed, without the first where there are more.
+    """The samples of a circle looked at: whole turns at constant feed, without the first where there are more.
 
-    Args:
-        angle: along the circle [rad], rising, shape (n,).
-        time: [s], shape (n,).
-
-    Raises:
-        InputError: nothing moves.
+    `angle` along the circle [rad] rises over `time` [s], both (n,). Raises InputError where nothing moves.
     """
     rate = np.gradient(angle, time)
     if not rate.max() > 0:

@@ -64,17 +64,10 @@ class Settling:
 def settling(
     time: FloatArray, position: FloatArray, target: float, direction: int, arrival: float, leave: float, window: float
 ) -> Settling:
-    """How a position settles at a target.
+    """How a position settles at a target within a half width of `window`, from `arrival` to `leave` of the set-point.
 
-    Args:
-        time, position: samples [s, m], shape (n,).
-        target: [m].
-        direction: of the approach, +1 or -1.
-        arrival, leave: when the set-point comes to rest and leaves again [s].
-        window: half width of the window about the target [m].
-
-    Raises:
-        InputError: no sample between arrival and leave, or a window that is not above zero.
+    Samples are (n,), all in s and m; `direction` of the approach is +1 or -1. Raises InputError: no sample between
+    arrival and leave, or a window that is not above zero.
     """
     if not window > 0:
         raise InputError(f"a window of {window:g} m", "settling", "write a window above zero")

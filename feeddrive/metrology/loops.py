@@ -28,14 +28,9 @@ class ForceLoop:
 
 
 def force_loop(force: FloatArray, displacement: FloatArray) -> ForceLoop:
-    """Figures of one whole cycle.
+    """Figures of one whole cycle of force on the table [N] and its displacement [m], (n,), which begins and ends alike.
 
-    Args:
-        force: on the table, one cycle that begins and ends alike [N], shape (n,).
-        displacement: of the table [m], shape (n,).
-
-    Raises:
-        InputError: a force that does not change its sign on both ways.
+    Raises InputError for a force that does not change its sign on both ways.
     """
     rising = np.gradient(force) > 0
     at_zero = [_at_zero(force[branch], displacement[branch]) for branch in (rising, ~rising)]
@@ -77,15 +72,9 @@ _RISEN = 0.63
 
 
 def torque_loop(position: FloatArray, torque: FloatArray, lead: float) -> TorqueLoop:
-    """Figures of one whole cycle.
+    """Figures of whole cycles of position of the table [m] and torque of the motor [N m], (n,); lead in m.
 
-    Args:
-        position: of the table over whole cycles [m], shape (n,).
-        torque: of the motor [N m], shape (n,).
-        lead: [m].
-
-    Raises:
-        InputError: a position that does not move to and fro.
+    Raises InputError for a position that does not move to and fro.
     """
     low, high = float(position.min()), float(position.max())
     forward = np.gradient(position) > 0
@@ -119,18 +108,9 @@ class FrictionPoint:
 
 
 def friction_map(velocity: FloatArray, torque: FloatArray, lead: float) -> tuple[FrictionPoint, ...]:
-    """Friction over velocity from samples at constant velocities.
+    """Friction at each set velocity [m/s], 0 or NaN where not constant, ascending, from torque, (n,) [N m].
 
-    Args:
-        velocity: set velocity [m/s], zero or NaN where it is not constant, shape (n,).
-        torque: of the motor [N m], shape (n,).
-        lead: [m].
-
-    Returns:
-        One point per velocity, ascending.
-
-    Raises:
-        InputError: no sample at a constant velocity.
+    Raises InputError where no sample is at a constant velocity.
     """
     rounded = np.where(np.isfinite(velocity), np.round(velocity, 9), 0.0)
     speeds = [speed for speed in np.unique(rounded) if speed != 0.0]

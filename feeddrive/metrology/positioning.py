@@ -87,14 +87,9 @@ def one_direction(deviations: FloatArray) -> OneDirection:
 
 
 def positioning(target: FloatArray, up: FloatArray, down: FloatArray) -> Positioning:
-    """The figures from deviations.
+    """The figures of deviations, actual minus target, of every approach, (m, n) [m], at targets, (m,) [m].
 
-    Args:
-        target: [m], shape (m,).
-        up, down: deviation, actual minus target, of every approach [m], shape (m, n).
-
-    Raises:
-        InputError: fewer than two approaches per direction, or shapes that differ.
+    Raises InputError: fewer than two approaches per direction, or shapes that differ.
     """
     if up.shape != down.shape or up.ndim != 2 or up.shape[0] != len(target) or up.shape[1] < 2:
         what = f"deviations of shape {up.shape} and {down.shape} at {len(target)} targets"

@@ -72,15 +72,9 @@ class Response:
 
 
 def measured_response(given: FloatArray, output: FloatArray, sample_time: float, segment: int) -> Response:
-    """H1 over Hann windows of `segment` samples.
+    """H1 of samples, (n,), over Hann windows of `segment` samples, sample time in s.
 
-    Args:
-        given, output: samples, shape (n,).
-        sample_time: [s].
-        segment: samples per window.
-
-    Raises:
-        InputError: fewer samples than a segment.
+    Raises InputError for fewer samples than a segment.
     """
     if len(given) < segment:
         raise InputError(f"{len(given)} samples for windows of {segment}", "frequency response", "record longer")
@@ -101,16 +95,9 @@ def measured_response(given: FloatArray, output: FloatArray, sample_time: float,
 def periodic_response(
     given: FloatArray, output: FloatArray, sample_time: float, period: int, lines: FloatArray
 ) -> Response:
-    """Response at excited harmonics, averaged over whole periods.
+    """Response at excited harmonics of a period in samples, (k,) [Hz], averaged over the last whole periods.
 
-    Args:
-        given, output: samples, the last `len // period` whole periods are used, shape (n,).
-        sample_time: [s].
-        period: samples per period.
-        lines: excited frequencies [Hz], harmonics of the period, shape (k,).
-
-    Raises:
-        InputError: less than one period.
+    Raises InputError for less than one period.
     """
     periods = len(given) // period
     if periods < 1:
@@ -155,14 +142,9 @@ class StepResponse:
 
 
 def step_response(time: FloatArray, values: FloatArray, at: float) -> StepResponse:
-    """Figures of a step at a time.
+    """Figures of a step at a time [s], of samples, (n,).
 
-    Args:
-        time, values: samples, shape (n,).
-        at: when the step happens [s].
-
-    Raises:
-        InputError: no sample before or too few after the step, or no height.
+    Raises InputError: no sample before or too few after the step, or no height.
     """
     first = int(np.searchsorted(time, at - 1e-12))
     after = values[first:]
@@ -189,15 +171,10 @@ _HIGHEST = 0.25
 
 
 def recorded_response(recording: Recording, given: str, output: str) -> Response:
-    """The response of a recording from one channel to another, as the linear plant has it.
+    """The response of a recording from `motor_torque` or `cutting_force`, held, as the linear plant has it.
 
-    Args:
-        recording: during which the input was excited, the axis moving.
-        given: `motor_torque` or `cutting_force`, held over the samples.
-        output: any recorded channel, or a speed whose angle is recorded.
-
-    Raises:
-        InputError: a channel that is not recorded, or a recording too short for averages.
+    The output is a recorded channel or a speed whose angle is recorded; the axis moves and the input is excited. Raises
+    InputError: a channel that is not recorded, or a recording too short for averages.
     """
     if given not in _HELD:
         raise InputError(f"{given} is no input of the mechanics", recording.name, f"choose {' or '.join(_HELD)}")

@@ -167,14 +167,9 @@ class PointContact:
 
 
 def point_contact(curvatures: Curvatures, first: Material, second: Material) -> PointContact:
-    """The contact of two bodies.
+    """The contact of two bodies by their curvatures in the principal planes that they share, and their materials.
 
-    Args:
-        curvatures: of the bodies in the principal planes that they share.
-        first, second: their materials.
-
-    Raises:
-        InputError: the bodies do not touch at a point: flat, hollow beyond the other's radius, or along a line.
+    Raises InputError where they do not touch at a point: flat, hollow beyond the other's radius, or along a line.
     """
     return PointContact(curvatures, first.compliance + second.compliance, ellipse_numbers(curvatures.relative))
 

@@ -97,11 +97,3 @@ screw_wheel_inertia | kg m^2 | [0, 100] usual 0 to 1 | = 0 | inertia of the whee
 
     def __post_init__(self) -> None:
         check_values("transmission", self.values, vars(self))
-
-    def at_screw(self, at_motor: float) -> float:
-        """A stiffness [N m/rad] or inertia [kg m^2] of the motor's side as the screw feels it."""
-        return at_motor * self.ratio**2
-
-    def at_motor(self, at_screw: float) -> float:
-        """A stiffness [N m/rad] or inertia [kg m^2] of the screw's side as the motor feels it."""
-        return at_screw / self.ratio**2

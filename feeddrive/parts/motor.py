@@ -39,10 +39,6 @@ motor housing
     def __post_init__(self) -> None:
         check_values("brake", self.values, vars(self))
 
-    def holds(self, torque: float) -> bool:
-        """Whether it stands a torque at the rotor [N m]."""
-        return abs(torque) <= self.holding_torque
-
 
 @dataclass(frozen=True)
 class Motor:

@@ -57,19 +57,7 @@ def _part_value(key: str, unit: str, ends: str, default: str, meaning: str) -> P
 
 
 def check_values(part: str, known: tuple[PartValue, ...], values: Mapping[str, float]) -> None:
-    """Refuse impossible values and warn of unusual ones.
-
-    Args:
-        part: name for messages.
-        known: the part's values.
-        values: key to SI value.
-
-    Raises:
-        InputError: not finite, or outside the possible range; gives the range.
-
-    Warns:
-        ValidityWarning: outside the usual range.
-    """
+    """Refuse values of a part, key to SI, that are not finite or possible, and warn of unusual ones."""
     for value in known:
         number = values[value.key]
         where = f"{part}.{value.key}"

@@ -10,16 +10,10 @@ from feeddrive.errors import InputError
 
 
 def refuse_what_cannot_compose(effects: Sequence[Effect], elastic: bool, where: str) -> None:
-    """Refuse effects that cannot act in a plant, whatever their values.
+    """Refuse effects that cannot act together in a plant whose transmission is elastic or not, whatever their values.
 
-    Args:
-        effects: of the plant.
-        elastic: whether its transmission is.
-        where: plant or file, for messages.
-
-    Raises:
-        InputError: two bristles at one port, an effect of the transmission or one that reads its force in a rigid
-            structure, one effect twice that does not add, or an effect on a friction that is not declared.
+    Two bristles at one port, an effect of the transmission or one that reads its force in a rigid structure, one effect
+    twice that does not add, or an effect on a friction that is not declared.
     """
     _refuse_two_bristles(effects, where)
     _refuse_duplicates(effects, where)

@@ -21,12 +21,8 @@ def least_sum(
     """Lower bound of a sum over an interval, where its least value was found, and the terms there.
 
     In an interval in which every term is monotone, the sum lies above the sum of the lesser ends. Intervals in which
-    that leaves it open whether the least value found is the least are divided.
-
-    Args:
-        terms: functions of an array of n places, shape (terms, n), monotone between the points.
-        points: ends and turning points, ascending, shape (k,).
-        rounds: in which intervals are divided, at most.
+    that leaves it open whether the least value found is the least are divided, in so many rounds at most. The terms are
+    a function of n places, (terms, n), monotone between the points, (k,), which are ends and turning points, ascending.
     """
     values = terms(points)
     for _ in range(rounds):

@@ -20,7 +20,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 
 import casadi as ca
 import numpy as np
@@ -100,14 +100,9 @@ def is_passive(plant: Plant) -> bool:
 
 
 def refuse_active_friction(plant: Plant, where: str) -> None:
-    """Refuse a plant whose friction can accelerate it, or take a bristle's level away.
+    """Refuse a plant whose friction can accelerate it, or take a bristle's level away; `where` is its file.
 
-    Args:
-        plant: with all its effects.
-        where: file, for the message.
-
-    Raises:
-        InputError: names the effect, its key, where friction turns negative, and the value that it may have.
+    The InputError names the effect, its key, where friction turns negative, and the value that it may have.
     """
     least = _first_active(plant)
     if least is not None:
@@ -260,7 +255,8 @@ class _Way:
         """
 
         def terms(speed: FloatArray) -> FloatArray:
-            viscous = np.vstack([self._least_viscous(i, speed) for i in range(len(self.effects))])
+            anywhere = self._read("viscous", {_SPEEDS: speed})
+            viscous = np.vstack([self._least_viscous(i, speed, anywhere[i]) for i in range(len(self.effects))])
             shape: FloatArray = np.ones_like(speed) if self.declared.any() else np.zeros_like(speed)
             if self.declared.any() and self.bristle is None:
                 shapes = self._read("shape", {_SPEEDS: speed})[self.declared] * self.direction
@@ -280,22 +276,28 @@ class _Way:
         bound, place, parts = least_sum(terms, points, _ROUNDS)
         return bound, place, parts[:-1]
 
-    def _least_viscous(self, i: int, speed: FloatArray) -> FloatArray:
-        """Viscous force of an effect at some speeds, the least over position and time, shape (speeds,)."""
+    def _least_viscous(self, i: int, speed: FloatArray, anywhere: FloatArray) -> FloatArray:
+        """Viscous force of an effect at some speeds, the least over position and time, shape (speeds,).
+
+        `anywhere` is that of one which reads neither.
+        """
         places = [
             {_SPEEDS: speed, variable: np.full_like(speed, place)}
             for variable in (_POSITIONS, _TIMES)
             for place in self._within(variable, self.turns[i].get(variable, ()))
         ]
-        read = [self._read("viscous", at)[i] for at in places or [{_SPEEDS: speed}]]
+        read = [self._read("viscous", at)[i] for at in places] or [anywhere]
         least: FloatArray = np.min(read, axis=0) * self.direction if self.direction > 0 else -np.max(read, axis=0)
-        if not self.declared[i]:
-            return least
+        return least * self._viscous_factor if self.declared[i] else least
+
+    @cached_property
+    def _viscous_factor(self) -> float:
+        """Least factor on declared viscous force over time."""
         factors = [
             self._read("viscous_factor", {_TIMES: np.array(turns.get(_TIMES, (0.0,)))})[j].min()
             for j, turns in enumerate(self.turns)
         ]
-        return np.asarray(least * math.prod(factors), dtype=np.float64)
+        return float(math.prod(factors))
 
     def _points(self, variable: str, rows: Sequence[int]) -> FloatArray:
         """Turning points of some effects inside what the axis reaches, and its ends."""

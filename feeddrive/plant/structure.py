@@ -86,14 +86,7 @@ _CACHES: list[Callable[[], None]] = []
 
 
 def per_structure(build: Callable[[Plant, *Options], Machine]) -> Callable[[Plant, *Options], Machine]:
-    """`build`, run once per structure of plant and further options; it must not use the plant's values.
-
-    Args:
-        build: maker of equations or of what runs them, from a plant and hashable options.
-
-    Returns:
-        The same maker with a memory.
-    """
+    """`build`, run once per structure of plant and further hashable options; it must not use the plant's values."""
 
     @lru_cache(maxsize=256)
     def cached(key: tuple[object, ...], holder: Holder[Plant], options: tuple[*Options]) -> Machine:

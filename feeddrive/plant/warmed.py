@@ -35,13 +35,10 @@ def followed(plant: Plant) -> dict[int, int]:
 
 
 def warmed(plant: Plant, changes: Changes, slope: float, nut_stiffness: float) -> Plant:
-    """The plant with what its temperatures change.
+    """The plant with what its temperatures change: factors on what is declared, and the growth of its screw.
 
-    Args:
-        plant: as declared.
-        changes: factors on what is declared.
-        slope: of the screw's growth along the stroke [m/m]; it adds to a declared travel deviation.
-        nut_stiffness: declared, of the whole nut [N/m]; it is one of the springs in `axial_stiffness`.
+    The slope of the growth along the stroke [m/m] adds to a declared travel deviation; the declared stiffness of the
+    whole nut [N/m] is one of the springs in `axial_stiffness`.
     """
     factors = (changes.preload, changes.nut_viscous, changes.bearing_viscous)
     effects = [

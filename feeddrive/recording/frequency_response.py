@@ -125,14 +125,9 @@ def read_response(content: FileContent) -> FrequencyResponse:
 
 
 def write_response(response: FrequencyResponse, path: Path) -> None:
-    """Write a frequency response; every digit that a double needs is written.
+    """Write a frequency response as .csv or .csv.gz, with every digit that a double needs.
 
-    Args:
-        response: what to write.
-        path: file ending in .csv or .csv.gz.
-
-    Raises:
-        InputError: another ending, or a place where nothing can be written.
+    Raises InputError: another ending, or a place where nothing can be written.
     """
     if not path.name.endswith((".csv", ".csv.gz")):
         mend = "give the file one of these endings"

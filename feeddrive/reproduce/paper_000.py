@@ -166,7 +166,7 @@ def _lubricated(geometry: ScrewGeometry) -> Row:
     dry = ScrewFriction(geometry, FRICTION)
     torques = np.array([dry.preload_torque(float(F)) for F in preloads]) + 0.05
     ends = [geometry.friction_from(float(preloads[i]), float(torques[i])) for i in (0, -1)]
-    found = geometry.friction_of(split_torque(preloads, torques))[0]
+    found = geometry.friction_from(1.0, split_torque(preloads, torques)[0])
     return claim(PAPER, "conclusion 1", "a lubricated torque is unfit to estimate the coefficient", "unfit",
                  f"{ends[0]:.4f} at 500 N, {ends[1]:.4f} at 6 kN; by regression {found:.4f}", ends[0] > 1.2 * ends[1],
                  law=split_torque,

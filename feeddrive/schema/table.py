@@ -56,14 +56,9 @@ class Table:
         return f"{self.where}.{key}"
 
     def refuse_unknown(self, known: Iterable[str], elsewhere: Mapping[str, str] | None = None) -> None:
-        """Refuse keys that are not among `known`.
+        """Refuse keys that are not among `known`, naming the nearest of these.
 
-        Args:
-            known: keys that may stand here.
-            elsewhere: keys that mean something under other circumstances, to what is to be done then.
-
-        Raises:
-            InputError: unknown key; names the nearest known one.
+        `elsewhere` are keys that mean something under other circumstances, to what is to be done then.
         """
         known = tuple(known)
         if self.section is not None and (undeclared := set(known) - set(self.section.names())):
@@ -216,16 +211,7 @@ class Table:
         return value
 
     def choice(self, key: str, allowed: Iterable[str] = (), default: str | None = None) -> str:
-        """One of some words.
-
-        Args:
-            key: in this table.
-            allowed: the words; those that are declared, with the declared default, if left out.
-            default: where the key is left out; None if it must be given.
-
-        Raises:
-            InputError: as `text`, and a word that is not among them.
-        """
+        """One of the words `allowed`, or of those declared, with the declared default; None if it must be given."""
         allowed, declared = tuple(allowed), self._declared(key)
         if not allowed and declared is not None:
             allowed, default = declared.choices, declared.default
@@ -320,15 +306,9 @@ class Table:
 
 
 def whole_file(entries: Mapping[str, Any], where: str, section: Section) -> Table:
-    """The table of a whole file, with the source that it names for all of its values.
+    """The table of a whole file, its keys as a section declares them, with the source named for all its values.
 
-    Args:
-        entries: of the file.
-        where: its path, for messages.
-        section: that declares its keys.
-
-    Raises:
-        InputError: `source` is not a text.
+    Raises InputError: `source` is not a text.
     """
     plain = Table(entries, where, Origins())
     return replace(plain, source=plain.text("source", ""), section=section)

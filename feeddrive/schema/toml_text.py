@@ -18,14 +18,9 @@ MOST_LEVELS = 12
 
 
 def read_toml(path: Path, kind: str) -> dict[str, Any]:
-    """Parse a TOML file; a byte order mark is passed over.
+    """Parse a TOML file of a kind, such as "plant file"; a byte order mark is passed over.
 
-    Args:
-        path: of the file.
-        kind: what it is, for messages, such as "plant file".
-
-    Raises:
-        InputError: not found, not readable, not UTF-8, or not TOML (with line and column).
+    Raises InputError: not found, not readable, not UTF-8, or not TOML (with line and column).
     """
     where = str(path)
     try:
@@ -56,6 +51,30 @@ def parse_toml(text: str, where: str) -> dict[str, Any]:
         raise InputError(f"is not TOML: {error}", where, "correct that line") from None
     refuse_deep(entries, where)
     return entries
+
+
+_KINDS = {"plant": "plant", "scenario": "scenario", "controller": "controller", "map": "mapping"}
+"""Word in the first line of a file, after "feeddrive-", to what the file is."""
+
+
+def refuse_other_format(entries: Mapping[str, Any], wanted: str, where: str) -> None:
+    """Refuse a file whose first line does not say the wanted format.
+
+    Args:
+        entries: of the file.
+        wanted: such as "feeddrive-plant/1".
+        where: for the message.
+
+    Raises:
+        InputError: it is another kind of file, by its first line, or none of this version.
+    """
+    written = str(entries.get("format"))
+    if written == wanted:
+        return
+    kind, other = (_KINDS.get(text.removeprefix("feeddrive-").partition("/")[0]) for text in (wanted, written))
+    if other is not None and other != kind:
+        raise InputError(f"is a {other} file, not a {kind} file", where, f"name a {kind} file")
+    raise InputError(f"is not a {kind} file of this version", where, f'write format = "{wanted}" in its first line')
 
 
 def refuse_deep(entries: Mapping[str, Any], where: str) -> None:

@@ -139,15 +139,7 @@ def _refuse_unless(holds: bool, name: str, mend: str) -> None:
 
 
 def divider(fast_rate: float, slow_rate: float, where: str) -> int:
-    """Ticks of the fast rate per tick of the slow one.
-
-    Args:
-        fast_rate, slow_rate: [Hz].
-        where: for the message.
-
-    Raises:
-        InputError: the fast rate is no integer multiple of the slow one; names the nearest that is.
-    """
+    """Ticks of the fast rate per tick of the slow one, both in Hz; refuses what is no integer, names the nearest."""
     ratio = fast_rate / slow_rate
     nearest = max(1, round(ratio))
     if abs(ratio - nearest) > 1e-9 * ratio:

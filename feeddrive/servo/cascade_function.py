@@ -33,17 +33,10 @@ _COEFFICIENTS = 5
 
 
 def cascade_controller(cascade: Cascade) -> SampledController:
-    """The cascade as the function that engine and linear loop take.
+    """The cascade as the function, with `REFERENCES` and `SIGNALS`, that engine and linear loop take.
 
-    Args:
-        cascade: settings.
-
-    Returns:
-        Controller with references `REFERENCES` and signals `SIGNALS`. Set-points are read at position ticks,
-        excitations at every tick.
-
-    Raises:
-        InputError: a filter that does not fit the sample rate.
+    Set-points are read at position ticks, excitations at every tick. Raises InputError for a filter that does not fit
+    the sample rate.
     """
     feedback = cascade.feedback
     function = _function(cascade.position_divider, feedback, len(cascade.torque_filters), len(cascade.speed_filters))

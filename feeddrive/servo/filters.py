@@ -49,13 +49,9 @@ class Filter:
     frequency: float
 
     def discrete(self, sample_time: float) -> FloatArray:
-        """Coefficients c of y_k = c0 u_k + c1 u_(k-1) + c2 u_(k-2) - c3 y_(k-1) - c4 y_(k-2), shape (5,).
+        """Coefficients c, (5,), of y_k = c0 u_k + c1 u_(k-1) + c2 u_(k-2) - c3 y_(k-1) - c4 y_(k-2).
 
-        Args:
-            sample_time: [s].
-
-        Raises:
-            InputError: the matched frequency is above 0.45 of the sample rate.
+        Raises InputError where the matched frequency is above 0.45 of the sample rate.
         """
         if self.frequency * sample_time > _HIGHEST:
             what = f"a {self.kind} at {self.frequency:g} Hz does not fit a sample rate of {1 / sample_time:g} Hz"
@@ -96,13 +92,7 @@ def pt2(frequency: float, damping: float) -> Filter:
 
 
 def notch(frequency: float, bandwidth: float, depth: float) -> Filter:
-    """Notch.
-
-    Args:
-        frequency: of the notch [Hz].
-        bandwidth: between its -3 dB points, for a deep notch [Hz].
-        depth: attenuation at the notch [dB], positive; infinite for a complete one.
-    """
+    """Notch of a frequency and a bandwidth at -3 dB, if deep [Hz], and a depth [dB], infinite for a complete one."""
     _refuse_not_positive("notch", frequency=frequency, bandwidth=bandwidth, depth=depth)
     w, wide = 2 * math.pi * frequency, 2 * math.pi * bandwidth
     return Filter("notch", (1.0, wide * 10 ** (-depth / 20), w**2), (1.0, wide, w**2), frequency)

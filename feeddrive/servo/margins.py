@@ -86,14 +86,9 @@ def _by_triangle(a: FloatArray, b: FloatArray, c: FloatArray, z: ComplexArray) -
 
 
 def margins(loop: control.StateSpace, lowest: float = 0.1, points: int = POINTS) -> Margins:
-    """Margins of an open loop with negative feedback.
+    """Margins of an open discrete loop with negative feedback, one in, one out, from the frequency `lowest` [Hz] on.
 
     Gain margins count above 0 dB only (gain that may be added); every crossing up to half the sample rate is seen.
-
-    Args:
-        loop: discrete, one input and one output.
-        lowest: frequency from which crossings count [Hz].
-        points: of the grid, even on a logarithmic axis.
     """
     frequency = np.geomspace(lowest, 0.5 / loop.dt, points)
     return margins_of(frequency, frequency_response(loop, frequency), _stable(loop))

@@ -137,16 +137,9 @@ def degrees(values: ComplexArray) -> FloatArray:
 
 
 def transfer(plant: Plant, given: str, output: str, case: Case) -> control.StateSpace:
-    """The mechanics from one input to one output, without the delay, as a `control` object.
+    """The mechanics in a case from one of `INPUTS` to one of `OUTPUTS`, without the delay, as a `control` object.
 
-    Args:
-        plant: the machine.
-        given: of `plant.linear.INPUTS`.
-        output: of `plant.linear.OUTPUTS`.
-        case: where the table stands, how fast it moves, what it carries.
-
-    Raises:
-        InputError: an unknown channel, or as `plant.linear.state_space`.
+    Raises InputError: an unknown channel, or as `plant.linear.state_space`.
     """
     refuse_unknown(given, INPUTS, "--from")
     refuse_unknown(output, OUTPUTS, "--to")
@@ -169,16 +162,9 @@ def delay_of(plant: Plant) -> float:
 
 
 def mechanics(plant: Plant, given: str, output: str, case: Case, low: float, high: float) -> Response:
-    """Response of the mechanics between two frequencies, dense about every resonance.
+    """Response of the mechanics in a case, from 0 < `low` < `high` [Hz], dense about every resonance.
 
-    Args:
-        plant: the machine.
-        given, output: see `transfer`.
-        case: what it holds for.
-        low, high: [Hz], 0 < low < high.
-
-    Raises:
-        InputError: as `transfer`, and frequencies that are no range.
+    Input, output and errors as `transfer`; also refuses frequencies that are no range.
     """
     refuse_no_range(low, high)
     system = transfer(plant, given, output, case)

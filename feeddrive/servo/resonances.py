@@ -76,12 +76,7 @@ class Extremum:
 
 
 def resonances(system: control.StateSpace, low: float, high: float) -> tuple[Resonance, ...]:
-    """Lightly damped poles and zeros of a continuous system between two frequencies, ascending.
-
-    Args:
-        system: one input and one output.
-        low, high: [Hz].
-    """
+    """Lightly damped poles and zeros of a continuous system, one in, one out, between frequencies [Hz]."""
     sets = ((Kind.RESONANCE, system.poles()), (Kind.ANTI_RESONANCE, system.zeros()))
     found = [root for kind, values in sets for root in _rooted(kind, values) if low <= root.frequency <= high]
     return tuple(sorted(found, key=lambda root: root.frequency))

@@ -107,16 +107,9 @@ class Matrices:
 def sampled_plant(plant: Plant, cascade: Cascade, velocity: float = MOVING, position: float = 0.0) -> Matrices:
     """Plant and current loop from the held torque and cutting force to the readings `plant.linear.OUTPUTS`.
 
-    Args:
-        plant: the machine; a declared drive delay adds to the dead time.
-        cascade: its tick, lag and dead time.
-        velocity, position: of the point about which is linearised [m/s, m].
-
-    Returns:
-        Matrices per tick; the states are those of the plant, the lagged torque, and torques under way.
-
-    Raises:
-        InputError: as `plant.linear.state_space`.
+    Linearised at a velocity and position [m/s, m]; a declared drive delay adds to the dead time of the cascade. The
+    states per tick are those of the plant, the lagged torque, and torques under way. Errors as
+    `plant.linear.state_space`.
     """
     a, b, c = _with_lag(linear_matrices(plant, velocity, position), cascade.current_lag)
     tick = cascade.sample_time

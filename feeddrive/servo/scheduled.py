@@ -20,18 +20,11 @@ _PLACE = "table_position"
 
 @SYMBOLS.taken()
 def scheduled(positions: FloatArray, designs: Sequence[SampledController]) -> SampledController:
-    """One controller out of designs of the same equations.
+    """One controller out of k designs, 2 or more, at ascending positions of the table [m], (k,).
 
-    Margins of the designs hold while the table moves slowly: parameters that change as fast as the loop are another
-    system.
-
-    Args:
-        positions: of the designs, ascending [m], shape (k,), k of 2 or more.
-        designs: k controllers that differ in parameters alone and read the table position.
-
-    Raises:
-        InputError: designs of other equations, positions that do not ascend, no table position to read, a limit that
-            is infinite in some of them alone.
+    Designs differ in parameters alone and read the table position. Their margins hold while the table moves slowly:
+    parameters that change as fast as the loop are another system. Raises InputError: designs of other equations,
+    positions that do not ascend, no table position to read, a limit that is infinite in some of them alone.
     """
     places, first = np.asarray(positions, dtype=float), designs[0]
     if len(places) != len(designs) or len(places) < 2 or not (np.diff(places) > 0).all():

@@ -78,12 +78,7 @@ def with_load(machine: Matrices) -> tuple[FloatArray, FloatArray]:
 def steady_columns(machine: Matrices, tick: float) -> Steady:
     """States and torques of standing, moving, accelerating and carrying a load, the table on its set-point.
 
-    Args:
-        machine: the sampled plant.
-        tick: its sample time [s].
-
-    Raises:
-        InputError: the torque cannot move the table.
+    The machine is sampled at the tick [s]. Raises InputError where the torque cannot move the table.
     """
     n = len(machine.a)
     system = np.block([
@@ -108,14 +103,9 @@ def steady_columns(machine: Matrices, tick: float) -> Steady:
 def open_loop(
     machine: Matrices, tick: float, gain: FloatArray, observer: FloatArray, actual: Matrices | None = None
 ) -> control.StateSpace:
-    """The loop of state feedback and observer cut at the torque, for its margins.
+    """The loop of state feedback and observer cut at the torque, for its margins, shapes as in `state_feedback`.
 
-    Args:
-        machine: that the controller was designed for, n states.
-        tick: its sample time [s].
-        gain: K, shape (1, n).
-        observer: L_x above L_d, shape (n + 1, 2).
-        actual: another plant with the same states, such as at another position; `machine` if None.
+    `actual` is another plant with the same states, such as at another position; `machine` if None.
     """
     import control  # takes half a second, with the plotting that it brings
 

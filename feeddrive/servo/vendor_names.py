@@ -51,15 +51,7 @@ ALIASES: dict[str, Alias] = {
 
 
 def with_own_names(entries: dict[str, Any], where: str) -> dict[str, Any]:
-    """The entries of a controller under our names.
-
-    Args:
-        entries: as they were read.
-        where: for messages.
-
-    Raises:
-        InputError: a setting given twice, under two names.
-    """
+    """The entries of a controller under our names; a setting given twice, under two names, raises InputError."""
     result: dict[str, Any] = {}
     named: dict[str, str] = {}
     for name, value in entries.items():

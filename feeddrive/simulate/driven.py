@@ -112,15 +112,9 @@ class LoadMotion:
 
 
 def motor_motion(time: FloatArray, angle: FloatArray, substeps: int | None = None) -> MotorMotion:
-    """Speed and acceleration of a sampled angle by a quintic spline through the samples.
+    """Speed and acceleration of an angle [rad] at even times [s], (n,), by a quintic spline through the samples.
 
-    Args:
-        time: sample times, evenly spaced [s], shape (n,).
-        angle: motor angle [rad], shape (n,).
-        substeps: grid steps per sample; as many as make them no longer than `GRID` if None.
-
-    Returns:
-        The motion.
+    The grid has `substeps` steps per sample, or as many as make them no longer than `GRID`.
     """
     return motor_motions(time, angle[:, None], substeps)[0]
 
@@ -137,18 +131,10 @@ def motor_motions(time: FloatArray, angles: FloatArray, substeps: int | None = N
 
 
 def simulate_driven(plant: Plant, motion: MotorMotion, tolerance: float = TOLERANCE) -> LoadMotion:
-    """Load side and motor torque of the plant for a given motor motion, starting at rest without stretch.
+    """Load side and motor torque of the plant at the samples of a motor motion, starting at rest without stretch.
 
-    Args:
-        plant: with its values.
-        motion: of the motor.
-        tolerance: error of the table position that a step may make [m].
-
-    Returns:
-        The motion of screw and table and the motor torque, at the samples.
-
-    Raises:
-        SimulationError: a motion that cannot be followed; says when, and which effect to look at.
+    A step may be wrong by `tolerance` [m] at the table. Raises SimulationError for a motion that cannot be followed; it
+    says when, and which effect to look at.
     """
     machine, outputs, beginning = _machine(plant)
     values = np.array(parameter_values(plant))
@@ -187,15 +173,11 @@ def on_grid(series: FloatArray, substeps: int) -> FloatArray:
 
 
 def at_rate(series: FloatArray, substeps: int) -> FloatArray:
-    """A series on a grid as samples at a lower rate tell it, (n,): without what would come back as slow there.
+    """A series on a grid of `substeps` a sample, (m,), as samples show it, (n,): without what folds back as slow.
 
     A drive holds its torque from row to row, and the rows of the motor's angle hold what a jump of friction between
-    them did only as far as it moved the motor, that is hardly beyond their own rate. The torque that the plant asks
-    for is taken as far, by a zero-phase filter; read at the rows alone, a jump would be early or late by half a row.
-
-    Args:
-        series: on the grid, (m,).
-        substeps: grid steps per sample.
+    them did only as far as it moved the motor, that is hardly beyond their own rate. The torque that the plant asks for
+    is taken as far, by a zero-phase filter; read at the rows alone, a jump would be early or late by half a row.
     """
     if substeps == 1:
         return series
@@ -292,20 +274,11 @@ def _outputs(plant: Plant, layout: Layout) -> ca.Function:
 def used_life(
     plant: Plant, time: FloatArray, motor_angle: FloatArray, cutting_force: FloatArray | None = None
 ) -> ConsumedLife | None:
-    """Life used along a motion.
+    """Life that the two nuts have used along a motion at even times [s], (n,), under a force on the table [N], (n,).
 
-    Args:
-        plant: with its values.
-        time: sample times, evenly spaced [s], shape (n,).
-        motor_angle: [rad], shape (n,); noise of it counts as rolling, so a recorded one is smoothed before.
-        cutting_force: on the table along + motion [N], shape (n,); none if None.
-
-    Returns:
-        What the two nuts have used; None where the file declares no `ball_screw.dynamic_rating`, or nothing is elastic,
-        so that no force of a nut is known.
-
-    Raises:
-        SimulationError: a motion that cannot be followed.
+    Noise of the motor angle [rad], (n,), counts as rolling, so a recorded one is smoothed before. None where the file
+    declares no `ball_screw.dynamic_rating`, or nothing is elastic, so that no force of a nut is known. Raises
+    SimulationError for a motion that cannot be followed.
     """
     rating = plant.data["ball_screw.dynamic_rating"].value if "ball_screw.dynamic_rating" in plant.data else None
     if rating is None or not plant.chain.elastic:

@@ -202,16 +202,9 @@ def readings_of(plant: Plant, layout: Layout) -> ca.Function:
 
 
 def even_sample_time(name: str, time: FloatArray, count: int, *series: FloatArray) -> float:
-    """Sample time [s] of an even grid.
+    """Sample time [s] of `count` even times; refuses uneven or fewer than two, other lengths, series not finite.
 
-    Args:
-        name: of the plant, for the message.
-        time: sample times [s], shape (n,).
-        count: of the values that go with them.
-        series: what must be finite.
-
-    Raises:
-        InputError: fewer than two samples, uneven times, lengths that differ, values that are not finite.
+    `name` is that of the plant, for the message.
     """
     if len(time) < 2 or len(time) != count:
         raise InputError(f"{len(time)} times and {count} values", name, "give two samples or more of each")

@@ -173,17 +173,10 @@ class Coupling:
     def changes(
         self, at: Temperatures, reference: float, preload: float, pitch_diameter: float, expansion: float
     ) -> Changes:
-        """What the drive is at some temperatures.
+        """What the drive is at some temperatures, its friction and preload F_0 [N] those at the reference T_0 [degC].
 
-        Args:
-            at: the temperatures.
-            reference: T_0 [degC].
-            preload: F_0 [N].
-            pitch_diameter: of the circle of ball centres [m].
-            expansion: of the steel [1/K].
-
-        Raises:
-            InputError: the nut has lost its preload.
+        `pitch_diameter` is that of the ball centres [m], `expansion` that of the steel [1/K]. Raises InputError where
+        the nut has lost its preload.
         """
         share = 1 + self._gained(at.nut - at.shaft, preload, pitch_diameter, expansion) / preload
         if share < LEAST_PRELOAD:

@@ -259,12 +259,9 @@ class _Search:
 
 
 def most_likely(dates: FloatArray, logs: FloatArray, since: FloatArray) -> tuple[float, float]:
-    """The interval that holds a date with 95 %, from log probabilities, (d,) each; the likeliest dates first.
+    """The interval that holds a date with 95 %, from log probabilities, (d,); the likeliest dates first.
 
-    Args:
-        dates: possible ones.
-        logs: of their probability.
-        since: of each the beginning of the gap in which it is, or the date.
+    `since` is of each the beginning of the gap in which it is, or the date.
     """
     weights = np.exp(logs - logsumexp(logs))
     order = np.argsort(-weights)

@@ -47,15 +47,9 @@ _LINES = 60
 
 
 def stamp_of(name: str, head: str, pattern: str) -> tuple[datetime, str] | None:
-    """When a recording was made, and where that stands; None where it is not known.
+    """When a recording was made, and where that stands: in its name by a pattern of `strptime`, or its head; or None.
 
-    Args:
-        name: of the file, or of the member of an archive.
-        head: beginning of its text.
-        pattern: of `strptime` for a part of the name, such as "%Y%m%d_%H%M"; empty for none.
-
-    Raises:
-        InputError: a pattern that the name does not hold.
+    Raises InputError for a pattern, such as "%Y%m%d_%H%M", that the name does not hold.
     """
     if pattern:
         return _by_pattern(name, pattern), "name, by the pattern"
@@ -168,14 +162,9 @@ class Source:
 
 
 def sources(folder: Path, own: Path) -> Iterator[Source | tuple[str, str]]:
-    """What lies in a folder and below, by name; a pair of key and reason for an archive that cannot be opened.
+    """What lies in a folder and below, by name, `own` left out; a pair of key and reason for an archive not opened.
 
-    Args:
-        folder: to look into.
-        own: folder of results, which is left out.
-
-    Raises:
-        InputError: no such folder.
+    Raises InputError for no such folder.
     """
     if not folder.is_dir():
         raise InputError("no such folder", str(folder), "name the folder that recordings are added to")

@@ -54,18 +54,10 @@ def limit_of(
     entries: Mapping[str, Any],
     watched: int,
 ) -> Limit | None:
-    """The limits of a quantity; None where nothing sets any.
+    """The limits of a quantity, for its course at days, ascending, (k,); None where nothing sets any.
 
-    Args:
-        quantity: what is watched.
-        course: what it did, at `days`.
-        days: of the values that are numbers, ascending, (k,).
-        given: quantity to what a person allows, "10 µm" or "20 %", about its first level.
-        entries: of the plant file.
-        watched: quantities that are watched together.
-
-    Raises:
-        InputError: an allowance that is none.
+    `given` is quantity to what a person allows, "10 µm" or "20 %", about its first level; `watched` counts the
+    quantities that are watched together. Raises InputError for an allowance that is none.
     """
     values = quantity.values[np.isfinite(quantity.values)]
     level = course.level[0]

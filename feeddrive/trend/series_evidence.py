@@ -124,12 +124,7 @@ def _beginnings(time: FloatArray) -> list[float]:
 
 
 def before_gap(time: FloatArray, dates: FloatArray) -> FloatArray:
-    """The recording before each date of a jump where a gap lies between, else the date itself, (d,).
-
-    Args:
-        time: of the recordings, ascending, (n,).
-        dates: of recordings after the first, (d,).
-    """
+    """The recording before each date of a jump where a gap lies between, else the date itself, (d,)."""
     usual, at = float(np.median(np.diff(time))), np.searchsorted(time, dates)
     earlier = time[np.maximum(at - 1, 0)]
     found: FloatArray = np.where(dates - earlier > LONG * usual, earlier, dates)

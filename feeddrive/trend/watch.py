@@ -84,19 +84,10 @@ class Trend:
 def follow(
     plant: Plant, text: str, entries: Mapping[str, Any], folder: Path, out: Path, options: Options, progress: Progress
 ) -> tuple[Trend, Checkpoint]:
-    """Read what is new in a folder and say what all of it says.
+    """Read what is new in a folder of recordings and say what all of it says; `out` holds the checkpoint.
 
-    Args:
-        plant: as declared.
-        text: that the plant was made from, so that another plant is noticed.
-        entries: of the plant file, for tolerances.
-        folder: of recordings.
-        out: where the checkpoint is kept.
-        options: how the folder is to be understood.
-        progress: called with a line that says what is going on.
-
-    Raises:
-        InputError: no folder, or no recording in it that can be used.
+    The text that the plant was made from shows another plant, its entries give tolerances; `progress` is called with a
+    line that says what is going on. Raises InputError: no folder, or no recording in it that can be used.
     """
     begun = time.monotonic()
     identity = _identity(text, options)
@@ -128,17 +119,9 @@ def _dated(kept: Checkpoint, options: Options) -> list[tuple[datetime, Entry]]:
 def trend_of(
     plant: Plant, declared: Mapping[str, Any], options: Options, kept: Checkpoint, notes: tuple[str, ...]
 ) -> Trend:
-    """What all recordings that were passed say.
+    """What all recordings that were passed say; the entries of the plant file give tolerances.
 
-    Args:
-        plant: as declared.
-        declared: entries of the plant file, for tolerances.
-        options: how the folder is to be understood.
-        kept: all passes.
-        notes: remarks beside.
-
-    Raises:
-        InputError: no recording can be used.
+    Raises InputError where no recording can be used.
     """
     dated = _dated(kept, options)
     if not dated:

@@ -67,14 +67,9 @@ def _stiffness(plant: Plant) -> float:
 def quantities_of(
     pooled: Mapping[str, tuple[Pooled, FloatArray]], plant: Plant, grid: Grid, count: int, absolute: bool
 ) -> tuple[Quantity, ...]:
-    """The quantities of channels that were pooled.
+    """The quantities of channels that were pooled: their terms and the numbers of the recordings, (k,), of `count`.
 
-    Args:
-        pooled: channel to its terms and the numbers of the recordings that they are of, (k,).
-        plant: as declared.
-        grid: of the pass.
-        count: of recordings.
-        absolute: whether the zero of the table against the motor is kept from recording to recording.
+    `absolute` is whether the zero of the table against the motor is kept from recording to recording.
     """
     found: list[Quantity] = []
     if "table_position" in pooled:

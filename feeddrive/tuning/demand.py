@@ -55,16 +55,10 @@ class Demand:
 def cases_of(
     plant: Plant, positions: Sequence[float] = (), payloads: Sequence[float] = (), velocity: float = MOVING
 ) -> tuple[Case, ...]:
-    """Every position with every payload.
+    """Every position of the table [m] with every payload beyond the declared one [kg], at a velocity [m/s].
 
-    Args:
-        plant: the machine.
-        positions: of the table [m]; if empty, along the stroke where the chain depends on it, else mid-stroke alone.
-        payloads: masses on the table beyond the declared one [kg]; none if empty.
-        velocity: of the table [m/s].
-
-    Raises:
-        InputError: a position off the screw or outside the stroke.
+    Without positions along the stroke where the chain depends on it, else mid-stroke. Raises InputError for a position
+    off the screw or outside the stroke.
     """
     places = tuple(positions) or _along_stroke(plant)
     for place in places:

@@ -49,18 +49,11 @@ def facts_of(plant: Plant, cascade: Cascade) -> Facts:
 
 
 def drive_settings(plant: Plant, found: Recommendation, form: str) -> DriveSettings:
-    """What to type into a drive.
+    """What to type into a drive of a form, for a recommendation.
 
     Where the drive does not have the filters of the recommendation, the loop is tuned again with those that it has. The
-    numbers are rounded to its resolution to the safe side, and the loop that they make is checked in every case.
-
-    Args:
-        plant: the machine.
-        found: the recommendation.
-        form: name of the form.
-
-    Raises:
-        InputError: an unknown form, a value that the drive does not take, margins that it cannot keep.
+    numbers are rounded to its resolution to the safe side, and the loop that they make is checked in every case. Raises
+    InputError: an unknown form, a value that the drive does not take, margins that it cannot keep.
     """
     writer, remarks = writer_of(form), []
     cases = [one.case for one in found.reached]

@@ -7,7 +7,7 @@ import math
 from dataclasses import dataclass
 
 from feeddrive.errors import printable
-from feeddrive.plant.analysis.modes import braked_modes, inertia_at_motor
+from feeddrive.plant.analysis.modes import held_modes, inertia_at_motor
 from feeddrive.plant.plant import Plant
 from feeddrive.servo.cascade import KV_UNIT, Cascade
 from feeddrive.servo.mechanics_response import Case, Friction
@@ -71,7 +71,7 @@ def settings(plant: Plant, found: Recommendation) -> tuple[Setting, ...]:
 
 def rules(plant: Plant, found: Recommendation) -> tuple[str, ...]:
     """What rules of thumb say to the recommendation, one sentence each."""
-    modes = [braked_modes(one.case.on(plant), one.case.position).frequencies for one in found.reached]
+    modes = [held_modes(one.case.on(plant), one.case.position).frequencies for one in found.reached]
     first = min((float(some[0]) for some in modes if len(some)), default=math.inf)
     if math.isinf(first):
         return ("the plant is declared rigid: no mode limits K_v here; on the machine one will",)

@@ -158,11 +158,6 @@ def _refined(task: _Task, found: VelocityGains) -> VelocityGains:
     return found
 
 
-def _near(task: _Task, filters: tuple[FilterChoice, ...], about: float) -> VelocityGains:
-    """The best near a reset time [s]: filters that are moved a little move it a little."""
-    return _best(task, filters, about * np.array([0.88, 1.0, 1.14]))
-
-
 def _through(filters: Sequence[Filter], task: _Task) -> ComplexArray:
     """Response of sampled filters in series, shape (n,)."""
     late = np.exp(-2j * math.pi * task.frequency * task.tick)
@@ -214,7 +209,7 @@ def _moved(task: _Task, found: VelocityGains) -> VelocityGains:
                     if changed.frequency >= highest:
                         continue
                     filters = (*found.filters[:place], changed, *found.filters[place + 1 :])
-                    tried = _near(task, filters, found.reset_time)
+                    tried = _best(task, filters, found.reset_time * np.array([0.88, 1.0, 1.14]))
                     if tried.integral > (1 + 0.1 * step) * found.integral:
                         found, better = tried, True
                         break

@@ -118,7 +118,9 @@ def _split(text: str, unit: str, where: str) -> tuple[float, str]:
         raise InputError(f'"{text}" does not begin with a number', where, _write_it(unit))
     number, rest = match.groups()
     if re.match(r",\d", rest):
-        raise InputError(f'"{text}" has a decimal comma', where, 'write a decimal point, e.g. "2.5 mm"')
+        pointed = text.strip().replace(",", ".") if text.count(",") == 1 else "2.5 mm"
+        mend = f'write a decimal point, e.g. "{pointed}", and nothing between thousands'
+        raise InputError(f'"{text}" has a decimal comma', where, mend)
     if re.match(r"[/*^²³.\d]|\s+[\d.+-]+(?!\s*/)(\s|$)", rest):
         raise InputError(f'"{text}" is not one number and its unit', where, _write_it(unit))
     return float(number), rest.strip()

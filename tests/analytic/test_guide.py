@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from feeddrive.errors import InputError, ValidityWarning
-from feeddrive.parts.guide.guide_carriage import carriage_friction, friction_map, mean_slip_radius, table_friction
+from feeddrive.parts.guide.guide_carriage import carriage_friction, mean_slip_radius, table_friction
 from feeddrive.parts.guide.guide_coefficients import SET_A, GuideCoefficients
 from feeddrive.parts.guide.guide_equilibrium import (
     forces,
@@ -173,13 +173,6 @@ def test_carriages_and_seals_add() -> None:
     assert table.total == pytest.approx(4 * (one.total + 6.0), rel=1e-14)
     assert np.array(table.shares()) == pytest.approx(np.array(one.shares()), rel=1e-14)
     assert sum(table.shares()) == pytest.approx(np.ones_like(SPEEDS), rel=1e-14)
-
-
-def test_map_is_one_row_a_load() -> None:
-    loads = np.array([0.0, 3e3, 6e3])
-    found = friction_map(HSR_30R, SET_A, loads, SPEEDS, seal_drag=2.0)
-    assert found.shape == (3, SPEEDS.size)
-    assert found[1] == pytest.approx(carriage_friction(HSR_30R, SET_A, SPEEDS, 3e3, seal_drag=2.0).total, rel=1e-15)
 
 
 def test_unequal_grooves_share_the_approach() -> None:

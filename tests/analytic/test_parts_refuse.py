@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from feeddrive.errors import InputError, ValidityWarning
-from feeddrive.parts.bearings.bearing_friction import ANGULAR_CONTACT, BallBearing, load_torque, viscous_torque
 from feeddrive.parts.combined_stiffness import natural_frequency
 from feeddrive.parts.contact import ball_in_groove
 from feeddrive.parts.guide.guide_carriage import carriage_friction, table_friction
@@ -29,7 +28,7 @@ from feeddrive.parts.life.stress_cycles import effective_screw_groove
 from feeddrive.parts.life.subsurface_shear import axis_stresses, greatest_shear_on_axis
 from feeddrive.parts.life.weibull import WeibullLaw, complete_slope_interval
 from feeddrive.parts.lubricant import Lubricant
-from feeddrive.parts.screw.load_distribution import continuum_extremes, load_distribution, nut_body
+from feeddrive.parts.screw.load_distribution import load_distribution, nut_body
 from feeddrive.parts.screw.screw_contact import BallTrack
 from feeddrive.parts.screw.screw_friction import ScrewFriction, ScrewGeometry
 from feeddrive.parts.screw.wedge import self_locking_lead
@@ -38,7 +37,6 @@ TRACK = BallTrack(3.175e-3, 25.5e-3, 0.55, math.pi / 4, 6e-3, 2.5)
 BODY = nut_body(TRACK, 0.04)
 LOADS = load_distribution(BODY, 13500.0)
 CONTACT = ball_in_groove(3.969e-3, 0.52)
-BEARING = BallBearing(ANGULAR_CONTACT, 0.022, 3850.0)
 SCREW = ScrewFriction(ScrewGeometry(0.010, 0.041, math.pi / 4), 0.034)
 LAW = WeibullLaw(1.0, 2.0)
 OIL = Lubricant(32e-6, 5.3e-6)
@@ -52,12 +50,8 @@ REFUSING: dict[str, Callable[[float], object]] = {
     "contact pressure": CONTACT.maximum_pressure,
     "carriages": lambda v: table_friction(HSR_20R, SET_A, v, 0.1),  # type: ignore[arg-type]
     "seal drag": lambda v: carriage_friction(HSR_20R, SET_A, 0.1, seal_drag=v),
-    "bearing diameter": lambda v: viscous_torque(2.0, 3e-5, 100.0, v),
-    "bearing load": lambda v: load_torque(BEARING, v),
-    "radial load": lambda v: load_torque(BEARING, 10.0, v),
     "ball load": TRACK.mean_ball_load,
     "nut load": lambda v: load_distribution(BODY, v),
-    "continuum": lambda v: continuum_extremes(BODY, v),
     "material constant": lambda v: rating(TRACK, LOADS, 0.288, v),
     "tested rating": lambda v: material_constant_of_test(TRACK, LOADS, 0.288, v),
     "one rating of two": lambda v: combined_rating((v, 8.0)),
@@ -98,7 +92,6 @@ def test_signed_values_must_be_finite(value: float) -> None:
         lambda: guide_equilibrium(HSR_20R, value),
         lambda: guide_equilibrium(HSR_20R, 0.0, value),
         lambda: carriage_friction(HSR_20R, SET_A, value),
-        lambda: viscous_torque(2.0, 3e-5, value, 0.02),
         lambda: SCREW.torque(value, 1.0),
         lambda: SCREW.torque(1.0, value),
         lambda: OIL.viscosity(value),

@@ -11,7 +11,7 @@ import pytest
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant
-from feeddrive.parts.bearings.bearing_friction import viscous_torque
+from feeddrive.parts.bearings.bearing_friction import palmgren_torque
 from feeddrive.parts.lubricant import Lubricant
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
@@ -40,7 +40,7 @@ def test_equal_temperatures_change_nothing_but_oil() -> None:
 
 def test_viscous_share_is_that_of_palmgrens_torque() -> None:
     oil = Lubricant(100e-6, 11.2e-6)
-    torques = [viscous_torque(10.0, oil.viscosity(at), 200.0, PITCH) for at in (20.0, 45.0)]
+    torques = [float(palmgren_torque(10.0, oil.viscosity(at), 200.0, PITCH)) for at in (20.0, 45.0)]
     assert viscous_share(oil, 45.0, 20.0) == pytest.approx(torques[1] / torques[0], rel=1e-12)
 
 
@@ -57,7 +57,7 @@ def test_declared_friction_and_oil_of_the_warm_axis_are_one() -> None:
         ("nut_friction", 10.0, nut, PITCH),
         ("bearing_drag", 6.0, bearing, 0.037),
     ):
-        torque = viscous_torque(factor, viscosity, speed, diameter)
+        torque = float(palmgren_torque(factor, viscosity, speed, diameter))
         assert _value(plant, name, "viscous") == pytest.approx(torque / speed ** (2 / 3), rel=2e-3)
 
 

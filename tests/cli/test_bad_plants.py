@@ -32,6 +32,7 @@ BAD = {
     "sensor twice": ('"motor_torque"', '"motor_angle"', ["sensor 2", "declared twice"]),
     "broken toml": ('lead = "20 mm"', 'lead "20 mm"', ["not TOML", "line 12"]),
     "other format": ("feeddrive-plant/1", "feeddrive-plant/9", ["format", "feeddrive-plant/1"]),
+    "controller": ("feeddrive-plant/1", "feeddrive-controller/1", ["is a controller file, not a plant file"]),
     "list for a value": ('"134 kg"', '["134 kg"]', ["table.mass", "list"]),
     "not a quantity": ('"134 kg"', "true", ["table.mass", "not a quantity"]),
     "not finite": ('"134 kg"', '"nan kg"', ["table.mass", "number"]),
@@ -40,7 +41,8 @@ BAD = {
     "section is a value": ('[table]\nmass = "134 kg"', "", ["table.mass", "missing"]),
     "effect is a table": ("[[effect]]", "[effect]", ["TOML"]),
     "rigid with stiffness": ("three_inertias", "rigid", ["transmission", "torsional_stiffness", "three_inertias"]),
-    "decimal comma": ('"134 kg"', '"134,5 kg"', ["table.mass", "decimal comma"]),
+    "decimal comma": ('"134 kg"', '"134,5 kg"', ["table.mass", "decimal comma", '"134.5 kg"']),
+    "two commas": ('"134 kg"', '"1,134,5 kg"', ["table.mass", "decimal comma", "nothing between thousands"]),
 }
 
 

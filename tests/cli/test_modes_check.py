@@ -161,3 +161,28 @@ def test_sections_that_cannot_be(
     assert main(["show", str(path)]) == 2
     shown = capsys.readouterr().err
     assert shown.startswith(f"error: {path}") and shown.count("\n") == 1 and told in shown
+
+
+def test_check_lists_what_is_missing_alone(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    given = _edited(tmp_path, "bench_axis", ("[table]", '[table]\nmax_velocity = "20 m/min"'))
+    assert main(["check", given, "--json"]) == 0
+    rules = {rule["rule"]: rule["source"] for rule in json.loads(capsys.readouterr().out)["rules"]}
+    assert rules["motor speed"] == "needs motor.max_speed"
+    assert rules["DN: ball circle times speed"] == "needs ball_screw.ball_circle"
+    assert rules["screw speed, 0.8 of whirling"] == "needs the parts of the screw ([support], [bearing.near], [nut])"
+
+
+def test_shapes_are_over_what_is_shown_and_a_closed_brake_is_called_so(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["show", "vertical_axis"]) == 0
+    shown = capsys.readouterr().out
+    rows = [line for line in shown.splitlines() if line.startswith(("│ braked ", "│ free ")) and " Hz " in line]
+    assert rows and "│ held " not in shown and "motor held by its brake" in shown
+    for row in rows:
+        shape = [float(cell) for cell in row.strip("│").split("│")[3:]]
+        assert max(shape) == 1.0  # the largest that is shown, waves inside the screw are not
+
+
+def test_lumped_springs_are_named_once(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["show", "bench_axis"]) == 0
+    shown = capsys.readouterr().out
+    assert "│ torsional " in shown and "torsion, torsional" not in shown and "axial, axial" not in shown

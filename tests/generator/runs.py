@@ -13,7 +13,7 @@ from tests.generator.beside import beside
 from tests.generator.constants import Constants, declared_constants
 from tests.generator.effects import Effect, PlantedEffects
 from tests.generator.lateness import as_recorded, lateness
-from tests.generator.loop import closed_loop
+from tests.generator.loop import Sampling, closed_loop
 from tests.generator.machines import Machine
 from tests.generator.recording import measured, sampling_of, state_at_rest
 from tests.generator.state import State
@@ -74,13 +74,23 @@ def longest_step(c: Constants, axis_speed: float) -> float:
 
 def run(machine: Machine, effects: tuple[Effect, ...], setpoint: Array, injected: Array) -> Run:
     """Return the run; FloatingPointError where it diverges."""
-    constants = PlantedEffects(effects).planted(declared_constants(machine.axis))
-    s = sampling_of(machine.axis, constants, longest_step(constants, machine.axis.top_speed))
+    constants, s = _planted(machine, effects)
     start = at_rest(setpoint[0], constants)
     torque, states, read = closed_loop(setpoint, injected, start, s, constants)
     if not np.all(np.isfinite(states)):
         raise FloatingPointError("the simulated machine diverged")
     return Run(machine, constants, effects, setpoint, torque, states, read)
+
+
+def steps_of(machine: Machine, effects: tuple[Effect, ...], cycles: int) -> float:
+    """Return how many steps of the integrator a run of so many cycles takes."""
+    s = _planted(machine, effects)[1]
+    return cycles * s.sample_time / s.longest_step
+
+
+def _planted(machine: Machine, effects: tuple[Effect, ...]) -> tuple[Constants, Sampling]:
+    constants = PlantedEffects(effects).planted(declared_constants(machine.axis))
+    return constants, sampling_of(machine.axis, constants, longest_step(constants, machine.axis.top_speed))
 
 
 def at_rest(setpoint: float, c: Constants) -> State:

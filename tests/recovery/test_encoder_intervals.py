@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from feeddrive.diagnosis.calibration.calibrate import calibrated, calibrated_list
+from feeddrive.diagnosis.calibration.calibrate import calibrated, calibrated_list, with_kept
 from feeddrive.diagnosis.calibration.encoder_scores import encoder_scores
 from feeddrive.diagnosis.likelihood.fit import Problem, fit
 from feeddrive.diagnosis.preparation import prepared
@@ -40,6 +40,26 @@ def test_scores_are_those_of_an_encoder_that_matters(problem: Problem) -> None:
     scores = encoder_scores(problem)
     assert np.all(np.linalg.eigvalsh(scores) > -1e-9 * np.trace(scores))
     assert np.all(np.diag(scores) > 0)
+
+
+def test_a_value_that_is_named_leaves_the_scores_of_the_others(problem: Problem) -> None:
+    scores, kept = encoder_scores(problem), [i % 3 > 0 for i in range(len(encoder_scores(problem)))]
+    fewer = encoder_scores(with_kept(problem, kept))
+    assert np.array_equal(fewer, scores[np.ix_(kept, kept)])
+
+
+def test_slopes_weighed_once_are_those_of_all_values(problem: Problem) -> None:
+    """Another place and another variance change what is taken away, not the slopes."""
+    known, weighed = problem.calibration, problem.whitener
+    assert known is not None and weighed is not None
+    at = known.coordinates + 0.5
+    moved = problem.at_values(at, 2.0 * known.variance).whitener
+    anew = replace(problem, calibration=replace(known, coordinates=at, variance=2.0 * known.variance)).whitener
+    assert moved is not None and anew is not None
+    assert moved.columns is weighed.columns and np.array_equal(moved.offset, anew.offset)
+    rows = np.linspace(-1.0, 1.0, len(weighed.offset))
+    assert np.array_equal(moved.applied(rows), anew.applied(rows))
+    assert not np.allclose(moved.applied(rows), weighed.applied(rows), rtol=1e-6, atol=0.0)
 
 
 def test_declared_values_settle_nowhere_worse(problem: Problem) -> None:

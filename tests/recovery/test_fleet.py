@@ -14,10 +14,10 @@ import pytest
 
 from feeddrive.plant.file.plant_file import read_plant
 from tests.generator.constants import declared_constants
-from tests.generator.drawn_effects import MAKERS, OFF_GROUPS, TOLERANCES
-from tests.generator.effects import ChannelDelay, Payload
+from tests.generator.drawn_effects import MAKERS, OFF_GROUPS, TOLERANCES, Drawn
+from tests.generator.effects import ChannelDelay, Payload, Presliding
 from tests.generator.machines import drawn_machine
-from tests.generator.runs import changes, impedance, run
+from tests.generator.runs import changes, impedance, run, steps_of
 from tests.generator.telling import (
     beyond,
     calibration,
@@ -27,7 +27,7 @@ from tests.generator.telling import (
     simulated_calibration,
     visible,
 )
-from tests.recovery.fleet.case import LEAST_TOLD, SHARES, Case, case, encoder_null_seeds, kind_of
+from tests.recovery.fleet.case import LEAST_TOLD, MOST_STEPS, SHARES, Case, _grown, case, encoder_null_seeds, kind_of
 from tests.recovery.fleet.floor import true_errors
 from tests.recovery.fleet.run import cases_done
 from tests.recovery.fleet.state import state_files
@@ -50,6 +50,16 @@ def test_case_is_the_same_every_time(pair: Case) -> None:
     again = case(PAIR)
     assert again.plant == pair.plant and again.truth == pair.truth
     assert all(np.array_equal(again.judge[name], samples) for name, samples in pair.judge.items())
+
+
+def test_a_bristle_that_takes_minutes_to_simulate_is_drawn_on_another_machine(pair: Case) -> None:
+    """Steps grow with the stiffness of a bristle, and no case of the fleet takes more than it may."""
+    soft = pair.true.axis.guide_coulomb / 1e-4
+    soft_steps, stiff_steps = (steps_of(pair.true, (Presliding(by * soft),), 1000) for by in (1.0, 1000.0))
+    assert stiff_steps == pytest.approx(1000 * soft_steps, rel=0.3)  # a soft one takes whole steps of a cycle
+    hours = int(1000 * MOST_STEPS / stiff_steps) + 1
+    drawn = Drawn(Presliding(1000 * soft), 1.0, 1.0)
+    assert _grown(pair.true, drawn, 2.0, (np.zeros(hours), np.zeros(hours)), missed(pair.runs[0], 1)) is None
 
 
 def test_kinds_come_as_often_as_asked() -> None:

@@ -5,11 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from feeddrive.diagnosis.calibration.calibrate import calibrated
 from feeddrive.diagnosis.certainty.one_sided import OPEN, all_intervals, one_sided, with_usual_sizes
 from feeddrive.diagnosis.certainty.uncertainty import certainty, intervals
+from feeddrive.diagnosis.finding.spring_law import play_from_declared
 from feeddrive.diagnosis.judging.result import ParameterResult
 from feeddrive.diagnosis.judging.veto import sizes_around_none
-from feeddrive.diagnosis.likelihood.fit import Problem, fit
+from feeddrive.diagnosis.likelihood.fit import UNEXPLAINED, Problem, fit
 from feeddrive.diagnosis.preparation import prepared
 from feeddrive.effects.base import number
 from feeddrive.effects.chain.payload import Payload
@@ -53,6 +55,21 @@ def test_a_width_that_no_motion_reached_is_told_from_below(problem: Problem) -> 
     assert number(again.effects[0].values["width"]) == pytest.approx(5e-6, rel=0.5)
     shown = parameter_text("width", ParameterResult(number(found.effects[0].values["width"]), "m", (low, high)))
     assert shown.sentence.startswith("at least 0.") and shown.sentence.endswith("µm")
+
+
+@pytest.mark.slow
+def test_a_play_that_fitted_values_hide_is_begun_beside_those_declared(problem: Problem) -> None:
+    """Values within their tolerances take what the open play leaves in a few passages; beside them none is better."""
+    values = calibrated(problem)
+    found = fit(values, ())
+    assert values.plain_error(()) > UNEXPLAINED
+    there = play_from_declared(values, found)
+    assert there is not None
+    # what remains is the sensors' noise, and the values are where they were declared
+    assert there.problem.plain_error(there.fit.effects) < UNEXPLAINED
+    assert there.problem.calibration is not None
+    assert np.max(np.abs(there.problem.calibration.coordinates)) < 2.0
+    assert play_from_declared(there.problem, there.fit) is None
 
 
 def test_a_size_that_its_slope_tells_is_left_to_it(problem: Problem) -> None:

@@ -17,6 +17,7 @@ from feeddrive.diagnosis.judging.result import Diagnosis
 from feeddrive.diagnosis.likelihood.outputs import diagnosis_record
 from feeddrive.diagnosis.suspicion.logged_rows import rhythm
 from feeddrive.diagnosis.suspicion.quality import Quality
+from feeddrive.diagnosis.suspicion.suspects import DRIFT, Suspect
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
@@ -100,6 +101,15 @@ def test_a_torque_whose_zero_drifts(rigid: Plant, seed: int) -> None:
     assert (found.kind, found.channel, found.mended) == ("channel_drift", "motor_torque", True)
     assert found.value == pytest.approx(rate, rel=0.1)
     assert found.ci95 is not None and found.ci95[0] < found.value < found.ci95[1]
+
+
+def test_a_drift_of_the_torque_leaves_a_recording_without_one_as_it_is() -> None:
+    run, _ = runs(21, Truth())
+    positions = replace(run, channels={name: run[name] for name in run.channels if name != "motor_torque"})
+    drift = Suspect(DRIFT, size=0.1, deviation=0.01, rate=0.02)
+    assert drift.mended(positions) is positions
+    moved = run["motor_torque"] - drift.mended(run)["motor_torque"]
+    assert moved == pytest.approx(0.1 * 0.02 * (run.time - run.time[0]))
 
 
 @pytest.mark.parametrize("seed", [7, pytest.param(8, marks=pytest.mark.slow), pytest.param(9, marks=pytest.mark.slow)])

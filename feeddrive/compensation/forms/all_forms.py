@@ -25,14 +25,9 @@ FORMS = ("linuxcnc", "sinumerik-enc", "sinumerik-cec", HEAT, "isg", "heidenhain-
 
 
 def control(form: str, resolution: float | None = None) -> Control:
-    """The control of a form of table.
+    """The control of a form of table, one of `FORMS` but `HEAT`; its values at the usual resolution or a given one [m].
 
-    Args:
-        form: one of `FORMS` but `HEAT`.
-        resolution: of its values [m], where it is coarser or finer than usual.
-
-    Raises:
-        InputError: no such form, or a resolution that it cannot hold.
+    Raises InputError: no such form, or a resolution that it cannot hold.
     """
     if form == "fanuc-parameters":
         return fanuc.writer(resolution or fanuc.UNIT)

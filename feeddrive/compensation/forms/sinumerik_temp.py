@@ -39,15 +39,7 @@ def load(axis: str, sensor: str, reference: float) -> tuple[str, ...]:
 
 
 def text(table: LineTable, head: Sequence[str]) -> str:
-    """The function block.
-
-    Args:
-        table: K0 and tan beta over the reading.
-        head: lines for the comment.
-
-    Raises:
-        InputError: a slope that the control limits.
-    """
+    """The function block, `head` in its comment; a slope that the control limits raises InputError."""
     steepest = float(np.max(np.abs(table.slopes)))
     if steepest > STEEPEST:
         what = f"tan beta of {1e3 * steepest:.3g} mm/m is beyond {1e3 * STEEPEST:g} mm/m, to which MD32760 limits it"

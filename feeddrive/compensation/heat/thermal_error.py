@@ -48,12 +48,7 @@ class TableError:
 
 
 def table_error(heat: Heat, model: HeatModel) -> TableError:
-    """The error along the plant's travel.
-
-    Args:
-        heat: the machine.
-        model: its full or a reduced model.
-    """
+    """The error along the plant's travel, of its full or a reduced model."""
     positions = np.linspace(heat.rig.travel.low, heat.rig.travel.high, POSITIONS)
     profile = model.profile.toarray() if sparse.issparse(model.profile) else model.profile
     return TableError(positions, growths(heat.rig, profile.T, model.edges, positions).T)
@@ -110,15 +105,7 @@ _FILMS = 1.25
 
 
 def compensation_model(heat: Heat, order: int = ORDER) -> HeatModel:
-    """The reduced model that a compensation runs: its films may vary with speed, its contact is the declared one.
-
-    Args:
-        heat: the machine.
-        order: number of states.
-
-    Raises:
-        InputError: an order that is not possible.
-    """
+    """The reduced model that a compensation runs: its films may vary with speed, its contact is the declared one."""
     limits = dict(heat.limits(_FILMS))
     limits[Path.CONTACT] = (heat.contact, heat.contact)
     limits[Path.COOLING] = (0.0, 0.0)

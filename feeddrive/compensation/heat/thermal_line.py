@@ -61,16 +61,7 @@ class StraightLine:
 
 
 def straight_line(error: FloatArray, positions: FloatArray, reference: float) -> StraightLine:
-    """The lines of least squares through errors (k, p) at positions (p,) [m].
-
-    Args:
-        error: measured or estimated, (k, p) [m].
-        positions: at least two, (p,) [m].
-        reference: P₀ [m].
-
-    Raises:
-        InputError: shapes that do not fit, or fewer than two positions.
-    """
+    """The lines of least squares through errors (k, p) [m] at two or more positions (p,), about P₀, `reference` [m]."""
     _refuse_misfit(error, positions)
     design = np.column_stack([np.ones(len(positions)), positions - reference])
     offset, slope = np.linalg.lstsq(design, error.T, rcond=None)[0]

@@ -85,14 +85,7 @@ def lagged(values: FloatArray, step: float, lag: float) -> FloatArray:
 def simulated_readings(
     rises: FloatArray, step: float, sensors: Sequence[Sensor], generator: np.random.Generator
 ) -> FloatArray:
-    """Readings with lag and noise of true rises (k, m) [K], as rises over the start, (k, m) [K].
-
-    Args:
-        rises: at the end of each row, a column a sensor.
-        step: length of a row [s].
-        sensors: m of them.
-        generator: of the noise.
-    """
+    """Readings with lag and noise of true rises after each row of `step` [s], (k, m), as rises over the start [K]."""
     noise = generator.normal(size=np.shape(rises)) * np.array([sensor.noise for sensor in sensors])
     shown = [lagged(column, step, sensor.lag) for column, sensor in zip(rises.T, sensors, strict=True)]
     return np.asarray(np.array(shown).reshape(rises.T.shape).T + noise)

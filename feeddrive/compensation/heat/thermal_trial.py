@@ -54,17 +54,11 @@ def tried_machine(
     plant: Heat, model: HeatModel, step: float, speeds: FloatArray, ambient: FloatArray, *,
     heat: float = 1.0, film: float = 1.0, others: Mapping[str, FloatArray] | None = None,
 ) -> TriedMachine:  # fmt: skip
-    """Run a machine whose heats and films are not as declared, from a cold start.
+    """Run a machine whose heats and films are not as declared, by factors, from a cold start.
 
-    Args:
-        plant: what the file declares.
-        model: full, of this plant; on another mesh than that of the compensation.
-        step: length of a row [s].
-        speeds: of the screw over each row, (k,) [rad/s].
-        ambient: true, over each row, (k,) [degC].
-        heat: factor on all heats [1].
-        film: factor on all films [1].
-        others: input name to a heat that the plant does not declare, such as a motor's, (k,) [W].
+    Rows of `step` [s] hold speeds of the screw, (k,) [rad/s], and the true ambient, (k,) [degC]. The model is full, on
+    another mesh than that of the compensation; `others` are inputs to heats that the plant does not declare, such as a
+    motor's, (k,) [W].
     """
     rows = deviating(declared_rows(plant, step, speeds, ambient), heat, film, film)
     rows = replace(rows, inputs={**rows.inputs, **(others or {})})
@@ -79,12 +73,7 @@ def random_duty(
 ) -> FloatArray:
     """Speeds of stretches of random length, each a rest or one of `speeds`, (rows,) [rad/s].
 
-    Args:
-        generator: of the choices.
-        rows: number of rows.
-        speeds: to choose among [rad/s].
-        longest: rows of a stretch at most; a sixth of it at least.
-        rest: probability of a rest.
+    A stretch has `longest` rows at most and a sixth of it at least; `rest` is the probability of a rest.
     """
     refuse_unless(0 <= rest <= 1, f"{rest:g} is no probability", "rest", "write a number from 0 to 1")
     refuse_unless(longest >= 1 and rows >= 1, "a duty without rows", "rows", "write at least 1")

@@ -36,16 +36,9 @@ NUT_FILMS = (Path.NUT_FILM,)
 
 
 def deviating(rows: Rows, heat: float = 1.0, screw_film: float = 1.0, nut_film: float = 1.0) -> Rows:
-    """Rows with all heats and the films multiplied; temperatures of the surroundings stay.
+    """Rows with all heats and the films (screw with seats, nut) multiplied; temperatures of the surroundings stay.
 
-    Args:
-        rows: as declared.
-        heat: factor on every heat [1].
-        screw_film: factor on the films of screw and seats [1].
-        nut_film: factor on the film of the nut [1].
-
-    Raises:
-        InputError: a negative factor.
+    Raises InputError for a negative factor.
     """
     for factor, where in ((heat, "heat"), (screw_film, "screw_film"), (nut_film, "nut_film")):
         refuse_negative(factor, "1", where)

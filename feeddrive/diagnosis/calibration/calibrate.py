@@ -84,9 +84,11 @@ def recalibrated(problem: Problem, effects: Sequence[Effect], rough: bool = Fals
     # what is left once the values are as they are most likely tells how much a row is worth
     left = residual - sloped.whitener.columns @ (sloped.whitener.most_likely(residual) - known.coordinates)
     variance = _variance(sloped, left)
-    numbers = problem.numbers.with_variance(variance)
-    sloped = replace(problem, calibration=replace(sloped.calibration, variance=variance), numbers=numbers)
-    return sloped.stepped(effects, sloped.unwhitened(effects) if len(numbers) else residual)
+    sloped = sloped.at_values(known.coordinates, variance)
+    if len(problem.numbers):
+        sloped = replace(sloped, numbers=problem.numbers.with_variance(variance))
+        residual = sloped.unwhitened(effects)
+    return sloped.stepped(effects, residual)
 
 
 def at_declared(problem: Problem) -> Problem:
@@ -94,7 +96,7 @@ def at_declared(problem: Problem) -> Problem:
     known = problem.calibration
     if known is None:
         return problem
-    return replace(problem, calibration=replace(known, coordinates=np.zeros(len(known.values))))
+    return problem.at_values(np.zeros(len(known.values)))
 
 
 def of_hours(problem: Problem) -> bool:
@@ -140,15 +142,11 @@ def _weighed_in_turn(there: Problem, effects: Sequence[Effect]) -> Problem:
 
 def _left(problem: Problem, effects: Sequence[Effect]) -> list[dict[str, float]]:
     """Per recording, channel to the rms of what is left of it over its noise, at least 1."""
-    residual, first, found = problem.unwhitened(effects), 0, []
-    for e in problem.evidence:
-        count, left = int(e.thinned(e.fit_rows).sum()), {}
-        for name in e.channels:
-            rms = math.sqrt(float(np.mean(residual[first : first + count] ** 2)))
-            left[name] = max(rms * e.left.get(name, 1.0), 1.0)
-            first += count
-        found.append(left)
-    return found
+    recordings = problem.by_channel(problem.unwhitened(effects))
+    return [
+        {name: max(math.sqrt(float(np.mean(one**2))) * e.left.get(name, 1.0), 1.0) for name, one in rows.items()}
+        for e, rows in zip(problem.evidence, recordings, strict=True)
+    ]
 
 
 def weighed_alike(evidence: Evidence, like: Sequence[Evidence]) -> Evidence:
@@ -195,19 +193,22 @@ def slopes_of(
     """Channel to its slope with the coordinates of the declared values, (n, k), SI.
 
     From both sides where the step must be long (`LONG`): one side's slope would be that of half a step away, and where
-    two values are alike, fits along it end where the slopes are wrong, not where the values are right.
+    two values are alike, fits along it end where the slopes are wrong, not where the values are right. Masses,
+    stiffnesses, dampings, frictions and the torque constant that all grow alike change no prediction where all are
+    fitted: beside a free play a long step's secants, some per cent off, would tell of what no recording tells. What
+    they do together is therefore taken from one step of all of them, and the slopes agree with it.
     """
     known = problem.calibration
     assert known is not None
 
-    def at(place: int, step: float) -> dict[str, FloatArray]:
-        coordinates = known.coordinates.copy()
-        coordinates[place] += step
+    def at(direction: FloatArray, step: float) -> dict[str, FloatArray]:
+        coordinates = known.coordinates + direction * step
         there = replace(problem, calibration=replace(known, coordinates=coordinates)).machine(effects)
         return problem.predictor.predict(there, evidence)
 
     bounces = has_play(effects) and evidence.lost is not None
-    smooth, base = problem.predictor.smooth(problem.plant) and not bounces, at(0, 0.0)
+    each, alike = np.eye(len(known.values)), np.array([one.scales_with_force / one.deviation for one in known.values])
+    smooth, base = problem.predictor.smooth(problem.plant) and not bounces, at(alike, 0.0)
     slopes = {name: np.empty((len(base[name]), len(known.values))) for name in evidence.channels}
     sizes = np.zeros(len(known.values))
     if smooth and not rough and known.slopes and problem.whitener is not None:
@@ -215,12 +216,27 @@ def slopes_of(
     for i, value in enumerate(known.values):
         step = (STEP if smooth else LONG) / value.deviation
         step = max(min(step, SHORT / sizes[i]), SHORTEST / value.deviation) if sizes[i] > 0 else step
-        after, before, apart = at(i, step), base, step
+        after, before, apart = at(each[i], step), base, step
         if not smooth and not rough:
-            before, apart = at(i, -step), 2 * step
+            before, apart = at(each[i], -step), 2 * step
         for name in evidence.channels:
             slopes[name][:, i] = (after[name] - before[name]) / apart
-    return slopes
+    step = STEP if smooth else LONG
+    after, before, apart = at(alike, step), base, step
+    if not smooth and not rough:
+        before, apart = at(alike, -step), 2 * step
+    return {name: _agreeing(k, alike, (after[name] - before[name]) / apart) for name, k in slopes.items()}
+
+
+def _agreeing(slopes: FloatArray, direction: FloatArray, along: FloatArray) -> FloatArray:
+    """Slopes (n, k) that are `along`, (n,), in a direction (k,), each changed by the square of its share of a row."""
+    shares = (slopes * direction) ** 2
+    whole = np.sum(shares, axis=1, keepdims=True)
+    shares = np.divide(shares, whole, out=np.zeros_like(shares), where=whole > 0)
+    missed = along - slopes @ direction
+    inverse = np.divide(1.0, direction, out=np.zeros_like(direction), where=direction != 0)
+    agreeing: FloatArray = slopes + shares * missed[:, None] * inverse
+    return agreeing
 
 
 def with_recordings(problem: Problem, effects: Sequence[Effect], more: Sequence[Evidence]) -> Problem:

@@ -55,6 +55,7 @@ class Whitener:
     Attributes:
         columns: K over the noise at those rows, (m, k).
         basis: left singular vectors of K, (m, k).
+        sizes: its singular values, (k,).
         kept: what W leaves along each, (k,).
         offset: K c0, (m,).
         variance: λ.
@@ -62,6 +63,7 @@ class Whitener:
 
     columns: FloatArray
     basis: FloatArray
+    sizes: FloatArray
     kept: FloatArray
     offset: FloatArray
     variance: float
@@ -78,9 +80,19 @@ class Whitener:
         found: FloatArray = np.asarray(solved, dtype=np.float64)
         return found
 
+    def at(self, coordinates: FloatArray, variance: float) -> Whitener:
+        """W of the same slopes with other c0, (k,), and λ."""
+        return _whitener(self.columns, self.basis, self.sizes, coordinates, variance)
+
 
 def whitener(columns: FloatArray, coordinates: FloatArray, variance: float) -> Whitener:
     """W of slopes over the noise, (m, k), with c0, (k,), and λ."""
     basis, sizes, _ = np.linalg.svd(columns, full_matrices=False)
+    return _whitener(columns, basis, sizes, coordinates, variance)
+
+
+def _whitener(
+    columns: FloatArray, basis: FloatArray, sizes: FloatArray, coordinates: FloatArray, variance: float
+) -> Whitener:
     kept: FloatArray = np.asarray(np.sqrt(variance / (sizes**2 + variance)), dtype=np.float64)
-    return Whitener(columns, basis, kept, columns @ coordinates, variance)
+    return Whitener(columns, basis, sizes, kept, columns @ coordinates, variance)

@@ -76,6 +76,11 @@ class CalibratedValue:
         """As a share: twice the deviation."""
         return math.expm1(2 * self.deviation)
 
+    @property
+    def scales_with_force(self) -> float:
+        """1 where the value is a force, or a force per something, 0 where it is none: a width is a velocity."""
+        return 0.0 if self.key.endswith(_WIDTH) else 1.0
+
     def factor(self, coordinate: float) -> float:
         """Value over declared at a coordinate."""
         return math.exp(min(max(self.deviation * coordinate, -FARTHEST), FARTHEST))

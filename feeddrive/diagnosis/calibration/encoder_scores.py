@@ -15,12 +15,13 @@ are simulated once more).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from feeddrive.diagnosis.calibration.declared import with_values
+from feeddrive.diagnosis.calibration.declared import CalibratedValue, with_values
 from feeddrive.diagnosis.likelihood.evidence import AxisEvidence
 from feeddrive.diagnosis.likelihood.fit import Problem
 from feeddrive.typing import FloatArray
@@ -28,39 +29,35 @@ from feeddrive.typing import FloatArray
 STEP = 3e-3
 """Change of the logarithm of a value from which a slope is taken: its sign and size are enough."""
 
-_known: WeakKeyDictionary[AxisEvidence, dict[tuple[str, ...], FloatArray]] = WeakKeyDictionary()
+_known: WeakKeyDictionary[AxisEvidence, dict[tuple[str, float], FloatArray]] = WeakKeyDictionary()
 
 
 def encoder_scores(problem: Problem) -> FloatArray:
     """S_encoder of the values that are fitted, (k, k); 0 where no recording holds an encoder's error."""
     known = problem.calibration
     assert known is not None
-    keys = tuple(value.key for value in known.values)
-    total = np.zeros((len(keys), len(keys)))
+    total = np.zeros((len(known.values), len(known.values)))
     for e in problem.evidence:
-        if isinstance(e, AxisEvidence) and e.drawn:
-            scores = _known.setdefault(e, {})
-            if keys not in scores:
-                scores[keys] = _scores(problem, e)
-            total += scores[keys].T @ scores[keys] / len(e.drawn)
+        if isinstance(e, AxisEvidence) and e.drawn and known.values:
+            at_hand = _known.setdefault(e, {})
+            asked = [value for value in known.values if (value.key, value.deviation) not in at_hand]
+            if asked:
+                scores = _scores(problem, e, asked)
+                at_hand |= {(one.key, one.deviation): column for one, column in zip(asked, scores.T, strict=True)}
+            columns = np.column_stack([at_hand[value.key, value.deviation] for value in known.values])
+            total += columns.T @ columns / len(e.drawn)
     return total
 
 
-def _scores(problem: Problem, evidence: AxisEvidence) -> FloatArray:
-    """s_d of one recording, (draws, k)."""
-    known = problem.calibration
-    assert known is not None
-    rows, declared = evidence.thinned(evidence.fit_rows), np.zeros(len(known.values))
-    plants = [with_values(problem.plant, known.values, declared)]
-    for i, value in enumerate(known.values):
-        there = declared.copy()
-        there[i] = STEP / value.deviation
-        plants.append(with_values(problem.plant, known.values, there))
+def _scores(problem: Problem, evidence: AxisEvidence, asked: Sequence[CalibratedValue]) -> FloatArray:
+    """s_d of one recording along some of its values, (draws, values)."""
+    rows, plants = evidence.thinned(evidence.fit_rows), [problem.plant]
+    plants += [with_values(problem.plant, (value,), np.array([STEP / value.deviation])) for value in asked]
     expected = evidence.weighted(problem.predictor.predict(plants[0], evidence), rows)
     scores = []
     for motion in evidence.drawn:
         at = replace(evidence, motion=replace(motion, time=evidence.motion.time))
         here, *others = (at.weighted(problem.predictor.predict(plant, at), rows) for plant in plants)
         scores.append([float((other - here) @ (expected - here)) * value.deviation / STEP
-                       for other, value in zip(others, known.values, strict=True)])  # fmt: skip
+                       for other, value in zip(others, asked, strict=True)])  # fmt: skip
     return np.asarray(scores)

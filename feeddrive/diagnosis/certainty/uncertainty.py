@@ -126,12 +126,9 @@ def _left(missed: FloatArray, whole: FloatArray) -> FloatArray:
 def _where_it_matters(problem: Problem, residual: FloatArray, influence: FloatArray) -> FloatArray:
     """Residual square where a coordinate is known from, over that of the same channels at large, at least 1; (k,)."""
     weight, level = influence**2, np.full_like(residual, float(np.mean(residual**2)))
-    first = 0
-    for evidence in problem.evidence:
-        count = int(evidence.thinned(evidence.fit_rows).sum())
-        for _ in evidence.channels:
-            level[first : first + count] = np.mean(residual[first : first + count] ** 2)
-            first += count
+    for levels, rows in zip(problem.by_channel(level), problem.by_channel(residual), strict=True):
+        for name, part in levels.items():
+            part[:] = np.mean(rows[name] ** 2)
     usual = weight.T @ level
     there: FloatArray = weight.T @ residual**2 / np.where(usual > 0, usual, 1.0)
     return np.maximum(there, 1.0)

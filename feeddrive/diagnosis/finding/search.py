@@ -30,13 +30,14 @@ from feeddrive.diagnosis.finding.open_map import log_odds_of_map
 from feeddrive.diagnosis.finding.round import Round, one_round
 from feeddrive.diagnosis.finding.scene import scene_of
 from feeddrive.diagnosis.finding.sets import Neighbour, neighbours
-from feeddrive.diagnosis.finding.spring_law import LAWS, soft_everywhere, with_likelier_law
+from feeddrive.diagnosis.finding.spring_law import LAWS, play_from_declared, soft_everywhere, with_likelier_law
 from feeddrive.diagnosis.heat.heat_candidates import is_another
 from feeddrive.diagnosis.judging.result import Trial
 from feeddrive.diagnosis.likelihood.coordinates import write_coordinates
 from feeddrive.diagnosis.likelihood.fit import UNEXPLAINED, Fit, Problem, fit
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between, odds_between, regained, same_samples
 from feeddrive.effects.base import Effect
+from feeddrive.effects.transmission.backlash import Backlash
 from feeddrive.errors import InputError
 
 MOST_ROUNDS = 12
@@ -185,7 +186,18 @@ def _asked(
     """A round beside a set, the likeliest set near it, None where none is likelier, and what comes near beside it."""
     now = one_round(scene_of(problem, found.effects), found, impossible, denied, number)
     taken, near = _likelier(problem, found, now, denied)
+    if taken is None and Backlash.name not in denied:
+        taken = _with_play(problem, found, now.count)
     return now, _of_likelier_law(taken, now.count, denied), near
+
+
+def _with_play(problem: Problem, found: Fit, count: int) -> _Taken | None:
+    """A likelier set with free play that hides beside the fitted values; None where nothing is left that it may say."""
+    if problem.calibration is None or of_hours(problem) or problem.plain_error(found.effects) < UNEXPLAINED:
+        return None
+    there = play_from_declared(problem, found)
+    odds = odds_between(Standing(problem, found), there, count) if there is not None else 0.0
+    return _Taken(there.problem, there.fit, Backlash.name, odds) if there is not None and odds > 0 else None
 
 
 def _with_taken(taken: _Taken, found: Fit) -> tuple[Problem, Fit]:

@@ -81,6 +81,28 @@ def from_declared(problem: Problem, effects: Sequence[Effect], place: int, law: 
         return None
 
 
+def play_from_declared(problem: Problem, found: Fit) -> Standing | None:
+    """A set with free play beside it, begun at the declared values; None where it leaves more there than the set does.
+
+    Values fitted without the play stand in for it, be it within their tolerances: a table that hangs leaves its flank
+    for some hundredths of a second, and beside such values no width lowers the error.
+    """
+    play = next((one for one in problem.predictor.candidates if one.name == Backlash.name), None)
+    there = at_declared(problem)
+    try:
+        scene = scene_of(there, found.effects)
+        if play is None or play.needs(scene) or any(effect.name in LAWS for effect in found.effects):
+            return None
+        sets = [[*found.effects, start] for form in play.forms(scene) for start in form]
+        best = min(sets, key=lambda one: _error(there, one))
+        own = with_predictable(problem, best)
+        if not _error(at_declared(own), best) < _error(own, found.effects):
+            return None
+    except InputError:
+        return None
+    return _settled(there, best)
+
+
 def _error(problem: Problem, effects: Sequence[Effect]) -> float:
     return fit(problem, effects, error_only=True).squared_error
 

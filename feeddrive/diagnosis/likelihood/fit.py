@@ -158,21 +158,39 @@ class Problem:
             columns[:rows, i] = np.concatenate(parts)
         return whitener(columns, known.coordinates, known.variance)
 
+    def at_values(self, coordinates: FloatArray, variance: float | None = None) -> Problem:
+        """The problem with other coordinates of its declared values, (k,), and another λ; its slopes as they are."""
+        known = self.calibration
+        assert known is not None
+        variance = known.variance if variance is None else variance
+        there = replace(self, calibration=replace(known, coordinates=coordinates, variance=variance))
+        weighed = self.__dict__.get("whitener")  # where it was asked for: the slopes need not be weighed again
+        if weighed is not None:
+            there.__dict__["whitener"] = weighed.at(coordinates, variance)
+        return there
+
     def levelled(self, effects: Sequence[Effect] = ()) -> Problem:
         """The problem with no channel's noise above what is left of it: a sensor adds no more than the residual holds.
 
         The noise is read from fourth differences, which in a stiff loop hold what the drive does as well.
         """
-        residual, first, evidence = self.residual(effects), 0, []
-        for e in self.evidence:
-            count, noise = int(e.thinned(e.fit_rows).sum()), dict(e.noise)
-            for name in e.channels:
-                left = float(np.mean(residual[first : first + count] ** 2))
-                if 0 < left < LEVEL**2:
-                    noise[name] *= math.sqrt(left)
-                first += count
-            evidence.append(replace(e, noise=noise))
+        evidence = []
+        for e, rows in zip(self.evidence, self.by_channel(self.residual(effects)), strict=True):
+            left = {name: float(np.mean(one**2)) for name, one in rows.items()}
+            level = {name: math.sqrt(one) if 0 < one < LEVEL**2 else 1.0 for name, one in left.items()}
+            evidence.append(replace(e, noise={name: noise * level.get(name, 1.0) for name, noise in e.noise.items()}))
         return replace(self, evidence=tuple(evidence))
+
+    def by_channel(self, residual: FloatArray) -> list[dict[str, FloatArray]]:
+        """Per recording, channel to its rows of a residual, (rows,) each."""
+        found, first = [], 0
+        for e in self.evidence:
+            count, rows = int(e.thinned(e.fit_rows).sum()), {}
+            for name in e.channels:
+                rows[name] = residual[first : first + count]
+                first += count
+            found.append(rows)
+        return found
 
     def balanced(self, effects: Sequence[Effect]) -> Problem:
         """The problem with each channel weighed by what is left of it, beside the channel that is met best.
@@ -187,14 +205,11 @@ class Problem:
         plain = self.plain
         if len({name for e in self.evidence for name in e.channels}) < 2 or not self.predictor.of_motion:
             return plain
-        residual, first = plain.residual(effects), 0
-        squares: dict[str, list[FloatArray]] = {}
-        for e in self.evidence:
-            count = int(e.thinned(e.fit_rows).sum())
-            for name in e.channels:
-                squares.setdefault(name, []).append(residual[first : first + count] ** 2)
-                first += count
-        left = {name: math.sqrt(float(np.mean(np.concatenate(parts)))) for name, parts in squares.items()}
+        recordings = plain.by_channel(plain.residual(effects))
+        left = {
+            name: math.sqrt(float(np.mean(np.concatenate([rows[name] ** 2 for rows in recordings if name in rows]))))
+            for name in dict.fromkeys(name for rows in recordings for name in rows)
+        }
         if not all(np.isfinite(one) for one in left.values()):
             return self
         least = max(1.0, min(left.values()))
@@ -296,7 +311,7 @@ class Problem:
 
         def at(share: float, bend: FloatArray) -> tuple[float, Problem, FloatArray]:
             coordinates = known.coordinates + share * step + share**2 * bend
-            there = replace(self, calibration=replace(known, coordinates=coordinates))
+            there = self.at_values(coordinates)
             if possible and not there.possible(effects):  # friction that an effect takes more than all of
                 return math.inf, there, residual
             left = there.unwhitened(effects)

@@ -39,17 +39,10 @@ _NO_SLOPE = 1e-300
 
 
 def smooth_curve(x: Expression, nodes: Expression, values: Expression) -> Expression:
-    """Monotone cubic through the points, constant outside.
+    """Monotone cubic through the points (k, 1), constant outside.
 
     Between points it rises and falls where they do, and its slope is continuous; at an end point the slope is that of
-    the neighbouring chord.
-
-    Args:
-        x: where.
-        nodes: ascending, shape (k, 1).
-        values: at the nodes, shape (k, 1).
-
-    Source: Fritsch and Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300.
+    the neighbouring chord. Source: Fritsch and Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300.
     """
     count = nodes.numel()
     if count == 1:

@@ -33,7 +33,6 @@ class PreloadGrowth(ThermalEffect):
         "speed and rise of the nut",
         ("viscosity_temperature", "convection_deviation"),
     )
-    follows_nut = True
 
     def load_factor(self, rise: Expression, p: Mapping[str, Expression]) -> Expression:
         """Factor on the load torque, not below zero."""

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
 
 from feeddrive.effects.base import Effect, Kind, Port
 from feeddrive.typing import Expression
@@ -48,7 +47,6 @@ class ThermalEffect(Effect):
     kind = Kind.HEAT
     ports = (Port.THERMAL,)
     additive = True
-    follows_nut: ClassVar[bool] = False
 
     def heats(self, run: Operation, p: Mapping[str, Expression]) -> dict[str, Expression]:
         """Place to the heat that enters there over a row [W]."""

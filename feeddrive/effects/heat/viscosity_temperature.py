@@ -31,7 +31,6 @@ class ViscosityTemperature(ThermalEffect):
     signature = Signature(
         ("nut_temperature", "table_growth"), "speed and rise of the nut", ("preload_growth", "convection_deviation")
     )
-    follows_nut = True
 
     def viscous_factor(self, rise: Expression, p: Mapping[str, Expression]) -> Expression:
         """Factor on the viscous torque."""

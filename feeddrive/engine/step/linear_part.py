@@ -93,16 +93,10 @@ class Linear:
 
 
 def linear_part(plant: Plant, layout: Layout, torque_lag: float = 0.0, reference: float = 0.0) -> Linear:
-    """The linear part for the plant's present values.
+    """The linear part for the plant's present values; a chain that varies is taken at the table position `reference`.
 
-    Args:
-        plant: with its values.
-        layout: of the step.
-        torque_lag: time constant of the torque loop [s], where the layout has one.
-        reference: table position at which a chain that varies is taken [m].
-
-    Raises:
-        SimulationError: a mass matrix with which nothing can move.
+    `torque_lag` is the time constant of the torque loop [s], where the layout has one. Raises SimulationError for a
+    mass matrix with which nothing can move.
     """
     p, n, first = plant.chain_values(), layout.coordinates, int(layout.driven)
     free = slice(first, None)

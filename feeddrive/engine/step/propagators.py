@@ -31,17 +31,7 @@ HERMITE_BASIS = np.array([[1, 0, -3, 2], [0, 1, -2, 1], [0, 0, 3, -2], [0, 0, -1
 
 
 def monomial_propagators(a: FloatArray, b: FloatArray, step: float, degree: int) -> list[tuple[FloatArray, FloatArray]]:
-    """E(c) and P_k(c) for k = 0..degree at both nodes c.
-
-    Args:
-        a: A, shape (n, n) [1/s].
-        b: B, shape (n, m).
-        step: h [s].
-        degree: highest power.
-
-    Returns:
-        Per node E, shape (n, n), and P, shape (degree + 1, n, m).
-    """
+    """E(c), (n, n), and P_k(c), (degree + 1, n, m), at both nodes c, of A, (n, n) [1/s], B, (n, m), and h [s]."""
     n, m = b.shape
     if n == 0:
         return [(np.zeros((0, 0)), np.zeros((degree + 1, 0, m)))] * 2
@@ -63,14 +53,9 @@ def monomial_propagators(a: FloatArray, b: FloatArray, step: float, degree: int)
 
 
 def basis_propagators(propagators: FloatArray, basis: FloatArray) -> FloatArray:
-    """Response to the functions whose monomial coefficients are the rows of `basis`.
+    """Responses (functions, n, m) to functions whose monomial coefficients are the rows of `basis`, from P.
 
-    Args:
-        propagators: P, shape (degree + 1, n, m).
-        basis: shape (functions, degree + 1).
-
-    Returns:
-        Shape (functions, n, m).
+    P is (degree + 1, n, m), the basis (functions, degree + 1).
     """
     responses: FloatArray = np.einsum("fk,knm->fnm", basis, propagators)
     return responses

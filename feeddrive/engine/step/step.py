@@ -43,12 +43,8 @@ def driven_step(plant: Plant) -> StepModel:
 def torque_step(plant: Plant, lagging: bool = False) -> StepModel:
     """The step of the whole plant with motor torque [N m] and cutting force [N] held over the step.
 
-    A torque that lags is the one asked for, and what it makes the motor do is worked out here; one that does not lag is
-    held as it acts (see `feeddrive.plant.motor_torque`).
-
-    Args:
-        plant: whose structure counts.
-        lagging: whether the motor torque follows the held one with a time constant.
+    A torque that lags, by a time constant, is the one asked for, and what it makes the motor do is worked out here; one
+    that does not lag is held as it acts (see `feeddrive.plant.motor_torque`).
     """
     return _build(plant, driven=False, lagging=lagging)
 

@@ -75,14 +75,9 @@ def unflatten(flat: Expression, shapes: list[tuple[int, int]]) -> list[Expressio
 
 
 def step_constants(linear: Linear, layout: Layout, step: float, share: float, tolerance: float) -> FloatArray:
-    """The blocks of `constant_shapes`, column-major.
+    """The blocks of `constant_shapes`, column-major, for a step h [s] with an error of `tolerance` [m] at the table.
 
-    Args:
-        linear: part of the plant.
-        layout: of the step.
-        step: h [s].
-        share: of the step in the span over which the input is given.
-        tolerance: error of the table position that a step may make [m].
+    `share` is that of the step in the span over which the input is given.
     """
     blocks, curved = propagator_blocks((linear.a, linear.on_force, linear.on_input), layout, step)
     blocks.append(np.array([step, share, linear.reference]))

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from feeddrive.interface.shown import Listing, Shown, finite
 from feeddrive.parts.life.consumed_life import ConsumedLife
+from feeddrive.parts.life.life_exponents import BALL_SCREW
 from feeddrive.plant.analysis.plausibility import Finding, Verdict
 from feeddrive.plant.analysis.rated_life import LifeRow, datum
 from feeddrive.plant.plant import Plant
@@ -171,7 +172,7 @@ class UsedLife(Shown):
         turned = float(self.used.revolutions[-1])
         caption = (
             f"{_digits(turned)} revolutions of the screw. Load over the turns: the constant load that takes as much "
-            f"life (mean to the power {self.used.exponents.load:g}), preload included."
+            f"life (mean to the power {BALL_SCREW.load:g}), preload included."
         )
         return Listing(title, headings, rows, [*records, {"repetitions": finite(self.used.repetitions)}], caption)
 

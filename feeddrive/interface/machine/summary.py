@@ -8,6 +8,8 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from feeddrive.interface.machine.check import RATED, Life, UsedLife
 from feeddrive.interface.machine.heat_summary import HeatSummary
 from feeddrive.interface.shown import Listing, Shown, finite, write_figures, write_json
@@ -18,6 +20,7 @@ from feeddrive.plant.analysis.stiffness_budget import StiffnessBudget
 from feeddrive.plant.analysis.summary import Summary as Figures
 from feeddrive.plant.plant import Plant
 from feeddrive.report.words.words import chain_remark
+from feeddrive.typing import FloatArray
 from feeddrive.units.quantity import format_quantity, percent
 
 if TYPE_CHECKING:
@@ -52,6 +55,12 @@ class Stiffness(Shown):
         """Combined stiffness, motor held [N/m]."""
         return self.budget.total
 
+    @property
+    def held(self) -> str:
+        """What holds the motor, in words."""
+        drive = self.plant.drive
+        return "motor held by its brake" if drive is not None and drive.motor.brake is not None else "motor held"
+
     def listing(self) -> Listing:
         """One row per part, then axial, torsional and combined."""
         budget = self.budget
@@ -59,16 +68,16 @@ class Stiffness(Shown):
         found += [
             ("axial stiffness", "", budget.axial, budget.axial_share),
             ("torsional stiffness at the table", "", budget.torsional, budget.torsional_share),
-            ("combined stiffness, motor held", "", budget.total, 1.0),
+            (f"combined stiffness, {self.held}", "", budget.total, 1.0),
         ]
         rows = [
-            [f"{part}, {how}" if how else part, format_quantity(k, "N/m"), percent(share, 1) if how else percent(share)]
+            [_named(part, how), format_quantity(k, "N/m"), percent(share, 1) if how else percent(share)]
             for part, how, k, share in found
         ]
         names = ("part", "deformation", "stiffness [N/m]", "share")
         records = [dict(zip(names, one, strict=True)) for one in found]
         at = f", table at {format_quantity(self.position, 'm')}" if self.plant.chain.varies else ""
-        title = f"{self.axis_name}: stiffness, motor held{at}"
+        title = f"{self.axis_name}: stiffness, {self.held}{at}"
         return Listing(title, ("part", "felt at the table", "share of compliance"), rows, records)
 
     def _figures(self) -> Sequence[ReportFigure]:
@@ -122,8 +131,8 @@ class Summary(Shown):
             replace(Life(plant.name, self.life, plant).listing(), title=RATED.capitalize()),
         ]
         if found.stiffness is not None:
-            stiffness = Stiffness(plant.name, found.position, found.stiffness, plant).listing()
-            tables.insert(3, replace(stiffness, title=f"Stiffness, motor held{at}"))
+            stiffness = Stiffness(plant.name, found.position, found.stiffness, plant)
+            tables.insert(3, replace(stiffness.listing(), title=f"Stiffness, {stiffness.held}{at}"))
         if self.used is not None:
             tables.append(self.used.listing())
         heat = HeatSummary(plant.heat).tables() if plant.has_heat else ()
@@ -234,18 +243,30 @@ class Summary(Shown):
         ]
 
     def _modes(self, at: str) -> Listing:
-        """Modes by the coordinates that people know."""
-        found = self.figures.modes
+        """Modes by the coordinates that people know, the largest of these 1."""
+        found, drive = self.figures.modes, self.plant.drive
         kept = [i for i, name in enumerate(found.coordinates) if name in _KNOWN]
+        held = "braked" if drive is not None and drive.motor.brake is not None else "held"
         rows = [
-            [motor, format_quantity(frequency, "Hz"), percent(damping, 2), *(f"{part:+.2f}" for part in shape)]
-            for motor, modes in (("held", found.braked), ("free", found.free))
+            [motor, format_quantity(frequency, "Hz"), percent(damping, 2), *(f"{part:+.2f}" for part in _scaled(shape))]
+            for motor, modes in ((held, found.braked), ("free", found.free))
             for frequency, damping, shape in zip(
-                modes.frequencies, modes.damping, modes.shapes.T[:, kept] + 0.0, strict=False
+                modes.frequencies, modes.damping, modes.shapes.T[:, kept], strict=False
             )
         ]
         headings = ("motor is", "frequency", "damping", *(found.coordinates[i] for i in kept))
         return Listing(f"Modes, in table travel{at}", headings, rows, caption=chain_remark(found.chain_valid_to))
+
+
+def _named(part: str, how: str) -> str:
+    """A part and how it yields; the spring of a lumped chain is named by that alone."""
+    return f"{part}, {how}" if how and not how.startswith(part) else how or part
+
+
+def _scaled(shape: FloatArray) -> FloatArray:
+    """A shape over its largest entry; what rounding leaves of one that moves nothing here stays as it is."""
+    largest = shape[np.argmax(np.abs(shape))]
+    return (shape / largest if abs(largest) > 1e-6 else shape) + 0.0
 
 
 def _modes_record(modes: Modes) -> dict[str, Any]:

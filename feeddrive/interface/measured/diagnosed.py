@@ -19,7 +19,7 @@ from feeddrive.diagnosis.preparation import informative
 from feeddrive.diagnosis.suspicion.quality import is_recorders, quality_lines
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError, quoted
-from feeddrive.interface.axis import Axis, axis_of_text
+from feeddrive.interface.axis import Axis, axis_of_text, load
 from feeddrive.interface.measured.first_look import play_seen
 from feeddrive.interface.measured.reading import as_recording
 from feeddrive.interface.shown import Listing, Shown
@@ -241,7 +241,7 @@ class Diagnosed(Shown):
 
 
 def diagnose(
-    axis: Axis,
+    axis: Axis | str | Path,
     recording: Given | Sequence[Given],
     *,
     validate: Given | Sequence[Given] | None = None,
@@ -254,7 +254,7 @@ def diagnose(
     """Find what an axis lacks.
 
     Args:
-        axis: as declared.
+        axis: as declared; or what `load` takes.
         recording: that is fitted, or several, the oldest first; a recording or the path of a file.
         validate: to judge on; the last part of each fitted one if left out.
         split: share that is fitted then.
@@ -266,6 +266,7 @@ def diagnose(
     Raises:
         InputError: a recording that cannot be used, or an axis that does not declare what it holds.
     """
+    axis = axis if isinstance(axis, Axis) else load(axis)
     allowed = budget_of(budget, "budget")
     fitted, judged = _several(recording, "recording"), _several(validate, "validate")
     if not fitted:
@@ -279,15 +280,7 @@ def diagnose(
 
 
 def budget_of(text: str | None, where: str) -> Budget:
-    """The time that a diagnosis may take, from now on.
-
-    Args:
-        text: such as "60 s" or "2 min"; as long as it takes if None.
-        where: for the message.
-
-    Raises:
-        InputError: no time, or none at all.
-    """
+    """The time that a diagnosis may take from now on, such as "60 s" or "2 min"; None for as long as it takes."""
     if text is None:
         return Budget()
     seconds = parse(text, "s", where)

@@ -209,13 +209,9 @@ def sampled(
 
 
 def with_load(machine: control.StateSpace) -> control.StateSpace:
-    """The sampled axis with the force on the table as a further, constant state: what an observer is designed for.
+    """The `machine` of `sampled` with the force on the table as a further, constant state, to design an observer.
 
-    Args:
-        machine: of `sampled`.
-
-    Returns:
-        State space with one state more; outputs motor angle and table position.
+    Its outputs are motor angle and table position.
     """
     import control
 

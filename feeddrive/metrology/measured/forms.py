@@ -110,14 +110,10 @@ def _same(target: float, found: dict[tuple[float, int], list[float]]) -> float:
 
 
 def drift_test(readings: Readings, stop: float | None) -> DriftTest:
-    """The readings of a test of heating by moving an axis.
+    """The readings of a test of heating by moving an axis, which stops at `stop` [s].
 
-    Args:
-        readings: of the form for -3.
-        stop: when the axis stops [s]; that of the table's remark, or the last time, if None.
-
-    Raises:
-        InputError: a target that is read at fewer than two times.
+    None is the time in the table's remark, or the last one. Raises InputError for a target that is read at fewer than
+    two times.
     """
     times = readings.si("time", "s")
     wide = [(match[1], name) for name in readings.columns if (match := _PLACE.fullmatch(name))]
@@ -161,14 +157,9 @@ def drift_test_of(
 
 
 def circle_test(readings: Readings, radius: float | None) -> CircleTest:
-    """The readings of a circular test, one path or one in each direction.
+    """The readings of a circular test, one path or one in each direction, of a nominal radius [m].
 
-    Args:
-        readings: of the form for -4.
-        radius: nominal [m]; that of the table's remark if None.
-
-    Raises:
-        InputError: no nominal radius where only differences are given.
+    None is that of the table's remark; InputError where there is none and only differences are given.
     """
     nominal = readings.remark("radius", "m") if radius is None else radius
     if "x" in readings:

@@ -101,14 +101,9 @@ class ScrewSupports:
             raise InputError(f"takes no axial force when {self.kind.value}", "supports.far", mend)
 
     def load_shares(self, screw: ScrewShaft, position: float) -> tuple[float, float]:
-        """Shares of the axial force at the nut that go to the near and to the far bearing [1]; their sum is 1.
+        """Shares of the axial force at the nut, `position` [m] from the near bearing, that near and far one take.
 
-        Args:
-            screw: the shaft.
-            position: nut from the near bearing, 0 to the screw's length [m].
-
-        Raises:
-            InputError: a position outside the screw.
+        Their sum is 1; a position outside the screw raises InputError.
         """
         check_position(screw, position)
         if self.far is None:

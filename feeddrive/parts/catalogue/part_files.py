@@ -71,16 +71,9 @@ def catalogue() -> Mapping[str, CataloguePart]:
 
 
 def find_part(name: str, kind: str, where: str, otherwise: str = "") -> CataloguePart:
-    """The part of a name and kind.
+    """The part of a name and a kind of `KINDS`; `otherwise` is what else may be done where there is none.
 
-    Args:
-        name: as in the catalogue.
-        kind: of `KINDS`.
-        where: file and key, for messages.
-        otherwise: what else may be done where there is no such part.
-
-    Raises:
-        InputError: no such part, or one of another kind; names the nearest of that kind.
+    The InputError names the nearest of that kind; `where` is file and key.
     """
     part = catalogue().get(name)
     if part is None:

@@ -140,22 +140,8 @@ def table_friction(
     return GuideForces(one.speed, *parts)
 
 
-def friction_map(
-    guide: BallGuide, coefficients: GuideCoefficients, loads: FloatArray, speeds: FloatArray, seal_drag: float = 0.0
-) -> FloatArray:
-    """Friction of one carriage [N] over vertical load [N] and speed [m/s], shape (loads, speeds)."""
-    rows = [carriage_friction(guide, coefficients, speeds, float(F), seal_drag=seal_drag).total for F in loads]
-    return np.array(rows)
-
-
 def mean_slip_radius(ball_diameter: float, conformity: float, semi_major: float) -> float:
-    """<R_d> [m], the mean over Hertz's pressure; 0.2154 a^2/d_b for a small ellipse of conformity 0.52.
-
-    Args:
-        ball_diameter: d_b [m].
-        conformity: f [1].
-        semi_major: a [m], below d_b/2.
-    """
+    """<R_d> [m], the mean over Hertz's pressure, of d_b, f and a; 0.2154 a^2/d_b for a small ellipse, f = 0.52."""
     a, r = semi_major, 2.0 * conformity * ball_diameter / (2.0 * conformity + 1.0)
     half = 0.5 * ball_diameter
     # Differences of roots as quotients: each is of the size of a^2/d_b, and the roots themselves of d_b.

@@ -74,18 +74,10 @@ class GuideEquilibrium:
 
 
 def guide_equilibrium(guide: BallGuide, vertical: float, lateral: float = 0.0) -> GuideEquilibrium:
-    """Ball loads of one carriage.
+    """Ball loads of one carriage under a vertical load, positive onto the rail, and a lateral one [N].
 
-    Args:
-        guide: its geometry.
-        vertical: load on this carriage, positive presses it onto the rail [N].
-        lateral: load on this carriage [N].
-
-    Raises:
-        InputError: a load that is not finite, or so large that the balls leave their grooves.
-
-    Warns:
-        ValidityWarning: contact pressure above `HIGHEST_PRESSURE`.
+    Raises InputError: a load that is not finite, or so large that the balls leave their grooves; warns of contact
+    pressure above `HIGHEST_PRESSURE`.
     """
     load = np.array([vertical, lateral], dtype=float)
     if not np.all(np.isfinite(load)):

@@ -61,15 +61,7 @@ class Oil:
 def film_thickness(
     contact: PointContact, ball_diameter: float, oil: Oil, speed: FloatArray, load: FloatArray
 ) -> FloatArray:
-    """h [m] under a rolling ball.
-
-    Args:
-        contact: of ball and groove.
-        ball_diameter: d_b [m].
-        oil: the lubricant.
-        speed: of the carriage, not negative [m/s].
-        load: of the ball, above 0 [N]; broadcast with `speed`.
-    """
+    """h [m] under a ball of d_b [m] that rolls at speeds of the carriage [m/s], not negative, loaded [N]."""
     radius, modulus, k = 0.5 * ball_diameter, 2.0 / contact.compliance, contact.numbers.ellipticity
     U = oil.viscosity * 0.5 * speed / (modulus * radius)
     G = oil.pressure_viscosity * modulus

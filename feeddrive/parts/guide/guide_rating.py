@@ -36,20 +36,7 @@ RATED_VALUES = (
 
 
 def rated_friction(load: float, preload: float, friction_coefficient: float, seal_drag: float) -> float:
-    """F [N] of one carriage, positive.
-
-    Args:
-        load: W, vertical [N].
-        preload: F_0 [N].
-        friction_coefficient: mu [1].
-        seal_drag: S [N].
-
-    Raises:
-        InputError: a value that is not possible.
-
-    Warns:
-        ValidityWarning: an unusual one.
-    """
+    """F [N] of one carriage, positive, from W [N], F_0 [N], mu and S [N]; refuses what is not possible."""
     given = {"friction_coefficient": friction_coefficient, "preload": preload, "seal_drag": seal_drag}
     check_values("guide", RATED_VALUES, given)
     pressed, released = rigid_sharing(abs(load), preload)

@@ -26,7 +26,7 @@ import numpy as np
 
 from feeddrive.errors import InputError
 from feeddrive.parts.life.life import MILLION, life_together
-from feeddrive.parts.life.life_exponents import BALL_SCREW, LifeExponents
+from feeddrive.parts.life.life_exponents import BALL_SCREW
 from feeddrive.parts.screw.double_nut import rigid_sharing
 from feeddrive.parts.values import PartValue, check_values
 from feeddrive.typing import FloatArray
@@ -39,14 +39,12 @@ class ConsumedLife:
     Attributes:
         revolutions: turned up to each sample, either way, (n,) [rev].
         used: D_j up to each sample, (nuts, n) [1].
-        exponents: of the life law.
         forces: loads of the nuts at each sample, (nuts, n) [N].
         rating: C of a single nut [N].
     """
 
     revolutions: FloatArray
     used: FloatArray
-    exponents: LifeExponents
     forces: FloatArray
     rating: float
 
@@ -61,29 +59,21 @@ class ConsumedLife:
         turned = float(self.revolutions[-1])
         if turned == 0.0:
             return np.zeros(len(self.used))
-        return np.asarray(self.rating * (self.total * MILLION / turned) ** (1.0 / self.exponents.load), dtype=float)
-
-    @property
-    def survival(self) -> float:
-        """Probability S that a new screw survives the recording [1]."""
-        return float(0.9 ** np.sum(self.total**self.exponents.slope))
+        return np.asarray(self.rating * (self.total * MILLION / turned) ** (1.0 / BALL_SCREW.load), dtype=float)
 
     @property
     def repetitions(self) -> float:
         """How often 90 % survive the recording, one after another; infinite where it takes no life."""
-        return life_together([1.0 / used if used > 0.0 else math.inf for used in self.total], self.exponents)
+        return life_together([1.0 / used if used > 0.0 else math.inf for used in self.total])
 
 
-def consumed_life(
-    screw_angle: FloatArray, nut_forces: FloatArray, rating: float, exponents: LifeExponents = BALL_SCREW
-) -> ConsumedLife:
+def consumed_life(screw_angle: FloatArray, nut_forces: FloatArray, rating: float) -> ConsumedLife:
     """Life that a motion takes from every nut.
 
     Args:
         screw_angle: unwrapped, (n,) with n of 2 or more [rev x 2 pi = rad].
         nut_forces: size of the axial load of every nut at every sample, acting to the next one, (nuts, n) [N].
         rating: C of a single nut [N].
-        exponents: of the life law.
 
     Raises:
         InputError: shapes that do not match, values that are not finite, negative loads, a rating that is not positive.
@@ -96,21 +86,13 @@ def consumed_life(
     if not (np.all(np.isfinite(screw_angle)) and np.all(np.isfinite(forces)) and np.all(forces >= 0.0)):
         raise InputError("an angle or a load is not finite, or a load is negative", "consumed life", "mend the samples")
     steps = np.abs(np.diff(screw_angle)) / (2.0 * math.pi)
-    shares = steps / MILLION * (forces[:, :-1] / rating) ** exponents.load
+    shares = steps / MILLION * (forces[:, :-1] / rating) ** BALL_SCREW.load
     revolutions = np.concatenate(([0.0], np.cumsum(steps)))
     used = np.concatenate((np.zeros((forces.shape[0], 1)), np.cumsum(shares, axis=1)), axis=1)
-    return ConsumedLife(revolutions, used, exponents, forces, rating)
+    return ConsumedLife(revolutions, used, forces, rating)
 
 
 def rigid_nut_forces(axial_force: FloatArray, preload: float) -> FloatArray:
-    """Loads of the two nuts of a rigidly preloaded double nut, (2, n) [N].
-
-    Args:
-        axial_force: that the screw gives to the table, (n,) [N].
-        preload: F_0, 0 or more [N]; 0 for a single nut with play.
-
-    Raises:
-        InputError: a negative preload.
-    """
+    """Loads of a rigidly preloaded double nut under the force on the table, (2, n) [N]; F_0 = 0 is a nut with play."""
     check_values("nut", (PartValue("preload", "N", 0.0, open_ends=False),), {"preload": preload})
     return np.vstack(rigid_sharing(np.asarray(axial_force, dtype=float), preload))

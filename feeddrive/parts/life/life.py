@@ -22,7 +22,7 @@ from collections.abc import Sequence
 
 from feeddrive.errors import InputError, ValidityWarning
 from feeddrive.parts.elementary import power
-from feeddrive.parts.life.life_exponents import BALL_SCREW, LifeExponents
+from feeddrive.parts.life.life_exponents import BALL_SCREW
 from feeddrive.parts.values import PartValue, check_values
 
 MILLION = 1e6
@@ -37,13 +37,12 @@ _TEST = (PartValue("force", "N", 0.0, 1e9), PartValue("revolutions", "1", 0.0, 1
 _LOAD = (PartValue("rating", "N", 0.0, usual=(10.0, 5e6)), PartValue("force", "N", 0.0, open_ends=False))
 
 
-def rated_revolutions(rating: float, force: float, exponents: LifeExponents = BALL_SCREW) -> float:
+def rated_revolutions(rating: float, force: float) -> float:
     """Revolutions that 90 % survive [rev]; infinite without load.
 
     Args:
         rating: C [N]; of the double nut for a double nut, see `double_nut_share`.
         force: F, size of the axial load of every nut, the preload included [N].
-        exponents: of the life law.
 
     Raises:
         InputError: a rating that is not positive, a negative force.
@@ -58,21 +57,21 @@ def rated_revolutions(rating: float, force: float, exponents: LifeExponents = BA
     if force == 0.0:
         return math.inf
     # As a power of ten, since a tiny load gives more revolutions than a number holds.
-    decades = exponents.load * math.log10(rating / force)
+    decades = BALL_SCREW.load * math.log10(rating / force)
     return MILLION * 10.0**decades if decades < 300.0 else math.inf
 
 
-def rating_of_test(force: float, revolutions: float, exponents: LifeExponents = BALL_SCREW) -> float:
+def rating_of_test(force: float, revolutions: float) -> float:
     """C [N] of what 90 % survived for `revolutions` [rev] under `force` [N].
 
     Raises:
         InputError: a force or revolutions that are not positive.
     """
     check_values("life test", _TEST, {"force": force, "revolutions": revolutions})
-    return float(force * (revolutions / MILLION) ** (1.0 / exponents.load))
+    return float(force * (revolutions / MILLION) ** (1.0 / BALL_SCREW.load))
 
 
-def survival(revolutions: float, rated: float, exponents: LifeExponents = BALL_SCREW) -> float:
+def survival(revolutions: float, rated: float) -> float:
     """Probability S of surviving `revolutions` where 90 % survive `rated` [rev], which may be infinite.
 
     Raises:
@@ -81,20 +80,15 @@ def survival(revolutions: float, rated: float, exponents: LifeExponents = BALL_S
     if not (0.0 <= revolutions < math.inf and rated > 0.0):
         what = f"{revolutions:g} revolutions of {rated:g} rated ones"
         raise InputError(what, "life", "write revolutions of 0 or more and a rated life above 0")
-    return math.exp(math.log(0.9) * power(revolutions / rated, exponents.slope))
+    return math.exp(math.log(0.9) * power(revolutions / rated, BALL_SCREW.slope))
 
 
-def life_together(lives: Sequence[float], exponents: LifeExponents = BALL_SCREW) -> float:
-    """Life that 90 % of sets of several bodies survive: L^-e is the sum of L_i^-e; infinite where all are.
-
-    Args:
-        lives: rated lives of the bodies, in any unit of work (revolutions, recordings), above 0.
-        exponents: of the life law.
-    """
+def life_together(lives: Sequence[float]) -> float:
+    """Life that 90 % of sets of bodies survive: L^-e is the sum of L_i^-e, in any unit; infinite where all are."""
     shortest = min(lives)
     if math.isinf(shortest):
         return math.inf
-    return float(shortest * sum((life / shortest) ** -exponents.slope for life in lives) ** (-1.0 / exponents.slope))
+    return float(shortest * sum((life / shortest) ** -BALL_SCREW.slope for life in lives) ** (-1.0 / BALL_SCREW.slope))
 
 
 def distance(revolutions: float, lead: float) -> float:

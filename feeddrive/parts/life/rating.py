@@ -32,7 +32,7 @@ import numpy as np
 
 from feeddrive.errors import InputError
 from feeddrive.parts.contact import PointContact
-from feeddrive.parts.life.life_exponents import BALL_SCREW, LifeExponents
+from feeddrive.parts.life.life_exponents import BALL_SCREW
 from feeddrive.parts.life.stress_cycles import (
     effective_screw_groove,
     nut_cycles,
@@ -59,13 +59,7 @@ class Rating:
     nut_share: float
 
 
-def rating(
-    track: BallTrack,
-    loads: LoadDistribution,
-    stroke: float,
-    material_constant: float,
-    exponents: LifeExponents = BALL_SCREW,
-) -> Rating:
+def rating(track: BallTrack, loads: LoadDistribution, stroke: float, material_constant: float) -> Rating:
     """Ratings of a nut at a stroke as the paper computes them.
 
     Args:
@@ -73,44 +67,35 @@ def rating(
         loads: how the balls share the load.
         stroke: one way [m].
         material_constant: A_1, see `material_constant_of_test`.
-        exponents: of the fatigue law.
 
     Raises:
         InputError: a stroke or material constant that is not positive.
     """
     length = stressed_screw_groove(track, stroke)
-    return _rating(track, loads, stroke, length, material_constant, exponents)
+    return _rating(track, loads, stroke, length, material_constant)
 
 
-def rating_along_screw(
-    track: BallTrack,
-    loads: LoadDistribution,
-    stroke: float,
-    material_constant: float,
-    exponents: LifeExponents = BALL_SCREW,
-) -> Rating:
+def rating_along_screw(track: BallTrack, loads: LoadDistribution, stroke: float, material_constant: float) -> Rating:
     """Ratings where every point of the screw counts with its own cycles, not as the most stressed; args as `rating`.
 
     Raises:
         InputError: as `rating`.
     """
-    length = effective_screw_groove(track, stroke, exponents.slope)
-    return _rating(track, loads, stroke, length, material_constant, exponents)
+    length = effective_screw_groove(track, stroke, BALL_SCREW.slope)
+    return _rating(track, loads, stroke, length, material_constant)
 
 
-def material_constant_of_test(
-    track: BallTrack, loads: LoadDistribution, stroke: float, tested: float, exponents: LifeExponents = BALL_SCREW
-) -> float:
+def material_constant_of_test(track: BallTrack, loads: LoadDistribution, stroke: float, tested: float) -> float:
     """A_1 for which `rating` gives a single nut the tested rating [N]; arguments otherwise as `rating`.
 
     Raises:
         InputError: as `rating`.
     """
     check_values("life test", _TESTED, {"tested": tested})
-    return tested / rating(track, loads, stroke, 1.0, exponents).pair
+    return tested / rating(track, loads, stroke, 1.0).pair
 
 
-def combined_rating(ratings: tuple[float, ...], exponents: LifeExponents = BALL_SCREW) -> float:
+def combined_rating(ratings: tuple[float, ...]) -> float:
     """Rating [N] of several bodies that must all survive, eq. (17): C^-w is the sum of C_i^-w.
 
     Raises:
@@ -120,20 +105,18 @@ def combined_rating(ratings: tuple[float, ...], exponents: LifeExponents = BALL_
     if not (values.size and np.all(np.isfinite(values) & (values > 0.0))):
         raise InputError("a rating is not positive and finite", "ratings", "write each above 0 N")
     least = float(values.min())
-    return least * float(np.sum((values / least) ** -exponents.product) ** (-1.0 / exponents.product))
+    return least * float(np.sum((values / least) ** -BALL_SCREW.product) ** (-1.0 / BALL_SCREW.product))
 
 
-def double_nut_share(exponents: LifeExponents = BALL_SCREW) -> float:
+def double_nut_share() -> float:
     """C_d / C_s = 2^(-1/(p e)), eq. (26): rating of two equally loaded nuts over that of one [1]."""
-    return combined_rating((1.0, 1.0), exponents)
+    return combined_rating((1.0, 1.0))
 
 
-def load_integrals(
-    track: BallTrack, loads: LoadDistribution, exponents: LifeExponents = BALL_SCREW
-) -> tuple[float, float, float]:
+def load_integrals(track: BallTrack, loads: LoadDistribution) -> tuple[float, float, float]:
     """J_a, J_B and J_M [1]."""
     share = loads.ball_loads / loads.ball_loads.max()
-    w, p = exponents.product, exponents.load
+    w, p = BALL_SCREW.product, BALL_SCREW.load
     return (
         float(share.mean()) * track.axial_part,
         float(np.mean(share**p) ** (1 / p)),
@@ -141,9 +124,9 @@ def load_integrals(
     )
 
 
-def groove_factor(contact: PointContact, exponents: LifeExponents = BALL_SCREW) -> float:
+def groove_factor(contact: PointContact) -> float:
     """omega of a contact, eq. (13) [1]."""
-    c, numbers = exponents.stress, contact.numbers
+    c, numbers = BALL_SCREW.stress, contact.numbers
     greatest = greatest_shear_on_axis(1.0 / numbers.ellipticity).relative_stress
     share = greatest_shear_on_axis(1.0).relative_stress / greatest
     curvature = (1.0 + contact.curvatures.difference) ** ((2 * c - 1) / (c + 1))
@@ -152,32 +135,27 @@ def groove_factor(contact: PointContact, exponents: LifeExponents = BALL_SCREW) 
 
 
 def _rating(
-    track: BallTrack,
-    loads: LoadDistribution,
-    stroke: float,
-    screw_length: float,
-    material_constant: float,
-    exponents: LifeExponents,
+    track: BallTrack, loads: LoadDistribution, stroke: float, screw_length: float, material_constant: float
 ) -> Rating:
     """Ratings with the stressed length of the screw given [m]."""
     check_values("rating", _CONSTANT, {"material_constant": material_constant})
-    average, of_screw, of_nut = load_integrals(track, loads, exponents)
+    average, of_screw, of_nut = load_integrals(track, loads)
     gamma, factor = track.curvature_ratio, material_constant * track.balls * average
-    screw_shape = groove_factor(screw_contact(track), exponents) * _length_factor(
-        track, 1.0 - gamma, screw_length, screw_cycles(track, stroke), exponents
+    screw_shape = groove_factor(screw_contact(track)) * _length_factor(
+        track, 1.0 - gamma, screw_length, screw_cycles(track, stroke)
     )
-    nut_shape = groove_factor(nut_contact(track), exponents) * _length_factor(
-        track, 1.0 + gamma, stressed_nut_groove(track), nut_cycles(track, stroke), exponents
+    nut_shape = groove_factor(nut_contact(track)) * _length_factor(
+        track, 1.0 + gamma, stressed_nut_groove(track), nut_cycles(track, stroke)
     )
-    c, p = exponents.stress, exponents.load
+    c, p = BALL_SCREW.stress, BALL_SCREW.load
     size = (1e3 * track.ball_diameter) ** ((2 * c - 4) / (c + 1)) * (stroke / track.lead) ** (1 / p)
     screw, nut = factor * screw_shape * size / of_screw, factor * nut_shape * size / of_nut
-    pair = combined_rating((screw, nut), exponents)
-    return Rating(screw, nut, pair, (pair / nut) ** exponents.product)
+    pair = combined_rating((screw, nut))
+    return Rating(screw, nut, pair, (pair / nut) ** BALL_SCREW.product)
 
 
-def _length_factor(track: BallTrack, radius: float, length: float, cycles: float, exponents: LifeExponents) -> float:
+def _length_factor(track: BallTrack, radius: float, length: float, cycles: float) -> float:
     """phi / omega, eq. (12): radius is 1 -/+ gamma, length l_0 [m], cycles u_s."""
-    c = exponents.stress
+    c = BALL_SCREW.stress
     shape = (0.25 * radius) ** ((2 * c - 1) / (c + 1)) * (track.ball_diameter / length) ** (3 / (c + 1))
-    return float(shape * cycles ** (-1 / exponents.load))
+    return float(shape * cycles ** (-1 / BALL_SCREW.load))

@@ -82,12 +82,6 @@ def nut_cycles(track: BallTrack, stroke: float) -> float:
     return track.balls * stroke_ratio(track, stroke) * ball_travel_share(track)
 
 
-def cycles_per_revolution(track: BallTrack, stroke: float) -> tuple[float, float]:
-    """u = l u_s / l_s, eq. (10): cycles per revolution of the screw's most stressed points, and of the nut."""
-    revolutions = _checked(stroke) / track.lead
-    return screw_cycles(track, stroke) / revolutions, nut_cycles(track, stroke) / revolutions
-
-
 def _checked(stroke: float) -> float:
     if not (math.isfinite(stroke) and stroke > 0.0):
         raise InputError(f"a stroke of {stroke:g} m", "stress cycles", "write a stroke above 0")

@@ -40,11 +40,10 @@ _LEAST_RATIO, _DEEPEST = 1e-6, 1e6  # beyond them the integrals leave the range 
 
 @dataclass(frozen=True)
 class ShearPeak:
-    """Greatest shear stress: tau / p_max [1], its depth and its place along the rolling direction over b [1]."""
+    """Greatest shear stress: tau / p_max [1], and its depth over b [1]."""
 
     relative_stress: float
     relative_depth: float
-    relative_place: float = 0.0
 
 
 def axis_stresses(ratio: float, depth: float, poisson: float = POISSON) -> tuple[float, float, float]:
@@ -82,15 +81,7 @@ def axis_stresses(ratio: float, depth: float, poisson: float = POISSON) -> tuple
 
 
 def greatest_shear_on_axis(ratio: float, poisson: float = POISSON) -> ShearPeak:
-    """Greatest shear stress under an elliptical contact without traction, and its depth.
-
-    Args:
-        ratio: k = b/a, above 0 and at most 1.
-        poisson: Poisson's ratio.
-
-    Raises:
-        InputError: ratio outside its range.
-    """
+    """Greatest shear stress under an elliptical contact without traction, and its depth; k = b/a, up to 1."""
 
     def loss(depth: float) -> float:
         stresses = axis_stresses(ratio, depth, poisson)
@@ -124,15 +115,9 @@ def line_shear(place: FloatArray, depth: FloatArray, friction: float) -> FloatAr
 
 
 def greatest_shear_under_line(friction: float) -> ShearPeak:
-    """Greatest shear stress in the plane of rolling under a line contact with traction, and where it is.
+    """Greatest shear stress in the plane of rolling under a line contact with traction f, 0 to 1, and its depth.
 
     From f of about 0.3 on the surface itself is sheared as much: there tau / p_max = f.
-
-    Args:
-        friction: f, 0 to 1.
-
-    Raises:
-        InputError: friction outside its range.
     """
     if not 0.0 <= friction <= 1.0:
         raise InputError(f"a friction coefficient of {friction:g}", "line contact", "0 to 1 is possible")
@@ -149,4 +134,4 @@ def greatest_shear_under_line(friction: float) -> ShearPeak:
         bounds=((-1.0, 1.0), (0.0, 2.0)),
         options={"xatol": 1e-8, "fatol": 1e-12},
     )
-    return ShearPeak(-float(found.fun), float(found.x[1]), float(found.x[0]))
+    return ShearPeak(-float(found.fun), float(found.x[1]))

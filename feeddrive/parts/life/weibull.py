@@ -78,14 +78,9 @@ class WeibullLaw:
 
 
 def line_fit(lives: FloatArray, failed: FloatArray) -> WeibullLaw:
-    """The straight line through points in Weibull paper by least squares in ln ln 1/(1 - F), as the paper draws it.
+    """The line through lives and shares failed, (k,), by least squares in ln ln 1/(1 - F), as the paper draws it.
 
-    Args:
-        lives: lives, (k,), two different ones at least.
-        failed: share failed at each, (k,), above 0 and below 1.
-
-    Raises:
-        InputError: all lives equal, or a line that does not rise.
+    Raises InputError: all lives equal, or a line that does not rise.
     """
     ordinate, abscissa = np.log(-np.log1p(-failed)), np.log(lives)
     if np.ptp(abscissa) == 0.0:

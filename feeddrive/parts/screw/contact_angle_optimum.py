@@ -2,8 +2,8 @@
 
     sin(beta*) = cos(45 deg - phi/2) / cos(alpha),     eta_max = (1 - sin phi) / (1 + sin phi),     phi = atan f
 
-while the right side is below 1, that is for alpha <= 45 deg - phi/2; beyond, beta* is 90 deg. Back-driving has
-cos(45 deg + phi/2) in place of it and the same maximum, which depends on f alone.
+while the right side is below 1, that is for alpha <= 45 deg - phi/2; beyond, beta* is 90 deg. The maximum depends on f
+alone.
 
 | symbol | meaning | unit |
 |---|---|---|
@@ -11,7 +11,7 @@ cos(45 deg + phi/2) in place of it and the same maximum, which depends on f alon
 | phi | friction angle | rad |
 
 Source: derived here from eqs. (5), (6) of paper 000, which finds the angle numerically: as a square thread, the screw
-is at its best where delta = 45 deg - phi/2 (45 deg + phi/2 back-driven), and cos(beta) enters delta alone.
+is at its best where delta = 45 deg - phi/2, and cos(beta) enters delta alone.
 """
 
 from __future__ import annotations
@@ -21,19 +21,12 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from feeddrive.parts.screw.screw_efficiency import driving_efficiency
-from feeddrive.parts.screw.slip_angle import groove_at
 from feeddrive.typing import FloatArray
 
 
 def best_contact_angle(lead_angle: ArrayLike, friction: ArrayLike) -> FloatArray:
     """beta* [rad] of the screw that drives, for lead angles [rad] and f; arguments broadcast."""
-    return _angle(lead_angle, math.pi / 4 - np.arctan(friction) / 2)
-
-
-def best_contact_angle_back(lead_angle: ArrayLike, friction: ArrayLike) -> FloatArray:
-    """beta* [rad] of the nut that drives, for lead angles [rad] and f; arguments broadcast."""
-    return _angle(lead_angle, math.pi / 4 + np.arctan(friction) / 2)
+    return np.asarray(np.arcsin(np.minimum(np.cos(largest_lead_angle(friction)) / np.cos(lead_angle), 1.0)))
 
 
 def highest_efficiency(friction: ArrayLike) -> FloatArray:
@@ -51,13 +44,3 @@ def friction_of_highest_efficiency(efficiency: ArrayLike) -> FloatArray:
     """The largest f with which a screw can reach this efficiency (0 to 1): the inverse of `highest_efficiency`."""
     eta = np.asarray(efficiency, dtype=float)
     return np.asarray(np.tan(np.arcsin((1 - eta) / (1 + eta))))
-
-
-def efficiency_at_best_angle(lead_angle: ArrayLike, friction: ArrayLike) -> FloatArray:
-    """eta_a at beta*: eta_max, or less beyond `largest_lead_angle`; lead angles [rad], arguments broadcast."""
-    alpha = np.asarray(lead_angle, dtype=float)
-    return np.asarray(driving_efficiency(groove_at(alpha, best_contact_angle(alpha, friction)), friction))
-
-
-def _angle(lead_angle: ArrayLike, thread_angle: ArrayLike) -> FloatArray:
-    return np.asarray(np.arcsin(np.minimum(np.cos(thread_angle) / np.cos(lead_angle), 1.0)))

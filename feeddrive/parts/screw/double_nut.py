@@ -68,15 +68,7 @@ def rigid_sharing(force: Expression, preload: Expression) -> tuple[Expression, E
 def friction_torque_forward(
     nut_a: Expression, nut_b: Expression, radius: Expression, driving: Expression, back_driving: Expression
 ) -> Expression:
-    """T_f [N m] for w > 0.
-
-    Args:
-        nut_a: F_A [N].
-        nut_b: F_B [N].
-        radius: r [m].
-        driving: loss l_a.
-        back_driving: loss l_b.
-    """
+    """T_f [N m] for w > 0, from F_A, F_B [N], r [m] and the losses l_a, l_b."""
     return radius * (nut_a * driving + nut_b * back_driving)
 
 

@@ -1,8 +1,7 @@
 """How an axial load spreads over the balls along a nut: elastic balls between an elastic screw and an elastic nut body.
 
     d_i = c_E Q_i^(2/3) / (sin(a_0) cos(gamma_m)),     F_i = Q_i sin(a_0) cos(gamma_m),     sum F_i = F
-    opposite ends (screw in tension, nut in compression):  d_i - d_(i+1) = (s/E)(1/A_s + 1/A_n) S_i
-    same end (both in tension):  d_i - d_(i+1) = (s/E)(S_i / A_s - (F - S_i) / A_n),      S_i = sum of F_j for j > i
+    d_i - d_(i+1) = (s/E)(1/A_s + 1/A_n) S_i,     S_i = sum of F_j for j > i
 
 | symbol | meaning | unit |
 |---|---|---|
@@ -14,16 +13,16 @@
 | A_s, A_n | sections of screw and nut body | m^2 |
 | E | modulus of elasticity of both | Pa |
 
-Validity: no errors of lead or ball size (which can outweigh elasticity), one contact angle for all balls, axial
-deformation alone. Source: paper 001, section 3.3 (a), states the model and figure 5 without an equation; the
-equations are the standard bar-and-contact model of Izawa and of Mei and Tsutsumi.
+Validity: screw in tension and nut in compression, or the reverse; no errors of lead or ball size (which can outweigh
+elasticity), one contact angle for all balls, axial deformation alone. Source: paper 001, section 3.3 (a), states the
+model and figure 5 without an equation; the equations are the standard bar-and-contact model of Izawa and of Mei and
+Tsutsumi.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from enum import Enum
 
 import numpy as np
 from scipy.optimize import brentq
@@ -31,13 +30,6 @@ from scipy.optimize import brentq
 from feeddrive.parts.screw.screw_contact import SCREW_STEEL, BallTrack, contact_constant
 from feeddrive.parts.values import PartValue, check_values
 from feeddrive.typing import FloatArray
-
-
-class Loading(Enum):
-    """Where screw and nut are held, seen along the screw."""
-
-    OPPOSITE_ENDS = "screw in tension and nut in compression, or the reverse (T-C)"
-    SAME_END = "both in tension or both in compression (T-T)"
 
 
 @dataclass(frozen=True)
@@ -66,11 +58,6 @@ class NutBody:
 
     def __post_init__(self) -> None:
         check_values("nut body", _VALUES, {value.key: getattr(self, value.key) for value in _VALUES})
-
-    def ball_stiffness(self, force: float) -> float:
-        """k_b = dF_i / dd_i [N/m] of one ball at its share of the axial force [N]."""
-        load = self.track.mean_ball_load(force)
-        return float(1.5 * load ** (1.0 / 3.0) * self.track.axial_part**2 / self.contact_constant)
 
 
 _VALUES = (
@@ -104,11 +91,9 @@ class LoadDistribution:
 
     Attributes:
         ball_loads: Q_i normal to the contact, (z,) [N].
-        axial_loads: F_i, (z,) [N].
     """
 
     ball_loads: FloatArray
-    axial_loads: FloatArray
 
     @property
     def relative(self) -> FloatArray:
@@ -116,55 +101,29 @@ class LoadDistribution:
         return np.asarray(self.ball_loads / self.ball_loads.mean(), dtype=float)
 
 
-def load_distribution(body: NutBody, force: float, loading: Loading = Loading.OPPOSITE_ENDS) -> LoadDistribution:
-    """Loads of all balls under an axial force.
+def load_distribution(body: NutBody, force: float) -> LoadDistribution:
+    """Loads of all balls under an axial force F above 0 [N].
 
     The deflection of the last ball is sought; from it the recursion gives all others, and their sum rises with it.
-
-    Args:
-        body: nut.
-        force: F, above 0 [N].
-        loading: where screw and nut are held.
-
-    Raises:
-        InputError: a force that is not positive.
     """
     check_values("nut", _FORCE, {"force": force})
     alone = _deflection(body, force)
 
     def surplus(last: float) -> float:
-        return float(_axial_loads(body, force, loading, last).sum()) / force - 1.0
+        return float(_axial_loads(body, force, last).sum()) / force - 1.0
 
     # Below 0 the last ball is free: the nut body has drawn away from it.
     low = 0.0
     while surplus(low) > 0.0:
         low -= alone
     last = brentq(surplus, low, alone, xtol=1e-15 * alone, rtol=1e-14)
-    axial = _axial_loads(body, force, loading, last)
-    return LoadDistribution(axial / body.track.axial_part, axial)
+    return LoadDistribution(_axial_loads(body, force, last) / body.track.axial_part)
 
 
-def continuum_extremes(body: NutBody, force: float) -> tuple[float, float]:
-    """Greatest and least load over the mean where the stiffness of the balls is taken as constant (opposite ends).
-
-    lambda L coth(lambda L) and lambda L / sinh(lambda L), lambda^2 = (k_b / s)(1/A_s + 1/A_n) / E, L the loaded length:
-    the closed form that the recursion meets for many balls and small differences.
-
-    Raises:
-        InputError: a force that is not positive.
-    """
-    check_values("nut", _FORCE, {"force": force})
-    pitch = body.track.loaded_length / body.track.balls
-    compliance = (1.0 / body.screw_section + 1.0 / body.nut_section) / body.elastic_modulus
-    product = math.sqrt(body.ball_stiffness(force) / pitch * compliance) * body.track.loaded_length
-    return product / math.tanh(product), product / math.sinh(product)
-
-
-def _axial_loads(body: NutBody, force: float, loading: Loading, last: float) -> FloatArray:
+def _axial_loads(body: NutBody, force: float, last: float) -> FloatArray:
     """F_i, (z,) [N], from the deflection of the last ball; a ball whose deflection is negative carries nothing."""
     pitch = body.track.loaded_length / body.track.balls / body.elastic_modulus
     screw, nut = pitch / body.screw_section, pitch / body.nut_section
-    constant = nut * force if loading is Loading.SAME_END else 0.0
     loads = np.zeros(body.track.balls)
     deflection, behind = last, 0.0
     for ball in range(body.track.balls - 1, -1, -1):
@@ -173,7 +132,7 @@ def _axial_loads(body: NutBody, force: float, loading: Loading, last: float) -> 
         # So far from the solution that the rest does not matter, and powers would overflow.
         if behind > 1e3 * force:
             break
-        deflection += (screw + nut) * behind - constant
+        deflection += (screw + nut) * behind
     return loads
 
 

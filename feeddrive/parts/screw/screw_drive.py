@@ -76,13 +76,9 @@ class BallScrewDrive:
         check_values("drive", tuple(value for value in self.values if value.key in given), given)
 
     def torsion_springs(self, position: float) -> tuple[TorsionSpring, ...]:
-        """The springs between the held rotor and the nut, from the motor on, the screw's span last.
+        """The springs between held rotor and nut, from the motor on, the screw's span to the nut last.
 
-        Args:
-            position: nut from the near bearing, 0 to the screw's length [m].
-
-        Raises:
-            InputError: a position outside the screw.
+        The nut is at `position` [m] from the near bearing; InputError outside the screw.
         """
         check_position(self.screw, position)
         ratio = self.transmission.ratio if self.transmission is not None else 1.0

@@ -77,17 +77,9 @@ def jamming_friction(groove: Groove) -> Expression:
     return groove.a_n / groove.b_n
 
 
-def self_locking_friction(groove: Groove) -> Expression:
-    """f from which on the nut can no longer drive the screw, b_n/a_n."""
-    return groove.b_n / groove.a_n
-
-
-def relative_preload_torque(
-    groove: Groove, friction: Expression, friction_back: Expression | None = None
-) -> Expression:
-    """t_n for the friction f_a of the driven nut and f_b of the driving one (equal if not given)."""
-    other = friction if friction_back is None else friction_back
-    return driving_loss(groove, friction) + back_driving_loss(groove, other)
+def relative_preload_torque(groove: Groove, friction: Expression) -> Expression:
+    """t_n, with one friction f at both nuts."""
+    return driving_loss(groove, friction) + back_driving_loss(groove, friction)
 
 
 def ideal_torque(force: Expression, lead: Expression) -> Expression:

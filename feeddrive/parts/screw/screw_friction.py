@@ -33,7 +33,6 @@ from feeddrive.parts.screw.screw_efficiency import (
     relative_torque,
 )
 from feeddrive.parts.screw.slip_angle import Groove, groove_of_screw
-from feeddrive.parts.screw.torque_regression import TorqueSplit
 from feeddrive.parts.values import PartValue, check_values
 
 GEOMETRY = (
@@ -93,17 +92,6 @@ class ScrewGeometry:
             what = f"preload {preload:g} N with torque {torque:g} N m is not possible"
             raise InputError(what, "preload torque", "write a preload above 0 N and a torque of 0 N m or more")
         return float(friction_from_torque(relative_torque(torque, preload, self.lead), self.groove))
-
-    def friction_of(self, split: TorqueSplit) -> tuple[float, float, float]:
-        """f from the slope of a regression, with the ends of its interval (f grows with the slope).
-
-        Raises:
-            InputError: a slope that is negative.
-        """
-        low, high = split.per_preload.ends
-        slopes = (split.per_preload.value, max(low, 0.0), high)
-        value, lower, upper = (self.friction_from(1.0, slope) for slope in slopes)
-        return value, lower, upper
 
 
 @dataclass(frozen=True)

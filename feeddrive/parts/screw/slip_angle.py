@@ -88,11 +88,3 @@ def slip_angles_nut_drives(groove: Groove) -> tuple[FloatArray, FloatArray]:
 def thread_angle(groove: Groove) -> FloatArray:
     """delta [rad] (numbers or arrays)."""
     return np.asarray(np.arctan2(groove.slope, groove.sine))
-
-
-def sliding_speed_ratio(groove: Groove) -> Expression:
-    """Sliding speed at a contact over the axial speed of the nut: f Q times it is the lost power.
-
-    By energy from eqs. (3) and (4): (M - F_a r_m tan(alpha)) Omega = f Q V / (cos(alpha) R); derived here.
-    """
-    return (1 + groove.tangent**2) ** 0.5 / groove.slope

@@ -33,17 +33,7 @@ def screw_moment(
     ball_ratio: ArrayLike,
     friction: ArrayLike,
 ) -> FloatArray:
-    """M [N m] of one ball, eq. (3); arguments broadcast.
-
-    Args:
-        load: Q [N].
-        radius: r_m [m].
-        lead_angle: a [rad].
-        contact_angle: b [rad].
-        slip_angle: psi_B [rad].
-        ball_ratio: r_a.
-        friction: f.
-    """
+    """M [N m] of one ball, eq. (3), with psi_B; arguments broadcast, units as in the table above."""
     a, psi, r_a = (np.asarray(value, dtype=float) for value in (lead_angle, slip_angle, ball_ratio))
     sin_b, cos_b = np.sin(contact_angle), np.cos(contact_angle)
     across = -np.sin(a) * np.cos(psi) * (cos_b - r_a)
@@ -54,15 +44,7 @@ def screw_moment(
 def axial_force(
     load: ArrayLike, lead_angle: ArrayLike, contact_angle: ArrayLike, slip_angle: ArrayLike, friction: ArrayLike
 ) -> FloatArray:
-    """F_a [N] of one ball, eq. (4); arguments broadcast.
-
-    Args:
-        load: Q [N].
-        lead_angle: a [rad].
-        contact_angle: b [rad].
-        slip_angle: psi_A [rad].
-        friction: f.
-    """
+    """F_a [N] of one ball, eq. (4), with psi_A; arguments broadcast, units as in the table above."""
     a, b, psi = (np.asarray(value, dtype=float) for value in (lead_angle, contact_angle, slip_angle))
     slip = np.cos(a) * np.cos(b) * np.cos(psi) + np.sin(a) * np.sin(psi)
     return np.asarray(np.asarray(load) * (np.cos(a) * np.sin(b) + np.asarray(friction) * slip))

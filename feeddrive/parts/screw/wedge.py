@@ -28,16 +28,7 @@ _VALUES = (
 
 
 def wedge_efficiency(friction_coefficient: float, lead: float, diameter: float) -> float:
-    """eta_forward: useful power at the table over power at the screw [1]; 0 where friction stops any torque.
-
-    Args:
-        friction_coefficient: mu [1].
-        lead: [m].
-        diameter: at the contact [m].
-
-    Raises:
-        InputError: a value that is not possible.
-    """
+    """eta_forward [1] from mu [1], lead and diameter at the contact [m]; 0 where friction stops any torque."""
     mu, slope = _checked(friction_coefficient, lead, diameter)
     return max(0.0, (1.0 - mu * slope) / (1.0 + mu / slope))
 

@@ -24,21 +24,11 @@ if TYPE_CHECKING:
 
 
 def state_space(plant: Plant, velocity: float = MOVING, position: float = 0.0) -> control.StateSpace:
-    """The plant linearised exactly about a steady motion.
+    """The plant linearised exactly about a steady motion: velocity [m/s] and position [m] of the table.
 
-    By default the point moves: at rest the slope of the friction swamps everything (see the module). Where a delay
-    (`drive_delay`) is declared it is not in the result, since it is no finite state space.
-
-    Args:
-        plant: the machine.
-        velocity: of the table at the point [m/s].
-        position: of the table at the point [m].
-
-    Returns:
-        State space with named states, inputs (`INPUTS`) and outputs (`OUTPUTS`), SI.
-
-    Raises:
-        InputError: no steady motion is found there.
+    By default the point moves: at rest the slope of the friction swamps everything (see the module). States, inputs
+    (`INPUTS`) and outputs (`OUTPUTS`) are named, SI. A declared delay (`drive_delay`) is not in the result, since it is
+    no finite state space. Raises InputError where no steady motion is found.
     """
     import control  # takes half a second, with the plotting that it brings
 

@@ -105,15 +105,10 @@ class Lumped:
 
 
 def lump(plant: Plant, position: float | None = None, further: tuple[str, ...] = ()) -> Lumped:
-    """The three-inertia machine nearest to `plant` with its table at `position` [m].
+    """The three-inertia machine nearest to an elastic `plant` with its table at `position` [m], or in mid-stroke.
 
-    Args:
-        plant: an elastic machine.
-        position: of the table [m]; the middle of the stroke if not given.
-        further: what the caller knows to be left out besides, in sentences.
-
-    Raises:
-        InputError: a rigid machine, or the nut would not be on the screw.
+    `further` is what the caller knows to be left out besides, in sentences. Raises InputError: a rigid machine, or the
+    nut off the screw.
     """
     if not plant.chain.elastic:
         raise InputError("a rigid machine has nothing to lump", plant.name, "name a machine with elastic parts")

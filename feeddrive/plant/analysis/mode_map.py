@@ -41,16 +41,9 @@ class ModeMap:
 
 
 def mode_map(plant: Plant, positions: FloatArray | None = None, count: int = FIRST) -> ModeMap:
-    """Modes along the stroke, of a screw with as many coordinates as they need.
+    """The first `count` modes along the stroke, or at positions [m], of a screw with as many coordinates as they need.
 
-    Args:
-        plant: the machine.
-        positions: of the table [m]; over the declared stroke if not given.
-        count: modes of each kind; fewer where the chain has fewer.
-
-    Raises:
-        InputError: no positions are given and no stroke is declared though the modes depend on it, or the nut would
-            not be on the screw.
+    Raises InputError: no positions and no stroke though the modes depend on it, or the nut off the screw.
     """
     places = _stroke(plant) if positions is None else np.atleast_1d(np.asarray(positions, dtype=float))
     found = [resolved_modes(plant, float(x), count) for x in places]

@@ -20,7 +20,7 @@ Everything that moves with the motor, seen there, and how far the table stays be
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import eigh, null_space
@@ -50,15 +50,7 @@ class Modes:
 
 
 def free_modes(plant: Plant, position: float = 0.0) -> Modes:
-    """Modes with the motor free to turn; the first is the motion of the whole axis.
-
-    Args:
-        plant: the machine.
-        position: of the table [m]; of no effect where the chain does not depend on it.
-
-    Raises:
-        InputError: the nut would not be on the screw.
-    """
+    """Modes with the motor free to turn and the table at `position` [m]; the first is the motion of the whole axis."""
     return _modes(plant, np.eye(len(plant.chain.coordinates)), position)
 
 
@@ -74,18 +66,16 @@ def braked_modes(plant: Plant, position: float = 0.0) -> Modes:
     return _modes(plant, np.eye(motor.shape[1]), position, brake.stiffness * motor.T @ motor)
 
 
+def held_modes(plant: Plant, position: float = 0.0) -> Modes:
+    """Modes with the motor held ideally, as a servo holds it, whatever its brake; else as `braked_modes`."""
+    return braked_modes(replace(plant, drive=None), position)
+
+
 def screw_frequency(plant: Plant, position: float = 0.0) -> float:
-    """The lowest natural frequency of the screw alone [Hz]: motor held, nut open; infinite in a rigid structure.
+    """The lowest natural frequency of the screw alone [Hz]: motor held, nut open at `position` [m]; infinite if rigid.
 
-    Above it the screw has a motion of its own between motor and table. With three inertias it is
-    sqrt(k_TS / J_s) / 2 pi.
-
-    Args:
-        plant: the machine.
-        position: of the table [m].
-
-    Raises:
-        InputError: the nut would not be on the screw.
+    Above it the screw has a motion of its own between motor and table. With three inertias it is sqrt(k_TS / J_s) / 2
+    pi.
     """
     plant.chain.refuse_off_screw(position, plant.name)
     chain, values = plant.chain.without_modes, plant.chain_values()
@@ -132,12 +122,7 @@ def _poles(M: FloatArray, C: FloatArray, K: FloatArray) -> tuple[complex, ...]:
 
 
 def inertia_at_motor(plant: Plant, position: float | None = None) -> float:
-    """Inertia of everything that moves with the motor, seen there [kg m^2].
-
-    Args:
-        plant: the machine, with what it carries.
-        position: of the table [m]; the middle of the stroke if not given.
-    """
+    """Inertia of all that moves with the motor, seen there [kg m^2]; the table in mid-stroke, or at `position` [m]."""
     values = plant.chain_values()
     rigid = np.array(plant.chain.rigid_motion(values), dtype=float)
     mass = np.array(plant.chain.mass(values, plant.middle if position is None else position), dtype=float)
@@ -170,14 +155,8 @@ def held_frequency(drive: BallScrewDrive, position: float) -> float:
     """First natural frequency [Hz] with the motor held by its brake, or ideally where it has none.
 
     Within 0.15 % of finite elements on the drive of paper 004 from 0.1 to 1.1 m of 1.2 m. A screw held by one bearing
-    at a time is taken in its softer direction.
-
-    Args:
-        drive: the parts.
-        position: nut from the near bearing, inside the screw [m].
-
-    Raises:
-        InputError: a nut off the screw or at its end, or nothing elastic between motor and screw.
+    at a time is taken in its softer direction. The position is that of the nut from the near bearing [m]; one off the
+    screw or at its end raises InputError, and so does a drive in which nothing is elastic.
     """
     computed = distributed_values(drive, position)
     values = {key: entry.value for key, entry in computed.items()}

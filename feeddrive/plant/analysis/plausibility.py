@@ -87,12 +87,7 @@ CONTACT = (50.0, 20000.0)
 
 
 def check_plant(plant: Plant, position_gain: float | None = None) -> tuple[Finding, ...]:
-    """Every rule's finding, in the order in which a machine is designed: of its motion, then of its heat.
-
-    Args:
-        plant: the machine.
-        position_gain: of its controller [1/s]; the declared one if not given.
-    """
+    """Every rule's finding, motion first, then heat; `position_gain` [1/s] takes the place of the declared one."""
     on_motion = _of_motion(plant, position_gain) if plant.has_motion else ()
     return (*on_motion, *(_of_heat(plant.heat) if plant.has_heat else ()))
 
@@ -174,7 +169,11 @@ def _damping(plant: Plant, summary: Summary) -> Finding:
 def _torque(plant: Plant, summary: Summary) -> Finding:
     rule, acceleration = "motor torque to accelerate", _data(plant, "table.max_acceleration")
     if acceleration is None or math.isinf(plant.torque_limit):
-        return _unknown(rule, "needs table.max_acceleration and motor.torque_limit")
+        given = {
+            "table.max_acceleration": acceleration is not None,
+            "motor.torque_limit": plant.torque_limit < math.inf,
+        }
+        return _needs(rule, given)
     speed = _data(plant, "table.max_velocity") or 0.1
     steady = max(abs(motion.torque) for motion in steady_motions(plant, (speed, -speed), plant.middle))
     torque = steady + summary.inertia_at_motor * acceleration / plant.chain.motor_radius
@@ -184,7 +183,7 @@ def _torque(plant: Plant, summary: Summary) -> Finding:
 def _motor_speed(plant: Plant) -> Finding:
     rule, velocity, limit = "motor speed", _data(plant, "table.max_velocity"), _data(plant, "motor.max_speed")
     if velocity is None or limit is None:
-        return _unknown(rule, "needs table.max_velocity and motor.max_speed")
+        return _needs(rule, {"table.max_velocity": velocity is not None, "motor.max_speed": limit is not None})
     return _at_most(rule, velocity / plant.chain.motor_radius, limit, "rad/s", "motor.max_speed")
 
 
@@ -207,7 +206,7 @@ def _dn(plant: Plant) -> Finding:
     rule, velocity = "DN: ball circle times speed", _data(plant, "table.max_velocity")
     circle = _data(plant, "ball_screw.ball_circle") or _data(plant, "ball_screw.diameter")
     if velocity is None or circle is None:
-        return _unknown(rule, "needs table.max_velocity and ball_screw.ball_circle")
+        return _needs(rule, {"table.max_velocity": velocity is not None, "ball_screw.ball_circle": circle is not None})
     declared = _data(plant, "ball_screw.dn_limit")
     limit, source = (USUAL_DN, "usual of ground screws") if declared is None else (declared, "ball_screw.dn_limit")
     return _at_most(rule, circle * velocity / plant.chain.radius, limit, "m rad/s", source)
@@ -216,7 +215,7 @@ def _dn(plant: Plant) -> Finding:
 def _whirling(plant: Plant) -> Finding:
     rule, velocity = "screw speed, 0.8 of whirling", _data(plant, "table.max_velocity")
     if plant.drive is None or velocity is None:
-        return _unknown(rule, "needs the parts and table.max_velocity")
+        return _needs(rule, {_PARTS: plant.drive is not None, "table.max_velocity": velocity is not None})
     screw, kind = plant.drive.screw, plant.drive.supports.kind
     limit = critical_speed(screw, kind, screw.length)
     return _at_most(rule, velocity / plant.chain.radius, limit, "rad/s", f"{kind.value} beam between the bearings")
@@ -225,7 +224,7 @@ def _whirling(plant: Plant) -> Finding:
 def _buckling(plant: Plant, force: float | None) -> Finding:
     rule = "axial force, half of buckling"
     if plant.drive is None or force is None:
-        return _unknown(rule, "needs the parts and table.axial_load or max_acceleration")
+        return _needs(rule, {_PARTS: plant.drive is not None, _FORCE: force is not None})
     screw, kind = plant.drive.screw, plant.drive.supports.kind
     first, last = _nut_places(plant)
     length = max(last, screw.length - first) if kind.far_end_takes_force else last
@@ -246,8 +245,17 @@ def _bearing_safety(plant: Plant, force: float | None) -> Finding:
 
 def _safety(force: float | None, rule: str, rating: float | None, needed: str) -> Finding:
     if rating is None or not force:
-        return _unknown(rule, f"needs {needed} and table.axial_load or max_acceleration")
+        return _needs(rule, {needed: rating is not None, _FORCE: bool(force)})
     return _at_least(rule, rating / force, STATIC_SAFETY, "1", "catalogues: 2 to 3 with vibration")
+
+
+_PARTS = "the parts of the screw ([support], [bearing.near], [nut])"
+_FORCE = "table.axial_load or table.max_acceleration"
+
+
+def _needs(rule: str, given: Mapping[str, bool]) -> Finding:
+    """What is not checked, and which of the keys it takes are not declared."""
+    return _unknown(rule, "needs " + " and ".join(key for key, declared in given.items() if not declared))
 
 
 def _nut_places(plant: Plant) -> tuple[float, float]:

@@ -65,17 +65,9 @@ def rated_life(plant: Plant) -> tuple[LifeRow, ...]:
 
 
 def life_under(plant: Plant, duty: Sequence[tuple[float, float]]) -> float:
-    """Revolutions that 90 % survive under a duty; infinite without any load [rev].
+    """Revolutions that 90 % survive under a duty of shares of the travel, 1 together, each with its axial force [N].
 
-    Args:
-        plant: that declares `ball_screw.dynamic_rating`.
-        duty: share of the travel and axial force [N] of each; shares of 1 together.
-
-    Raises:
-        InputError: no dynamic rating.
-
-    Warns:
-        ValidityWarning: a load above half the rating.
+    Infinite without load; InputError without `ball_screw.dynamic_rating`, and a warning of a load above half of it.
     """
     rating = datum(plant, "ball_screw.dynamic_rating")
     if rating is None:

@@ -42,16 +42,10 @@ class SteadyMotion:
 
 
 def steady_motion(plant: Plant, velocity: float = MOVING, position: float = 0.0) -> SteadyMotion:
-    """The state in which the plant moves at constant velocity, its springs and bristles loaded by friction.
+    """The state in which the table moves at `velocity` [m/s], at `position` [m], springs and bristles loaded.
 
-    Args:
-        plant: the machine.
-        velocity: of the table [m/s].
-        position: of the table [m].
-
-    Raises:
-        InputError: no such state is found, for instance inside a free play that nothing loads, or the nut would not
-            be on the screw.
+    Raises InputError where there is none, for instance inside a free play that nothing loads, or the nut is off the
+    screw.
     """
     return steady_motions(plant, (velocity,), position)[0]
 

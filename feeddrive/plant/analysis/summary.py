@@ -68,14 +68,9 @@ class Summary:
 
 
 def summarise(plant: Plant, position: float | None = None) -> Summary:
-    """The figures of a plant.
+    """The figures of a plant with the table at `position` [m], or in the middle of the stroke.
 
-    Args:
-        plant: the machine.
-        position: of the table, where the chain depends on it [m]; the middle of the stroke if not given.
-
-    Raises:
-        InputError: no steady motion is found at one of `SPEEDS`, or the nut would not be on the screw.
+    Raises InputError where no steady motion is found at one of `SPEEDS`, or the nut is off the screw.
     """
     at = plant.middle if position is None else position
     inertias = _inertias(plant, at)

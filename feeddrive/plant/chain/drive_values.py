@@ -42,13 +42,8 @@ class Computed:
 def distributed_values(drive: BallScrewDrive, middle: float) -> dict[str, Computed]:
     """Chain values of a distributed screw by their keys, dampers left out.
 
-    Args:
-        drive: the parts.
-        middle: nut in the middle of the stroke, from the near bearing [m]; decides which end counts where force goes to
-            one end at a time.
-
-    Raises:
-        InputError: nothing gives way between motor and screw.
+    The nut in the middle of the stroke, `middle` [m] from the near bearing, decides which end counts where force goes
+    to one at a time. Raises InputError where nothing gives way between motor and screw.
     """
     return {
         **_rotary(drive),
@@ -71,7 +66,7 @@ def lumped_values(drive: BallScrewDrive, position: float) -> dict[str, Computed]
     stiffness = combined_stiffness(without_brake(drive), position)
     hubs = drive.coupling.inertia if drive.coupling is not None else 0.0
     at = f"nut at {format_quantity(position, 'm')}"
-    axial, torsional = (_named(stiffness.shares_within(kind)) for kind in (Deformation.AXIAL, Deformation.TORSIONAL))
+    axial, torsional = (", ".join(stiffness.shares_within(kind)) for kind in (Deformation.AXIAL, Deformation.TORSIONAL))
     return {
         "motor_inertia": Computed(drive.motor.rotor_inertia + hubs, "computed from rotor and coupling"),
         "screw_inertia": Computed(drive.screw.inertia, "computed from the screw's diameter and length"),
@@ -159,7 +154,3 @@ def _nut(drive: BallScrewDrive) -> Computed:
         return Computed(drive.nut.axial_stiffness, "", ("nut.axial_stiffness",))
     stiffness = 1 / (1 / drive.nut.axial_stiffness + 1 / drive.housing_stiffness)
     return Computed(stiffness, "computed from nut and housing")
-
-
-def _named(parts: dict[str, float]) -> str:
-    return ", ".join(parts)

@@ -183,12 +183,7 @@ class Chain:
         return self.values
 
     def nut_softened(self, share: float, stiffness: float) -> Mapping[str, float]:
-        """Values with the nut's stiffness times a share.
-
-        Args:
-            share: [1].
-            stiffness: declared, of the nut [N/m]; taken where the chain knows it only in series with others.
-        """
+        """Values with the nut's stiffness times a share [1]; `stiffness` [N/m] counts where it is known in series."""
         return self.values
 
     def positions_on_screw(self) -> tuple[float, float]:
@@ -256,12 +251,8 @@ def _along_rows(size: int, springs: list[tuple[Row, Expression]]) -> Matrix:
     """sum of value row' row."""
     matrix: Matrix = [[0.0] * size for _ in range(size)]
     for row, value in springs:
-        touched = [(i, entry) for i, entry in enumerate(row) if not _is_zero(entry)]
+        touched = [(i, entry) for i, entry in enumerate(row) if not (isinstance(entry, int | float) and entry == 0)]
         for i, left in touched:
             for j, right in touched:
                 matrix[i][j] += left * right * value
     return matrix
-
-
-def _is_zero(entry: Expression) -> bool:
-    return isinstance(entry, int | float) and entry == 0

@@ -50,13 +50,7 @@ class ResolvedModes:
 
 
 def resolved(plant: Plant, frequency: float, positions: Sequence[float]) -> Plant:
-    """The plant with a screw that holds up to a frequency.
-
-    Args:
-        plant: the machine.
-        frequency: highest that is asked for [Hz].
-        positions: of the table [m].
-    """
+    """The plant with a screw that holds up to a frequency [Hz] at positions of the table [m]."""
     chain = plant.chain.without_modes
     fine = _up_to(chain, plant, frequency, positions)
     return plant if fine is chain else replace(plant, mechanics=fine)
@@ -76,16 +70,7 @@ def _(chain: DistributedScrew, plant: Plant, frequency: float, positions: Sequen
 
 
 def resolved_modes(plant: Plant, position: float, count: int = FIRST) -> ResolvedModes:
-    """The first modes of the machine with the table at `position` [m].
-
-    Args:
-        plant: the machine.
-        position: of the table [m].
-        count: modes of each kind; fewer where the declared chain has fewer.
-
-    Raises:
-        InputError: the nut would not be on the screw.
-    """
+    """The first `count` modes of each kind of the machine with the table at `position` [m], or as many as there are."""
     own = _first(braked_modes(plant, position), count), _first(free_modes(plant, position), count + 1)
     counts = [len(modes.frequencies) for modes in own]
     highest = max((float(f) for modes in own for f in modes.frequencies), default=0.0)

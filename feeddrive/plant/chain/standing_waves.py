@@ -161,13 +161,9 @@ _KINDS = ("screw_torsion", "overhang_torsion", "axial", "far_axial")
 
 
 def waves_needed(chain: DistributedScrew, frequency: float, position: float, tolerance: float = 0.01) -> int:
-    """Waves of each span with which frequencies up to `frequency` [Hz] are at most `tolerance` too high.
+    """Waves of each span with which frequencies up to one [Hz] are too high by a share of `tolerance` [1] at most.
 
-    Args:
-        chain: whose spans count, with its values.
-        frequency: highest that is asked for [Hz].
-        position: of the table [m].
-        tolerance: relative error of a frequency.
+    The spans are those of the chain, as its values say, with the table at `position` [m].
     """
     longest = 0.0
     for span in ScrewWithWaves(chain.values, 1, 0)._rods(chain.values, position):

@@ -13,15 +13,10 @@ _GUESS = "guess"
 
 
 def check_declared(entries: Mapping[str, Any], where: str, plant: Plant) -> tuple[Finding, ...]:
-    """Values that differ from their part as warnings, values whose source is a guess as notes.
+    """Values of a file that differ from their part as warnings, values whose source is a guess as notes.
 
-    Args:
-        entries: of the file, as written.
-        where: its path, for messages.
-        plant: that was read from it; its origins name the sources.
-
-    Raises:
-        InputError: a part that the catalogue does not hold.
+    Takes the entries as written, their file, and the plant that was read from them, whose origins name the sources.
+    Raises InputError for a part that the catalogue does not hold.
     """
     guessed = {key: text for key, text in plant.origins.items() if text.startswith(_GUESS)}
     return (

@@ -15,14 +15,9 @@ from feeddrive.schema.toml_text import nearest
 
 
 def read_effects(top: Table, known: Mapping[str, type[Effect]] | None = None) -> tuple[Effect, ...]:
-    """The effects of a file, in its order.
+    """The effects of a file, in its order; `known` is name to class, by default of all that the machine may have.
 
-    Args:
-        top: the file.
-        known: catalogue, name to class; that of what a plant file declares, motion, heat or both, where it is None.
-
-    Raises:
-        InputError: unknown name, key or port, a value that is missing or out of its range, tables that do not fit.
+    Raises InputError: unknown name, key or port, a value that is missing or out of its range, tables that do not fit.
     """
     catalogue = _declared(top) if known is None else known
     effects: list[Effect] = []

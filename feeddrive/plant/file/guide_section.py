@@ -61,15 +61,10 @@ TURNING = 5e-4
 
 
 def guide_friction_of(top: Table, gravity: float, before: Sequence[Effect]) -> list[tuple[Effect, str]]:
-    """The guide friction of a plant file and where it comes from; none without a [guide].
+    """The guide friction of a plant file and where it comes from; none without a [guide]; gravity in m/s^2.
 
-    Args:
-        top: the file.
-        gravity: acceleration of fall [m/s^2].
-        before: effects that it declares itself.
-
-    Raises:
-        InputError: a value that is missing, without unit or not possible, or friction declared twice.
+    Raises InputError: a value that is missing, without unit or not possible, or friction declared twice, as by the
+    effects `before`.
     """
     found = declared_carriages(top, gravity)
     if found is None:
@@ -97,14 +92,9 @@ def _scaled(effect: GuideFriction, table: Table) -> GuideFriction:
 
 
 def declared_carriages(top: Table, gravity: float) -> Carriages | None:
-    """The carriages of a plant file; None without a [guide].
+    """The carriages of a plant file; None without a [guide]; gravity in m/s^2.
 
-    Args:
-        top: the file.
-        gravity: acceleration of fall [m/s^2].
-
-    Raises:
-        InputError: a value that is missing, without unit or not possible.
+    Raises InputError: a value that is missing, without unit or not possible.
     """
     if "guide" not in top.entries:
         return None
@@ -198,14 +188,9 @@ WEIGHT_KEYS = ("inclination", "counterbalance")
 
 
 def derived_effects(top: Table, before: Sequence[Effect]) -> tuple[Effect, ...]:
-    """Weight and guide friction of a plant file, with their origins noted.
+    """Weight and guide friction of a plant file, with their origins noted, beside the effects that it declares itself.
 
-    Args:
-        top: the file.
-        before: effects that it declares itself.
-
-    Raises:
-        InputError: a value that is missing, without unit or not possible, or friction declared twice.
+    Raises InputError: a value that is missing, without unit or not possible, or friction declared twice.
     """
     made: list[Effect] = []
     for effect, origin in [*_weight(top), *_guide(top, before)]:

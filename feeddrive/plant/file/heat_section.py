@@ -142,13 +142,8 @@ def read_heat(
 def read_both_ends(top: Table, chain: Chain | None, drive: BallScrewDrive | None) -> BothEnds | None:
     """What holds the screw of a file with [thermal] at both ends; None where its front bearing alone does.
 
-    Args:
-        top: the whole file.
-        chain: of the machine, None where it declares heat alone.
-        drive: its parts, where it is described by them.
-
-    Raises:
-        InputError: bearings that take thrust one way each: the file does not say whether they let the screw grow.
+    The chain is None where the file declares heat alone. Raises InputError for bearings that take thrust one way each:
+    the file does not say whether they let the screw grow.
     """
     if SECTION not in top.entries:
         return None
@@ -257,11 +252,7 @@ _SPACERS = {spacer.name.lower(): spacer for spacer in Spacer}
 def read_coupling(top: Table) -> Coupling | None:
     """The coupling that a whole plant file declares; None where it declares none.
 
-    Args:
-        top: the whole file.
-
-    Raises:
-        InputError: unknown key, a value that is missing, without unit or impossible.
+    Raises InputError: unknown key, a value that is missing, without unit or impossible.
     """
     thermal = top.table("thermal")
     if "coupling" not in thermal.entries:

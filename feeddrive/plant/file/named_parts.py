@@ -14,14 +14,12 @@ from typing import Any
 
 from feeddrive.errors import InputError
 from feeddrive.parts.catalogue.part_files import CataloguePart, catalogue, find_part
-from feeddrive.parts.screw.nut import CATALOGUE_VALUES
 from feeddrive.parts.values import PartValue
 from feeddrive.plant.file.drive_sections import BEARING_VALUES, PART_VALUES
 from feeddrive.plant.file.ratings import RATINGS
 from feeddrive.units.quantity import parse
 
 _PLACES = (("motor",), ("coupling",), ("ball_screw",), ("nut",), ("bearing", "near"), ("bearing", "far"))
-_OF_NUT = tuple(value.key for value in CATALOGUE_VALUES)
 _SAME = 1e-3
 """Relative difference up to which two values are the same: catalogues print three or four digits."""
 
@@ -47,14 +45,9 @@ class Departure:
 
 
 def with_named_parts(entries: Mapping[str, Any], where: str) -> dict[str, Any]:
-    """The entries of a plant file with the values of the parts that it names put in.
+    """The entries of a plant file, copied, with the values of the parts that it names put in.
 
-    Args:
-        entries: of the file; left as they are.
-        where: its path, for messages.
-
-    Raises:
-        InputError: a part that the catalogue does not hold, or a name that is no text.
+    Raises InputError: a part that the catalogue does not hold, or a name that is no text.
     """
     found = dict(entries)
     for place in _PLACES:

@@ -82,7 +82,7 @@ from feeddrive.plant.motor_torque import TorqueGain
 from feeddrive.plant.passive_friction import refuse_active_friction
 from feeddrive.plant.plant import Plant
 from feeddrive.schema.table import Table
-from feeddrive.schema.toml_text import read_toml
+from feeddrive.schema.toml_text import read_toml, refuse_other_format
 from feeddrive.units.quantity import format_quantity
 
 FORMAT = "feeddrive-plant/1"
@@ -131,8 +131,7 @@ def plant_from_entries(entries: Mapping[str, Any], path: Path) -> Plant:
         path: of the file, for messages and the name.
     """
     where = str(path)
-    if entries.get("format") != FORMAT:
-        raise InputError("is not a plant file of this version", where, f'write format = "{FORMAT}" in its first line')
+    refuse_other_format(entries, FORMAT, where)
     top = plant_table(entries, where)
     top.text("description", "")
     moving = not declares_heat_alone(entries)

@@ -260,11 +260,7 @@ PLANT = replace(
 def plant_table(entries: Mapping[str, Any], where: str) -> Table:
     """The table of a whole plant file, its keys declared and the values of the parts that it names put in.
 
-    Args:
-        entries: of the file.
-        where: its path, for messages.
-
-    Raises:
-        InputError: `source` is not a text, or a part that the catalogue does not hold.
+    Takes the entries of the file and its path. Raises InputError: a `source` that is no text, or a part that the
+    catalogue does not hold.
     """
     return whole_file(with_named_parts(entries, where), where, PLANT)

@@ -65,13 +65,7 @@ POSITIONS = ("motor_angle", "table_position")
 
 
 def held_and_clipped(channels: Mapping[str, FloatArray], sample_time: float, steps: Mapping[str, float]) -> list[Flaw]:
-    """Return what is held or clipped in positions and torques.
-
-    Args:
-        channels: (n,) each.
-        sample_time: between rows [s].
-        steps: channel -> resolution that it moves in, 0 where it has none.
-    """
+    """Return what is held or clipped in positions and torques, (n,); steps are channel -> resolution, 0 if none."""
     found: list[Flaw] = []
     for name in (*POSITIONS, *SPIKY):
         if name in channels:
@@ -220,16 +214,9 @@ def _sorted_out(name: str, samples: FloatArray, first: IndexArray, length: Index
 
 
 def find_flaws(channels: Mapping[str, FloatArray], sample_time: float, first_row: int, where: str) -> list[Flaw]:
-    """Return the flaws of a recording whose rows can be left out.
+    """Return the flaws of a recording whose rows can be left out; `first_row` is the row in the file of sample 0.
 
-    Args:
-        channels: (n,) each, SI.
-        sample_time: between rows [s].
-        first_row: row in the file of sample 0.
-        where: file name.
-
-    Raises:
-        InputError: motion that jumps, or a bad cell in a channel that is not compared row by row.
+    Raises InputError: motion that jumps, or a bad cell in a channel that is not compared row by row.
     """
     steps = {name: resolution(samples) for name, samples in channels.items()}
     bad, _ = bad_cells(channels, sample_time, steps)

@@ -27,16 +27,10 @@ _MISTAKES = (
 
 
 def check_against_lead(recording: Recording, lead: float, where: str, factor: float = 0.1) -> None:
-    """Refuse channels that contradict the lead; channels that are absent are not judged.
+    """Refuse channels that contradict the lead [m]; channels that are absent are not judged.
 
-    Args:
-        recording: measured channels.
-        lead: table travel per motor revolution [m].
-        where: file name for the message.
-        factor: largest relative difference of the slope table_position / motor_angle from lead / 2pi [1].
-
-    Raises:
-        InputError: another slope (swapped columns, wrong unit, wrong lead).
+    The slope table_position / motor_angle may differ from lead / 2pi by `factor` [1]; beyond it columns are swapped, or
+    unit or lead are wrong.
     """
     radius = lead / (2.0 * math.pi)
     if "motor_angle" in recording and "table_position" in recording:
@@ -44,14 +38,10 @@ def check_against_lead(recording: Recording, lead: float, where: str, factor: fl
 
 
 def without_unfollowed_setpoint(recording: Recording, lead: float) -> Recording:
-    """Return the recording without a set-point that the position does not follow, and with a note of it.
+    """Return the recording without a set-point that the position does not follow, and with a note of it; lead in m.
 
     A trace often holds the set-point of another axis, of another unit or before a transformation; what was measured is
     as good without it.
-
-    Args:
-        recording: measured channels.
-        lead: table travel per motor revolution [m].
     """
     position = _position(recording, lead / (2.0 * math.pi)) if "setpoint" in recording else None
     reason = _unfollowed(recording["setpoint"], position) if position is not None else ""

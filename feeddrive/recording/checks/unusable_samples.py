@@ -125,15 +125,9 @@ _SAID_RATE = 5e-6  # relative departure from a round sample time; quartz clocks 
 
 
 def check_time(time: FloatArray, first_row: int, where: str) -> None:
-    """Refuse time stamps that are not evenly increasing.
+    """Refuse times (n,) [s], finite, that are not evenly increasing; time[0] stands in row `first_row` of the file.
 
-    Args:
-        time: (n,) [s], finite.
-        first_row: row in the file of time[0].
-        where: file name.
-
-    Raises:
-        InputError: time running backwards, duplicated stamps, gaps, two sample rates, irregular sampling.
+    Time running backwards, duplicated stamps, gaps, two sample rates, irregular sampling.
     """
     steps = np.diff(time)
     _refuse_not_increasing(time, steps, first_row, where)

@@ -43,6 +43,7 @@ from feeddrive.recording.channels import channel_unit
 from feeddrive.recording.files.csv_file import Layout
 from feeddrive.recording.files.opening import opened
 from feeddrive.schema.mapping import MAPPING
+from feeddrive.schema.toml_text import refuse_other_format
 from feeddrive.units.quantity import Conversion, parse, split_quantity, unit_conversion
 
 FORMAT = "feeddrive-map/1"
@@ -118,8 +119,7 @@ def read_mapping(path: Path) -> FileMapping:
     """
     where = str(path)
     tree = _toml(path, where)
-    if tree.get("format") != FORMAT:
-        raise InputError("is not a mapping file of this version", where, f'write format = "{FORMAT}" in its first line')
+    refuse_other_format(tree, FORMAT, where)
     _refuse_unknown(tree, _TOP_KEYS, where)
     if ("time" in tree and "sample_time" in tree) or not {"time", "sample_time", "rate"} & set(tree):
         mend = 'e.g. sample_time = "1 ms", or rate = "1 kHz" for a trace file that has its own time'

@@ -16,15 +16,7 @@ from feeddrive.typing import FloatArray
 
 
 def locate_fault(body: str, separator: str, names: tuple[str, ...], first_row: int, where: str) -> InputError:
-    """Return the error of the first row that cannot be read.
-
-    Args:
-        body: rows of numbers with decimal points.
-        separator: separator of the columns.
-        names: column headings.
-        first_row: row in the file of the first row of the body.
-        where: file name.
-    """
+    """Return the error of the first row of a body that cannot be read; it begins in row `first_row` of the file."""
     for number, line in enumerate(body.split("\n"), start=first_row):
         fault = _fault_of_row(line, separator, names, f"{where}, row {number}")
         if fault is not None:

@@ -29,13 +29,8 @@ def table_variables(table: Table) -> dict[str, Any]:
 def mapped_columns(variables: Mapping[str, Any], mapping: FileMapping, where: str) -> dict[str, FloatArray]:
     """Return the columns that a mapping names, SI units, (n,) each; `time` among them, first.
 
-    Args:
-        variables: name -> number, vector, matrix or nested dict.
-        mapping: which of them is what.
-        where: file name.
-
-    Raises:
-        InputError: a variable that is absent or not numeric, or channels of different lengths.
+    Variables are name -> number, vector, matrix or nested dict. Raises InputError: a variable that is absent or not
+    numeric, or channels of different lengths.
     """
     columns: dict[str, FloatArray] = {}
     if mapping.time is not None:

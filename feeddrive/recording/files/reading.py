@@ -70,13 +70,7 @@ def read_recording(path: Path, mapping: Path | None = None, *, decimal: str | No
 def mapped_by_variables(path: Path, start: bytes, mapping: FileMapping | None) -> bool:
     """Tell whether a mapping names variables of a .mat file, single numbers and a time among them, and not its signals.
 
-    Args:
-        path: of the file.
-        start: its first bytes.
-        mapping: of it; None for none.
-
-    Raises:
-        InputError: the file is damaged.
+    `start` are the first bytes of the file. Raises InputError for a damaged one.
     """
     if mapping is None or not matlab5.recognises(start):
         return False
@@ -193,10 +187,6 @@ def with_angle(columns: dict[str, FloatArray], time: FloatArray) -> tuple[dict[s
 
     The angle is the integral by the trapezoidal rule, zero at the first sample: it has no relation to a position on the
     screw from one recording to the next, and an offset of the speed makes it drift.
-
-    Args:
-        columns: channel -> samples.
-        time: (n,) [s].
     """
     if "motor_speed" not in columns or "motor_angle" in columns or "table_position" in columns:
         return columns, ()

@@ -12,14 +12,9 @@ from feeddrive.recording.recording import Recording
 
 
 def write_recording(recording: Recording, path: Path) -> None:
-    """Write a recording with headings `name [unit]` in SI; every digit that a double needs is written.
+    """Write a recording as .csv or .csv.gz with headings `name [unit]` in SI, and every digit that a double needs.
 
-    Args:
-        recording: what to write; its channels must have canonical names.
-        path: file ending in .csv or .csv.gz.
-
-    Raises:
-        InputError: another ending, a channel that is not canonical, a place where nothing can be written.
+    Raises InputError: another ending, a channel that is not canonical, a place where nothing can be written.
     """
     where = str(path)
     if not path.name.endswith((".csv", ".csv.gz")):

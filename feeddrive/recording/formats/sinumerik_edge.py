@@ -42,15 +42,9 @@ def recognises_table(head: str) -> bool:
 
 
 def read(text: str, where: str, sample_time: float | None = None) -> Trace:
-    """Read a capture in JSON.
+    """Read a capture in JSON; a person may say the sample time of a cycle [s].
 
-    Args:
-        text: content of the file.
-        where: file name.
-        sample_time: of a cycle [s], where the person says it.
-
-    Raises:
-        InputError: not whole JSON, no rows, rows that do not fit the list of signals, a clock that runs back.
+    Raises InputError: not whole JSON, no rows, rows that do not fit the list of signals, a clock that runs back.
     """
     try:
         tree = _parsed(text)

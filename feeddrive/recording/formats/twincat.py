@@ -49,7 +49,7 @@ def read(text: str, where: str) -> Trace:
     table.fill(Lines(lines.text.replace(_QUOTED, ".")))  # "0,5" between commas
     names = unique_names([name.replace(_QUOTED, header.separator) for name in header.attributes["Name"]])
     signals: list[Signal] = []
-    for group, first in enumerate(_first_channels(header.groups)):
+    for group, first in enumerate([0, *accumulate(header.groups)][:-1]):
         time = _seconds(table.column(group, 0), header, where)
         _refuse_unordered(time, header.first_line + 1, names[first], where)
         signals.extend(
@@ -265,10 +265,6 @@ class _Table:
             shown = clean(cell)
             place = f"{self._where}, row {row}"
             raise InputError(f'"{shown}" is not a number', place, "export it again, or correct the cell") from None
-
-
-def _first_channels(groups: tuple[int, ...]) -> list[int]:
-    return [0, *accumulate(groups)][:-1]
 
 
 def _seconds(stamps: FloatArray, header: Header, where: str) -> FloatArray:

@@ -43,10 +43,7 @@ FITTED = 8
 def shortened(recording: Recording, radius: float, split: float = 1.0) -> Recording:
     """The recording, or where it is long what is informative of it and notes on the rest.
 
-    Args:
-        recording: with a motor angle or a table position.
-        radius: travel per angle of the motor [m/rad].
-        split: share of what is kept that is fitted; the rest is kept apart for judging.
+    `radius` is travel per angle of the motor [m/rad]; of what is kept a share `split` is fitted, the rest judged.
     """
     name = next((one for one in ("motor_angle", "table_position") if one in recording), None)
     if len(recording) <= LONGEST or name is None:

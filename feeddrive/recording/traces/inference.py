@@ -65,15 +65,10 @@ class Finding:
 
 
 def infer(taken: Taken, signals: Sequence[Signal], fixed: set[str]) -> tuple[tuple[Finding, ...], Taken]:
-    """Find what holds between signals of an axis, and use it for what the file does not say.
+    """Find what holds between signals of an axis, and use it for what the file does not say; `fixed` ones stay.
 
-    Args:
-        taken: channel -> signal and what its name says.
-        signals: all of the axis.
-        fixed: channels that a person chose; they are judged and not changed.
-
-    Returns:
-        What was found, and the channels with units and signs inferred, without those that are not what they seem.
+    Channels that a person chose are fixed: judged and not changed. Returns what was found, and the channels with units
+    and signs inferred, without those that are not what they seem.
     """
     found: list[Finding] = []
     taken = dict(taken)

@@ -13,14 +13,7 @@ from feeddrive.units.quantity import unit_conversion
 
 
 def mapping_text(choice: Choice, wishes: Wishes, sample_time: float, described: str) -> str:
-    """Return a mapping file in TOML.
-
-    Args:
-        choice: what was understood.
-        wishes: of the person; the sample time of a file that holds none.
-        sample_time: of the grid [s].
-        described: what was read, for the description.
-    """
+    """Return a mapping file in TOML of what was understood and wished, for a grid with a sample time [s]."""
     rate = wishes.rate or float(f"{1.0 / sample_time:.12g}")
     lines = [f'format = "{FORMAT}"', f"description = {_quoted(described)}", f'rate = "{rate!r} Hz"']
     if wishes.sample_time is not None:

@@ -181,15 +181,10 @@ def _on_grid(
 
 
 def columns_of(understood: Understood, where: str, of_command: str = "") -> dict[str, FloatArray]:
-    """Return the canonical columns, `time` first.
+    """Return the canonical columns of what a trace was taken for, `time` first.
 
-    Args:
-        understood: a trace and what it was taken for.
-        where: file name.
-        of_command: which command has the options that settle a question, where it is not the one at hand.
-
-    Raises:
-        InputError: a question has to be answered first, or nothing was found that has a channel.
+    `of_command` has the options that settle a question, where it is not the one at hand. Raises InputError: a question
+    has to be answered first, or nothing was found that has a channel.
     """
     if understood.choice.blocking:
         what = understood.choice.blocking

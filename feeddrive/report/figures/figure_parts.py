@@ -12,6 +12,7 @@ import numpy as np
 from feeddrive.errors import ValidityWarning
 from feeddrive.parts.guide.guide_rating import Carriages, RollingCarriage, rated_friction
 from feeddrive.parts.life.consumed_life import ConsumedLife
+from feeddrive.parts.life.life_exponents import BALL_SCREW
 from feeddrive.parts.screw.double_nut import OPENING, rigid_sharing
 from feeddrive.plant.analysis.nut_losses import NutLosses, nut_losses
 from feeddrive.plant.analysis.rated_life import datum, life_under, preload_of
@@ -301,6 +302,6 @@ def used_life_figure(time: FloatArray, used: ConsumedLife) -> ReportFigure:
     figure.align_ylabels([upper, lower])
     caption = (
         f"{significant(float(used.revolutions[-1]))} revolutions. A turn uses life as the load of the nut, its preload "
-        f"included, to the power {used.exponents.load:g}; a nut at rest uses none."
+        f"included, to the power {BALL_SCREW.load:g}; a nut at rest uses none."
     )
     return ReportFigure("used_life", "Life used along the recording", caption, figure)

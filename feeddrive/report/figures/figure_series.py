@@ -56,12 +56,7 @@ def series_figure(
 ) -> ReportFigure:
     """Signal, residual before and after, and a closer look at a short stretch, for one channel of one recording.
 
-    Args:
-        diagnosis: holds an "after" to draw where something was found.
-        number: of the recording, from 1, for the file name.
-        recording: gives the time, shape (n,) [s].
-        channel: gives the noise.
-        series: the samples, shape (n,), NaN where left out.
+    Recordings count from 1; samples are (n,), NaN where left out.
     """
     name = plain(channel.name)
     title = f"{name[:1].upper()}{name[1:]} over time, {recording.name}"

@@ -40,13 +40,9 @@ def sample_time(time: FloatArray) -> float:
 
 
 def density_spectrum(recordings: list[tuple[JudgedRecording, FloatArray]]) -> Spectrum | None:
-    """Welch amplitude spectral density over all recordings that share the most usual sample time.
+    """Welch amplitude spectral density [unit/sqrt(Hz)] over all recordings of the most usual sample time.
 
-    Args:
-        recordings: recordings with the residual to analyse, shape (n,), NaN where left out.
-
-    Returns:
-        Frequency [Hz] and density [unit/sqrt(Hz)], or None where no stretch is long enough.
+    Residuals are (n,), NaN where left out; None where no stretch is long enough.
     """
     steps = [sample_time(recording.time) for recording, _ in recordings]
     usable = [step for step in steps if np.isfinite(step) and step > 0.0]
@@ -83,16 +79,11 @@ def _welch(stretches: list[FloatArray], step: float) -> Spectrum | None:
 
 
 def order_spectrum(recordings: list[tuple[FloatArray, FloatArray]]) -> Spectrum | None:
-    """Amplitude of the position-locked part of a residual over orders per motor revolution.
+    """Amplitude of the position-locked part of a residual over orders per motor revolution [1/rev].
 
     Averaging over equal angles first removes what changes with direction or time. The zeros of the recordings may
-    differ: their spectra are averaged as squares, without phase.
-
-    Args:
-        recordings: motor angle [rad] and residual of each recording, shape (n,), NaN where left out.
-
-    Returns:
-        Order [1/rev] and amplitude [unit], or None where fewer than three revolutions were travelled.
+    differ: their spectra are averaged as squares, without phase. Each recording is its motor angle [rad] and residual,
+    shape (n,), NaN where left out; None where fewer than three revolutions were travelled.
     """
     lines = [line for angle, residual in recordings if (line := _angle_line(angle, residual)) is not None]
     if not lines:

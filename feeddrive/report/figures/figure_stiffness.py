@@ -41,15 +41,7 @@ _LINES = (("#0072b2", "-"), ("#d55e00", "--"), ("#009e73", "-."), ("#cc79a7", ":
 
 
 def stiffness_figures(plant: Plant, position: float) -> tuple[ReportFigure, ...]:
-    """Whose compliance it is at a table position, then the stiffness along the stroke; none without parts of a screw.
-
-    Args:
-        plant: the machine.
-        position: of the table [m].
-
-    Raises:
-        InputError: a position off the screw.
-    """
+    """Whose compliance it is at a position [m], then stiffness along the stroke; none without parts of a screw."""
     if plant.drive is None or not plant.chain.varies:
         return ()
     first, length = plant.chain.nut_at_zero, plant.drive.screw.length
@@ -132,14 +124,9 @@ def _participation_caption(found: CombinedStiffness) -> str:
 
 
 def stiffness_position_figure(drives: Mapping[str, BallScrewDrive], positions: FloatArray) -> ReportFigure:
-    """Stiffness and first natural frequency of one or more drives against the nut's place.
+    """Stiffness and first natural frequency of up to four drives, by name, against the nut's place, (n,) [m].
 
-    Args:
-        drives: by the name for the legend; up to four.
-        positions: nut from the near bearing, between the ends of every screw [m], shape (n,).
-
-    Raises:
-        InputError: no drive, more than four, or a position outside a screw.
+    Places count from the near bearing; refuses no drive, more than four, or a place outside a screw.
     """
     if not 0 < len(drives) <= len(_LINES):
         raise InputError(f"{len(drives)} drives in one figure", "drives", f"give one to {len(_LINES)}")

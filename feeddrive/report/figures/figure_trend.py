@@ -94,11 +94,8 @@ def with_steps(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Times, line and band to draw, (m,), with the value before each jump where it begins: no ramp from there on.
 
-    Args:
-        times: of the recordings, (n,).
-        line, band: there, (n,).
-        jumps: time, which is that of the first recording after it, and size.
-        begins: times at which a slope begins; one between two recordings bends the line there.
+    Given at the recordings, (n,); a jump has the time of the first recording after it and its size, and a slope that
+    begins between two recordings bends the line there.
     """
     for date in begins:
         after = int(np.searchsorted(times, date))

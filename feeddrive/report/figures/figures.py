@@ -58,19 +58,7 @@ def render_figures(diagnosis: Diagnosis) -> tuple[RenderedFigure, ...]:
 
 
 def save_figures(diagnosis: Diagnosis, folder: Path, rendered: tuple[RenderedFigure, ...] | None = None) -> list[Path]:
-    """Write every figure as a PNG of its own into `folder`, which is made if need be.
-
-    Args:
-        diagnosis: what was found.
-        folder: where to.
-        rendered: figures drawn before; drawn here if left away.
-
-    Returns:
-        The files, in the order of the report.
-
-    Raises:
-        InputError: the folder cannot be written.
-    """
+    """Write every figure as PNG into `folder`, made if need be, drawn here if not given; the files in order."""
     figures = render_figures(diagnosis) if rendered is None else rendered
     paths = [folder / f"{figure.stem}.png" for figure in figures]
     for path, figure in zip(paths, figures, strict=True):

@@ -27,13 +27,8 @@ class Bins:
 def envelope(time: FloatArray, values: FloatArray, columns: int = 700) -> tuple[FloatArray, FloatArray]:
     """The smallest and the largest sample of each column of the drawing, so that no peak is lost.
 
-    Args:
-        time: shape (n,) [s].
-        values: shape (n,), NaN where left out.
-        columns: columns of the drawing.
-
-    Returns:
-        Time and values of at most 2 * columns points; a column without samples is NaN, which breaks the line.
+    Time and values, (n,), become 2 * columns points at most; NaN is left out, and a column without samples is NaN,
+    which breaks the line.
     """
     if values.size <= 2 * columns:
         return time, values
@@ -67,16 +62,9 @@ def runs(mask: BoolArray) -> list[tuple[int, int]]:
 
 
 def binned(variable: FloatArray, residual: FloatArray, edges: FloatArray, fewest: int = 20) -> Bins:
-    """Quantiles of the residual over bins of a variable.
+    """Quantiles of a residual, (n,), over bins of a variable, (n,), by rising edges, (bins + 1,), all finite.
 
-    Args:
-        variable: shape (n,), finite.
-        residual: shape (n,), finite.
-        edges: rising bin edges, shape (bins + 1,), in the unit of the variable.
-        fewest: bins with fewer samples are NaN.
-
-    Returns:
-        The quantiles and the share of the variance that they explain.
+    Bins with fewer samples than `fewest` are NaN; the share of the variance that they explain goes with them.
     """
     count = edges.size - 1
     index = _bin_index(variable, edges)
@@ -94,16 +82,8 @@ def binned(variable: FloatArray, residual: FloatArray, edges: FloatArray, fewest
 def balanced(variable: FloatArray, residual: FloatArray, forward: BoolArray, edges: FloatArray) -> Bins:
     """As `binned`, the middle line being the mean of the medians of both directions of travel.
 
-    What depends on the direction alone (friction, backlash) then leaves the line flat instead of flipping it.
-
-    Args:
-        variable: shape (n,), finite.
-        residual: shape (n,), finite.
-        forward: whether the table moves in + direction, shape (n,).
-        edges: rising bin edges, shape (bins + 1,).
-
-    Returns:
-        The pooled quantiles with that line; the plain median where no bin was passed in both directions.
+    What depends on the direction alone (friction, backlash) then leaves the line flat instead of flipping it. `forward`
+    is whether the table moves in + direction, (n,); the plain median holds where no bin was passed in both.
     """
     pooled = binned(variable, residual, edges)
     there = binned(variable[forward], residual[forward], edges).median

@@ -74,13 +74,9 @@ def entered(asked: FloatArray, parts: Sequence[float], count: int) -> FloatArray
 
 
 def mean_torque(acting: FloatArray, ends: FloatArray, lag: float, tick: float) -> FloatArray:
-    """Torque averaged over each tick [N m], shape (n,): lag ΔT = ∫ (u - T) dt.
+    """Torque averaged over each tick [N m], (n,), by lag ΔT = ∫ (u - T) dt; lag and tick in s.
 
-    Args:
-        acting: command that enters, averaged over the tick [N m], shape (n,).
-        ends: torque at the ends of the ticks [N m], shape (n + 1,).
-        lag: of the current loop [s].
-        tick: [s].
+    `acting` is the command that enters, averaged over the tick, (n,); `ends` the torque at its ends, (n + 1,) [N m].
     """
     return acting - lag / tick * np.diff(ends)
 

@@ -152,15 +152,7 @@ def resting_state(
     position: float = 0.0,
     velocity: float = 0.0,
 ) -> ControlledState:
-    """The state before tick 0: no stretch, no torque, the controller at its initial state.
-
-    Args:
-        plant: with its values.
-        controller: that will run.
-        torque_loop: as for the run.
-        position: of the table [m].
-        velocity: of the table [m/s].
-    """
+    """The state before tick 0: no stretch, no torque, the controller at its initial state; table in m and m/s."""
     machine, timing = machine_for(plant, controller, torque_loop or TorqueLoop(), resolutions_of(plant, controller))
     return _at_rest(machine, timing, plant, controller, position, velocity)
 

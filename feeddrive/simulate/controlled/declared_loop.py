@@ -134,15 +134,10 @@ class DeclaredLoop:
     at_motor: bool
 
     def reference(self, setpoint: FloatArray, channels: Mapping[str, FloatArray]) -> FloatArray:
-        """What the controller is fed, shape (n ticks, references).
+        """What the controller is fed, shape (n ticks, references), from the recorded set-point [m], shape (n,).
 
-        Args:
-            setpoint: of the position as recorded [m], shape (n,).
-            channels: `injected_torque` [N m] and `injected_speed` [rad/s] where they were recorded, shape (n,); others
-                are not looked at.
-
-        Raises:
-            InputError: a set-point too short for its derivatives.
+        Of the channels `injected_torque` [N m] and `injected_speed` [rad/s] are added where they were recorded, shape
+        (n,). Raises InputError where the set-point is too short for its derivatives.
         """
         h = self.controller.sample_time
         sample, count = h * self.ticks, len(setpoint)
@@ -173,15 +168,9 @@ class DeclaredLoop:
         return resting_state(plant, self.started(plant, position, velocity), self.torque_loop, position, velocity)
 
     def simulated(self, plant: Plant, reference: FloatArray, position: float, velocity: float = 0.0) -> ControlledRun:
-        """The plant under the controller, no torque before the start; sensors are read without their steps.
+        """The plant under the controller, fed by `reference`, no torque before the start; sensors without their steps.
 
-        Args:
-            plant: with its values.
-            reference: from `reference`.
-            position, velocity: of the table at the start [m, m/s]; the transmission starts without force.
-
-        Raises:
-            SimulationError: a motion that cannot be followed.
+        The table starts at a position and velocity [m, m/s], the transmission without force.
         """
         start, controller = self.begin(plant, position, velocity), self.started(plant, position, velocity)
         return simulate_controlled(plant, controller, reference, None, self.torque_loop, start, quantised=False)
@@ -208,14 +197,9 @@ class DeclaredLoop:
 
 
 def declared_loop(plant: Plant, sample_time: float) -> DeclaredLoop | None:
-    """The loop that a plant declares; None where it declares no controller.
+    """The loop that a plant declares, for recordings of a sample time [s]; None where it declares no controller.
 
-    Args:
-        plant: with its controller.
-        sample_time: of the recording [s].
-
-    Raises:
-        InputError: a cascade that cannot be read, or whose rate is no whole multiple of the recording's.
+    Raises InputError: a cascade that cannot be read, or whose rate is no whole multiple of the recording's.
     """
     declared = plant.controller
     if declared is None:

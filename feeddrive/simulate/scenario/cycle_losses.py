@@ -73,14 +73,7 @@ class CycleLosses:
 
 
 def cycle_losses(plant: Plant, run: ControlledRun, loop: TorqueLoop, load: FloatArray | None = None) -> CycleLosses:
-    """Losses of a run.
-
-    Args:
-        plant: that ran.
-        run: all of its ticks.
-        loop: of its torque.
-        load: cutting force on the table along + motion at the ticks, (n,) [N]; none if None.
-    """
+    """Losses of all ticks of a run, with a cutting force on the table along + motion, (n,) [N], if any."""
     function = power_function(plant)
     shown = function.map(len(run.time))(run.states.T, run.time[None, :], ca.repmat(_values(plant), 1, len(run.time)))
     table = np.array(shown.full())

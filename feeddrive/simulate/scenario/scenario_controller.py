@@ -44,7 +44,7 @@ from feeddrive.plant.analysis.modes import inertia_at_motor
 from feeddrive.plant.plant import Plant
 from feeddrive.schema.controller import CONTROLLER
 from feeddrive.schema.table import Origins, Table
-from feeddrive.schema.toml_text import read_toml
+from feeddrive.schema.toml_text import read_toml, refuse_other_format
 from feeddrive.servo.cascade import Cascade, Feedback, FeedForward, divider
 from feeddrive.servo.cascade_function import velocity_loop_of
 from feeddrive.servo.filters import Filter, biquad, notch, pt1, pt2
@@ -148,14 +148,9 @@ SCENARIO_FORMAT = "feeddrive-scenario/1"
 
 
 def read_controller(path: Path, plant: Plant) -> Cascade:
-    """The controller of a file, for a plant; of a scenario nothing else is read.
+    """The controller of a controller file or a scenario, for a plant, of which lead, torque limit and inertia are used.
 
-    Args:
-        path: of a controller file or of a scenario.
-        plant: gives the lead, the torque limit and the inertia for the feed-forward.
-
-    Raises:
-        InputError: neither kind of file, or a controller that cannot be read.
+    Raises InputError for neither kind of file, or a controller that cannot be read.
     """
     entries = read_toml(path, "scenario or controller file")
     written = entries.get("format")
@@ -179,9 +174,7 @@ def insert_controller(entries: dict[str, Any], path: Path) -> str:
         return f"{path}, controller"
     file = path.parent / str(changes.pop("file"))
     read = read_toml(file, "controller file")
-    if read.get("format") != FORMAT:
-        what = "is not a controller file of this version"
-        raise InputError(what, str(file), f'write format = "{FORMAT}" in its first line')
+    refuse_other_format(read, FORMAT, str(file))
     own = with_own_names(read, str(file))
     entries["controller"] = own | with_own_names(changes, f"{path}, controller")
     return str(file) if not changes else f"{path}, controller"

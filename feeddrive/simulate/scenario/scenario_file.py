@@ -52,7 +52,7 @@ from feeddrive.recording.channels import CHANNEL_UNITS, channel_unit
 from feeddrive.schema.key import Kind
 from feeddrive.schema.scenario import scenario
 from feeddrive.schema.table import Table, whole_file
-from feeddrive.schema.toml_text import read_toml
+from feeddrive.schema.toml_text import read_toml, refuse_other_format
 from feeddrive.servo.cascade import Cascade, divider
 from feeddrive.servo.linear_loop import refuse_unstable
 from feeddrive.servo.vendor_names import with_own_names
@@ -132,10 +132,7 @@ def read_scenario(
     """
     where = str(path)
     entries = read_toml(path, "scenario file")
-    if entries.get("format") != FORMAT:
-        raise InputError(
-            "is not a scenario file of this version", where, f'write format = "{FORMAT}" in its first line'
-        )
+    refuse_other_format(entries, FORMAT, where)
     wanted = with_absolute_paths(overrides or {})
     of_plant = {key.removeprefix("plant."): wanted.pop(key) for key in list(wanted) if key.startswith("plant.")}
     if "controller" in wanted:

@@ -25,15 +25,9 @@ _MOST_LOOKED_AT = 1_000_000
 
 
 def moves(start: float, targets: Sequence[tuple[float, Limits]], dwell: float) -> Pieces:
-    """Fastest moves from target to target, standing for `dwell` [s] at the start and after each.
+    """Fastest moves from `start` to targets [m], each under its limits, standing for `dwell` [s] before and after.
 
-    Args:
-        start: position at the start [m].
-        targets: position [m] and the limits of the move to it.
-        dwell: [s].
-
-    Raises:
-        InputError: no target, or a negative dwell.
+    Raises InputError: no target, or a negative dwell.
     """
     if not targets:
         raise InputError("no target", "trajectory", "write at least one")
@@ -52,17 +46,10 @@ def moves(start: float, targets: Sequence[tuple[float, Limits]], dwell: float) -
 
 
 def staircase(targets: Sequence[float], runs: int, overrun: float, limits: Limits, dwell: float) -> Pieces:
-    """The cycle of a positioning test after ISO 230-2: every target from below and from above, `runs` times.
+    """The cycle of a positioning test after ISO 230-2: ascending targets [m] from below and from above, `runs` times.
 
-    Args:
-        targets: ascending [m].
-        runs: approaches per direction.
-        overrun: beyond the first and last target, where the direction turns [m].
-        limits: of all moves.
-        dwell: at each target [s].
-
-    Raises:
-        InputError: targets that do not ascend, no run, no overrun.
+    Beyond first and last target the direction turns after `overrun` [m]; it stands at each for `dwell` [s]. Raises
+    InputError: targets that do not ascend, no run, no overrun.
     """
     if len(targets) < 2 or any(b <= a for a, b in pairwise(targets)):
         raise InputError("the targets do not ascend", "trajectory.targets", "write two or more, in ascending order")

@@ -96,16 +96,7 @@ def _program_digest() -> str:
 
 
 def scenario_digest(path: Path, overrides: Mapping[str, str], where: str) -> str:
-    """Checksum of a scenario that can be read; its loop may be unstable.
-
-    Args:
-        path: of the scenario.
-        overrides: of it.
-        where: for messages.
-
-    Raises:
-        InputError: it cannot be read.
-    """
+    """Checksum of a scenario with overrides, if it can be read; its loop may be unstable."""
     try:
         return read_scenario(path, {**overrides, **_ALLOWED}).digest
     except InputError as error:

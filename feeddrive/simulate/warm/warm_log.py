@@ -78,14 +78,9 @@ class WarmLog:
 
 
 def warm_log(recording: Recording, ambient: float) -> WarmLog:
-    """What a recording tells.
+    """What a recording with a motor angle tells, its air at `ambient` [degC] where it has no temperature of it.
 
-    Args:
-        recording: with a motor angle; its ambient temperature is read where there is one.
-        ambient: where there is none [degC].
-
-    Raises:
-        InputError: no stroke is long enough to tell its speed.
+    Raises InputError where no stroke is long enough to tell its speed.
     """
     angle, step = recording["motor_angle"], recording.sample_time
     turned = np.diff(angle, prepend=angle[0]) / step
@@ -168,13 +163,10 @@ class WarmRun:
 def simulate_log(
     plant: Plant, model: HeatModel, log: WarmLog, powers: Mapping[str, FloatArray] | None = None
 ) -> WarmRun:
-    """Temperatures, table position and torque of a machine in a log.
+    """Temperatures, table position and torque of a machine in a log of its motor.
 
-    Args:
-        plant: the machine.
-        model: its reduced heat model, bodies of effects attached; it may be asked again and again.
-        log: of its motor.
-        powers: of its motion (`friction_powers`), where they are known already.
+    The heat model is reduced, with bodies of effects attached; `powers` are the `friction_powers` where they are known
+    already.
     """
     laws, values, cold = laws_of(plant.joined_heat), values_of(plant.joined_heat), float(log.ambient[0])
     each = max(int(HEAT_STEP / log.step), 1)

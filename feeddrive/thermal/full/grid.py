@@ -34,14 +34,9 @@ def cell_edges(length: float, cells: int) -> FloatArray:
 
 
 def places_of(travel: Travel, cell: float) -> tuple[FloatArray, FloatArray]:
-    """Places where the nut's centre stands on its way, a cell or less apart, and the share of time at each.
+    """Places (k,) [m] of the nut's centre on its way, a cell [m] or less apart, and the share of time at each, (k,).
 
-    Args:
-        travel: of the nut's centre.
-        cell: axial cell of the nut [m].
-
-    Returns:
-        Places (k,) [m] and shares (k,); at the two ends it stands half as long as elsewhere.
+    At the two ends it stands half as long as elsewhere.
     """
     stretches = math.ceil(travel.stroke / cell - 1e-9)
     if stretches == 0:
@@ -52,15 +47,10 @@ def places_of(travel: Travel, cell: float) -> tuple[FloatArray, FloatArray]:
 
 
 def overlap(nut_edges: FloatArray, shaft_edges: FloatArray, travel: Travel) -> FloatArray:
-    """Mean length on which each nut cell faces each shaft cell.
+    """Mean length on which each nut cell faces each shaft cell along the travel, (k, n) [m].
 
-    Args:
-        nut_edges: edges of the nut's cells counted from its centre, (k + 1,) [m].
-        shaft_edges: edges of the shaft's cells, (n + 1,) [m].
-        travel: of the nut's centre.
-
-    Returns:
-        Lengths, (k, n) [m]; a row adds up to the length of its nut cell while the nut is on the shaft.
+    Edges of the nut's cells count from its centre, (k + 1,) [m], those of the shaft's are (n + 1,) [m]. A row adds up
+    to the length of its nut cell while the nut is on the shaft.
     """
     between = nut_edges[:, None] - shaft_edges[None, :]
     ramp = _mean_ramp(between, travel)
@@ -159,14 +149,7 @@ class Cylinder:
 
 
 def cylinder(inner: float, outer: float, radial: int, length: float, axial: int, steel: Steel) -> Cylinder:
-    """Divide a cylinder; `inner` = 0 is a solid one, whose first node is its axis.
-
-    Args:
-        inner, outer: radii [m].
-        radial, axial: numbers of cells.
-        length: [m].
-        steel: material.
-    """
+    """Divide a cylinder of radii and length [m] into cells; `inner` = 0 is solid, its first node the axis."""
     radii = np.linspace(inner, outer, radial + 1)
     faces = np.concatenate([[inner], (radii[1:] + radii[:-1]) / 2, [outer]])
     return Cylinder(cell_edges(length, axial), radii, np.pi * np.diff(faces**2), steel)

@@ -30,15 +30,9 @@ from feeddrive.typing import FloatArray
 
 
 def growth_row(rig: Rig, edges: FloatArray, position: float) -> FloatArray:
-    """What each cross-section's rise adds to u where the nut stands, (axial,) [m/K].
+    """What each cross-section's rise adds to u where the nut stands at `position` [m], (axial,) [m/K].
 
-    Args:
-        rig: geometry, material and what holds the shaft.
-        edges: of the cross-sections, (axial + 1,) [m].
-        position: of the nut [m].
-
-    Raises:
-        InputError: a position that is not on the shaft.
+    `edges` are those of the cross-sections, (axial + 1,) [m]. A position off the shaft raises InputError.
     """
     good = 0 <= position <= edges[-1]
     refuse_unless(bool(good), f"{position:g} m is not on the shaft", "position", "count from the front end")
@@ -51,19 +45,11 @@ def growth_row(rig: Rig, edges: FloatArray, position: float) -> FloatArray:
 
 
 def growths(rig: Rig, profile: FloatArray, edges: FloatArray, positions: FloatArray) -> FloatArray:
-    """u where the nut stands: the table position is wrong by it.
+    """u where the nut stands, by which the table position is wrong, (k, m) [m].
 
-    Args:
-        rig: geometry, material and what holds the shaft.
-        profile: mean rises of the cross-sections, (axial,) or (k, axial) [K], such as `states @ model.profile.T`.
-        edges: of the cross-sections, (axial + 1,) [m].
-        positions: of the nut, (m,) [m].
-
-    Returns:
-        Growths, (k, m) [m].
-
-    Raises:
-        InputError: a position that is not on the shaft, or a profile of other sections.
+    Takes mean rises of the cross-sections, (axial,) or (k, axial) [K], such as `states @ model.profile.T`, their edges,
+    (axial + 1,) [m], and positions of the nut, (m,) [m]. Raises InputError: a position off the shaft, or a profile of
+    other sections.
     """
     rows = np.atleast_2d(profile)
     refuse_unless(rows.shape[1] == len(edges) - 1, "profile and edges do not fit", "profile", "give one rise a section")

@@ -55,13 +55,7 @@ class Air:
 
 
 def rotating_cylinder_film(speed: float, diameter: float, air: Air | None = None) -> float:
-    """h of a cylinder turning in still air, equation (30) [W/(m² K)].
-
-    Args:
-        speed: [rad/s].
-        diameter: [m].
-        air: its properties; None for air at about 25 degC.
-    """
+    """h at a speed [rad/s] and diameter [m] in still air, of about 25 degC if not given, equation (30) [W/(m² K)]."""
     refuse_unless_positive(diameter, "m", "diameter")
     a = air or Air()
     reynolds = abs(speed) * diameter**2 / a.viscosity
@@ -118,12 +112,7 @@ def _evaluated(
 
 
 def conductance_at_preload(reference: float, preload: float, reference_preload: float) -> float:
-    """C at another preload, by the third root that (11) and (12) give [W/(m² K)].
-
-    Args:
-        reference: C at the reference preload.
-        preload, reference_preload: [N].
-    """
+    """C at another preload [N] than that of the reference, by the third root that (11) and (12) give [W/(m² K)]."""
     refuse_unless_positive(preload, "N", "preload")
     refuse_unless_positive(reference_preload, "N", "reference_preload")
     return float(reference * (preload / reference_preload) ** (1 / 3))

@@ -94,12 +94,9 @@ class Friction:
     def heats(
         self, speeds: FloatArray, load_factor: FloatArray | float = 1.0, viscous_factor: FloatArray | float = 1.0
     ) -> FloatArray:
-        """Q at speeds [rad/s], of the same shape [W].
+        """Q at speeds of the screw of either sign [rad/s], of the same shape [W]; the factors are those of T₁ and T_v.
 
-        Args:
-            speeds: of the screw, of either sign.
-            load_factor: on T₁: (F/F₀)^1.33 and what an effect adds.
-            viscous_factor: on T_v.
+        That of T₁ is (F/F₀)^1.33 and what an effect adds.
         """
         torques = self.load_torque * load_factor + self.viscous_torques(speeds) * viscous_factor
         return np.asarray(self.heat_share * np.abs(speeds) * torques)
@@ -124,14 +121,9 @@ _FAST = 1e3
 def nut_of(
     effects: Sequence[Effect], coupling: Coupling, ambient: float, diameter: float, lead: float
 ) -> Friction | None:
-    """Friction of the nut; None where no effect declares it.
+    """Friction of the nut of diameter d_m [m] and lead [m/rad]; None where no effect of the motion declares it.
 
-    Args:
-        effects: of the motion.
-        coupling: whose oil it has.
-        ambient: for which friction is declared [degC].
-        diameter: d_m [m].
-        lead: [m/rad].
+    It has the oil of the coupling and is declared for the ambient temperature [degC].
     """
     own = [effect for effect in effects if type(effect) in (NutFriction, NutDrag)]
     return _friction(own, coupling.nut_oil.viscosity(ambient), diameter, lead, 1.0)

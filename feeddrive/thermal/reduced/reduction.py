@@ -41,15 +41,10 @@ RATES = (1e-5, 2e-4, 1e-3, 5e-3, 3e-2, 0.2)
 
 
 def moments(system: HeatSystem, rates: Iterable[float] = RATES, scales: FloatArray | None = None) -> FloatArray:
-    """Answers of the states to each input, and of the transposed system to each output, at some rates.
+    """Answers of the states to each input, and of the transposed system to each output, at some rates s [1/s].
 
-    Args:
-        system: full system, K symmetric.
-        rates: s [1/s].
-        scales: working size of each input, (m,); None for equal sizes.
-
-    Returns:
-        Columns (n, k) of length one in the norm of C; inputs and outputs that do nothing are left out.
+    `scales` are working sizes of the inputs, (m,), or equal. Columns (n, k) of length one in the norm of C; inputs and
+    outputs that do nothing are left out.
     """
     sizes = np.ones(len(system.input_names)) if scales is None else scales
     right = np.hstack([system.gains * sizes, system.rows.T])
@@ -59,16 +54,7 @@ def moments(system: HeatSystem, rates: Iterable[float] = RATES, scales: FloatArr
 
 
 def orthonormal(columns: FloatArray, capacity: FloatArray, order: int | None = None) -> FloatArray:
-    """Basis V of the dominant directions of some columns, VᵀCV = 1.
-
-    Args:
-        columns: (n, k).
-        capacity: C, (n,).
-        order: number of directions; None for all above rounding.
-
-    Returns:
-        (n, r).
-    """
+    """Basis V (n, r) of the dominant directions of columns (n, k), VᵀCV = 1, of `order` or of all above rounding."""
     root = np.sqrt(capacity)[:, None]
     left, strengths, _ = np.linalg.svd(root * columns, full_matrices=False)
     kept = int(np.sum(strengths > 1e-9 * strengths[0]))
@@ -203,16 +189,9 @@ class Balance:
 
 
 def balance(system: HeatSystem, order: int, input_sizes: FloatArray, output_sizes: FloatArray) -> Balance:
-    """Balance a dense system.
+    """Balance a dense stable system, every C one, down to `order` states.
 
-    Args:
-        system: dense, every C one, stable.
-        order: number of states to keep.
-        input_sizes: working size of each input, (m,) [W, K].
-        output_sizes: size of each output that counts as one, (p,) [K, m].
-
-    Raises:
-        InputError: an order below one or above that of the system.
+    The sizes are the working size of each input, (m,) [W, K], and what counts as one of each output, (p,) [K, m].
     """
     what = f"order {order} of a system of order {system.order}"
     refuse_unless(1 <= order <= system.order, what, "order", f"write a number from 1 to {system.order}")

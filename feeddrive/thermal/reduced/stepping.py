@@ -25,15 +25,7 @@ Stepper = Callable[[FloatArray, FloatArray], FloatArray]
 def stepper_of(
     capacity: FloatArray, conductance: Expression, gains: FloatArray, step: float, substeps: int = 1
 ) -> Stepper:
-    """The stepper of C dθ/dt = -Kθ + Bu.
-
-    Args:
-        capacity: C, (n,) [J/K].
-        conductance: K, (n, n), sparse or dense [W/K].
-        gains: B, (n, m).
-        step: [s].
-        substeps: into which a sparse system divides it.
-    """
+    """The stepper of C dθ/dt = -Kθ + Bu over `step` [s], which a sparse system divides into `substeps`."""
     refuse_unless_positive(step, "s", "step")
     if sparse.issparse(conductance):
         return _implicit(capacity, conductance, gains, step / substeps, substeps)

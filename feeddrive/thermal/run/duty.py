@@ -73,14 +73,9 @@ def constant_duty(speed: float, duration: float, ambient: float) -> Duty:
 def read_duty(path: Path, ambient: float) -> Duty:
     """Read a duty from a file of columns `time [s]`, `screw_speed [rev/min]`, may be `ambient_temperature [degC]`.
 
-    The speed of a row is that of the interval ending at its time, as in thermal recordings.
-
-    Args:
-        path: of the file, evenly spaced in time.
-        ambient: of the air where the file has no column for it [degC].
-
-    Raises:
-        InputError: a file that cannot be used, or one without speeds.
+    The speed of a row is that of the interval ending at its time, as in thermal recordings; times are even. `ambient`
+    [degC] holds where the file has no column for it. Raises InputError: a file that cannot be used, or one without
+    speeds.
     """
     recording = read_recording(path)
     if SPEED not in recording.channels:

@@ -70,13 +70,9 @@ def with_ledger(model: HeatModel) -> HeatModel:
 
 
 def balance_of(model: HeatModel, state: FloatArray, step: float, inputs: Mapping[str, FloatArray]) -> EnergyBalance:
-    """The balance after a run.
+    """The balance after a run of rows of `step` [s] from zero to `state`, (n,), of a model made by `with_ledger`.
 
-    Args:
-        model: made by `with_ledger`.
-        state: at the end, (n,); the run began with zeros.
-        step: length of a row [s].
-        inputs: that acted, name to heats over the rows (k,) [W]; temperatures of the surroundings are passed over.
+    Inputs are name to heats over the rows (k,) [W]; temperatures of the surroundings are passed over.
     """
     heats = {name: step * float(np.sum(values)) for name, values in inputs.items() if name not in (AMBIENT, COOLANT)}
     return EnergyBalance(heats, float(state[-1]), float(model.capacity[:-1] @ state[:-1]))

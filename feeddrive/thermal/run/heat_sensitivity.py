@@ -37,15 +37,9 @@ Slopes = dict[str, tuple[FloatArray, FloatArray]]
 def simulate_with_slopes(
     heat: Heat, model: HeatModel, step: float, speeds: FloatArray, ambient: FloatArray, wanted: Sequence[str]
 ) -> Slopes:
-    """Channels as `warm_up.simulate` gives them, with their slopes.
+    """Channels as `warm_up.simulate` gives them, with their slopes with the parameters `wanted` (`Laws.names`), (p,).
 
-    Args:
-        heat: what the file declares, with effects.
-        model: its reduced model, bodies of effects attached in the order of the effects.
-        step: length of a row [s].
-        speeds: of the screw over each row, (k,) [rad/s].
-        ambient: over each row, (k,) [degC].
-        wanted: names of parameters (`Laws.names`), (p,).
+    The bodies of effects are attached to the reduced model in the order of the effects.
     """
     laws, values, first = laws_of(heat), values_of(heat), float(ambient[0])
     columns = tuple(laws.names.index(name) for name in wanted)

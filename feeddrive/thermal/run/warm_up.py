@@ -123,18 +123,10 @@ def _stretches(
 
 
 def grouped(table: FloatArray) -> tuple[FloatArray, IntegerArray]:
-    """Groups of rows of conductances that agree to 0.2 %, for a measured speed is never twice the same.
+    """Mean (g, paths) of rows of conductances (k, paths) that agree to 0.2 %, and the group of each row, (k,).
 
-    Half of that in a film coefficient is a few millikelvin; equal rows are a group of their own value.
-
-    Args:
-        table: (k, paths), none negative.
-
-    Returns:
-        Mean of each group, (g, paths), and the group of each row, (k,).
-
-    Raises:
-        InputError: a conductance that is negative or not finite.
+    A measured speed is never twice the same; half of 0.2 % in a film coefficient is a few millikelvin. Equal rows are a
+    group of their own value. Raises InputError for a conductance that is negative or not finite.
     """
     if not np.all((table >= 0) & np.isfinite(table)):
         raise InputError("a conductance is negative or not finite", "conductances", "write zero or values above it")

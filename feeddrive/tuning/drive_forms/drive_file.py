@@ -83,15 +83,9 @@ def _written(form: DriveForm, line: Line) -> str:
 
 
 def read_drive_file(path: Path, name: str, facts: Facts) -> LoopSettings:
-    """The loop that a file of drive parameters sets.
+    """The loop that a file of drive parameters of a form sets; its comments begin with # or ;
 
-    Args:
-        path: of the file; comments begin with # or ;
-        name: of the form.
-        facts: of the axis.
-
-    Raises:
-        InputError: not readable, a line that is none, an unknown parameter, one twice, a value that is no number.
+    Raises InputError: not readable, a line that is none, an unknown parameter, one twice, a value that is no number.
     """
     writer = writer_of(name, str(path))
     ranges = {one.name: one for one in writer.known()}

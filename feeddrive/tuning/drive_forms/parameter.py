@@ -85,14 +85,9 @@ class Parameter:
         return float(10.0**-self.decimals)
 
     def line(self, value: float, away: int = 0) -> Line:
-        """The parameter set to a value in SI.
+        """The parameter set to a value in SI, rounded down (`away` -1), up (1) or to the nearest (0).
 
-        Args:
-            value: SI.
-            away: -1 rounds down, 1 up, 0 to the nearest.
-
-        Raises:
-            InputError: the value lies outside what the drive takes.
+        Raises InputError where it lies outside what the drive takes.
         """
         number = value * self.per_si / self.resolution
         whole = {-1: math.floor(number + 1e-6), 0: round(number), 1: math.ceil(number - 1e-6)}[away]

@@ -82,14 +82,9 @@ def known() -> tuple[Parameter, ...]:
 
 
 def settings(values: dict[str, float], facts: Facts) -> LoopSettings:
-    """The loop that a file sets.
+    """The loop that a file sets, by name to number as typed and facts of the axis.
 
-    Args:
-        values: name to number as typed.
-        facts: of the axis.
-
-    Raises:
-        InputError: a parameter missing, a filter that is not one of the two types.
+    Raises InputError: a parameter missing, a filter that is not one of the two types.
     """
     del facts
     active = int(values.get(_ACTIVE.name, 0.0))

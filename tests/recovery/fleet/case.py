@@ -36,7 +36,7 @@ from tests.generator.effects import Effect
 from tests.generator.effects.relatives import Relative
 from tests.generator.machines import Machine, Random, drawn_machine
 from tests.generator.programmes import KINDS, programme
-from tests.generator.runs import Array, Channels, Run, changes, run, softened, steady
+from tests.generator.runs import Array, Channels, Run, changes, run, softened, steady, steps_of
 from tests.generator.telling import Missed, Visible, calibration, from_declared, missed, visible
 from tests.recovery.fleet.spoilt import spoilings, spoilt
 
@@ -53,6 +53,11 @@ SLOWEST_EXCITED = 1e-3
 """Time between rows [s] beyond which nobody injects torque: the recording would not show what it does."""
 
 TRIES = 12
+
+MOST_STEPS = 2e7
+"""Steps of a run beyond which another machine is drawn: 0.8 µs each with the plant beside it, so that one size of an
+effect would take the 18 s that a whole case may (600 in 90 min on two cores). A bristle that breaks away within a
+micrometre at full speed asks for as many."""
 
 ALIKE = (
     ("payload", "inertia_deviation", "structural_mode", "torque_constant_droop"),
@@ -366,7 +371,7 @@ def _grown(true: Machine, drawn: Drawn, target: float, asked: tuple[Array, Array
     last: Planted | None = None
     for _ in range(5):
         effect = _possible(drawn, factor, true)
-        if effect is None:
+        if effect is None or steps_of(true, (effect,), len(asked[0])) > MOST_STEPS:
             return None
         try:
             one = run(true, (effect,), *asked)
