@@ -266,7 +266,8 @@ def expected_motion(angle: FloatArray, step: float, sample_time: float) -> Float
 
     first = without(white)
     made = np.mean([np.abs(_spectra(_steps_of(first, step, draw), window)) ** 2 for draw in range(DRAWS)], axis=0)
-    return without(np.maximum(uniform_filter(made, (ALONG_TIME, 1)), white))
+    made = uniform_filter(made, (ALONG_TIME, 1))
+    return without(np.where(made > SHOWN * white, made, white))  # as many values as tell motion from noise
 
 
 def _steps_of(angle: FloatArray, step: float, draw: int) -> FloatArray:

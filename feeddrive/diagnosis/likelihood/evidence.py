@@ -469,8 +469,8 @@ def weighed_by(evidence: Evidence, plant: Plant) -> Evidence:
     if encoder is None:
         return evidence
     motion = encoder.motion.timed(clock(evidence.recording))
-    parts = {"gains": encoder.gains, "added": encoder.added, "unsure": encoder.unsure, "drawn": encoder.drawn}
-    return replace(evidence, motion=motion, told=encoder.told, **parts)
+    weighed = replace(evidence, gains=encoder.gains, added=encoder.added, unsure=encoder.unsure)
+    return replace(weighed, motion=motion, told=encoder.told, drawn=encoder.drawn)
 
 
 def _from_zero(recording: Recording) -> FloatArray:

@@ -67,7 +67,7 @@ class Teller:
         Raises:
             SimulationError: a motion that cannot be followed.
         """
-        time = np.arange(len(angle)) * self.sample_time
+        time: FloatArray = np.arange(len(angle), dtype=np.float64) * self.sample_time
         run = simulate_driven(self.plant, motor_motion(time, angle))
         return self.band.filter(asked_torques(self.plant, run.torque))
 
@@ -106,7 +106,7 @@ def teller(
     """
     size = int(next_fast_len(2 * count, real=True))
     size += size % 2  # irfft takes an even length
-    frequency = np.fft.rfftfreq(size, sample_time)
+    frequency: FloatArray = np.asarray(np.fft.rfftfreq(size, sample_time), dtype=np.float64)
     shares = np.interp(frequency, np.fft.rfftfreq(count, sample_time), share)
     asked: BoolArray = (shares >= HALF) & (frequency <= band.edge) & (frequency > 0)
     if not asked.any():
