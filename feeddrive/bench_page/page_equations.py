@@ -23,6 +23,7 @@ from feeddrive.engine.program import CELL, DEEPEST, TOLERANCE
 from feeddrive.engine.step.linear_part import FORGETTING
 from feeddrive.engine.step.step_constants import FULL_SCALE, converged
 from feeddrive.errors import InputError
+from feeddrive.plant.analysis.linear import jacobians
 from feeddrive.plant.analysis.ode import OUTPUTS, ode
 from feeddrive.plant.chain.chain import symbolic
 from feeddrive.plant.equations import bristle_count
@@ -93,19 +94,11 @@ def _linear_functions(plant: Plant) -> dict[str, ca.Function]:
     phi = ca.SX.sym("phi")
     delta = travel_deviation(plant, symbols, phi, x, 0.0)
     return {
-        "jacobians": _jacobians(plant),
+        "jacobians": jacobians(plant),
         "chain": ca.Function("chain", [p, x], [*whole, *rows]),
         "steady": _steady(plant, values, p),
         "travel": ca.Function("travel", [phi, x, p], [delta, ca.jacobian(delta, phi), ca.jacobian(delta, x)]),
     }
-
-
-def _jacobians(plant: Plant) -> ca.Function:
-    function = ode(plant)
-    x, u, p = (ca.SX.sym(name, function.size1_in(name)) for name in ("x", "u", "p"))
-    xdot, y = function(x, u, p)
-    pairs = [(xdot, x), (xdot, u), (y, x), (y, u)]
-    return ca.Function("jacobians", [x, u, p], [ca.jacobian(of, to) for of, to in pairs])
 
 
 def _steady(plant: Plant, values: Any, p: Any) -> ca.Function:

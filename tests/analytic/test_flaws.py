@@ -18,7 +18,7 @@ from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.recording import Recording, read_recording, write_recording
 from feeddrive.recording.checks.copies import is_copy
 from feeddrive.recording.checks.find_flaws import find_flaws
-from feeddrive.recording.checks.flaws import BAD, CLIPPED, HELD, JOINED, Flaw
+from feeddrive.recording.checks.flaws import BAD, CLIPPED, HELD, JOINED, Flaw, filled, flaw, quantisation_step
 from tests.analytic.sound_recordings import sound_recording
 
 Array = npt.NDArray[np.float64]
@@ -109,6 +109,23 @@ def test_held_dropouts_are_found(tmp_path: Path, null: Recording, channel: str, 
     found = flaws_of(read_back(tmp_path, null, **{channel: samples}))
     assert set(found) == {(channel, HELD)}
     assert found[channel, HELD] == [row for start in starts for row in range(start, start + rows)]
+
+
+@pytest.mark.parametrize("bits", [10, 12, 16])
+def test_filled_samples_move_in_the_steps_of_their_channel(bits: int) -> None:
+    """A value between two steps would be the least difference of the channel, and its steps would not be seen."""
+    random, step = np.random.default_rng(bits), 2 * np.pi / 2**bits
+    time = 5e-4 * np.arange(8000)
+    angle = step * np.rint(20.0 * np.sin(3.0 * time + random.uniform(0, 6)) / step)
+    angle = np.array([float(f"{value:.12g}") for value in angle])  # as a file holds it
+    assert quantisation_step(angle) == pytest.approx(step, rel=1e-6)
+    broken = angle.copy()
+    broken[1234], broken[4000:4007] = 1e6, broken[3999]
+    flaws = (flaw("motor_angle", BAD, [1234], broken), flaw("motor_angle", HELD, range(4000, 4007), broken))
+    mended = filled({"motor_angle": broken}, flaws)["motor_angle"]
+    assert quantisation_step(mended) == pytest.approx(step, rel=1e-6)
+    # within the steps of the samples it was made from, and of its own: the curve through them is that of a slow sine
+    assert np.max(np.abs(mended - angle)) < 4 * step + 1e-6
 
 
 @pytest.mark.parametrize("every", [2, 3, 5, 10])

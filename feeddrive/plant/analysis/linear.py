@@ -43,12 +43,12 @@ def linear_matrices(plant: Plant, velocity: float = MOVING, position: float = 0.
         InputError: as `state_space`.
     """
     point = steady_motion(plant, velocity, position)
-    at = _jacobians(plant)(point.state, [point.torque, 0.0], parameter_values(plant))
+    at = jacobians(plant)(point.state, [point.torque, 0.0], parameter_values(plant))
     return tuple(np.array(matrix.full()) for matrix in at)
 
 
 @per_structure
-def _jacobians(plant: Plant) -> ca.Function:
+def jacobians(plant: Plant) -> ca.Function:
     """A, B, C, D as a function (x, u, p)."""
     function = ode(plant)
     x, u, p = (ca.SX.sym(name, function.size1_in(name)) for name in ("x", "u", "p"))

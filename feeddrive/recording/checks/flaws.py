@@ -164,6 +164,7 @@ def sentence(one: Flaw, first_row: int) -> str:
 def _filled(samples: FloatArray, rows: IndexArray) -> FloatArray:
     result, good = samples.copy(), np.ones(samples.size, dtype=bool)
     good[rows] = False
+    levels, step = np.unique(samples[good]), quantisation_step(samples[good])
     for run in np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1):
         before = np.flatnonzero(good[max(0, run[0] - 8 * _SUPPORT) : run[0]])[-_SUPPORT:] + max(
             0, run[0] - 8 * _SUPPORT
@@ -176,5 +177,18 @@ def _filled(samples: FloatArray, rows: IndexArray) -> FloatArray:
         # Through both sides a cubic; beyond an end of the recording no more than a straight line.
         degree = min(3, known.size - 1) if before.size and after.size else min(1, known.size - 1)
         curve = np.polynomial.polynomial.polyfit((known - centre) / half, samples[known], degree)
-        result[run] = np.polynomial.polynomial.polyval((run - centre) / half, curve)
+        result[run] = _as_read(np.polynomial.polynomial.polyval((run - centre) / half, curve), levels, step)
     return result
+
+
+def _as_read(values: FloatArray, levels: FloatArray, step: float) -> FloatArray:
+    """Values, (n,), as a channel that moves in steps reads them: one value between two steps would hide the steps.
+
+    levels: everything that the channel read, increasing.
+    """
+    if step == 0.0:
+        return values
+    place = np.clip(np.searchsorted(levels, values), 1, levels.size - 1)
+    below, above = levels[place - 1], levels[place]
+    read = below + step * np.rint((values - below) / step)
+    return np.where(np.abs(read - above) < 0.5 * step, above, read)

@@ -15,7 +15,7 @@ import dataclasses
 import io
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -300,13 +300,8 @@ def _attempt(seed: int, kind: str, names: tuple[str, ...], random: Random, decla
     if planted is None:
         return None
     effects = tuple(one.effect for one in planted)
-    try:
-        runs = run(true, effects, *asked[0]), run(true, effects, *asked[1])
-    except FloatingPointError:
-        return None
-    if not all(steady(one) for one in runs):
-        return None
-    if any(from_declared(runs[0], name, floor) < LEAST_TOLD for name in names):
+    runs = _runs(true, effects, asked, lambda one: not any(from_declared(one, n, floor) < LEAST_TOLD for n in names))
+    if runs is None:
         return None
     factor = off.get("torque_constant", 1.0)
     fit, judge = (one.recorded(noise, factor) for one, noise in zip(runs, seeds[2:], strict=True))
@@ -320,6 +315,20 @@ def _attempt(seed: int, kind: str, names: tuple[str, ...], random: Random, decla
         seed, kind, quiet, true, which, excited, tuple(planted), off, spoiling, text, fit, judge,
         (torque / factor, angle, position), runs,
     )  # fmt: skip
+
+
+def _runs(
+    true: Machine, effects: tuple[Effect, ...], asked: Sequence[tuple[Array, Array]], is_told: Callable[[Run], bool]
+) -> tuple[Run, Run] | None:
+    """The runs that are fitted and judged, if they stay steady and the first tells what is planted."""
+    try:
+        fitted = run(true, effects, *asked[0])
+        if not steady(fitted) or not is_told(fitted):
+            return None
+        judged = run(true, effects, *asked[1])
+    except FloatingPointError:
+        return None
+    return (fitted, judged) if steady(judged) else None
 
 
 def plant_text_of(machine: Machine, seed: int) -> str:
