@@ -47,7 +47,7 @@ from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 from feeddrive.recording.checks.flaws import quantisation_step
 from feeddrive.simulate.driven import LoadMotion, MotorMotion, motor_motion, motor_motions, simulate_driven
-from feeddrive.typing import ComplexArray, FloatArray
+from feeddrive.typing import BoolArray, ComplexArray, FloatArray
 
 WINDOW = 0.128
 """Length of a window [s]: motion keeps its spectrum that long, and 8 Hz are distinguished from the next."""
@@ -58,6 +58,11 @@ are within a third of the mean square of noise."""
 
 SHOWN = 1 + 2 / math.sqrt(10)
 """P over N from which there is motion: two standard deviations of the mean of ten independent squares of noise."""
+
+EVEN = math.log(1000)
+"""Square of the mean phasor between rows, over that of phases at random, from which steps make lines: that square is
+exponential, and one window in a thousand reaches so much by chance. An angle that passes many steps a row, unevenly,
+makes white ones (Widrow & Kollár, Quantization Noise (2008)), in which a draw shows peaks that are of that draw alone."""
 
 SURE_MOTION = 8.0
 """Frequency [Hz] below which the angle is motion: an axis moves many steps within a window."""
@@ -267,7 +272,15 @@ def expected_motion(angle: FloatArray, step: float, sample_time: float) -> Float
     first = without(white)
     made = np.mean([np.abs(_spectra(_steps_of(first, step, draw), window)) ** 2 for draw in range(DRAWS)], axis=0)
     made = uniform_filter(made, (ALONG_TIME, 1))
-    return without(np.where(made > SHOWN * white, made, white))  # as many values as tell motion from noise
+    lines = (made > SHOWN * white) & _keeps_step(first / step, window**2)[:, None]
+    return without(np.where(lines, made, white))
+
+
+def _keeps_step(places: FloatArray, weights: FloatArray) -> BoolArray:
+    """In which windows an angle, (n,) [steps], passes the steps evenly from row to row, (windows,)."""
+    turns = np.exp(2j * np.pi * np.diff(places, prepend=places[:1]))
+    coherence = np.abs(_frames(turns, len(weights)) @ weights) ** 2
+    return np.asarray(coherence > EVEN * float(weights @ weights))
 
 
 def _steps_of(angle: FloatArray, step: float, draw: int) -> FloatArray:
