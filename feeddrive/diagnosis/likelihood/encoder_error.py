@@ -62,7 +62,7 @@ SHOWN = 1 + 2 / math.sqrt(10)
 EVEN = math.log(1000)
 """Square of the mean phasor between rows, over that of phases at random, from which steps make lines: that square is
 exponential, and one window in a thousand reaches so much by chance. An angle that passes many steps a row, unevenly,
-makes white ones (Widrow & Kollár, Quantization Noise (2008)), in which a draw shows peaks that are of that draw alone."""
+makes white ones (Widrow & Kollár, Quantization Noise (2008)), in which peaks of a draw are of that draw alone."""
 
 SURE_MOTION = 8.0
 """Frequency [Hz] below which the angle is motion: an axis moves many steps within a window."""
