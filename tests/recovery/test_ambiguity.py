@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from feeddrive.diagnosis.calibration.beyond import said_by_effects
-from feeddrive.diagnosis.calibration.calibrate import calibrated
+from feeddrive.diagnosis.calibration.calibrate import ENOUGH, at_declared, calibrated, with_new_slopes
 from feeddrive.diagnosis.certainty.ambiguity import ambiguous_sets, at_its_limit, rivals_of
 from feeddrive.diagnosis.certainty.inclusion import asserted, odds_for, possible_effects
 from feeddrive.diagnosis.certainty.next_experiment import distance, hardly_known, next_experiments
@@ -135,6 +135,45 @@ def test_set_is_led_by_the_member_with_fewest_parameters() -> None:
     assert [effect.name for effect in found.fit.effects] == ["lead_error_cumulative"]
     (one,) = ambiguous_sets(found, rivals)
     assert one.names == ("lead_error_cumulative", "thermal_growth")
+
+
+def test_a_member_that_was_exchanged_is_tried_in_the_place_of_what_came_for_it() -> None:
+    """It is none of the candidates of the round in which it went."""
+    found, judged = settled([lead(1e-8)], [growth(1e-8, 1.0)], lead(1e-8), seed=3)
+    (tried,) = found.rounds
+    taken = (replace(found.trials[0], name="lead_error_cumulative"), Trial(2, "thermal_growth", 0.001, 0.0, True))
+    found = replace(found, rounds=(tried, ()), trials=taken)
+    preferred, _ = with_the_preferred(found, rivals_of(found, judged))
+    assert [effect.name for effect in preferred.fit.effects] == ["lead_error_cumulative"]
+
+
+def test_declared_values_come_to_rest_before_anything_is_judged(heavier: tuple[Problem, AxisEvidence]) -> None:
+    problem, _ = heavier
+    assert problem.calibration is not None
+    begun = with_new_slopes(at_declared(problem), [])
+    resting, found = searching._at_rest(begun, fit(begun, []))
+    assert resting.calibration is not None and found.effects == ()
+    # as far as from which on no slopes are taken anew; begun 2.3 deviations away
+    assert resting.calibration.coordinates == pytest.approx(problem.calibration.coordinates, abs=ENOUGH)
+    assert abs(problem.calibration.coordinates[0]) > 2.0
+
+
+def test_a_set_stands_beside_values_with_which_its_friction_takes_power(tmp_path: Path) -> None:
+    """A drag that stood in for an asymmetry leaves less than that takes away."""
+    text = (plants_folder() / "bench_axis.toml").read_text(encoding="utf-8")
+    loose = tmp_path / "loose.toml"
+    loose.write_text(text.replace('"300 N s/m"', '{ value = "300 N s/m", tolerance = "30 %" }'), encoding="utf-8")
+    plant, asymmetric = read_plant(loose), EFFECTS["viscous_asymmetry"].of(delta_viscous=-290.0)
+    evidence = prepare(pair("bench", "null")[0], plant, 1.0)
+    problem = calibrated(Problem(plant, (evidence,), AxisPredictor()))
+    known = problem.calibration
+    assert known is not None and [value.key for value in known.values] == ["table.viscous"]
+    low = replace(problem, calibration=replace(known, coordinates=np.array([-2.5])))
+    measured = {name: low.predictor.predict(low.machine([asymmetric]), evidence)[name] for name in evidence.channels}
+    fitting = replace(low, evidence=(replace(evidence, measured=measured),))
+    assert not fitting.possible([asymmetric])
+    there, found = searching._at_rest(fitting, fit(fitting, [asymmetric], iterations=0))
+    assert there.possible(found.effects)
 
 
 def test_name_below_twenty_to_one_may_be_and_is_not_asserted() -> None:

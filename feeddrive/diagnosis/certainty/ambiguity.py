@@ -205,6 +205,10 @@ def _near(found: Search, place: int) -> list[Attempt]:
         taken = next((t for t in found.trials if t.round == turn + 1 and t.taken), None)
         if taken is None or effect.name not in taken.name.split(" with "):
             continue
+        # a member that it was exchanged for is none of the candidates of that round
+        here = {a.name for a in attempts}
+        gone = [a for before in found.rounds[:turn][::-1] for a in before if a.name in effect.signature.confused_with]
+        attempts = (*attempts, *(a for a in gone if a.name not in here))
         # one that gains more and scatters too much to be taken may yet be what it is
         able = [a for a in attempts if a.comparison.pays or a.comparison.gain > taken.gain]
         others = [a for a in able if a.name != effect.name and " with " not in a.name]

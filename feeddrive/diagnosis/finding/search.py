@@ -13,10 +13,12 @@ from typing import Any
 
 import numpy as np
 
-from feeddrive.diagnosis.calibration.beyond import beyond_tolerance, without_effects
+from feeddrive.diagnosis.calibration.beyond import beyond_tolerance, fitted_together, without_effects
 from feeddrive.diagnosis.calibration.calibrate import (
+    ENOUGH,
     at_declared,
     calibrated,
+    moved,
     of_hours,
     recalibrated,
     recalibrated_by_rest,
@@ -92,10 +94,11 @@ class Near:
 
 @dataclass(frozen=True)
 class _Taken(Standing):
-    """A likelier set: its recordings and fit, what was added, and by how much it is likelier."""
+    """A likelier set: its recordings and fit, what was added, by how much it is likelier, and whether its law is."""
 
     name: str
     odds: float
+    of_law: bool = False
 
 
 def search(
@@ -164,7 +167,7 @@ def search(
         if _members(found) in met:  # they only take each other's place
             break
         met.add(_members(found))
-    problem, found = _refitted(problem, fit(problem, found.effects))
+    problem, found = _at_rest(*_refitted(problem, fit(problem, found.effects)))
     small = [one for one in found.effects if not is_material(one, problem.plant)]
     if small:
         rest = [one for one in found.effects if not any(one is other for other in small)]
@@ -247,14 +250,14 @@ def _likelier(
 def _of_likelier_law(taken: _Taken | None, count: int, denied: Container[str]) -> _Taken | None:
     """A likelier set with the likelier of free play and lost preload, where it adds one of them."""
     names = taken.name.split(" with ") if taken is not None else []
-    if taken is None or not any(name in LAWS for name in names):
+    if taken is None or taken.of_law or not any(name in LAWS for name in names):
         return taken
     there = with_likelier_law(taken.problem, taken.fit, count, denied)
     if there is None:
         return taken
     (law,) = [effect.name for effect in there.fit.effects if effect.name in LAWS]
     name = " with ".join(law if one in LAWS else one for one in names)
-    return _Taken(there.problem, there.fit, name, taken.odds)
+    return _Taken(there.problem, there.fit, name, taken.odds, True)
 
 
 def _best(likelier: Iterable[_Taken], count: int) -> _Taken | None:
@@ -335,6 +338,23 @@ def _refitted(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
         other = anew, fit(anew, found.effects, iterations=JOINT_ITERATIONS)
         result = min(result, other, key=lambda one: one[1].squared_error)
     return _balanced(*result)
+
+
+def _at_rest(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
+    """A set and the declared values beside it, once neither moves the other: what is reported and judged.
+
+    Values that begin as declared beside a new set are a step or two from where they are most likely. Slopes tell the
+    error there well enough to compare sets, and not the prediction: on a fine scale it was two floors off. Values with
+    which friction would push the axis begin as declared: a drag that stood in for what a name now takes leaves nothing
+    to take it from, and steps stay where friction takes power only from where it does.
+    """
+    if problem.calibration is None or of_hours(problem):
+        return problem, found
+    able = problem.possible(found.effects)
+    there, effects = fitted_together(problem if able else at_declared(problem), found.effects)
+    if able and np.max(np.abs(moved(problem, there)), initial=0.0) < ENOUGH:
+        return problem, found
+    return there, fit(there, effects)
 
 
 def _balanced(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
