@@ -221,10 +221,11 @@ def slopes_of(
             before, apart = at(each[i], -step), 2 * step
         for name in evidence.channels:
             slopes[name][:, i] = (after[name] - before[name]) / apart
-    step = STEP if smooth else LONG
-    after, before, apart = at(alike, step), base, step
-    if not smooth and not rough:
-        before, apart = at(alike, -step), 2 * step
+    if smooth:
+        return slopes
+    after, before, apart = at(alike, LONG), base, LONG
+    if not rough:
+        before, apart = at(alike, -LONG), 2 * LONG
     return {name: _agreeing(k, alike, (after[name] - before[name]) / apart) for name, k in slopes.items()}
 
 

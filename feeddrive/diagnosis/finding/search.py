@@ -15,10 +15,8 @@ import numpy as np
 
 from feeddrive.diagnosis.calibration.beyond import beyond_tolerance, fitted_together, without_effects
 from feeddrive.diagnosis.calibration.calibrate import (
-    ENOUGH,
     at_declared,
     calibrated,
-    moved,
     of_hours,
     recalibrated,
     recalibrated_by_rest,
@@ -180,7 +178,7 @@ def search(
         if _members(found) in met:  # they only take each other's place
             break
         met.add(_members(found))
-    problem, found = _at_rest(*_refitted(problem, fit(problem, found.effects)))
+    problem, found = _where_friction_brakes(*_refitted(problem, fit(problem, found.effects)))
     closed = with_curves_of(problem, ())  # names are weighed, and rivals tried, against all that is left
     if closed is not problem:
         problem, found = closed, fit(closed, found.effects, iterations=JOINT_ITERATIONS)
@@ -399,20 +397,15 @@ def _refitted(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
     return _balanced(*result)
 
 
-def _at_rest(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
-    """A set and the declared values beside it, once neither moves the other: what is reported and judged.
+def _where_friction_brakes(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
+    """A set beside values with which friction takes power; begun as declared where it would push the axis.
 
-    Values that begin as declared beside a new set are a step or two from where they are most likely. Slopes tell the
-    error there well enough to compare sets, and not the prediction: on a fine scale it was two floors off. Values with
-    which friction would push the axis begin as declared: a drag that stood in for what a name now takes leaves nothing
-    to take it from, and steps stay where friction takes power only from where it does.
+    A drag that stood in for what a name now takes leaves nothing to take it from, and steps stay where friction takes
+    power only from where it does.
     """
-    if problem.calibration is None or of_hours(problem):
+    if problem.calibration is None or of_hours(problem) or problem.possible(found.effects):
         return problem, found
-    able = problem.possible(found.effects)
-    there, effects = fitted_together(problem if able else at_declared(problem), found.effects)
-    if able and np.max(np.abs(moved(problem, there)), initial=0.0) < ENOUGH:
-        return problem, found
+    there, effects = fitted_together(at_declared(problem), found.effects)
     return there, fit(there, effects)
 
 

@@ -38,6 +38,7 @@ from scipy.ndimage import uniform_filter
 from scipy.signal.windows import hann
 
 from feeddrive.diagnosis.likelihood.band import END_CUT, Band
+from feeddrive.diagnosis.likelihood.told_motion import teller
 from feeddrive.diagnosis.likelihood.unsure_motion import unsure_motions, without_share
 from feeddrive.diagnosis.suspicion.torque_channel import scale_of
 from feeddrive.engine.step.linear_part import SimulationError
@@ -46,7 +47,7 @@ from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
 from feeddrive.recording.checks.flaws import quantisation_step
 from feeddrive.simulate.driven import LoadMotion, MotorMotion, motor_motion, motor_motions, simulate_driven
-from feeddrive.typing import ComplexArray, FloatArray
+from feeddrive.typing import BoolArray, ComplexArray, FloatArray
 
 WINDOW = 0.128
 """Length of a window [s]: motion keeps its spectrum that long, and 8 Hz are distinguished from the next."""
@@ -57,6 +58,11 @@ are within a third of the mean square of noise."""
 
 SHOWN = 1 + 2 / math.sqrt(10)
 """P over N from which there is motion: two standard deviations of the mean of ten independent squares of noise."""
+
+EVEN = math.log(1000)
+"""Square of the mean phasor between rows, over that of phases at random, from which steps make lines: that square is
+exponential, and one window in a thousand reaches so much by chance. An angle that passes many steps a row, unevenly,
+makes white ones (Widrow & Kollár, Quantization Noise (2008)), in which peaks of a draw are of that draw alone."""
 
 SURE_MOTION = 8.0
 """Frequency [Hz] below which the angle is motion: an axis moves many steps within a window."""
@@ -90,6 +96,7 @@ class EncoderError:
         gains: channel to the gain at each frequency of its whole series, (n // 2 + 1,).
         added: channel to the rms of what the encoder's error makes of it, in the band [SI].
         unsure: channel to what the plant makes of motion that may not be, in the band, (n, k) [SI] (`unsure_motion`).
+        told: part of the motion that the torque tells, (n,) [rad].
     """
 
     motion: MotorMotion
@@ -97,11 +104,13 @@ class EncoderError:
     gains: dict[str, FloatArray]
     added: dict[str, float]
     unsure: dict[str, FloatArray]
+    told: FloatArray
 
 
 def encoder_error(
-    plant: Plant, recording: Recording, band: Band, noise: dict[str, float], proportional: bool = False
-) -> EncoderError | None:
+    plant: Plant, recording: Recording, band: Band, noise: dict[str, float], proportional: bool = False,
+    acting: FloatArray | None = None,
+) -> EncoderError | None:  # fmt: skip
     """The encoder's error in a recording; None where it does not matter beside the sensors' noise.
 
     Args:
@@ -111,6 +120,8 @@ def encoder_error(
         noise: channel to the rms of its sensor noise in the band [of the channel].
         proportional: whether the recorded torque is only proportional to a torque; the declared plant then sets what
             a newton metre is in its unit.
+        acting: torque as it acts, in the band [N m], which tells motion that the encoder does not (`told_motion`);
+            None where it tells none.
     """
     angle, sample_time = recording["motor_angle"], recording.sample_time
     step = quantisation_step(angle)
@@ -119,8 +130,17 @@ def encoder_error(
     time: FloatArray = np.arange(len(angle), dtype=np.float64) * sample_time
     expected, share = known_motion_of(angle, step, sample_time)
     errors = [drawn_error(expected, step, sample_time, draw, share) for draw in range(DRAWS)]
-    motion, *drawn = motor_motions(time, np.column_stack([expected, *(expected + left for left in errors)]))
+    told: FloatArray = np.zeros(len(angle))
     try:
+        if acting is not None and not proportional and np.all(np.isfinite(acting)):
+            tells = teller(plant, band, share, len(angle), sample_time, noise["motor_torque"], step)
+            if tells is not None:
+                told = tells.told(expected, acting)
+                asked = tells.asked(expected + told)
+                errors = [left + tells.told(expected + left, asked) - told for left in errors]
+        motion, *drawn = motor_motions(
+            time, np.column_stack([expected + told, *(expected + told + left for left in errors)])
+        )
         runs = [simulate_driven(plant, one) for one in (motion, *drawn)]
     except SimulationError:
         return None
@@ -144,13 +164,13 @@ def encoder_error(
     held = braked_modes(plant, plant.middle).poles
     for part in unsure_motions(expected, share, sample_time, band.edge, [p for p in held if p.imag > 0]):
         try:
-            run = simulate_driven(plant, motor_motion(time, expected + part))
+            run = simulate_driven(plant, motor_motion(time, expected + told + part))
         except SimulationError:
             continue
         for name, columns in unsure.items():
             columns.append(units[name] * band.filter(_answer(run, name) - _answer(runs[0], name)))
     return EncoderError(
-        motion, tuple(drawn), gains, added, {name: np.column_stack(c) for name, c in unsure.items() if c}
+        motion, tuple(drawn), gains, added, {name: np.column_stack(c) for name, c in unsure.items() if c}, told
     )
 
 
@@ -236,17 +256,43 @@ def expected_motion(angle: FloatArray, step: float, sample_time: float) -> Float
     """
     length = 2 * round(0.5 * WINDOW / sample_time)
     window = np.sqrt(hann(length, sym=False))
-    spectra = np.fft.rfft(_frames(np.concatenate([[0.0], np.diff(angle, 2), [0.0]]), length) * window, axis=1)
-    omega = 2 * np.pi * np.arange(spectra.shape[1]) / length
+    omega = 2 * np.pi * np.arange(length // 2 + 1) / length
     difference = (2 * np.sin(0.5 * omega)) ** 2
-    noise = step**2 / 12 * float(window @ window) * difference**2
-    over_noise = np.abs(spectra) ** 2 / np.where(noise > 0, noise, 1.0)
-    moving = uniform_filter(over_noise, (ALONG_TIME, ALONG_FREQUENCY)) > SHOWN
-    error = np.where(moving, 1 / np.maximum(uniform_filter(over_noise, (ALONG_TIME, 1)), 1.0), 1.0)  # share of steps
-    error[:, omega < 2 * math.pi * SURE_MOTION * sample_time] = 0.0
-    # minus the second difference, summed twice, is the angle
-    taken = _added(-error * spectra / np.where(difference > 0, difference, 1.0), window, len(angle))
-    return angle - taken
+    spectra = _spectra(angle, window)
+    white = step**2 / 12 * float(window @ window) * difference**2
+
+    def without(noise: FloatArray) -> FloatArray:
+        over_noise = np.abs(spectra) ** 2 / np.where(noise > 0, noise, 1.0)
+        moving = uniform_filter(over_noise, (ALONG_TIME, ALONG_FREQUENCY)) > SHOWN
+        error = np.where(moving, 1 / np.maximum(uniform_filter(over_noise, (ALONG_TIME, 1)), 1.0), 1.0)
+        error[:, omega < 2 * math.pi * SURE_MOTION * sample_time] = 0.0
+        # minus the second difference, summed twice, is the angle
+        return angle - _added(-error * spectra / np.where(difference > 0, difference, 1.0), window, len(angle))
+
+    first = without(white)
+    made = np.mean([np.abs(_spectra(_steps_of(first, step, draw), window)) ** 2 for draw in range(DRAWS)], axis=0)
+    made = uniform_filter(made, (ALONG_TIME, 1))
+    lines = (made > SHOWN * white) & _keeps_step(first / step, window**2)[:, None]
+    return without(np.where(lines, made, white))
+
+
+def _keeps_step(places: FloatArray, weights: FloatArray) -> BoolArray:
+    """In which windows an angle, (n,) [steps], passes the steps evenly from row to row, (windows,)."""
+    turns = np.exp(2j * np.pi * np.diff(places, prepend=places[:1]))
+    coherence = np.abs(_frames(turns, len(weights)) @ weights) ** 2
+    return np.asarray(coherence > EVEN * float(weights @ weights))
+
+
+def _steps_of(angle: FloatArray, step: float, draw: int) -> FloatArray:
+    """What an encoder adds to an angle, (n,): `draw` is the seed of where its steps lie."""
+    at = angle + step * np.random.default_rng(draw).uniform()
+    return np.asarray(step * np.round(at / step) - at)
+
+
+def _spectra(angle: FloatArray, window: FloatArray) -> ComplexArray:
+    """Spectra of the second difference of an angle in windows that overlap by half, (windows, frequencies)."""
+    frames = _frames(np.concatenate([[0.0], np.diff(angle, 2), [0.0]]), len(window))
+    return np.asarray(np.fft.rfft(frames * window, axis=1))
 
 
 def _frames(series: FloatArray, length: int) -> FloatArray:

@@ -214,6 +214,7 @@ class AxisEvidence(Evidence):
         drawn: motions with the encoder's error once more; as `gains`.
         weights: channel to the weight of every sample, (n,): noise over noise and what the encoder's error makes of a
             free play there; channels left out are predicted alike everywhere.
+        told: part of the motion that the torque tells and the encoder does not, (n,) [rad]; None for none.
         lead_map: what a lead map may be of the table position, in the band, (n, k); None without a table position.
         law_curves: as `curves`.
         unsure: channel to what motion that may not be makes of it, in the band, (n, k); as `gains`.
@@ -233,6 +234,7 @@ class AxisEvidence(Evidence):
     weights: dict[str, FloatArray] = field(default_factory=dict)
     lead_map: FloatArray | None = None
     law_curves: dict[str, list[dict[str, FloatArray]]] = field(default_factory=dict)
+    told: FloatArray | None = None
 
     def where_predictable(self, predictable: BoolArray | FloatArray) -> Self:
         """The evidence without the samples of weight 0, the table position weighed at the others."""
@@ -374,6 +376,7 @@ class AxisEvidence(Evidence):
         angle = recording["motor_angle"]
         if self.gains:
             angle = known_motion_of(angle, quantisation_step(angle), recording.sample_time)[0]
+            angle = angle if self.told is None else angle + self.told
         motion = motor_motion(_from_zero(recording), angle).timed(clock(recording))
         return replace(self, recording=recording, motion=motion)
 
@@ -445,11 +448,14 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
         if noise[name] < NO_SENSOR * float(np.ptp(series)):
             noise[name] = math.hypot(noise[name], missed_between_rows(recording, plant, counted).get(name, 0.0))
     zero = _zero_of_angle(recording, plant)
-    encoder = encoder_error(_placed(plant, zero), recording, band, noise, bool(scaled_from))
+    measured = {name: band.filter(series) for name, series in acting.items()}
+    # what is judged is not to lend its torque to the motion that it is judged by
+    telling = measured.get("motor_torque") if share > 0 else None
+    encoder = encoder_error(_placed(plant, zero), recording, band, noise, bool(scaled_from), telling)
     motion = encoder.motion if encoder is not None else motor_motion(time, recording["motor_angle"])
     return AxisEvidence(
         recording,
-        {name: band.filter(series) for name, series in acting.items()},
+        measured,
         noise,
         counted,
         _fitted(recording, share),
@@ -466,6 +472,7 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
         encoder.added if encoder is not None else {},
         encoder.drawn if encoder is not None else (),
         encoder.unsure if encoder is not None else {},
+        told=encoder.told if encoder is not None else None,
         lead_map=band.filter(lead_map(raw["table_position"], plant.chain.radius)) if "table_position" in raw else None,
     )
 
@@ -479,10 +486,15 @@ def weighed_by(evidence: Evidence, plant: Plant) -> Evidence:
     """
     if not isinstance(evidence, AxisEvidence) or not evidence.gains or evidence.scaled_from:
         return evidence
-    encoder = encoder_error(_placed(plant, evidence.zero), evidence.recording, evidence.band, evidence.noise)
+    telling = evidence.measured.get("motor_torque") if evidence.fitted.any() else None
+    encoder = encoder_error(
+        _placed(plant, evidence.zero), evidence.recording, evidence.band, evidence.noise, acting=telling
+    )
     if encoder is None:
         return evidence
-    return replace(evidence, gains=encoder.gains, added=encoder.added, unsure=encoder.unsure)
+    motion = encoder.motion.timed(clock(evidence.recording))
+    weighed = replace(evidence, gains=encoder.gains, added=encoder.added, unsure=encoder.unsure)
+    return replace(weighed, motion=motion, told=encoder.told, drawn=encoder.drawn)
 
 
 def _from_zero(recording: Recording) -> FloatArray:
