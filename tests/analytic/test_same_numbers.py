@@ -62,19 +62,22 @@ def test_several_motions_at_once(substeps: int) -> None:
             np.testing.assert_array_equal(getattr(found, name), getattr(alone, name))
 
 
-@pytest.mark.parametrize("bits", [14, 26])
+@pytest.mark.parametrize("bits", [14, 17, 26])
 def test_rows_at_other_times_are_those_of_a_recording_with_such_times(bits: int) -> None:
-    """With steps that matter to the motion, and with steps that do not."""
+    """With steps so large that the torque tells a part of the motion, that matter to it, and that do not."""
     recording = read_recording(Path(__file__).parents[1] / "data" / "bench" / "backlash_train.csv.gz")
     step = 2 * math.pi / 2**bits
     smooth = Band(150.0, 1 / recording.sample_time).filter(recording["motor_angle"])  # without the steps that it has
     recording = recording.with_channels({"motor_angle": step * np.round(smooth / step)})
     plant = read_plant(find_plant("bench_axis"))
     evidence, other = prepare(recording, plant, 1.0), slower(recording)
-    assert bool(evidence.gains) == (bits == 14)
+    assert bool(evidence.gains) == (bits < 20)
     found, expected = evidence.at_other_times(other).motion, prepare(other, plant, 1.0).motion
     for name in ("time", "angle", "speed", "acceleration"):
-        np.testing.assert_array_equal(getattr(found, name), getattr(expected, name))
+        true = getattr(expected, name)
+        # what the torque tells is kept as it was solved: with times a thousandth off, within ten times as much
+        allowed = 0.01 * np.std(true) if bits == 14 and name != "time" else 0.0
+        assert np.max(np.abs(getattr(found, name) - true)) <= allowed
 
 
 def test_what_does_nothing_is_the_machine_without_it() -> None:

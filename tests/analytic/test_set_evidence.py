@@ -39,6 +39,11 @@ FIRST, SECOND, THIRD = Payload.of(mass=0.0), ConstantForce.of(force=0.0), LeadEr
 COUNT = 25
 
 
+def by_channel(residual: FloatArray) -> list[dict[str, FloatArray]]:
+    """All rows of the one channel."""
+    return [{"a": residual}]
+
+
 def problem(columns: dict[str, FloatArray], measured: FloatArray) -> Any:
     """Recordings in which an effect of size one is its column."""
     evidence = SimpleNamespace(
@@ -51,7 +56,8 @@ def problem(columns: dict[str, FloatArray], measured: FloatArray) -> Any:
 
     predictor = SimpleNamespace(of_motion=True)
     return SimpleNamespace(
-        evidence=(evidence,), plant=PLANT, residual=residual, numbers=MeasuredRows(), predictor=predictor
+        evidence=(evidence,), plant=PLANT, residual=residual, numbers=MeasuredRows(), predictor=predictor,
+        by_channel=by_channel,
     )  # fmt: skip
 
 
@@ -205,6 +211,7 @@ class Made:
     numbers: MeasuredRows = field(default_factory=MeasuredRows)
     predictor: Any = field(default_factory=lambda: SimpleNamespace(chance=0.0, of_motion=True))
     calibration: None = None
+    by_channel: Callable[[FloatArray], list[dict[str, FloatArray]]] = by_channel
 
 
 def standing(fit: Fit, counted: Any, series: FloatArray) -> Standing:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from feeddrive.diagnosis.calibration.beyond import said_by_effects
-from feeddrive.diagnosis.calibration.calibrate import ENOUGH, at_declared, calibrated, with_new_slopes
+from feeddrive.diagnosis.calibration.calibrate import calibrated
 from feeddrive.diagnosis.certainty.ambiguity import ambiguous_sets, at_its_limit, rivals_of
 from feeddrive.diagnosis.certainty.inclusion import asserted, odds_for, possible_effects
 from feeddrive.diagnosis.certainty.next_experiment import distance, hardly_known, next_experiments
@@ -147,17 +147,6 @@ def test_a_member_that_was_exchanged_is_tried_in_the_place_of_what_came_for_it()
     assert [effect.name for effect in preferred.fit.effects] == ["lead_error_cumulative"]
 
 
-def test_declared_values_come_to_rest_before_anything_is_judged(heavier: tuple[Problem, AxisEvidence]) -> None:
-    problem, _ = heavier
-    assert problem.calibration is not None
-    begun = with_new_slopes(at_declared(problem), [])
-    resting, found = searching._at_rest(begun, fit(begun, []))
-    assert resting.calibration is not None and found.effects == ()
-    # as far as from which on no slopes are taken anew; begun 2.3 deviations away
-    assert resting.calibration.coordinates == pytest.approx(problem.calibration.coordinates, abs=ENOUGH)
-    assert abs(problem.calibration.coordinates[0]) > 2.0
-
-
 def test_a_set_stands_beside_values_with_which_its_friction_takes_power(tmp_path: Path) -> None:
     """A drag that stood in for an asymmetry leaves less than that takes away."""
     text = (plants_folder() / "bench_axis.toml").read_text(encoding="utf-8")
@@ -172,7 +161,7 @@ def test_a_set_stands_beside_values_with_which_its_friction_takes_power(tmp_path
     measured = {name: low.predictor.predict(low.machine([asymmetric]), evidence)[name] for name in evidence.channels}
     fitting = replace(low, evidence=(replace(evidence, measured=measured),))
     assert not fitting.possible([asymmetric])
-    there, found = searching._at_rest(fitting, fit(fitting, [asymmetric], iterations=0))
+    there, found = searching._where_friction_brakes(fitting, fit(fitting, [asymmetric], iterations=0))
     assert there.possible(found.effects)
 
 
