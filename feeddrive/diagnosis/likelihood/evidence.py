@@ -218,6 +218,7 @@ class AxisEvidence(Evidence):
         lead_map: what a lead map may be of the table position, in the band, (n, k); None without a table position.
         law_curves: as `curves`.
         unsure: channel to what motion that may not be makes of it, in the band, (n, k); as `gains`.
+        acting: torque as it acts at the rows, of all frequencies, (n,) [N m]; None where it is not known.
         torque_rows: rows that the recorder writes a torque for, and the first row of one (`suspicion.logged_rows`);
             None where the torque is what the drive holds.
     """
@@ -230,6 +231,7 @@ class AxisEvidence(Evidence):
     added: dict[str, float] = field(default_factory=dict)
     drawn: tuple[MotorMotion, ...] = ()
     unsure: dict[str, FloatArray] = field(default_factory=dict)
+    acting: FloatArray | None = None
     torque_rows: tuple[int, int] | None = None
     weights: dict[str, FloatArray] = field(default_factory=dict)
     lead_map: FloatArray | None = None
@@ -472,6 +474,7 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
         encoder.added if encoder is not None else {},
         encoder.drawn if encoder is not None else (),
         encoder.unsure if encoder is not None else {},
+        acting=acting.get("motor_torque") if not scaled_from else None,
         told=encoder.told if encoder is not None else None,
         lead_map=band.filter(lead_map(raw["table_position"], plant.chain.radius)) if "table_position" in raw else None,
     )
