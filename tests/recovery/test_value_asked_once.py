@@ -8,7 +8,8 @@ import pytest
 
 from feeddrive.diagnosis.finding import search as of_search
 from feeddrive.diagnosis.finding.search import search
-from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
+from feeddrive.diagnosis.likelihood.fit import Fit, fit
+from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.preparation import prepared
 from feeddrive.effects.source.torque_ripple import TorqueRipple
 from feeddrive.plant.file.plant_file import read_plant

@@ -13,7 +13,8 @@ from feeddrive.diagnosis.finding.scene import scene_of
 from feeddrive.diagnosis.finding.sets import Neighbour, neighbours
 from feeddrive.diagnosis.finding.spring_law import LAWS, play_from_declared, with_likelier_law
 from feeddrive.diagnosis.likelihood.coordinates import write_coordinates
-from feeddrive.diagnosis.likelihood.fit import UNEXPLAINED, Fit, Problem, fit
+from feeddrive.diagnosis.likelihood.fit import Fit, error_of, fit
+from feeddrive.diagnosis.likelihood.problem import UNEXPLAINED, Problem
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between, odds_between, regained, same_samples
 from feeddrive.effects.base import Effect
 from feeddrive.effects.transmission.backlash import Backlash
@@ -89,7 +90,7 @@ def _fitted(
     try:
         if len(added) == 2:
             starts += [_restarted(problem, kept, *order) for order in (added, added[::-1])]
-        nearest = min((start for start in starts if start), key=lambda start: _error(own, start), default=[])
+        nearest = min((start for start in starts if start), key=lambda start: error_of(own, start), default=[])
         result = fit(own, nearest, iterations=JOINT_ITERATIONS)
         again = regained(own, result.effects)
         if again is not own:  # what the play could not predict is to be predicted again
@@ -118,10 +119,6 @@ def _restarted(problem: Problem, kept: Sequence[Effect], first: Attempt, second:
         return []
     best = min(anew, key=lambda attempt: attempt.fit.squared_error).fit
     return [*before.effects, *write_coordinates(best.effects[-1:], problem.plant, best.coordinates)]
-
-
-def _error(problem: Problem, effects: Sequence[Effect]) -> float:
-    return fit(problem, effects, error_only=True).squared_error
 
 
 def _odds(at_hand: Standing, there: Standing, count: int) -> float:

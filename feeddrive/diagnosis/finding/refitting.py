@@ -14,7 +14,8 @@ from feeddrive.diagnosis.calibration.calibrate import (
 )
 from feeddrive.diagnosis.calibration.known import TOLERANCE
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS
-from feeddrive.diagnosis.likelihood.fit import UNEXPLAINED, Fit, Problem, fit
+from feeddrive.diagnosis.likelihood.fit import Fit, fit
+from feeddrive.diagnosis.likelihood.problem import UNEXPLAINED, Problem
 
 
 def refitted(problem: Problem, found: Fit) -> tuple[Problem, Fit]:

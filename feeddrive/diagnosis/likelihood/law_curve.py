@@ -32,7 +32,7 @@ from dataclasses import replace
 import numpy as np
 
 from feeddrive.diagnosis.likelihood.evidence import Evidence
-from feeddrive.diagnosis.likelihood.fit import Problem
+from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.effects.base import Effect, number
 from feeddrive.errors import InputError
 from feeddrive.typing import FloatArray
