@@ -19,8 +19,8 @@ CANDIDATES: tuple[Candidate, ...] = (
     Candidate("friction_deviation", starts.deviation, needs.force),
     Candidate("constant_force", starts.plain(ConstantForce.of(force=0.0)), needs.force),
     Candidate("position_spring", starts.position_spring, needs.force_stroke),
-    Candidate("coulomb_asymmetry", starts.plain(CoulombAsymmetry.of(delta_force=0.0)), needs.friction_directions),
-    Candidate("viscous_asymmetry", starts.plain(ViscousAsymmetry.of(delta_viscous=0.0)), needs.friction_directions),
+    Candidate("coulomb_asymmetry", starts.plain(CoulombAsymmetry.of(delta_force=0.0)), needs.friction_reversals),
+    Candidate("viscous_asymmetry", starts.plain(ViscousAsymmetry.of(delta_viscous=0.0)), needs.friction_reversals),
     Candidate("viscous_warmup", starts.viscous_warmup, needs.force_duration),
     Candidate(
         "load_dependent_friction",
