@@ -84,10 +84,11 @@ def missed_over_noise(recording: Recording, plant: Plant, band: Band) -> FloatAr
         band: of the comparison.
     """
     unknown, reach = _unknown(recording, plant), _reach(band)
-    local = np.sqrt(np.maximum(uniform_filter1d(unknown**2, reach), 0.0))  # a running sum may end below zero
+    about = 2 * math.ceil(reach / 2) + 1  # the mean and then the largest of it, each half as far as the filter reaches
+    local = np.sqrt(np.maximum(uniform_filter1d(unknown**2, about), 0.0))  # a running sum may end below zero
     local = np.where(binary_dilation(unknown > 0, iterations=reach), local, 0.0)
     over_noise = local * band.noise_gain * _most_shown(recording, plant, band)
-    missed = maximum_filter1d(_ringing(over_noise, plant, recording), reach)
+    missed = maximum_filter1d(_ringing(over_noise, plant, recording), about)
     return np.where(binary_dilation(_vibrating(recording, reach), iterations=reach), np.inf, missed)
 
 
