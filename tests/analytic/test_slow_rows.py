@@ -120,7 +120,7 @@ def test_rows_of_motion_that_is_hardly_known_weigh_less_where_they_are_fitted() 
     less = fitted.counted & ~judged.counted
     assert less[1990:2010].any() and not less[:1900].any() and not less[2100:].any()
     assert fitted.known is not None and judged.known is None
-    assert np.all((fitted.known[less] > np.sqrt(0.1)) & (fitted.known[less] < 1)) and fitted.known[1000] == 1
+    assert np.all((fitted.known[less] > np.sqrt(0.49)) & (fitted.known[less] < 1)) and fitted.known[1000] == 1
     unit = fitted.unit("motor_torque")
     ones = {"motor_torque": np.full(len(time), unit)}
     assert fitted.weighted(ones, less) == pytest.approx(fitted.known[less], rel=1e-12)

@@ -41,9 +41,9 @@ without noise is compared as far as its rows tell the motion between them."""
 SHORTEST = 3.0
 """Shortest recording [s] that leaves something between the cut ends."""
 
-LEAST_TOLD = 0.1
-"""Square of the noise over that of noise and unknown motion, below which a row is left out: ten such tell what one of
-known motion does, and what is missed in them is of one sign as long as the motion is."""
+MOST_MISSED = 1.0
+"""Rms of what is missed of a row's motion over the noise of the sensor, both in the band, beyond which it is left out:
+what is missed is of one sign as long as the motion is, and a mode is named for it that more of it is taken for."""
 
 LEAST_ZERO = 1e-4
 """Difference [m] of the zeros of table and motor that moves the nut: 0.1 mm of screw give way 0.5 nm per kilonewton."""
@@ -148,8 +148,8 @@ def _with_less_sure(
     """
     if not (others & ~sure).any():
         return sure, None
-    weights = np.where(sure, 1.0, 1 / np.sqrt(1 + missed_over_noise(recording, plant, band) ** 2))
-    return sure | (others & (weights**2 > LEAST_TOLD)), weights
+    missed = np.where(sure, 0.0, missed_over_noise(recording, plant, band))
+    return sure | (others & (missed <= MOST_MISSED)), 1 / np.sqrt(1 + missed**2)
 
 
 def _noise(
