@@ -8,10 +8,19 @@ from dataclasses import replace
 
 import numpy as np
 
-from feeddrive.diagnosis.calibration.calibrate import ENOUGH, PASSES, moved, recalibrated, with_kept
+from feeddrive.diagnosis.calibration.calibrate import (
+    ENOUGH,
+    PASSES,
+    at_declared,
+    moved,
+    recalibrated,
+    with_kept,
+    with_new_slopes,
+)
 from feeddrive.diagnosis.calibration.calibration import Calibration
 from feeddrive.diagnosis.calibration.declared import CalibratedValue, as_effect, calibrated_values
-from feeddrive.diagnosis.calibration.known import TOLERANCE, known_values
+from feeddrive.diagnosis.calibration.known import TOLERANCE, Known, known_values
+from feeddrive.diagnosis.likelihood.evidence import weighed_by
 from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
 from feeddrive.diagnosis.likelihood.set_evidence import regained
 from feeddrive.diagnosis.likelihood.tolerances import BEYOND, SURE
@@ -35,20 +44,52 @@ def beyond_tolerance(problem: Problem, found: Fit) -> tuple[Problem, Effect] | N
         The problem without it among the values that are fitted, and the effect, from its likeliest value.
     """
     known = known_values(problem, found)
-    if known is None or problem.calibration is None:
+    if known is None or max(_gained(known).values(), default=0.0) < SURE**2:
         return None
-    least, able = known.least(), [i for i, value in enumerate(known.values) if value.name]
-    gained = {i: least - known.least(i) for i in able}
-    most = max(gained.values(), default=0.0)
+    problem, found = placed_by_scatter(problem, found)
+    known = known_values(problem, found)
+    assert known is not None
+    gained = _gained(known)
+    most = max(gained.values())
     if most < SURE**2:
         return None
-    alike = [i for i in able if gained[i] > most - AGAINST]
+    alike = [i for i, gain in gained.items() if gain > most - AGAINST]
     costs = {i: known.likeliest(i, BEYOND / known.values[i].deviation) for i in alike}
     place = min(alike, key=lambda i: costs[i][1])
     there = _with_free_value(problem, found.effects, place)
     freed, (effect,) = said_by_effects(there, [as_effect(problem.plant, known.values[place], 0.0)])
     freed, together = fitted_together(freed, (*found.effects, effect))
     return freed, together[-1]
+
+
+def _gained(known: Known) -> dict[int, float]:
+    """Places of the values that an effect says to be other to what each, free of its tolerance, lowers T by."""
+    least = known.least()
+    return {i: least - known.least(i) for i, value in enumerate(known.values) if value.name}
+
+
+def placed_by_scatter(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
+    """A set beside the declared values as they are most likely by the scatter of what tells of them (`known`).
+
+    One variance for all directions lets values that are alike to the recordings run far along what the noise makes of
+    them, to where slopes and weights say that it is they who are other.
+    """
+    there = at_declared(problem)
+    declared = there.machine(found.effects)
+    there = replace(there, evidence=tuple(weighed_by(e, declared) for e in there.evidence))
+    there = with_new_slopes(there, found.effects)
+    result = fit(there, found.effects)
+    for _ in range(PASSES):
+        known = known_values(there, result)
+        assert known is not None
+        u, _ = known.likeliest(0, 1.0)
+        coordinates = np.array([known.c(i, float(one)) for i, one in enumerate(u)])
+        near = np.max(np.abs(coordinates - known.at), initial=0.0) < ENOUGH
+        there = with_new_slopes(there.at_values(coordinates), found.effects)
+        result = fit(there, result.effects)
+        if near:
+            break
+    return there, result
 
 
 def _with_free_value(problem: Problem, effects: Sequence[Effect], place: int) -> Problem:
