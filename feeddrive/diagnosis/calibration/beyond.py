@@ -20,10 +20,11 @@ from feeddrive.diagnosis.calibration.calibrate import (
 from feeddrive.diagnosis.calibration.calibration import Calibration
 from feeddrive.diagnosis.calibration.declared import CalibratedValue, as_effect, calibrated_values
 from feeddrive.diagnosis.calibration.known import TOLERANCE, Known, known_values
-from feeddrive.diagnosis.likelihood.evidence import weighed_by
-from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
+from feeddrive.diagnosis.likelihood.fit import Fit, fit
+from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.set_evidence import regained
 from feeddrive.diagnosis.likelihood.tolerances import BEYOND, SURE
+from feeddrive.diagnosis.motion.preparing import weighed_by
 from feeddrive.effects.base import Effect, Value, number
 from feeddrive.effects.chain.inertia_deviation import declared_inertia
 from feeddrive.effects.friction.friction_deviation import FrictionDeviation

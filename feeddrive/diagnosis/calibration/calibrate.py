@@ -12,9 +12,11 @@ from feeddrive.diagnosis.calibration.calibration import Calibration
 from feeddrive.diagnosis.calibration.declared import CalibratedValue, calibrated_values
 from feeddrive.diagnosis.calibration.known import known_values
 from feeddrive.diagnosis.certainty.noise_colour import score_covariance
-from feeddrive.diagnosis.likelihood.evidence import Evidence, weighed_by
-from feeddrive.diagnosis.likelihood.fit import Fit, Problem
-from feeddrive.diagnosis.likelihood.predictability import has_play
+from feeddrive.diagnosis.likelihood.evidence import Evidence
+from feeddrive.diagnosis.likelihood.fit import Fit
+from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.motion.predictability import has_play
+from feeddrive.diagnosis.motion.preparing import weighed_by
 from feeddrive.effects.base import Effect
 from feeddrive.recording import Recording
 from feeddrive.recording.long.joined import is_joined
@@ -30,7 +32,7 @@ values that weigh against each other, an inertia, a mass, a torque constant, cou
 where the solver changes its steps."""
 
 LONG = 30 * STEP
-"""Change of the logarithm where a prediction goes from cell to cell, or a table bounces (`fit.COARSE`)."""
+"""Change of the logarithm where a prediction goes from cell to cell, or a table bounces (`slopes.COARSE`)."""
 
 ENOUGH = 0.1
 """Move of a value over its deviation that needs no new slopes: it moves the evidence by a two-hundredth."""
