@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from feeddrive.diagnosis.calibration.beyond import fitted_together, is_within_tolerance, without_effects
 from feeddrive.diagnosis.judging.result import ChannelResult, ChannelSeries, JudgedRecording, error_figures
 from feeddrive.diagnosis.likelihood.cross_validation import (
     Comparison,
@@ -19,7 +18,7 @@ from feeddrive.diagnosis.likelihood.cross_validation import (
 from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.likelihood.problem import Problem
-from feeddrive.diagnosis.likelihood.set_evidence import declining
+from feeddrive.diagnosis.likelihood.set_evidence import declining, regained
 from feeddrive.diagnosis.motion.predictability import has_play
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
@@ -164,21 +163,10 @@ class Share:
 
 
 def share_of(problem: Problem, judged: Sequence[Judged], effects: Sequence[Effect], index: int) -> Share:
-    """What the effect at `index` explains beyond all others, refitted, and a declared value of it within its tolerance.
-
-    What other values within their tolerances say as well is nothing that a value beyond its own explains.
-    """
-    problem, rest = without_one(problem, effects, index)
-    return share_beyond(problem, judged, rest)
-
-
-def without_one(problem: Problem, effects: Sequence[Effect], index: int) -> tuple[Problem, tuple[Effect, ...]]:
-    """The problem and the effects but one, refitted; a declared value that it states is fitted within its tolerance."""
+    """What the effect at `index` explains, all other effects refitted without it."""
     rest = [*effects[:index], *effects[index + 1 :]]
-    problem = without_effects(problem, [effects[index]], rest)
-    if is_within_tolerance(effects[index], problem.plant) is not None:
-        problem, rest = fitted_together(problem, rest)
-    return problem, tuple(fit(problem, rest, iterations=2).effects if rest else ())
+    problem = regained(problem, rest)
+    return share_beyond(problem, judged, fit(problem, rest, iterations=2).effects if rest else ())
 
 
 def share_beyond(problem: Problem, judged: Sequence[Judged], refitted: Sequence[Effect]) -> Share:

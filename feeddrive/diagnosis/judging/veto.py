@@ -27,20 +27,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.special import chdtri
 
-from feeddrive.diagnosis.calibration.beyond import is_within_tolerance, without_effects
+from feeddrive.diagnosis.calibration.beyond import without_effects
 from feeddrive.diagnosis.calibration.calibrate import weighed_by_rest, with_kept
 from feeddrive.diagnosis.certainty.one_sided import one_sided
 from feeddrive.diagnosis.certainty.uncertainty import certainty
 from feeddrive.diagnosis.finding.search import Search
-from feeddrive.diagnosis.judging.judge import (
-    Judged,
-    Share,
-    error_series,
-    judged_channels,
-    share_beyond,
-    share_of,
-    without_one,
-)
+from feeddrive.diagnosis.judging.judge import Judged, Share, error_series, judged_channels, share_beyond, share_of
 from feeddrive.diagnosis.likelihood.coordinates import (
     LEFT,
     absent_coordinates,
@@ -158,8 +150,7 @@ def _share(found: Search, judged: Sequence[Judged], place: int) -> Share:
     """What an effect explains; where that is much, the others are moved by one linear step only, not refitted."""
     problem, effects = found.problem, found.fit.effects
     rest = (*effects[:place], *effects[place + 1 :])
-    # one step from samples that a free play predicts leads nowhere, and a value within its tolerance needs new slopes
-    if regained(problem, rest) is not problem or is_within_tolerance(effects[place], problem.plant) is not None:
+    if regained(problem, rest) is not problem:  # one step from samples that a free play predicts leads nowhere
         return share_of(problem, judged, effects, place)
     counts = [len(read_coordinates([effect], problem.plant)) for effect in effects]
     columns = slice(sum(counts[:place]), sum(counts[: place + 1]))
@@ -204,8 +195,10 @@ def _no_gain(found: Search, place: int, share: Share) -> str:
 
 def _left_out_gain(found: Search, place: int) -> Comparison:
     """What an effect brings on blocks left out of the fit, the others refitted without it."""
-    wide, rest = without_one(found.problem, found.fit.effects, place)
-    return gain_between(Standing(wide, fit(wide, rest, iterations=0)), Standing(found.problem, found.fit))
+    problem, effects = found.problem, found.fit.effects
+    rest = [*effects[:place], *effects[place + 1 :]]
+    wide = regained(problem, rest)
+    return gain_between(Standing(wide, fit(wide, rest, iterations=2)), Standing(problem, found.fit))
 
 
 def ends_reached(problem: Problem, fitted: Fit) -> list[str]:

@@ -11,7 +11,14 @@ from collections.abc import Sequence
 import numpy as np
 
 from feeddrive.diagnosis.friction_at_port import declared_level, declared_viscous
-from feeddrive.diagnosis.likelihood.coordinate_kinds import Coordinate, Linear, Logarithmic, MiddleForce, Sine, TwoHeats
+from feeddrive.diagnosis.likelihood.coordinate_kinds import (
+    Coordinate,
+    Linear,
+    Logarithmic,
+    MiddleForce,
+    Sine,
+    TwoHeats,
+)
 from feeddrive.effects.base import Effect
 from feeddrive.effects.chain.inertia_deviation import InertiaDeviation, declared_inertia
 from feeddrive.effects.source.constant_force import ConstantForce
