@@ -45,14 +45,9 @@ def beyond_tolerance(problem: Problem, found: Fit) -> tuple[Problem, Effect] | N
         The problem without it among the values that are fitted, and the effect, from its likeliest value.
     """
     known = known_values(problem, found)
-    if known is None or max(_gained(known).values(), default=0.0) < SURE**2:
-        return None
-    problem, found = placed_by_scatter(problem, found)
-    known = known_values(problem, found)
-    assert known is not None
     gained = _gained(known)
-    most = max(gained.values())
-    if most < SURE**2:
+    most = max(gained.values(), default=0.0)
+    if known is None or most < SURE**2 or max(_gained(placed_by_scatter(problem, found)).values()) < SURE**2:
         return None
     alike = [i for i, gain in gained.items() if gain > most - AGAINST]
     costs = {i: known.likeliest(i, BEYOND / known.values[i].deviation) for i in alike}
@@ -63,34 +58,37 @@ def beyond_tolerance(problem: Problem, found: Fit) -> tuple[Problem, Effect] | N
     return freed, together[-1]
 
 
-def _gained(known: Known) -> dict[int, float]:
+def _gained(known: Known | None) -> dict[int, float]:
     """Places of the values that an effect says to be other to what each, free of its tolerance, lowers T by."""
+    if known is None:
+        return {}
     least = known.least()
     return {i: least - known.least(i) for i, value in enumerate(known.values) if value.name}
 
 
-def placed_by_scatter(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
-    """A set beside the declared values as they are most likely by the scatter of what tells of them (`known`).
+def placed_by_scatter(problem: Problem, found: Fit) -> Known | None:
+    """What the recordings tell beside declared values that are most likely by the scatter of what tells of them.
 
     One variance for all directions lets values that are alike to the recordings run far along what the noise makes of
-    them, to where slopes and weights say that it is they who are other.
+    them, to where slopes and the encoder's weights say that it is they who are other. So they begin as declared, with
+    the weights of the machine that was declared.
     """
     there = at_declared(problem)
     declared = there.machine(found.effects)
     there = replace(there, evidence=tuple(weighed_by(e, declared) for e in there.evidence))
-    there = with_new_slopes(there, found.effects)
-    result = fit(there, found.effects)
+    effects = found.effects
     for _ in range(PASSES):
-        known = known_values(there, result)
-        assert known is not None
+        there = with_new_slopes(there, effects)
+        result = fit(there, effects)
+        effects, known = result.effects, known_values(there, result)
+        if known is None:
+            return None
         u, _ = known.likeliest(0, 1.0)
         coordinates = np.array([known.c(i, float(one)) for i, one in enumerate(u)])
-        near = np.max(np.abs(coordinates - known.at), initial=0.0) < ENOUGH
-        there = with_new_slopes(there.at_values(coordinates), found.effects)
-        result = fit(there, result.effects)
-        if near:
+        if np.max(np.abs(coordinates - known.at), initial=0.0) < ENOUGH:
             break
-    return there, result
+        there = there.at_values(coordinates)
+    return known
 
 
 def _with_free_value(problem: Problem, effects: Sequence[Effect], place: int) -> Problem:
