@@ -162,9 +162,13 @@ def _asked(
 
 
 def _of_no_name(problem: Problem, found: Fit, asked: _Asked) -> tuple[Problem, Fit] | None:
-    """A set beside a lead map, or the curve of a law, where that is likelier than any further name; else None."""
+    """A set beside a lead map, or the curve of a law, where that is likelier than any further name; else None.
+
+    A map that says nothing beside the likeliest name is none: over part of a stroke its curves are a line, which is one.
+    """
     taken, count = asked.taken, asked.now.count
-    if log_odds_of_map(problem, found, count) > max(taken.odds if taken is not None else 0.0, 0.0):
+    likelier_map = log_odds_of_map(problem, found, count) > max(taken.odds if taken is not None else 0.0, 0.0)
+    if likelier_map and (taken is None or log_odds_of_map(taken.problem, taken.fit, count) > 0):
         opened = replace(problem, evidence=tuple(e.with_map(True) for e in problem.evidence))
         return opened, fit(opened, found.effects)
     return None if taken is None else _of_another_form(taken, count)
