@@ -164,7 +164,7 @@ def _asked(
 def _of_no_name(problem: Problem, found: Fit, asked: _Asked) -> tuple[Problem, Fit] | None:
     """A set beside a lead map, or the curve of a law, where that is likelier than any further name; else None.
 
-    A map that says nothing beside the likeliest name is none: over part of a stroke its curves are a line, which is one.
+    A map that says nothing beside the likeliest name is none: over part of a stroke its curves are near a line.
     """
     taken, count = asked.taken, asked.now.count
     likelier_map = log_odds_of_map(problem, found, count) > max(taken.odds if taken is not None else 0.0, 0.0)
