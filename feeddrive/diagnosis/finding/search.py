@@ -141,8 +141,8 @@ def search(
         beyond = None if left_out else with_value_beyond(problem, found)
         if beyond is not None:
             met.add(_members(found))  # back at it, it would be asked the same once more
-            problem, found = beyond
-            trials.append(Trial(number, found.effects[-1].name, 0.0, 0.0, True))
+            problem, found, by = beyond
+            trials.append(Trial(number, found.effects[-1].name, by.gain, by.standard_error, True))
         elif not others:
             break
     problem, found, small = _ended(problem, found)
