@@ -8,6 +8,7 @@ import pytest
 
 from feeddrive.diagnosis.finding import search as of_search
 from feeddrive.diagnosis.finding.search import search
+from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.preparation import prepared
@@ -22,10 +23,11 @@ def test_a_value_that_goes_again_is_not_asked_again(tmp_path: Path, monkeypatch:
     problem, _, _ = prepared(read_plant(path), [rigid_run("a", Truth())], [rigid_run("b", Truth())], 0.75)
     asked: list[tuple[str, ...]] = []
 
-    def beyond(there: Problem, found: Fit) -> tuple[Problem, Fit]:
+    def beyond(there: Problem, found: Fit) -> tuple[Problem, Fit, Comparison]:
         # stands for a deviation: nothing is there, so that the next round drops it
         asked.append(tuple(effect.name for effect in found.effects))
-        return there, fit(there, (*found.effects, TorqueRipple.of(amplitude=1e-5, order=3.7, phase=0.4)))
+        idle = fit(there, (*found.effects, TorqueRipple.of(amplitude=1e-5, order=3.7, phase=0.4)))
+        return there, idle, Comparison(0.0, 0.0, 0.0)
 
     monkeypatch.setattr(of_search, "with_value_beyond", beyond)
     found = search(problem)
