@@ -97,6 +97,11 @@ def _droop(plant: Plant) -> float:
     return float(sum(e.droop(e.values) for e in plant.effects if isinstance(e, DriveEffect)))
 
 
+def droops(plant: Plant) -> bool:
+    """Whether torque that acts is not in proportion to what is asked for."""
+    return _droop(plant) > 0
+
+
 def declared_gain(plant: Plant) -> float:
     """Torque that is recorded over the torque before droop."""
     return float(math.prod(e.gain(e.values) for e in plant.effects if isinstance(e, DriveEffect)))

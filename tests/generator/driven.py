@@ -26,8 +26,13 @@ from tests.generator.transmission import side_of
 Array = npt.NDArray[np.float64]
 
 
-def driven(machine: Machine, c: Constants, angle: Array, start: State, longest: float) -> tuple[Array, Array]:
+def driven(
+    machine: Machine, c: Constants, angle: Array, start: State, longest: float, recorded: Array | None = None
+) -> tuple[Array, Array]:
     """Return the recorded torque [N m] and table position [m] that a plant predicts from an angle, (rows,) each.
+
+    Where a torque falls with the current, what the angle's steps make of the torque is many times that torque: the
+    command is then found by the law's slope at the recorded one, beside which the sensor's noise is nothing.
 
     Args:
         machine: how it is recorded.
@@ -35,6 +40,7 @@ def driven(machine: Machine, c: Constants, angle: Array, start: State, longest: 
         angle: of the motor at the rows, as recorded (rows,) [rad].
         start: state at the first row.
         longest: step of the integrator [s].
+        recorded: torque that was commanded (rows,) [N m]; None where the angle is exact.
     """
     row_time, cycle = machine.row_time, machine.axis.sample_time
     times = np.arange(len(angle)) * row_time
@@ -48,7 +54,12 @@ def driven(machine: Machine, c: Constants, angle: Array, start: State, longest: 
     whole = np.concatenate([[0.0], np.cumsum(0.5 * step * (torque[1:] + torque[:-1]))])
     begins = times + c.drive_delay - c.torque_lateness
     mean = (np.interp(begins + cycle, grid, whole) - np.interp(begins, grid, whole)) / cycle
-    asked = np.array([commanded(value, packed(c)) for value in mean]) if c.droop != 0.0 else mean
+    asked = mean
+    if c.droop != 0.0 and recorded is not None:
+        lost = c.droop * np.abs(recorded) ** c.droop_power
+        asked = recorded + (mean - recorded * (1.0 - lost)) / (1.0 - (c.droop_power + 1.0) * lost)
+    elif c.droop != 0.0:
+        asked = np.array([commanded(value, packed(c)) for value in mean])
     return asked, np.interp(times - c.table_lateness, grid, position)
 
 

@@ -66,7 +66,7 @@ def test_harmonics_of_what_was_found_are_tried_in_one_direction_as_well() -> Non
     (evidence,) = problem.evidence
     one_way = replace(problem, evidence=(replace(evidence, fitted=evidence.fitted & forward),))
     there = replace(scene, problem=one_way)
-    assert needs.both_directions(there) and not needs.screw_drag_turns(there)
+    assert needs.reversals(there) and not needs.screw_drag_turns(there)
     (forms,) = starts.ball_pass_ripple(replace(scene, residuals=({"motor_torque": second_order(scene)},)))
     assert 6.6 in [one.values["order"] for one in forms]
 

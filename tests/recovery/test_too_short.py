@@ -5,16 +5,21 @@ from __future__ import annotations
 import pytest
 
 from feeddrive.diagnosis.diagnose import diagnose
+from feeddrive.diagnosis.finding.search import search
 from feeddrive.diagnosis.judging.result import Diagnosis
+from feeddrive.diagnosis.preparation import prepared
+from feeddrive.effects.base import number
 from feeddrive.errors import InputError
 from feeddrive.recording import Recording
 from tests.generator import BENCH
-from tests.generator.effects import PlantedEffects
+from tests.generator.effects import Effect as Planted
+from tests.generator.effects import FrictionVsPosition, PlantedEffects
 from tests.generator.profile import Profile
 from tests.generator.recording import simulate
 from tests.recovery.planted import axis_plant, pair
 
-NEEDS_BOTH_DIRECTIONS = ("presliding", "coulomb_asymmetry", "viscous_asymmetry", "stribeck", "friction_vs_position")
+NEEDS_REVERSALS = ("backlash", "presliding", "coulomb_asymmetry", "viscous_asymmetry")
+SHOWN_ONE_WAY = ("stribeck", "friction_vs_position", "load_dependent_friction")
 NEEDS_TURNS = ("torque_ripple", "lead_error_periodic")
 
 ONE_WAY = ((0.25, 0.06),)
@@ -27,10 +32,10 @@ WITHIN_TWO_TURNS = (7.2, 10.6)
 """Slow motion to and fro over 1.3 revolutions [s]."""
 
 
-def one_way() -> Recording:
+def one_way(*effects: Planted) -> Recording:
     """A stroke without reversal, recorded."""
     profile = Profile(0.05, ONE_WAY, (), 0.0, 1.0, 0.6, 0.0, 2.0)
-    channels = simulate(BENCH, PlantedEffects(()), profile, 11)
+    channels = simulate(BENCH, PlantedEffects(effects), profile, 11)
     return Recording("one_way", channels.pop("time"), channels, BENCH.sample_time).between(*MOVING)
 
 
@@ -49,11 +54,18 @@ def reasons(result: Diagnosis) -> dict[str, str]:
 
 def test_one_way_shows_no_effect_of_reversal_or_direction() -> None:
     refused = reasons(diagnosed(one_way()))
-    assert "the recording has 0 reversals; it needs two or more" in refused["backlash"]
-    for name in NEEDS_BOTH_DIRECTIONS:
-        assert "forward and" in refused[name]
-        assert "it needs both" in refused[name]
+    for name in NEEDS_REVERSALS:
+        assert "the recording has 0 reversals; it needs two or more" in refused[name]
+    for name in SHOWN_ONE_WAY:  # asked, and not there
+        assert "data not fitted" in refused[name] or "could not be fitted" in refused[name]
     assert "revolutions" not in refused.get("torque_ripple", "")  # there are enough of them for a ripple
+
+
+def test_a_tight_place_is_found_in_one_direction() -> None:
+    plant, bump = axis_plant("bench"), FrictionVsPosition(peak=20.0, centre=0.18, half_width=0.03)
+    found = search(prepared(plant, [one_way(bump)], [], 1.0)[0]).fit.effects
+    assert [effect.name for effect in found] == ["friction_vs_position"]
+    assert number(found[0].values["centre"]) == pytest.approx(bump.centre, abs=0.005)
 
 
 def test_less_than_two_turns_shows_no_periodic_effect() -> None:

@@ -36,10 +36,13 @@ class AxisEvidence(Evidence):
         drawn: motions with the encoder's error once more; as `gains`.
         weights: channel to the weight of every sample, (n,): noise over noise and what the encoder's error makes of a
             free play there; channels left out are predicted alike everywhere.
+        known: weight of every sample in all channels, (n,): noise over noise and what motion between rows, which is not
+            known, makes there (`slow_rows`); None where all weigh alike.
         told: part of the motion that the torque tells and the encoder does not, (n,) [rad]; None for none.
         lead_map: what a lead map may be of the table position, in the band, (n, k); None without a table position.
         law_curves: as `curves`.
         unsure: channel to what motion that may not be makes of it, in the band, (n, k); as `gains`.
+        acting: torque as it acts at the rows, of all frequencies, (n,) [N m]; None where it is not known.
         torque_rows: rows that the recorder writes a torque for, and the first row of one (`suspicion.logged_rows`);
             None where the torque is what the drive holds.
     """
@@ -52,8 +55,10 @@ class AxisEvidence(Evidence):
     added: dict[str, float] = field(default_factory=dict)
     drawn: tuple[MotorMotion, ...] = ()
     unsure: dict[str, FloatArray] = field(default_factory=dict)
+    acting: FloatArray | None = None
     torque_rows: tuple[int, int] | None = None
     weights: dict[str, FloatArray] = field(default_factory=dict)
+    known: FloatArray | None = None
     lead_map: FloatArray | None = None
     law_curves: dict[str, list[dict[str, FloatArray]]] = field(default_factory=dict)
     told: FloatArray | None = None
@@ -95,9 +100,10 @@ class AxisEvidence(Evidence):
 
     def without_open(self, name: str, part: FloatArray, rows: BoolArray) -> FloatArray:
         """One channel over its noise and by its weights, (k,), without the zero of a scale."""
-        if name not in self.weights:
+        if name not in self.weights and self.known is None:
             return super().without_open(name, part, rows)
-        weights = self.weights[name][rows]
+        weights = self.weights[name][rows] if name in self.weights else np.ones(len(part))
+        weights = weights if self.known is None else weights * self.known[rows]
         weighed = weights * part / self.unit(name)
         return weighed - weights * float(weights @ weighed / (weights @ weights)) if name in self.floating else weighed
 

@@ -18,7 +18,7 @@ from feeddrive.diagnosis.suspicion.channel_timing import lag_of, lagging, repeat
 from feeddrive.diagnosis.suspicion.torque_channel import scale_of, scale_sentence
 from feeddrive.effects.base import ChainEffect, DriveEffect, Effect, Kind, Motion, Port, SourceEffect
 from feeddrive.engine.step.linear_part import SimulationError
-from feeddrive.plant.motor_torque import asked_torques
+from feeddrive.plant.motor_torque import acting_torques, asked_torques, declared_gain, droops
 from feeddrive.plant.plant import Plant
 from feeddrive.simulate.driven import LoadMotion, MotorMotion, simulate_driven, unfollowed
 from feeddrive.typing import BoolArray, FloatArray
@@ -52,7 +52,7 @@ class AxisPredictor(Predictor[AxisEvidence]):
     def predict(self, plant: Plant, evidence: AxisEvidence) -> dict[str, FloatArray]:
         """Channel to predicted series in the band, shape (n,), SI."""
         run = self.load_motion(plant, evidence)
-        torque = asked_torques(plant, run.torque + self._motor_sources(plant, evidence.motion))
+        torque = _asked(plant, evidence, run.torque + self._motor_sources(plant, evidence.motion))
         step = evidence.recording.sample_time
         if evidence.torque_rows is not None:  # the drive's own row begins half a row before what it acts about
             torque = repeated(lagging(torque, -0.5 * step, step), evidence.torque_rows)
@@ -133,6 +133,20 @@ class AxisPredictor(Predictor[AxisEvidence]):
         beyond = (evidence.measured[name] - geared)[rows]
         about_mean: FloatArray = beyond - beyond.mean()
         return about_mean
+
+
+def _asked(plant: Plant, evidence: AxisEvidence, acting: FloatArray) -> FloatArray:
+    """Torque that is asked for, so that a torque [N m], (n,), acts.
+
+    Beyond the band the second difference of an encoder's steps is many times what the motor does, and a torque per
+    ampere that falls would turn it into torque in the band, as a rectifier does. What falls is therefore told of the
+    predicted torque in the band and of the recorded one beyond it.
+    """
+    if evidence.acting is None or evidence.torque_rows is not None or not droops(plant):
+        return asked_torques(plant, acting)
+    recorded = acting_torques(plant, evidence.acting)
+    known = recorded + evidence.band.filter(acting - recorded)
+    return asked_torques(plant, known) + declared_gain(plant) * (acting - known)
 
 
 def _asked_for(effect: SourceEffect, motion: MotorMotion) -> FloatArray:

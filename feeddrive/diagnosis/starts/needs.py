@@ -8,9 +8,7 @@ import numpy as np
 
 from feeddrive.diagnosis.finding.scene import Scene
 from feeddrive.diagnosis.friction_at_port import declared_level
-from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.effects.base import Port
-from feeddrive.simulate.driven import LoadMotion
 
 Need = Callable[[Scene], str]
 
@@ -26,21 +24,6 @@ LEAST_STROKE_TURNS = 1.0
 
 WITHOUT_TORQUE = "the recordings hold no torque or current"
 """Why what acts at the motor cannot be seen."""
-
-
-def both_directions(scene: Scene) -> str:
-    """The table must move both ways."""
-    moved = [_moved(run, evidence) for run, evidence in zip(scene.runs, scene.problem.evidence, strict=True)]
-    forward, backward = sum(m[0] for m in moved), sum(m[1] for m in moved)
-    least = 5 * scene.plant.chain.motor_radius
-    if min(forward, backward) < least:
-        return f"the recording moves {forward * 1e3:.2g} mm forward and {backward * 1e3:.2g} mm back; it needs both"
-    return ""
-
-
-def _moved(run: LoadMotion, evidence: Evidence) -> tuple[float, float]:
-    steps = np.diff(run.table_position)[evidence.fit_rows[1:]]
-    return float(steps[steps > 0].sum()), float(-steps[steps < 0].sum())
 
 
 def reversals(scene: Scene) -> str:
@@ -80,10 +63,10 @@ def gap(scene: Scene) -> str:
 
 
 def friction(scene: Scene) -> str:
-    """Friction at the table needs a declared level and both directions."""
+    """Friction at the table needs a declared level."""
     if not any(effect.name == "guide_friction" for effect in scene.plant.effects):
         return "the plant declares no guide_friction to act on"
-    return force(scene) or both_directions(scene)
+    return force(scene)
 
 
 def torque(scene: Scene) -> str:
@@ -159,9 +142,10 @@ def both(first: Need, second: Need) -> Need:
 torque_turns, torque_inertia = both(torque, turns), both(torque, inertia)
 force_stroke, force_duration = both(force, stroke), both(force, duration)
 scale_duration, screw_drag_turns = both(scale, duration), both(screw_drag, turns)
-screw_drag_directions, friction_reversals = both(screw_drag, both_directions), both(friction, reversals)
-"""Ripples, inertias, springs, warming friction, growth, ball passing, friction under load, presliding.
+friction_reversals = both(friction, reversals)
+"""Ripples, inertias, springs, warming friction, growth, ball passing, what a reversal shows of friction.
 
-A ripple of the drag shows in one direction as well: what little there is of the other tells it from one of the torque,
-and where there is none the two are alike, which the evidence says.
+What friction does over speed, position, force or angle shows in one direction as well. What little there is of the
+other tells a level from an asymmetry and a ripple of the drag from one of the torque; where it does not, the two are
+alike, which the evidence says.
 """

@@ -46,9 +46,10 @@ def true_errors(drawn: Case) -> dict[str, Array]:
     run = drawn.runs[1]
     c = run.constants
     step = longest_step(c, drawn.true.axis.top_speed)
-    torque, position = driven(drawn.true, c, drawn.judge["motor_angle"], at_rest(run.setpoint[0], c), step)
     factor = drawn.off.get("torque_constant", 1.0)
-    errors = {"motor_torque": drawn.judge["motor_torque"] - torque / factor}
+    recorded, start = factor * drawn.judge["motor_torque"], at_rest(run.setpoint[0], c)
+    torque, position = driven(drawn.true, c, drawn.judge["motor_angle"], start, step, recorded)
+    errors = {"motor_torque": (recorded - torque) / factor}
     if "table_position" in drawn.judge:
         errors["table_position"] = drawn.judge["table_position"] - position
     return errors
