@@ -130,7 +130,7 @@ def search(
     rounds: list[tuple[Attempt, ...]] = [*start.rounds] if start is not None else []
     denied = {**start.impossible} if start is not None else {}
     impossible: dict[str, str] = {**denied}
-    met: set[tuple[str, ...]] = set()
+    met: set[tuple[tuple[str, str, str], ...]] = set()
     near: tuple[Near, ...] = ()
     while len(rounds) < MOST_ROUNDS and not (rounds and problem.budget.skips("further rounds of the search")):
         progress(f"round {len(rounds) + 1}: {len(found.effects)} effects so far")
@@ -162,22 +162,21 @@ def search(
             impossible |= denied
             rest = [one for one in found.effects if not any(one is other for other in others)]
             problem, found = _refitted(problem, fit(problem, rest))
-        if after is None:
-            left_out = problem.budget.skips("declared values beyond their tolerances")
-            beyond = None if left_out else _with_value_beyond(problem, found)
-            if beyond is None and others:
+        if after is not None:
+            problem, found = after
+            progress(f"found so far: {', '.join(effect.name for effect in found.effects)}")
+            if _members(found) not in met:
+                met.add(_members(found))
                 continue
-            if beyond is None:
-                break
-            met.add(_members(found))  # back at it, it would be asked the same once more
+        # nothing likelier is near, or what was met: sets that only take each other's place, or one met beside others
+        left_out = problem.budget.skips("declared values beyond their tolerances")
+        beyond = None if left_out else _with_value_beyond(problem, found)
+        if beyond is not None and _members(beyond[1]) not in met:
+            met |= {_members(found), _members(beyond[1])}
             problem, found = beyond
             trials.append(Trial(len(rounds), found.effects[-1].name, 0.0, 0.0, True))
-            continue
-        problem, found = after
-        progress(f"found so far: {', '.join(effect.name for effect in found.effects)}")
-        if _members(found) in met:  # they only take each other's place
+        elif not others:
             break
-        met.add(_members(found))
     problem, found = _where_friction_brakes(*_refitted(problem, fit(problem, found.effects)))
     closed = with_curves_of(problem, ())  # names are weighed, and rivals tried, against all that is left
     if closed is not problem:
@@ -192,9 +191,9 @@ def search(
     return Search(problem, found, tuple(trials), tuple(rounds), impossible, near, begun)
 
 
-def _members(found: Fit) -> tuple[str, ...]:
-    """Names of a set."""
-    return tuple(sorted(effect.name for effect in found.effects))
+def _members(found: Fit) -> tuple[tuple[str, str, str], ...]:
+    """Names of a set and where they act."""
+    return tuple(sorted((effect.name, str(effect.port), effect.place) for effect in found.effects))
 
 
 def _asked(
