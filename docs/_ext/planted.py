@@ -19,9 +19,11 @@ from page_runner import digest
 
 import feeddrive as fd
 from feeddrive.diagnosis.certainty.rehearsal import Rehearsal, rehearsals
-from feeddrive.diagnosis.likelihood.evidence import AxisEvidence, prepare
-from feeddrive.diagnosis.likelihood.fit import Problem, fit
-from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
+from feeddrive.diagnosis.likelihood.fit import fit
+from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
+from feeddrive.diagnosis.motion.prediction import AxisPredictor
+from feeddrive.diagnosis.motion.preparing import prepare
 from feeddrive.effects.base import Effect
 
 ROOT = Path(__file__).resolve().parents[2]

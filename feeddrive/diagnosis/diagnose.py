@@ -28,7 +28,7 @@ from feeddrive.diagnosis.judging.result import (
 from feeddrive.diagnosis.judging.veto import not_worse_than_declared, without_denied
 from feeddrive.diagnosis.ledger.entry import kept_of
 from feeddrive.diagnosis.likelihood.evidence import Evidence
-from feeddrive.diagnosis.likelihood.fit import Problem
+from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.numbers.doubted import sentence, without_wrong
 from feeddrive.diagnosis.numbers.measured_file import MeasuredNumber
 from feeddrive.diagnosis.numbers.number_rows import MeasuredRows, NumberResult, number_results, refuse_ungiven

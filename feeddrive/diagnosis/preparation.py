@@ -11,10 +11,12 @@ import numpy as np
 from feeddrive.diagnosis.heat.heat_evidence import left_out_channels, prepare_heat, within_range
 from feeddrive.diagnosis.heat.heat_prediction import heat_predictor
 from feeddrive.diagnosis.heat.warm import is_warm_log, prepare_warm, warm_predictor
-from feeddrive.diagnosis.likelihood.evidence import AxisEvidence, Evidence, prepare
-from feeddrive.diagnosis.likelihood.fit import Problem
-from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
-from feeddrive.diagnosis.likelihood.slow_rows import is_slow
+from feeddrive.diagnosis.likelihood.evidence import Evidence
+from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
+from feeddrive.diagnosis.motion.prediction import AxisPredictor
+from feeddrive.diagnosis.motion.preparing import prepare
+from feeddrive.diagnosis.motion.slow_rows import is_slow
 from feeddrive.diagnosis.suspicion.torque_channel import refuse_what_is_no_torque
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant

@@ -139,6 +139,8 @@ class Effect:
         place_key: key of that word in plant files and reports; empty where there is none.
         places: words that it may be; any word that the machine knows where there are none.
         default_place: word that is meant where none is given; empty where one must be.
+        curve_over: variable over which a law of another form may differ from this one; empty where none is known.
+        curve_scale: parameter that is a scale of the law, where other forms are this one at several scales; or empty.
     """
 
     name: ClassVar[str] = ""
@@ -154,6 +156,8 @@ class Effect:
     place_key: ClassVar[str] = ""
     places: ClassVar[tuple[str, ...]] = ()
     default_place: ClassVar[str] = ""
+    curve_over: ClassVar[str] = ""
+    curve_scale: ClassVar[str] = ""
 
     values: Mapping[str, Value] = field(default_factory=dict)
     port: Port = Port.TABLE

@@ -348,7 +348,7 @@ class Axis:
         Raises:
             InputError: a recording without motor angle.
         """
-        from feeddrive.diagnosis.likelihood.band import comparison_band
+        from feeddrive.diagnosis.motion.band import comparison_band
         from feeddrive.interface.measured.reading import as_recording
         from feeddrive.simulate.driven import used_life
 

@@ -26,8 +26,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feeddrive.diagnosis.likelihood.evidence import AxisEvidence, prepare
-from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
+from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
+from feeddrive.diagnosis.motion.prediction import AxisPredictor
+from feeddrive.diagnosis.motion.preparing import prepare
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording

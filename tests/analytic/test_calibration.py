@@ -10,10 +10,10 @@ import pytest
 from feeddrive.diagnosis.calibration.beyond import given_back, is_within_tolerance, said_by_effects
 from feeddrive.diagnosis.calibration.calibration import Calibration, whitener
 from feeddrive.diagnosis.calibration.declared import CalibratedValue, as_effect, calibrated_values, with_values
-from feeddrive.diagnosis.likelihood.evidence import prepare
-from feeddrive.diagnosis.likelihood.fit import Problem
-from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
+from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.tolerances import MASS, deviation_of
+from feeddrive.diagnosis.motion.prediction import AxisPredictor
+from feeddrive.diagnosis.motion.preparing import prepare
 from feeddrive.effects.base import Port
 from feeddrive.effects.chain.payload import Payload
 from feeddrive.effects.chain.stiffness_deviation import StiffnessDeviation

@@ -9,7 +9,8 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from feeddrive.diagnosis.likelihood.fit import Problem
+from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.likelihood.slopes import jacobian_of
 from feeddrive.effects.base import Effect, number
 from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.files import find_plant
@@ -41,7 +42,7 @@ def slope_of(slope: float) -> float:
     problem = Stepped(plant, (), cast(Any, SimpleNamespace(smooth=lambda plant: False)))
     object.__setattr__(problem, "slope", slope)
     effect = EFFECTS["stiffness_deviation"].of(place="nut", factor=0.9)
-    column = problem.jacobian([effect], [True], problem.predicted([effect]))[:, 0]
+    column = jacobian_of(problem, [effect], [True], problem.predicted([effect]))[:, 0]
     return float(np.linalg.norm(column)) / 0.05
 
 

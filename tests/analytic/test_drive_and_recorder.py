@@ -13,8 +13,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from feeddrive.diagnosis.likelihood.evidence import AxisEvidence, prepare
-from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
+from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
+from feeddrive.diagnosis.motion.prediction import AxisPredictor
+from feeddrive.diagnosis.motion.preparing import prepare
 from feeddrive.effects.base import Effect, Port
 from feeddrive.effects.chain.inertia_deviation import InertiaDeviation, declared_inertia
 from feeddrive.effects.chain.payload import Payload

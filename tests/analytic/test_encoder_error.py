@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from feeddrive.diagnosis.likelihood import encoder_error
-from feeddrive.diagnosis.likelihood.band import Band
-from feeddrive.diagnosis.likelihood.encoder_error import drawn_error, expected_motion
-from feeddrive.diagnosis.likelihood.evidence import prepare
+from feeddrive.diagnosis.motion import encoder_error
+from feeddrive.diagnosis.motion.band import Band
+from feeddrive.diagnosis.motion.encoder_error import drawn_error, expected_motion
+from feeddrive.diagnosis.motion.preparing import prepare
 from feeddrive.files import find_plant
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.recording.files.reading import read_recording

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from feeddrive.diagnosis.likelihood.band import Band
+from feeddrive.diagnosis.motion.band import Band
 from feeddrive.diagnosis.preparation import prepared
 from feeddrive.diagnosis.suspicion.flawed_rows import refuse_little_left, sound_rows, without_copied_position
 from feeddrive.errors import InputError

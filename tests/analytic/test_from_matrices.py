@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from feeddrive.diagnosis.likelihood.band import SHARE_OF_ANTIRESONANCE, WIDEST_BAND, comparison_band
+from feeddrive.diagnosis.motion.band import SHARE_OF_ANTIRESONANCE, WIDEST_BAND, comparison_band
 from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.effects.chain.stiffness_deviation import PARTS, parts_of
 from feeddrive.errors import InputError

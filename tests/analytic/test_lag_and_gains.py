@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.ndimage import shift
 
-from feeddrive.diagnosis.likelihood.weighing import Weighing
+from feeddrive.diagnosis.motion.weighing import Weighing
 from feeddrive.diagnosis.suspicion.channel_timing import lagging
 
 DRAW = np.random.default_rng(5)

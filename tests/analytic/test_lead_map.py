@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from feeddrive.diagnosis.likelihood.evidence import prepare
-from feeddrive.diagnosis.likelihood.lead_map import lead_map
+from feeddrive.diagnosis.motion.lead_map import lead_map
+from feeddrive.diagnosis.motion.preparing import prepare
 from feeddrive.files import plants_folder
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.recording import Recording

@@ -11,7 +11,7 @@ import pytest
 
 import feeddrive as fd
 from feeddrive.diagnosis.judging.judge import judged_recordings, prepared_for_judging
-from feeddrive.diagnosis.likelihood.evidence import prepare
+from feeddrive.diagnosis.motion.preparing import prepare
 from feeddrive.diagnosis.preparation import informative, prepared
 from feeddrive.diagnosis.suspicion.quality import flawed
 from feeddrive.interface.measured.first_look import play_seen

@@ -13,8 +13,9 @@ import numpy as np
 import pytest
 
 from feeddrive.diagnosis.judging.veto import friction_that_pushes
-from feeddrive.diagnosis.likelihood.fit import Problem, fit
-from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
+from feeddrive.diagnosis.likelihood.fit import fit
+from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.motion.prediction import AxisPredictor
 from feeddrive.effects.base import Effect, FrictionEffect, Motion, Port, Value, listed
 from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.errors import InputError

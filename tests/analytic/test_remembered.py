@@ -10,8 +10,8 @@ import numpy as np
 from feeddrive.diagnosis.finding.remembered import LEAST, Remembered
 from feeddrive.diagnosis.heat.heat_evidence import prepare_heat
 from feeddrive.diagnosis.heat.heat_prediction import heat_predictor
-from feeddrive.diagnosis.likelihood.evidence import prepare
-from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
+from feeddrive.diagnosis.motion.prediction import AxisPredictor
+from feeddrive.diagnosis.motion.preparing import prepare
 from feeddrive.diagnosis.recordings.recordings import RecordingPredictor
 from feeddrive.files import plants_folder
 from feeddrive.plant.file.plant_file import read_plant

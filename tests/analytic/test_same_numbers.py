@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from scipy.signal import butter, sosfiltfilt
 
-from feeddrive.diagnosis.likelihood.band import END_CUT, Band
-from feeddrive.diagnosis.likelihood.evidence import prepare
-from feeddrive.diagnosis.likelihood.fit import Problem
-from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
+from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.motion.band import END_CUT, Band
+from feeddrive.diagnosis.motion.prediction import AxisPredictor
+from feeddrive.diagnosis.motion.preparing import prepare
 from feeddrive.effects.friction.coulomb_asymmetry import CoulombAsymmetry
 from feeddrive.effects.source.constant_force import ConstantForce
 from feeddrive.effects.travel.lead_error_cumulative import LeadErrorCumulative

@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from feeddrive.diagnosis.likelihood.band import END_CUT, comparison_band
-from feeddrive.diagnosis.likelihood.evidence import prepare
-from feeddrive.diagnosis.likelihood.slow_rows import is_slow, known_motion, refuse_unknown_motion, sentence
+from feeddrive.diagnosis.motion.band import END_CUT, comparison_band
+from feeddrive.diagnosis.motion.preparing import prepare
+from feeddrive.diagnosis.motion.slow_rows import is_slow, known_motion, refuse_unknown_motion, sentence
 from feeddrive.diagnosis.suspicion.logged import declared_hold
 from feeddrive.errors import InputError
 from feeddrive.plant.analysis.modes import braked_modes, lag_per_acceleration

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from feeddrive.diagnosis.likelihood.band import Band
+from feeddrive.diagnosis.motion.band import Band
 from feeddrive.effects.friction.guide_friction import GuideFriction
 from feeddrive.plant.plant import Plant
 from feeddrive.simulate.driven import GRID, at_rate, motor_motion, on_grid, simulate_driven

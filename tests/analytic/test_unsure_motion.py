@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 from feeddrive.diagnosis.calibration.calibrate import calibrated
-from feeddrive.diagnosis.likelihood.encoder_error import DRAWS, _share_of_error, drawn_error, expected_motion
-from feeddrive.diagnosis.likelihood.evidence import AxisEvidence, weighed_by
-from feeddrive.diagnosis.likelihood.fit import Problem
-from feeddrive.diagnosis.likelihood.unsure_motion import HALF, LEAST, unsure_motions, without_share
+from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
+from feeddrive.diagnosis.motion.encoder_error import DRAWS, _share_of_error, drawn_error, expected_motion
+from feeddrive.diagnosis.motion.preparing import weighed_by
+from feeddrive.diagnosis.motion.unsure_motion import HALF, LEAST, unsure_motions, without_share
 from feeddrive.diagnosis.preparation import prepared
 from feeddrive.diagnosis.suspicion.logged import declared_hold
 from feeddrive.effects.chain.stiffness_deviation import StiffnessDeviation

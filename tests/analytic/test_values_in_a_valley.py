@@ -13,7 +13,7 @@ import pytest
 from feeddrive.diagnosis.calibration.calibrate import _without_unseen
 from feeddrive.diagnosis.calibration.calibration import Calibration, Whitener, whitener
 from feeddrive.diagnosis.calibration.declared import CalibratedValue
-from feeddrive.diagnosis.likelihood.fit import Problem
+from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.effects.base import Effect
 from feeddrive.typing import FloatArray
 

@@ -13,9 +13,9 @@ from typing import Any
 from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.judging.judge import channel_results, prepared_for_judging
 from feeddrive.diagnosis.judging.result import ChannelResult, Diagnosis, EffectResult
-from feeddrive.diagnosis.likelihood.evidence import prepare
-from feeddrive.diagnosis.likelihood.fit import Problem
-from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
+from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.motion.prediction import AxisPredictor
+from feeddrive.diagnosis.motion.preparing import prepare
 from feeddrive.effects.base import Effect
 from feeddrive.files import plants_folder
 from feeddrive.plant.file.plant_file import read_plant

@@ -16,15 +16,17 @@ from feeddrive.diagnosis.certainty.next_experiment import distance, hardly_known
 from feeddrive.diagnosis.certainty.noise_colour import independent_share
 from feeddrive.diagnosis.certainty.preferred import with_the_preferred
 from feeddrive.diagnosis.certainty.rehearsal import Rehearsal, rehearsals
-from feeddrive.diagnosis.finding import search as searching
+from feeddrive.diagnosis.finding import refitting
 from feeddrive.diagnosis.finding.attempt import compared
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging.judge import prepared_for_judging, share_of
 from feeddrive.diagnosis.judging.result import Trial
 from feeddrive.diagnosis.likelihood.cross_validation import compare_left_out
-from feeddrive.diagnosis.likelihood.evidence import AxisEvidence, prepare
-from feeddrive.diagnosis.likelihood.fit import Problem, fit
-from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
+from feeddrive.diagnosis.likelihood.fit import fit
+from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
+from feeddrive.diagnosis.motion.prediction import AxisPredictor
+from feeddrive.diagnosis.motion.preparing import prepare
 from feeddrive.effects.base import Effect, Port
 from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.files import plants_folder
@@ -120,13 +122,13 @@ def test_a_value_beyond_its_tolerance_is_named_where_that_lowers_the_error(
     problem, _ = heavier
     found = fit(problem, [])
     freed, (payload,) = said_by_effects(problem, [EFFECTS["payload"].of(mass=0.0)])
-    monkeypatch.setattr(searching, "beyond_tolerance", lambda *_: (freed, payload))
-    taken = searching._with_value_beyond(problem, found)
+    monkeypatch.setattr(refitting, "beyond_tolerance", lambda *_: (freed, payload))
+    taken = refitting.with_value_beyond(problem, found)
     assert taken is not None and [effect.name for effect in taken[1].effects] == ["payload"]
     assert taken[1].squared_error < found.squared_error
     # slopes that say so of what is idle, while the mass is held as declared
-    monkeypatch.setattr(searching, "beyond_tolerance", lambda *_: (freed, EFFECTS["drive_delay"].of(delay=0.0)))
-    assert searching._with_value_beyond(problem, found) is None
+    monkeypatch.setattr(refitting, "beyond_tolerance", lambda *_: (freed, EFFECTS["drive_delay"].of(delay=0.0)))
+    assert refitting.with_value_beyond(problem, found) is None
 
 
 def test_set_is_led_by_the_member_with_fewest_parameters() -> None:
@@ -161,7 +163,7 @@ def test_a_set_stands_beside_values_with_which_its_friction_takes_power(tmp_path
     measured = {name: low.predictor.predict(low.machine([asymmetric]), evidence)[name] for name in evidence.channels}
     fitting = replace(low, evidence=(replace(evidence, measured=measured),))
     assert not fitting.possible([asymmetric])
-    there, found = searching._where_friction_brakes(fitting, fit(fitting, [asymmetric], iterations=0))
+    there, found = refitting.where_friction_brakes(fitting, fit(fitting, [asymmetric], iterations=0))
     assert there.possible(found.effects)
 
 

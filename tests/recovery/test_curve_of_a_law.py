@@ -10,9 +10,10 @@ import pytest
 from feeddrive.diagnosis.finding.scene import Scene, scene_of
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging.judge import Judged, prepared_for_judging
-from feeddrive.diagnosis.likelihood.evidence import prepare
-from feeddrive.diagnosis.likelihood.fit import Problem, fit
-from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
+from feeddrive.diagnosis.likelihood.fit import fit
+from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.motion.prediction import AxisPredictor
+from feeddrive.diagnosis.motion.preparing import prepare
 from feeddrive.diagnosis.starts import needs, starts
 from feeddrive.diagnosis.unexplained.unexplained import without_stand_ins
 from feeddrive.effects.base import Effect

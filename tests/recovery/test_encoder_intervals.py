@@ -9,7 +9,8 @@ import pytest
 
 from feeddrive.diagnosis.calibration.calibrate import calibrated, calibrated_list, with_kept
 from feeddrive.diagnosis.calibration.encoder_scores import encoder_scores
-from feeddrive.diagnosis.likelihood.fit import Problem, fit
+from feeddrive.diagnosis.likelihood.fit import fit
+from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.preparation import prepared
 from feeddrive.diagnosis.suspicion.logged import declared_hold
 from feeddrive.plant.file.plant_file import read_plant

@@ -11,8 +11,8 @@ import pytest
 from feeddrive.diagnosis.calibration import calibrate
 from feeddrive.diagnosis.calibration.calibration import Calibration
 from feeddrive.diagnosis.calibration.declared import calibrated_values
-from feeddrive.diagnosis.likelihood.fit import Problem
-from feeddrive.diagnosis.likelihood.predictability import predictable_samples
+from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.motion.predictability import predictable_samples
 from feeddrive.diagnosis.preparation import prepared
 from feeddrive.effects.transmission.backlash import Backlash
 from feeddrive.files import plants_folder

@@ -13,7 +13,7 @@ from feeddrive.diagnosis.calibration.calibrate import calibrated, weighed_alike
 from feeddrive.diagnosis.calibration.known import TOLERANCE
 from feeddrive.diagnosis.finding.attempt import refuse_of_no_hours
 from feeddrive.diagnosis.finding.scene import scene_of
-from feeddrive.diagnosis.likelihood.fit import Problem
+from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.set_evidence import same_samples
 from feeddrive.diagnosis.preparation import prepared
 from feeddrive.diagnosis.starts import starts

@@ -11,7 +11,8 @@ from feeddrive.diagnosis.certainty.uncertainty import certainty, intervals
 from feeddrive.diagnosis.finding.spring_law import play_from_declared
 from feeddrive.diagnosis.judging.result import ParameterResult
 from feeddrive.diagnosis.judging.veto import sizes_around_none
-from feeddrive.diagnosis.likelihood.fit import UNEXPLAINED, Problem, fit
+from feeddrive.diagnosis.likelihood.fit import fit
+from feeddrive.diagnosis.likelihood.problem import UNEXPLAINED, Problem
 from feeddrive.diagnosis.preparation import prepared
 from feeddrive.effects.base import number
 from feeddrive.effects.chain.payload import Payload

@@ -18,9 +18,12 @@ from scipy import signal
 from feeddrive.diagnosis.certainty.information import cramer_rao
 from feeddrive.diagnosis.certainty.uncertainty import certainty, intervals
 from feeddrive.diagnosis.likelihood.coordinates import read_coordinates
-from feeddrive.diagnosis.likelihood.evidence import AxisEvidence, prepare
-from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
-from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
+from feeddrive.diagnosis.likelihood.fit import Fit, fit
+from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.likelihood.slopes import jacobian_of
+from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
+from feeddrive.diagnosis.motion.prediction import AxisPredictor
+from feeddrive.diagnosis.motion.preparing import prepare
 from feeddrive.effects.base import Effect
 from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.typing import FloatArray
@@ -54,7 +57,7 @@ def bench() -> Bench:
         EFFECTS["viscous_warmup"].of(share=0.3, time_constant=4.0),
     )
     base = problem.predicted(effects)
-    return Bench(problem, evidence, effects, base, problem.jacobian(effects, [True] * len(effects), base))
+    return Bench(problem, evidence, effects, base, jacobian_of(problem, effects, [True] * len(effects), base))
 
 
 def white(count: int, step: float, generator: np.random.Generator) -> FloatArray:
@@ -115,7 +118,7 @@ def test_bound_is_that_of_white_noise_on_every_sample(bench: Bench) -> None:
     everywhere = replace(bench.evidence, thinning=1)
     problem = replace(bench.problem, evidence=(everywhere,))
     force = [EFFECTS["payload"].of(mass=10.0), EFFECTS["stribeck"].of(delta_force=-20.0, velocity=6e-3)]
-    jacobian = problem.jacobian(force, [True, True], problem.predicted(force))
+    jacobian = jacobian_of(problem, force, [True, True], problem.predicted(force))
     # weighted by the noise in the band; unfiltered it is larger by the gain
     bound = np.sqrt(np.diag(np.linalg.inv(jacobian.T @ jacobian * bench.evidence.band.noise_gain**2)))
     found = cramer_rao(bench.problem, force)
@@ -160,7 +163,7 @@ def test_logarithmic_parameter_has_a_factor_to_either_side(bench: Bench) -> None
     growth = EFFECTS["thermal_growth"].of(strain=2e-6, time_constant=5.0)
     problem = bench.problem
     base = problem.predicted([growth])
-    jacobian = problem.jacobian([growth], [True], base)
+    jacobian = jacobian_of(problem, [growth], [True], base)
     found = Fit((growth,), noise(bench, red, 3) * 30, jacobian, read_coordinates([growth], problem.plant))
     known = intervals(problem, found, certainty(problem, found))[0]["time_constant"]
     assert known is not None

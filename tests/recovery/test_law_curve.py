@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 
 from feeddrive.diagnosis.finding.open_map import likeliest_curve, log_odds_of_curves, with_curves_of
-from feeddrive.diagnosis.likelihood.evidence import prepare
-from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
+from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.law_curve import STEPS, law_curves
-from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
+from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.set_evidence import log_odds
+from feeddrive.diagnosis.motion.prediction import AxisPredictor
+from feeddrive.diagnosis.motion.preparing import prepare
 from feeddrive.effects.base import Effect
 from feeddrive.effects.catalogue import EFFECTS
 from tests.generator.axis import AXES

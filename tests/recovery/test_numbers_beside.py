@@ -13,8 +13,9 @@ import feeddrive as fd
 from feeddrive.cli.main import main
 from feeddrive.diagnosis.calibration.calibrate import calibrated, calibrated_list
 from feeddrive.diagnosis.diagnose import diagnose
-from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
+from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.folds import FOLDS, block_numbers, blocks_in_time
+from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.numbers.measured_file import MEASURABLE, MeasuredNumber, Setting
 from feeddrive.diagnosis.numbers.number_rows import MeasuredRows
 from feeddrive.diagnosis.preparation import prepared

@@ -11,9 +11,10 @@ import pytest
 
 from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.judging.result import Diagnosis
-from feeddrive.diagnosis.likelihood.evidence import prepare
-from feeddrive.diagnosis.likelihood.fit import Problem, fit
-from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
+from feeddrive.diagnosis.likelihood.fit import fit
+from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.motion.prediction import AxisPredictor
+from feeddrive.diagnosis.motion.preparing import prepare
 from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.errors import InputError
 from feeddrive.files import find_plant

@@ -14,9 +14,9 @@ from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.finding.attempt import with_predictable
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging.judge import prepared_for_judging
-from feeddrive.diagnosis.likelihood.evidence import AxisEvidence
 from feeddrive.diagnosis.likelihood.fit import fit
-from feeddrive.diagnosis.likelihood.predictability import predictable_samples
+from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
+from feeddrive.diagnosis.motion.predictability import predictable_samples
 from feeddrive.diagnosis.preparation import prepared
 from feeddrive.diagnosis.recordings.compared import JudgedChanges, judged_changes
 from feeddrive.effects.base import Effect

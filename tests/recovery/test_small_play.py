@@ -10,7 +10,8 @@ import pytest
 from feeddrive.diagnosis.calibration.calibrate import calibrated, recalibrated
 from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.finding.spring_law import with_likelier_law
-from feeddrive.diagnosis.likelihood.fit import Problem, fit
+from feeddrive.diagnosis.likelihood.fit import fit
+from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.set_evidence import regained
 from feeddrive.diagnosis.preparation import prepared
 from feeddrive.effects.base import number

@@ -14,10 +14,11 @@ import pytest
 from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.finding.scene import scene_of
 from feeddrive.diagnosis.finding.spring_law import odds_between
-from feeddrive.diagnosis.likelihood.evidence import prepare
-from feeddrive.diagnosis.likelihood.fit import Problem, fit
-from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
+from feeddrive.diagnosis.likelihood.fit import fit
+from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.set_evidence import Standing
+from feeddrive.diagnosis.motion.prediction import AxisPredictor
+from feeddrive.diagnosis.motion.preparing import prepare
 from feeddrive.diagnosis.starts import mode, transmission_starts
 from feeddrive.effects.base import Effect
 from feeddrive.effects.catalogue import EFFECTS

@@ -8,7 +8,8 @@ import pytest
 
 from feeddrive.diagnosis.finding import search as of_search
 from feeddrive.diagnosis.finding.search import search
-from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
+from feeddrive.diagnosis.likelihood.fit import Fit, fit
+from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.preparation import prepared
 from feeddrive.effects.source.torque_ripple import TorqueRipple
 from feeddrive.plant.file.plant_file import read_plant
@@ -26,7 +27,7 @@ def test_a_value_that_goes_again_is_not_asked_again(tmp_path: Path, monkeypatch:
         asked.append(tuple(effect.name for effect in found.effects))
         return there, fit(there, (*found.effects, TorqueRipple.of(amplitude=1e-5, order=3.7, phase=0.4)))
 
-    monkeypatch.setattr(of_search, "_with_value_beyond", beyond)
+    monkeypatch.setattr(of_search, "with_value_beyond", beyond)
     found = search(problem)
     assert asked == [()]
     assert found.fit.effects == ()

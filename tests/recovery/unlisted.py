@@ -9,9 +9,9 @@ import numpy as np
 
 from feeddrive.diagnosis.judging.judge import Judged, channel_results, prepared_for_judging
 from feeddrive.diagnosis.judging.result import ChannelResult
-from feeddrive.diagnosis.likelihood.evidence import prepare
-from feeddrive.diagnosis.likelihood.fit import Problem
-from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
+from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.motion.prediction import AxisPredictor
+from feeddrive.diagnosis.motion.preparing import prepare
 from feeddrive.diagnosis.unexplained.unexplained import Rest, explain_rest
 from feeddrive.diagnosis.unexplained.unexplained_result import Dependence
 from feeddrive.recording import Recording

@@ -12,7 +12,8 @@ from feeddrive.diagnosis.calibration.calibrate import ENOUGH, PASSES, moved, rec
 from feeddrive.diagnosis.calibration.calibration import Calibration
 from feeddrive.diagnosis.calibration.declared import CalibratedValue, as_effect, calibrated_values
 from feeddrive.diagnosis.calibration.known import TOLERANCE, known_values
-from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
+from feeddrive.diagnosis.likelihood.fit import Fit, fit
+from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.set_evidence import regained
 from feeddrive.diagnosis.likelihood.tolerances import BEYOND, SURE
 from feeddrive.effects.base import Effect, Value, number

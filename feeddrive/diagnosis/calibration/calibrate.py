@@ -12,9 +12,11 @@ from feeddrive.diagnosis.calibration.calibration import Calibration
 from feeddrive.diagnosis.calibration.declared import CalibratedValue, calibrated_values
 from feeddrive.diagnosis.calibration.known import known_values
 from feeddrive.diagnosis.certainty.noise_colour import score_covariance
-from feeddrive.diagnosis.likelihood.evidence import Evidence, weighed_by
-from feeddrive.diagnosis.likelihood.fit import Fit, Problem
-from feeddrive.diagnosis.likelihood.predictability import has_play
+from feeddrive.diagnosis.likelihood.evidence import Evidence
+from feeddrive.diagnosis.likelihood.fit import Fit
+from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.motion.predictability import has_play
+from feeddrive.diagnosis.motion.preparing import weighed_by
 from feeddrive.effects.base import Effect
 from feeddrive.recording import Recording
 from feeddrive.recording.long.joined import is_joined
@@ -30,7 +32,7 @@ values that weigh against each other, an inertia, a mass, a torque constant, cou
 where the solver changes its steps."""
 
 LONG = 30 * STEP
-"""Change of the logarithm where a prediction goes from cell to cell, or a table bounces (`fit.COARSE`)."""
+"""Change of the logarithm where a prediction goes from cell to cell, or a table bounces (`slopes.COARSE`)."""
 
 ENOUGH = 0.1
 """Move of a value over its deviation that needs no new slopes: it moves the evidence by a two-hundredth."""
@@ -77,9 +79,11 @@ def recalibrated(problem: Problem, effects: Sequence[Effect], rough: bool = Fals
     if known is None or not known.values:
         return problem
     sloped = with_new_slopes(problem, effects, rough)
-    assert sloped.calibration is not None and sloped.whitener is not None
-    if not np.all(np.isfinite(sloped.whitener.columns)):
+    assert sloped.calibration is not None
+    slopes = [rows for channels in sloped.calibration.slopes.values() for rows in channels.values()]
+    if not all(np.all(np.isfinite(rows)) for rows in slopes):  # a machine near this one cannot be simulated
         return problem
+    assert sloped.whitener is not None
     residual = sloped.unwhitened(effects)
     # what is left once the values are as they are most likely tells how much a row is worth
     left = residual - sloped.whitener.columns @ (sloped.whitener.most_likely(residual) - known.coordinates)

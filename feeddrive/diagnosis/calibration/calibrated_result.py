@@ -10,7 +10,8 @@ import numpy as np
 
 from feeddrive.diagnosis.calibration.calibrate import calibrated_list
 from feeddrive.diagnosis.calibration.known import known_values
-from feeddrive.diagnosis.likelihood.fit import Fit, Problem
+from feeddrive.diagnosis.likelihood.fit import Fit
+from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.effects.chain.stiffness_deviation import PARTS
 from feeddrive.plant.analysis.stiffness_budget import participation
 from feeddrive.units.quantity import percent

@@ -4,7 +4,7 @@
 
 | symbol | meaning | unit |
 |---|---|---|
-| A, A_d | motion that is expected, and those that would be if it were the true one (`likelihood.encoder_error`) | rad |
+| A, A_d | motion that is expected, and those that would be if it were the true one (`motion.encoder_error`) | rad |
 | f, K_d | what the declared plant makes of a motion over the noise, and its slopes with the values at A_d | 1 |
 
 The colour of a residual (`noise_colour`) knows how much an error scatters, not that slopes at a measured motion hold
@@ -22,8 +22,8 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from feeddrive.diagnosis.calibration.declared import CalibratedValue, with_values
-from feeddrive.diagnosis.likelihood.evidence import AxisEvidence
-from feeddrive.diagnosis.likelihood.fit import Problem
+from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
 from feeddrive.typing import FloatArray
 
 STEP = 3e-3

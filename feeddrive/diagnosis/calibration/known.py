@@ -32,7 +32,9 @@ from scipy.optimize import brentq, lsq_linear
 from feeddrive.diagnosis.calibration.declared import FARTHEST, CalibratedValue
 from feeddrive.diagnosis.calibration.encoder_scores import encoder_scores
 from feeddrive.diagnosis.certainty.noise_colour import score_covariance
-from feeddrive.diagnosis.likelihood.fit import Fit, Problem, linear_step
+from feeddrive.diagnosis.likelihood.fit import Fit, linear_step
+from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.likelihood.slopes import jacobian_of
 from feeddrive.typing import FloatArray
 
 TOLERANCE = 2.0
@@ -190,4 +192,4 @@ def _own_slopes(problem: Problem, found: Fit) -> FloatArray:
     if not found.effects:
         return np.zeros((0, 0))
     bare = replace(problem, plant=problem.machine(), calibration=None)
-    return bare.jacobian(found.effects, [True] * len(found.effects), bare.predicted(found.effects))
+    return jacobian_of(bare, found.effects, [True] * len(found.effects), bare.predicted(found.effects))

@@ -24,7 +24,8 @@ from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.finding.sets import odds_of_members
 from feeddrive.diagnosis.judging.judge import Judged
 from feeddrive.diagnosis.likelihood.coordinates import at_its_limit
-from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
+from feeddrive.diagnosis.likelihood.fit import Fit, fit
+from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.set_evidence import (
     Standing,
     commonly_predicted,

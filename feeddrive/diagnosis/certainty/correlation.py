@@ -17,7 +17,8 @@ import numpy as np
 from feeddrive.diagnosis.certainty.certainty_result import Correlation
 from feeddrive.diagnosis.certainty.uncertainty import Certainty, slopes
 from feeddrive.diagnosis.likelihood.coordinates import value_slopes
-from feeddrive.diagnosis.likelihood.fit import Fit, Problem
+from feeddrive.diagnosis.likelihood.fit import Fit
+from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.effects.base import Effect
 from feeddrive.typing import FloatArray
 

@@ -17,7 +17,8 @@ from scipy.special import logsumexp
 
 from feeddrive.diagnosis.calibration.beyond import without_effects
 from feeddrive.diagnosis.certainty.ambiguity import AGAINST, Rival
-from feeddrive.diagnosis.finding.search import Near, Search
+from feeddrive.diagnosis.finding.likelier import Near
+from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.finding.sets import members_weighed, odds_of_members
 from feeddrive.diagnosis.judging.result import PossibleEffect
 from feeddrive.diagnosis.likelihood.fit import fit

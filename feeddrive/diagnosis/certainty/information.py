@@ -16,7 +16,8 @@ import numpy as np
 
 from feeddrive.diagnosis.certainty.noise_colour import independent_share
 from feeddrive.diagnosis.likelihood.coordinates import read_coordinates, spread_to_values
-from feeddrive.diagnosis.likelihood.fit import Problem
+from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.likelihood.slopes import jacobian_of
 from feeddrive.effects.base import Effect
 from feeddrive.typing import FloatArray
 
@@ -62,6 +63,6 @@ def cramer_rao(problem: Problem, effects: Sequence[Effect]) -> list[dict[str, Fl
     if not effects:
         return []
     base = problem.predicted(effects)
-    jacobian = problem.jacobian(effects, [True] * len(effects), base)
+    jacobian = jacobian_of(problem, effects, [True] * len(effects), base)
     covariance = inverse_information(fisher_information(problem, jacobian))
     return spread_to_values(effects, problem.plant, read_coordinates(effects, problem.plant), covariance)

@@ -33,9 +33,11 @@ from feeddrive.diagnosis.certainty.rehearsal import Rehearsal, rehearsals
 from feeddrive.diagnosis.certainty.uncertainty import Interval
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.likelihood.coordinates import read_coordinates, spread_to_values
-from feeddrive.diagnosis.likelihood.evidence import AxisEvidence
-from feeddrive.diagnosis.likelihood.fit import Fit, Problem
-from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
+from feeddrive.diagnosis.likelihood.fit import Fit
+from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.likelihood.slopes import jacobian_of
+from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
+from feeddrive.diagnosis.motion.prediction import AxisPredictor
 from feeddrive.diagnosis.recordings.recordings import is_shift
 from feeddrive.effects.base import Effect
 from feeddrive.typing import FloatArray
@@ -107,7 +109,7 @@ def distance(problem: Problem, found: Sequence[Effect], rival: Fit, experiment: 
     ready = Problem(problem.machine(), (experiment.evidence,), AxisPredictor())
     base = ready.predicted(rival.effects)
     apart = ready.predicted(found) - base
-    slopes = ready.jacobian(rival.effects, [True] * len(rival.effects), base)
+    slopes = jacobian_of(ready, rival.effects, [True] * len(rival.effects), base)
     share = independent_share(experiment.evidence)
     before = fisher_information(problem, rival.jacobian)
     moved = inverse_information(before + share * slopes.T @ slopes) @ (share * slopes.T @ apart)
@@ -150,7 +152,7 @@ def _narrowing(found: Search, doubt: Doubt, before: FloatArray, experiment: Rehe
     """Width of the parameter's interval after the experiment over that before."""
     effects = found.fit.effects
     ready = Problem(found.problem.machine(), (experiment.evidence,), AxisPredictor())
-    slopes = ready.jacobian(effects, [True] * len(effects), ready.predicted(effects))
+    slopes = jacobian_of(ready, effects, [True] * len(effects), ready.predicted(effects))
     if not np.all(np.isfinite(slopes)):
         return 1.0
     after = before + independent_share(experiment.evidence) * slopes.T @ slopes

@@ -22,7 +22,9 @@ import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
 from scipy.signal.windows import parzen
 
-from feeddrive.diagnosis.likelihood.evidence import BLOCK, AxisEvidence, Evidence
+from feeddrive.diagnosis.likelihood.evidence import Evidence
+from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
+from feeddrive.diagnosis.motion.preparing import BLOCK
 from feeddrive.typing import BoolArray, ComplexArray, FloatArray, IntegerArray
 
 WINDOW_FREEDOM = 3.71

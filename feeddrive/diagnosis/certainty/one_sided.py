@@ -27,9 +27,10 @@ from feeddrive.diagnosis.likelihood.coordinates import (
     read_coordinates,
     write_coordinates,
 )
-from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
-from feeddrive.diagnosis.likelihood.predictability import has_play
+from feeddrive.diagnosis.likelihood.fit import Fit, fit
+from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.set_evidence import variance_along
+from feeddrive.diagnosis.motion.predictability import has_play
 from feeddrive.effects.base import Effect, number
 from feeddrive.typing import FloatArray
 

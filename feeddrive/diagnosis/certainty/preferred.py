@@ -12,7 +12,8 @@ from feeddrive.diagnosis.certainty.ambiguity import AGAINST, Rival
 from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.likelihood.coordinates import at_its_limit, read_coordinates
-from feeddrive.diagnosis.likelihood.fit import Problem, fit
+from feeddrive.diagnosis.likelihood.fit import fit
+from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.recordings.recordings import is_shift
 from feeddrive.effects.base import Effect
 from feeddrive.plant.plant import Plant

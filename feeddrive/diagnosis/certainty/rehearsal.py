@@ -16,7 +16,8 @@ from pathlib import Path
 
 import numpy as np
 
-from feeddrive.diagnosis.likelihood.evidence import SHORTEST, AxisEvidence, prepare
+from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
+from feeddrive.diagnosis.motion.preparing import SHORTEST, prepare
 from feeddrive.engine.step.linear_part import SimulationError
 from feeddrive.errors import InputError
 from feeddrive.files import shipped_scenarios

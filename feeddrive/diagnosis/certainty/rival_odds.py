@@ -25,7 +25,8 @@ import numpy as np
 from feeddrive.diagnosis.certainty.noise_colour import score_covariance
 from feeddrive.diagnosis.judging.judge import Judged, error_series
 from feeddrive.diagnosis.likelihood.cross_validation import model_error_rows
-from feeddrive.diagnosis.likelihood.fit import Fit, Problem
+from feeddrive.diagnosis.likelihood.fit import Fit
+from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray
 

@@ -29,8 +29,10 @@ from feeddrive.diagnosis.certainty.information import inverse_information
 from feeddrive.diagnosis.certainty.noise_colour import fitted_away, score_covariance, spectral_freedom
 from feeddrive.diagnosis.likelihood.coordinates import LOGARITHMIC, spread_to_values, write_coordinates
 from feeddrive.diagnosis.likelihood.cross_validation import model_error_rows
-from feeddrive.diagnosis.likelihood.fit import Fit, Problem
+from feeddrive.diagnosis.likelihood.fit import Fit
 from feeddrive.diagnosis.likelihood.folds import blocks_in_time
+from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.likelihood.slopes import difference_of
 from feeddrive.effects.base import Effect
 from feeddrive.typing import FloatArray, IntegerArray
 
@@ -111,9 +113,9 @@ def slopes(problem: Problem, fitted: Fit) -> FloatArray:
     jacobian, base = fitted.jacobian.copy(), problem.predicted(fitted.effects)
     for i in still:
         step = np.zeros(jacobian.shape[1])
-        step[i] = -problem.difference
+        step[i] = -difference_of(problem)
         moved = write_coordinates(fitted.effects, problem.plant, fitted.coordinates + step)
-        jacobian[:, i] = (base - problem.predicted(moved)) / problem.difference
+        jacobian[:, i] = (base - problem.predicted(moved)) / difference_of(problem)
     return jacobian
 
 

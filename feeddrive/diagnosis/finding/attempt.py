@@ -15,9 +15,10 @@ from feeddrive.diagnosis.likelihood.cross_validation import (
     least_gain,
     left_out_residual,
 )
-from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit, linear_step
+from feeddrive.diagnosis.likelihood.fit import Fit, fit, linear_step
 from feeddrive.diagnosis.likelihood.folds import FOLDS, block_numbers
-from feeddrive.diagnosis.likelihood.predictability import has_play
+from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.motion.predictability import has_play
 from feeddrive.diagnosis.starts.residual_readings import BINS
 from feeddrive.effects.base import Effect, number
 from feeddrive.effects.friction.viscous_warmup import ViscousWarmup

@@ -8,8 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from feeddrive.diagnosis.likelihood.evidence import Evidence
-from feeddrive.diagnosis.likelihood.fit import Fit, Problem, linear_step
+from feeddrive.diagnosis.likelihood.fit import Fit, linear_step
 from feeddrive.diagnosis.likelihood.law_curve import law_curves
+from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.set_evidence import log_prior_of_size, variance_along
 from feeddrive.effects.base import Effect
 from feeddrive.typing import FloatArray

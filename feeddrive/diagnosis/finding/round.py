@@ -8,7 +8,8 @@ from dataclasses import dataclass
 
 from feeddrive.diagnosis.finding.attempt import PROMISE, Attempt, refined, started
 from feeddrive.diagnosis.finding.scene import Candidate, Scene
-from feeddrive.diagnosis.likelihood.fit import Fit, Problem
+from feeddrive.diagnosis.likelihood.fit import Fit
+from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.effects.base import Effect
 
 FAIR_PART = 0.3

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from feeddrive.diagnosis.likelihood.fit import Problem
+from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.effects.base import Effect
 from feeddrive.plant.plant import Plant
 from feeddrive.simulate.driven import LoadMotion

@@ -26,8 +26,8 @@ import numpy as np
 from feeddrive.diagnosis.certainty.noise_colour import score_covariance
 from feeddrive.diagnosis.finding.attempt import Attempt
 from feeddrive.diagnosis.likelihood.coordinates import read_coordinates, write_coordinates
-from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
-from feeddrive.diagnosis.likelihood.predictability import has_play
+from feeddrive.diagnosis.likelihood.fit import Fit, fit
+from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.set_evidence import (
     DISCREPANCY,
     Standing,
@@ -37,6 +37,7 @@ from feeddrive.diagnosis.likelihood.set_evidence import (
     odds_between,
     regained,
 )
+from feeddrive.diagnosis.motion.predictability import has_play
 from feeddrive.effects.base import Effect
 from feeddrive.typing import FloatArray, IntegerArray
 

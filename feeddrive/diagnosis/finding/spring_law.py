@@ -19,7 +19,8 @@ from feeddrive.diagnosis.certainty.imitations import imitations_of
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS, with_predictable
 from feeddrive.diagnosis.finding.scene import scene_of
 from feeddrive.diagnosis.likelihood.coordinates import at_its_limit
-from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
+from feeddrive.diagnosis.likelihood.fit import Fit, error_of, fit
+from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between, regained, same_samples, variance_along
 from feeddrive.effects.base import Effect, number
 from feeddrive.effects.transmission.backlash import Backlash
@@ -76,7 +77,7 @@ def from_declared(problem: Problem, effects: Sequence[Effect], place: int, law: 
         scene = scene_of(there, rest)
         starts = [law, *(start for of in forms for form in of(scene) for start in form)]
         sets = [[*effects[:place], start, *effects[place + 1 :]] for start in starts]
-        return _settled(there, min(sets, key=lambda one: _error(there, one)))
+        return _settled(there, min(sets, key=lambda one: error_of(there, one)))
     except InputError:
         return None
 
@@ -94,17 +95,13 @@ def play_from_declared(problem: Problem, found: Fit) -> Standing | None:
         if play is None or play.needs(scene) or any(effect.name in LAWS for effect in found.effects):
             return None
         sets = [[*found.effects, start] for form in play.forms(scene) for start in form]
-        best = min(sets, key=lambda one: _error(there, one))
+        best = min(sets, key=lambda one: error_of(there, one))
         own = with_predictable(problem, best)
-        if not _error(at_declared(own), best) < _error(own, found.effects):
+        if not error_of(at_declared(own), best) < error_of(own, found.effects):
             return None
     except InputError:
         return None
     return _settled(there, best)
-
-
-def _error(problem: Problem, effects: Sequence[Effect]) -> float:
-    return fit(problem, effects, error_only=True).squared_error
 
 
 def _settled(problem: Problem, effects: Sequence[Effect]) -> Standing | None:

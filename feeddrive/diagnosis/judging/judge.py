@@ -16,9 +16,10 @@ from feeddrive.diagnosis.likelihood.cross_validation import (
     model_error_rows,
 )
 from feeddrive.diagnosis.likelihood.evidence import Evidence
-from feeddrive.diagnosis.likelihood.fit import Problem, fit
-from feeddrive.diagnosis.likelihood.predictability import has_play
+from feeddrive.diagnosis.likelihood.fit import fit
+from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.set_evidence import declining, regained
+from feeddrive.diagnosis.motion.predictability import has_play
 from feeddrive.effects.base import Effect
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant

@@ -41,7 +41,8 @@ from feeddrive.diagnosis.likelihood.coordinates import (
     write_coordinates,
 )
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison, worse_beyond_scatter
-from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit, linear_step
+from feeddrive.diagnosis.likelihood.fit import Fit, fit, linear_step
+from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between, regained
 from feeddrive.diagnosis.likelihood.tolerances import SURE
 from feeddrive.diagnosis.recordings.compared import judged_changes

@@ -1,4 +1,4 @@
-"""Coordinates in which an effect's parameters are fitted: scaled, logarithmic, or a sine's two components.
+"""Coordinates of a set of effects: which values are fitted, in which kind of coordinate, and between which ends.
 
 Fits run in coordinates of size about one, so that one step length and one damping serve all of them.
 """
@@ -7,12 +7,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from feeddrive.diagnosis.friction_at_port import declared_level, declared_viscous
-from feeddrive.effects.base import Effect, Value
+from feeddrive.diagnosis.likelihood.coordinate_kinds import (
+    Coordinate,
+    Linear,
+    Logarithmic,
+    MiddleForce,
+    Sine,
+    TwoHeats,
+)
+from feeddrive.effects.base import Effect
 from feeddrive.effects.chain.inertia_deviation import InertiaDeviation, declared_inertia
 from feeddrive.effects.source.constant_force import ConstantForce
 from feeddrive.effects.source.position_spring import PositionSpring
@@ -22,122 +29,6 @@ from feeddrive.typing import FloatArray, IntegerArray
 
 ORDER_SIZE = 0.01
 """Change of an order that shows over a stroke of some revolutions."""
-
-
-@dataclass(frozen=True)
-class Linear:
-    """value = size * coordinate."""
-
-    key: str
-    size: float
-
-    def read(self, effect: Effect) -> list[float]:
-        """Coordinates of the effect's values."""
-        value = effect.values[self.key]
-        return [number / self.size for number in (value if isinstance(value, tuple) else (value,))]
-
-    def write(self, effect: Effect, coordinates: Sequence[float]) -> dict[str, Value]:
-        """Values of the coordinates."""
-        parameter = effect.parameter(self.key)
-        numbers = [min(max(c * self.size, parameter.minimum), parameter.maximum) for c in coordinates]
-        if not isinstance(effect.values[self.key], tuple):
-            return {self.key: numbers[0]}
-        if self.key != "delta_force":
-            return {self.key: tuple(numbers)}
-        # a curve over the stroke is about its mean: a level of its own would be that of the declared friction
-        mean = sum(numbers) / len(numbers)
-        return {self.key: tuple(number - mean for number in numbers)}
-
-
-@dataclass(frozen=True)
-class Logarithmic:
-    """value = exp(coordinate)."""
-
-    key: str
-
-    def read(self, effect: Effect) -> list[float]:
-        """Coordinates of the effect's values."""
-        return [math.log(_number(effect, self.key))]
-
-    def write(self, effect: Effect, coordinates: Sequence[float]) -> dict[str, Value]:
-        """Values of the coordinates."""
-        parameter = effect.parameter(self.key)
-        value = math.exp(min(max(coordinates[0], -700.0), 700.0))
-        return {self.key: min(max(value, parameter.minimum), parameter.maximum)}
-
-
-@dataclass(frozen=True)
-class Sine:
-    """amplitude and phase as the two components of the sine."""
-
-    size: float
-
-    def read(self, effect: Effect) -> list[float]:
-        """Coordinates of the effect's values."""
-        amplitude, phase = _number(effect, "amplitude"), _number(effect, "phase")
-        return [amplitude * math.cos(phase) / self.size, amplitude * math.sin(phase) / self.size]
-
-    def write(self, effect: Effect, coordinates: Sequence[float]) -> dict[str, Value]:
-        """Values of the coordinates."""
-        a, b = coordinates
-        most = effect.parameter("amplitude").maximum
-        return {"amplitude": min(self.size * math.hypot(a, b), most), "phase": math.atan2(b, a)}
-
-
-@dataclass(frozen=True)
-class TwoHeats:
-    """Two heats that are linear in the prediction, in place of a heat and a share of it.
-
-    A motor's P a and P (1 - a): with `rest`. Two bearings' c and c s: without.
-    """
-
-    key: str
-    share: str
-    size: float
-    rest: bool
-
-    def read(self, effect: Effect) -> list[float]:
-        """Coordinates of the effect's values."""
-        whole, share = _number(effect, self.key) / self.size, _number(effect, self.share)
-        return [whole * share, whole * (1 - share)] if self.rest else [whole, whole * share]
-
-    def write(self, effect: Effect, coordinates: Sequence[float]) -> dict[str, Value]:
-        """Values of the coordinates, neither heat below zero."""
-        first, second = (max(c, 0.0) for c in coordinates)
-        whole = first + second if self.rest else first
-        over = whole if whole > 0 else 1.0
-        share = min((first if self.rest else second) / over, effect.parameter(self.share).maximum)
-        return {self.key: whole * self.size, self.share: share}
-
-
-@dataclass(frozen=True)
-class MiddleForce:
-    """Force of a spring in the middle m of the stroke, k (m - zero), in place of its zero, which may be far off.
-
-    The force on the table, k (x - m) + k (m - zero), is linear in it and in the stiffness, and where there is no more
-    than a constant force the stiffness alone is idle.
-    """
-
-    size: float
-    middle: float
-    key: str = "zero"
-
-    def read(self, effect: Effect) -> list[float]:
-        """Coordinates of the effect's values."""
-        return [_number(effect, "stiffness") * (self.middle - _number(effect, "zero")) / self.size]
-
-    def write(self, effect: Effect, coordinates: Sequence[float]) -> dict[str, Value]:
-        """Values of the coordinates."""
-        stiffness = _number(effect, "stiffness")
-        softest = math.copysign(max(abs(stiffness), SOFTEST), stiffness)
-        return {"zero": self.middle - coordinates[0] * self.size / softest}
-
-
-SOFTEST = 1e-9
-"""Stiffness [N/m] of a spring that is a force alone: its zero still is a number."""
-
-
-Coordinate = Linear | Logarithmic | Sine | TwoHeats | MiddleForce
 
 LOGARITHMIC = {
     ("stribeck", "velocity"),
@@ -395,8 +286,3 @@ def _flat(effects: Sequence[Effect]) -> FloatArray:
         for value in effect.values.values():
             numbers += list(value) if isinstance(value, tuple) else [float(value)]
     return np.array(numbers)
-
-
-def _number(effect: Effect, key: str) -> float:
-    value = effect.values[key]
-    return float(value[0]) if isinstance(value, tuple) else float(value)

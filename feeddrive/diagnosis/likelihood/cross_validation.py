@@ -23,8 +23,10 @@ import numpy as np
 
 from feeddrive.diagnosis.likelihood.coordinates import absent_coordinates
 from feeddrive.diagnosis.likelihood.evidence import Evidence
-from feeddrive.diagnosis.likelihood.fit import DIFFERENCE, Fit, Problem, unit_columns
+from feeddrive.diagnosis.likelihood.fit import Fit, unit_columns
 from feeddrive.diagnosis.likelihood.folds import FOLDS
+from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.likelihood.slopes import DIFFERENCE
 from feeddrive.effects.base import Effect
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import BoolArray, FloatArray, IntegerArray

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from feeddrive.diagnosis.likelihood.evidence import Evidence
-from feeddrive.diagnosis.likelihood.fit import Problem
+from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.typing import FloatArray, IntegerArray
 
 FOLDS = 6

@@ -32,7 +32,7 @@ from dataclasses import replace
 import numpy as np
 
 from feeddrive.diagnosis.likelihood.evidence import Evidence
-from feeddrive.diagnosis.likelihood.fit import Problem
+from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.effects.base import Effect, number
 from feeddrive.errors import InputError
 from feeddrive.typing import FloatArray
@@ -46,27 +46,10 @@ STEPS = (1 / 9, 1 / 3, 3.0, 9.0)
 LEAST = 0.01
 """Speed or torque over the largest below which the logarithm goes no further: there friction turns."""
 
-VARIABLES = {
-    "viscous_asymmetry": "table_velocity",
-    "torque_constant_droop": "motor_torque",
-    "position_spring": "table_position",
-    "lead_error_cumulative": "table_position",
-    "stiffness_vs_position": "table_position",
-}
-"""Laws over a variable."""
-
-SCALES = {
-    "stribeck": "velocity",
-    "friction_vs_position": "half_width",
-    "viscous_warmup": "time_constant",
-    "thermal_growth": "time_constant",
-}
-"""Laws that have a scale."""
-
 
 def has_curve(effects: Sequence[Effect]) -> bool:
     """Whether one of these laws has other forms."""
-    return any(effect.name in VARIABLES or effect.name in SCALES for effect in effects)
+    return any(effect.curve_over or effect.curve_scale for effect in effects)
 
 
 def law_curves(problem: Problem, effects: Sequence[Effect], place: int) -> dict[Evidence, list[dict[str, FloatArray]]]:
@@ -86,13 +69,13 @@ def law_curves(problem: Problem, effects: Sequence[Effect], place: int) -> dict[
     for e in problem.evidence:
         with_law, bare = problem.predictor.predict(plant, e), problem.predictor.predict(without, e)
         own = {name: with_law[name] - bare[name] for name in e.channels}
-        if law.name in SCALES:
+        if law.curve_scale:
             parts = [
                 {name: series[name] - with_law[name] for name in e.channels}
                 for series in _at_other_scales(problem, others, law, e)
             ]
         else:
-            u = _visited({**problem.predictor.variables(plant, e), **with_law}.get(VARIABLES[law.name]), law)
+            u = _visited({**problem.predictor.variables(plant, e), **with_law}.get(law.curve_over), law)
             if u is None:  # its variable is not predicted here
                 return {}
             parts = [{name: own[name] * np.polynomial.Legendre.basis(k)(u) for name in e.channels} for k in HALF_WAVES]
@@ -104,7 +87,7 @@ def _visited(variable: FloatArray | None, law: Effect) -> FloatArray | None:
     """u of a law's variable, (n,); None without one."""
     if variable is None or not np.ptp(variable) > 0:
         return None
-    if VARIABLES[law.name] != "table_position":
+    if law.curve_over != "table_position":
         size = np.abs(variable)
         variable = np.log(np.maximum(size / np.max(size), LEAST))
     low, span = float(np.min(variable)), float(np.ptp(variable))
@@ -127,9 +110,9 @@ def _at_other_scales(
     problem: Problem, others: Sequence[Effect], law: Effect, e: Evidence
 ) -> list[dict[str, FloatArray]]:
     """Predictions with the law at other scales, those that it may have."""
-    key, found = SCALES[law.name], []
+    found = []
     for step in STEPS:
-        values = {**law.values, key: number(law.values[key]) * step}
+        values = {**law.values, law.curve_scale: number(law.values[law.curve_scale]) * step}
         try:
             other = replace(law, values=values)
             if not problem.possible([*others, other]):

@@ -37,8 +37,8 @@ from scipy.special import betaln
 
 from feeddrive.diagnosis.certainty.imitations import lost_motion
 from feeddrive.diagnosis.certainty.uncertainty import score_variances
+from feeddrive.diagnosis.likelihood.coordinate_kinds import Linear
 from feeddrive.diagnosis.likelihood.coordinates import (
-    Linear,
     absent_coordinates,
     coordinates_of,
     read_coordinates,
@@ -51,9 +51,10 @@ from feeddrive.diagnosis.likelihood.cross_validation import (
     left_out_residual,
     model_error_rows,
 )
-from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit
+from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.folds import block_numbers
-from feeddrive.diagnosis.likelihood.predictability import has_play
+from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.motion.predictability import has_play
 from feeddrive.effects.base import Effect, number
 from feeddrive.effects.transmission.backlash import Backlash
 from feeddrive.effects.transmission.preload_loss import PreloadLoss

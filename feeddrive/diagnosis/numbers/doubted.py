@@ -28,7 +28,8 @@ from typing import TypeVar
 import numpy as np
 
 from feeddrive.diagnosis.finding.search import Search
-from feeddrive.diagnosis.likelihood.fit import Problem, fit, linear_step
+from feeddrive.diagnosis.likelihood.fit import fit, linear_step
+from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.set_evidence import log_prior_of_size, log_volume
 from feeddrive.diagnosis.likelihood.tolerances import BEYOND, SURE
 from feeddrive.diagnosis.numbers.measured_file import MeasuredNumber

@@ -16,15 +16,12 @@ import numpy as np
 
 from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.friction_at_port import declared_level, declared_viscous
-from feeddrive.diagnosis.likelihood.coordinates import Sine, TwoHeats, coordinates_of
-from feeddrive.diagnosis.likelihood.cross_validation import (
-    Comparison,
-    compare_left_out,
-    least_gain,
-    left_out_residual,
-)
-from feeddrive.diagnosis.likelihood.fit import Fit, Problem, linear_step
+from feeddrive.diagnosis.likelihood.coordinate_kinds import Sine, TwoHeats
+from feeddrive.diagnosis.likelihood.coordinates import coordinates_of
+from feeddrive.diagnosis.likelihood.cross_validation import Comparison, compare_left_out, least_gain, left_out_residual
+from feeddrive.diagnosis.likelihood.fit import Fit, linear_step
 from feeddrive.diagnosis.likelihood.folds import block_numbers
+from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.recordings.recordings import (
     RecordingPredictor,
     RecordingShift,

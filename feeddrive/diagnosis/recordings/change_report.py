@@ -11,7 +11,8 @@ from feeddrive.diagnosis.calibration.beyond import is_within_tolerance
 from feeddrive.diagnosis.certainty.uncertainty import certainty
 from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.likelihood.coordinates import write_coordinates
-from feeddrive.diagnosis.likelihood.fit import Fit, Problem
+from feeddrive.diagnosis.likelihood.fit import Fit
+from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.recordings.change_candidates import keys_of, material_difference, targeted
 from feeddrive.diagnosis.recordings.change_result import Measure, ParameterChange, PerRecording
 from feeddrive.diagnosis.recordings.change_words import Moved, change_reading, change_statement

@@ -18,9 +18,10 @@ from feeddrive.diagnosis.calibration.beyond import said_by_effects
 from feeddrive.diagnosis.finding.attempt import SCANNED_ITERATIONS, with_predictable
 from feeddrive.diagnosis.likelihood.coordinates import read_coordinates
 from feeddrive.diagnosis.likelihood.cross_validation import Comparison
-from feeddrive.diagnosis.likelihood.fit import UNEXPLAINED, Fit, Problem, fit
-from feeddrive.diagnosis.likelihood.predictability import has_play
+from feeddrive.diagnosis.likelihood.fit import Fit, error_of, fit
+from feeddrive.diagnosis.likelihood.problem import UNEXPLAINED, Problem
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between
+from feeddrive.diagnosis.motion.predictability import has_play
 from feeddrive.diagnosis.recordings.change_candidates import (
     Movable,
     Offer,
@@ -192,7 +193,7 @@ def _play_apart(problem: Problem, given: Sequence[Effect], one: Movable, recordi
 
     own = with_predictable(problem, moved(LAGS[0]))
     starts = [moved(times) for times in (0.0, *LAGS, *(-times for times in LAGS))]
-    start = min(starts, key=lambda effects: fit(own, effects, error_only=True).squared_error)
+    start = min(starts, key=lambda effects: error_of(own, effects))
     if start is starts[0]:
         return None
     own = with_predictable(problem, start)

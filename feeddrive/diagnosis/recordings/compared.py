@@ -18,7 +18,7 @@ from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging.judge import Judged, error_series, judged_channels, prepared_for_judging, share_of
 from feeddrive.diagnosis.judging.result import EffectResult
-from feeddrive.diagnosis.likelihood.fit import Problem
+from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.set_evidence import declining
 from feeddrive.diagnosis.recordings.change_report import (
     Question,

@@ -17,7 +17,8 @@ from feeddrive.diagnosis.finding.attempt import with_predictable
 from feeddrive.diagnosis.finding.search import Search, search
 from feeddrive.diagnosis.finding.sets import needed_members
 from feeddrive.diagnosis.likelihood.evidence import Evidence
-from feeddrive.diagnosis.likelihood.fit import UNEXPLAINED, Fit, Problem, fit
+from feeddrive.diagnosis.likelihood.fit import Fit, fit
+from feeddrive.diagnosis.likelihood.problem import UNEXPLAINED, Problem
 from feeddrive.diagnosis.likelihood.set_evidence import Standing, odds_between, same_samples
 from feeddrive.diagnosis.recordings.change_candidates import levels
 from feeddrive.diagnosis.recordings.change_words import FACTORS

@@ -15,7 +15,7 @@ from scipy.optimize import minimize_scalar
 from feeddrive.diagnosis.judging.judge import judged_residual, shifted
 from feeddrive.diagnosis.likelihood.cross_validation import compare_left_out
 from feeddrive.diagnosis.likelihood.evidence import Evidence
-from feeddrive.diagnosis.likelihood.fit import Problem
+from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.effects.base import Effect
 from feeddrive.plant.plant import Plant
 

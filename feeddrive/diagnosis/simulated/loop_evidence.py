@@ -13,8 +13,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feeddrive.diagnosis.likelihood.band import white_noise
-from feeddrive.diagnosis.likelihood.evidence import AxisEvidence, Evidence
+from feeddrive.diagnosis.likelihood.evidence import Evidence
+from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
+from feeddrive.diagnosis.motion.band import white_noise
 from feeddrive.diagnosis.suspicion.channel_timing import lagging
 from feeddrive.effects.timing.channel_delay import lateness
 from feeddrive.engine.lateness import late_mean

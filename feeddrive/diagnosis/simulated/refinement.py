@@ -25,7 +25,8 @@ from feeddrive.diagnosis.certainty.uncertainty import certainty
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging.judge import Judged, channel_results
 from feeddrive.diagnosis.likelihood.coordinates import write_coordinates
-from feeddrive.diagnosis.likelihood.fit import Problem, fit
+from feeddrive.diagnosis.likelihood.fit import fit
+from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.recordings.recordings import RecordingPredictor, is_shift
 from feeddrive.diagnosis.simulated.loop_evidence import LoopEvidence, loop_evidence
 from feeddrive.diagnosis.simulated.loop_fit import LoopProblem, coordinate_count, fit_loop, foretold, loop_problem

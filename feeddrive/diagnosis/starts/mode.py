@@ -17,7 +17,7 @@ from scipy.optimize import minimize
 
 from feeddrive.diagnosis.finding.materiality import is_material
 from feeddrive.diagnosis.finding.scene import Scene
-from feeddrive.diagnosis.likelihood.evidence import AxisEvidence
+from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
 from feeddrive.effects.base import Effect
 from feeddrive.effects.chain.structural_mode import StructuralMode
 from feeddrive.typing import BoolArray, ComplexArray, FloatArray

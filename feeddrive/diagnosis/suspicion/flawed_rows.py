@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from feeddrive.diagnosis.likelihood.band import END_CUT, Band
+from feeddrive.diagnosis.motion.band import END_CUT, Band
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording

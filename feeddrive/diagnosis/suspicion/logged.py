@@ -15,7 +15,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from feeddrive.diagnosis.certainty.uncertainty import Interval
-from feeddrive.diagnosis.likelihood.slow_rows import is_slow
+from feeddrive.diagnosis.motion.slow_rows import is_slow
 from feeddrive.effects.base import Effect
 from feeddrive.effects.timing.channel_delay import ChannelDelay
 from feeddrive.plant.plant import DeclaredCascade, Plant

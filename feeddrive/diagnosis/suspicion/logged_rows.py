@@ -15,9 +15,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from feeddrive.diagnosis.likelihood.band import white_noise
-from feeddrive.diagnosis.likelihood.evidence import AxisEvidence, Evidence
-from feeddrive.diagnosis.likelihood.fit import Problem
+from feeddrive.diagnosis.likelihood.evidence import Evidence
+from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
+from feeddrive.diagnosis.motion.band import white_noise
 from feeddrive.diagnosis.suspicion.quality import Quality
 from feeddrive.typing import FloatArray
 

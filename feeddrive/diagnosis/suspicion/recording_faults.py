@@ -30,9 +30,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import lsq_linear
 
-from feeddrive.diagnosis.likelihood.evidence import AxisEvidence, Evidence, prepare
-from feeddrive.diagnosis.likelihood.fit import Problem
-from feeddrive.diagnosis.likelihood.prediction import AxisPredictor
+from feeddrive.diagnosis.likelihood.evidence import Evidence
+from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
+from feeddrive.diagnosis.motion.prediction import AxisPredictor
+from feeddrive.diagnosis.motion.preparing import prepare
 from feeddrive.errors import InputError
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray

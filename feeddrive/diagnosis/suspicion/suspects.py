@@ -40,10 +40,11 @@ from feeddrive.diagnosis.likelihood.cross_validation import (
     left_out_residual,
     prior_of,
 )
-from feeddrive.diagnosis.likelihood.evidence import AxisEvidence
-from feeddrive.diagnosis.likelihood.fit import Fit, Problem, fit, linear_step
+from feeddrive.diagnosis.likelihood.fit import Fit, fit, linear_step
 from feeddrive.diagnosis.likelihood.folds import block_numbers
+from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.tolerances import SURE
+from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
 from feeddrive.diagnosis.recordings.recordings import is_shift
 from feeddrive.diagnosis.suspicion.quality import Quality
 from feeddrive.recording import Recording

@@ -16,7 +16,8 @@ from feeddrive.diagnosis.judging.judge import Judged, error_series, judged_resid
 from feeddrive.diagnosis.judging.result import ChannelResult
 from feeddrive.diagnosis.likelihood.coordinates import read_coordinates, write_coordinates
 from feeddrive.diagnosis.likelihood.cross_validation import compare_left_out
-from feeddrive.diagnosis.likelihood.fit import Problem
+from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.likelihood.slopes import jacobian_of
 from feeddrive.diagnosis.unexplained.analysis import Analysis, analyse, table_of
 from feeddrive.diagnosis.unexplained.functional_anova import Found
 from feeddrive.diagnosis.unexplained.terms import Form
@@ -143,7 +144,7 @@ def joint_step(
     free = [*[False] * len(before), *[True] * len(tables)]
     residual = problem.residual((*before, *tables))
     base = problem.measured - residual
-    jacobian = problem.jacobian((*before, *tables), free, base)
+    jacobian = jacobian_of(problem, (*before, *tables), free, base)
     here = float(residual @ residual)
     if not (np.isfinite(here) and np.all(np.isfinite(jacobian))):
         raise InputError(f"{tables[-1].name} could not be simulated", tables[-1].name)

@@ -9,7 +9,7 @@ from enum import StrEnum
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from feeddrive.diagnosis.likelihood.lead_map import SIZE, lead_map
+from feeddrive.diagnosis.motion.lead_map import SIZE, lead_map
 from feeddrive.diagnosis.starts.residual_readings import strongest_orders
 from feeddrive.diagnosis.unexplained.view import View
 from feeddrive.typing import FloatArray
@@ -212,7 +212,7 @@ def _highest(view: View) -> float:
 def _refined_order(angle: FloatArray, series: FloatArray, order: float) -> float:
     """The order at which a sine fits best beside a slow curve, near a peak of the periodogram.
 
-    What is left may be without a lead map (`likelihood.lead_map`), and without its curve the order would be off.
+    What is left may be without a lead map (`motion.lead_map`), and without its curve the order would be off.
     """
     width = np.pi / max(float(np.ptp(angle)), 1e-9)  # half the distance of two orders that the travel tells apart
     slow = np.column_stack([np.ones(len(angle)), lead_map(angle, 1.0) / SIZE])

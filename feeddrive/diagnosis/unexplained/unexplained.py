@@ -17,14 +17,10 @@ from dataclasses import dataclass, replace
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.judging.judge import Judged, channel_results, judged_residual
 from feeddrive.diagnosis.judging.result import ChannelResult
-from feeddrive.diagnosis.likelihood.cross_validation import (
-    LEAST_GAIN,
-    compare_left_out,
-    least_gain,
-    left_out_residual,
-)
-from feeddrive.diagnosis.likelihood.fit import Problem, fit
+from feeddrive.diagnosis.likelihood.cross_validation import LEAST_GAIN, compare_left_out, least_gain, left_out_residual
+from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.likelihood.folds import block_numbers
+from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.set_evidence import regained
 from feeddrive.diagnosis.unexplained.analysis import Analysis
 from feeddrive.diagnosis.unexplained.carry import analyses_of, forms_of, joint_step, judged_with, tried, with_carried

@@ -24,10 +24,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feeddrive.diagnosis.likelihood.band import NOISE_BLOCK
-from feeddrive.diagnosis.likelihood.evidence import AxisEvidence, Evidence
-from feeddrive.diagnosis.likelihood.fit import Problem
+from feeddrive.diagnosis.likelihood.evidence import Evidence
 from feeddrive.diagnosis.likelihood.folds import block_of_rows, dealt_blocks
+from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
+from feeddrive.diagnosis.motion.band import NOISE_BLOCK
 from feeddrive.diagnosis.unexplained.unexplained_result import Above
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import BoolArray, FloatArray, IntegerArray

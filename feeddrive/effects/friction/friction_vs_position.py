@@ -38,6 +38,7 @@ class FrictionVsPosition(FrictionEffect):
         Parameter("delta_force", "N", size=10.0, default=0.0, table=True),
     )
     signature = Signature(("motor_torque", "table_position"), "table_position", ("friction_deviation",))
+    curve_scale = "half_width"
 
     def turning_points(self) -> dict[str, tuple[float, ...]]:
         """The points of the table, the top of the bump, and where it has gone."""

@@ -33,6 +33,7 @@ class Stribeck(FrictionEffect):
         Parameter("velocity", "m/s", 1e-6, 10.0, size=0.02),
     )
     signature = Signature(("motor_torque", "table_position"), "table_velocity", ("friction_deviation", "presliding"))
+    curve_scale = "velocity"
 
     def turning_points(self) -> dict[str, tuple[float, ...]]:
         """At rest, and where the exponential has gone."""

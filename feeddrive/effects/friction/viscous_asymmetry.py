@@ -28,6 +28,7 @@ class ViscousAsymmetry(FrictionEffect):
     signature = Signature(
         ("motor_torque", "table_position"), "table_velocity", ("coulomb_asymmetry", "friction_deviation")
     )
+    curve_over = "table_velocity"
 
     def viscous(self, motion: Motion, p: Mapping[str, Expression]) -> Expression:
         """Viscous force that it adds [N]."""

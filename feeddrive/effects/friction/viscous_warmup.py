@@ -32,6 +32,7 @@ class ViscousWarmup(FrictionEffect):
         Parameter("time_constant", "s", 0.1, 1e6, size=100.0),
     )
     signature = Signature(("motor_torque",), "velocity and time", ("friction_deviation",))
+    curve_scale = "time_constant"
 
     def turning_points(self) -> dict[str, tuple[float, ...]]:
         """Cold, and when the exponential has gone."""

@@ -26,6 +26,7 @@ class PositionSpring(SourceEffect):
     ports = (Port.TABLE,)
     parameters = (Parameter("stiffness", "N/m", size=50.0), Parameter("zero", "m", size=0.1))
     signature = Signature(("motor_torque", "table_position"), "table position", ("constant_force",))
+    curve_over = "table_position"
 
     def force(self, motion: Motion, p: Mapping[str, Expression]) -> Expression:
         """Resisting force [N]."""

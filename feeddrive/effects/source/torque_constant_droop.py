@@ -40,6 +40,7 @@ class TorqueConstantDroop(DriveEffect):
     signature = Signature(
         ("motor_torque",), "cube of the motor torque", ("payload", "inertia_deviation", "load_dependent_friction")
     )
+    curve_over = "motor_torque"
     additive = True
 
     def droop(self, p: Mapping[str, Expression]) -> Expression:

@@ -54,6 +54,7 @@ class StiffnessVsPosition(TransmissionEffect):
     signature = Signature(
         ("table_position", "motor_torque"), "transmitted force times table position", ("stiffness_deviation",)
     )
+    curve_over = "table_position"
 
     @classmethod
     def complete(cls, values: Mapping[str, Value]) -> dict[str, Value]:

@@ -24,6 +24,7 @@ class LeadErrorCumulative(TravelEffect):
     words = "cumulative lead error"
     parameters = (Parameter("slope", "m/m", -0.01, 0.01, size=1e-5),)
     signature = Signature(("table_position",), "table position", ("thermal_growth",))
+    curve_over = "table_position"
 
     def travel(
         self, angle: Expression, position: Expression, time: Expression, p: Mapping[str, Expression]

@@ -31,6 +31,7 @@ class ThermalGrowth(TravelEffect):
         Parameter("time_constant", "s", 0.1, 1e6, size=100.0),
     )
     signature = Signature(("table_position",), "table position and time", ("lead_error_cumulative",))
+    curve_scale = "time_constant"
 
     def travel(
         self, angle: Expression, position: Expression, time: Expression, p: Mapping[str, Expression]

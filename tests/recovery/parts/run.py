@@ -14,7 +14,7 @@ from typing import Any
 
 from feeddrive.diagnosis.diagnose import diagnose
 from feeddrive.diagnosis.judging.result import Diagnosis
-from feeddrive.diagnosis.likelihood.evidence import prepare
+from feeddrive.diagnosis.motion.preparing import prepare
 from feeddrive.errors import InputError
 from tests.generator.screw_elements import Recorder
 from tests.recovery.fleet.run import Record, TimeLimitError, found_of, time_limit

@@ -23,7 +23,8 @@ from scipy.signal import welch
 
 from feeddrive.diagnosis.likelihood.coordinates import read_coordinates, spread_to_values
 from feeddrive.diagnosis.likelihood.evidence import Evidence
-from feeddrive.diagnosis.likelihood.fit import Problem
+from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.likelihood.slopes import jacobian_of
 from feeddrive.effects.base import Effect
 
 SEGMENT = 1.0
@@ -35,7 +36,7 @@ NORMAL = 1.96
 def bounds(problem: Problem, effects: Sequence[Effect]) -> list[dict[str, float]]:
     """Half width of the narrowest possible 95 % interval per effect and fitted key (SI)."""
     base = problem.predicted(effects)
-    slopes = problem.jacobian(effects, [True] * len(effects), base)
+    slopes = jacobian_of(problem, effects, [True] * len(effects), base)
     information = np.zeros((slopes.shape[1], slopes.shape[1]))
     at, residual = 0, problem.measured - base
     for evidence in problem.evidence:

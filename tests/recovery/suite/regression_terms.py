@@ -13,7 +13,8 @@ import numpy as np
 from scipy.signal import lfilter
 
 from feeddrive.diagnosis.heat.heat_evidence import HeatEvidence
-from feeddrive.diagnosis.likelihood.evidence import AxisEvidence, Evidence
+from feeddrive.diagnosis.likelihood.evidence import Evidence
+from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
 from tests.generator.axis import AxisParameters
 
 Terms = dict[str, np.ndarray]

@@ -12,7 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from feeddrive.diagnosis.judging.judge import error_series, whole
-from feeddrive.diagnosis.likelihood.evidence import AxisEvidence, Evidence
+from feeddrive.diagnosis.likelihood.evidence import Evidence
+from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
 from feeddrive.plant.plant import Plant
 from tests.generator.axis import AxisParameters
 from tests.recovery.suite.regression_terms import terms_of

@@ -10,7 +10,7 @@ import numpy as np
 from feeddrive.diagnosis.judging.judge import channel_results, prepared_for_judging
 from feeddrive.diagnosis.judging.result import ChannelResult
 from feeddrive.diagnosis.likelihood.evidence import Evidence
-from feeddrive.diagnosis.likelihood.fit import Problem
+from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.preparation import prepared
 from feeddrive.effects.base import Effect
 from feeddrive.plant.plant import Plant

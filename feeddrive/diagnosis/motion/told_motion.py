@@ -27,8 +27,8 @@ import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
 from scipy.signal.windows import tukey
 
-from feeddrive.diagnosis.likelihood.band import END_CUT, Band
-from feeddrive.diagnosis.likelihood.unsure_motion import HALF
+from feeddrive.diagnosis.motion.band import END_CUT, Band
+from feeddrive.diagnosis.motion.unsure_motion import HALF
 from feeddrive.errors import InputError
 from feeddrive.plant.analysis.linear import linear_matrices
 from feeddrive.plant.analysis.ode import OUTPUTS

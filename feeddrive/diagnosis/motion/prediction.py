@@ -11,9 +11,9 @@ from feeddrive.diagnosis.finding.candidates import CANDIDATES
 from feeddrive.diagnosis.finding.remembered import Remembered, effects_key
 from feeddrive.diagnosis.finding.scene import Candidate
 from feeddrive.diagnosis.likelihood.coordinates import is_absent
-from feeddrive.diagnosis.likelihood.evidence import AxisEvidence
-from feeddrive.diagnosis.likelihood.predictability import predictable_samples, weights_to_fit
 from feeddrive.diagnosis.likelihood.predictor import Predictor
+from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
+from feeddrive.diagnosis.motion.predictability import predictable_samples, weights_to_fit
 from feeddrive.diagnosis.suspicion.channel_timing import lag_of, lagging, repeated
 from feeddrive.diagnosis.suspicion.torque_channel import scale_of, scale_sentence
 from feeddrive.effects.base import ChainEffect, DriveEffect, Effect, Kind, Motion, Port, SourceEffect

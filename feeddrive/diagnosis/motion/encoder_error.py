@@ -37,9 +37,9 @@ import numpy as np
 from scipy.ndimage import uniform_filter
 from scipy.signal.windows import hann
 
-from feeddrive.diagnosis.likelihood.band import END_CUT, Band
-from feeddrive.diagnosis.likelihood.told_motion import teller
-from feeddrive.diagnosis.likelihood.unsure_motion import unsure_motions, without_share
+from feeddrive.diagnosis.motion.band import END_CUT, Band
+from feeddrive.diagnosis.motion.told_motion import teller
+from feeddrive.diagnosis.motion.unsure_motion import unsure_motions, without_share
 from feeddrive.diagnosis.suspicion.torque_channel import scale_of
 from feeddrive.engine.step.linear_part import SimulationError
 from feeddrive.plant.analysis.modes import braked_modes

@@ -13,7 +13,7 @@ import numpy as np
 from scipy import signal
 from scipy.fft import next_fast_len
 
-from feeddrive.diagnosis.likelihood.weighing import Weighing
+from feeddrive.diagnosis.motion.weighing import Weighing
 from feeddrive.plant.analysis.modes import screw_frequency
 from feeddrive.plant.plant import Plant
 from feeddrive.recording.checks.flaws import quantisation_step

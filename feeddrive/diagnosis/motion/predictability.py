@@ -20,8 +20,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
-from feeddrive.diagnosis.likelihood.band import white_noise
-from feeddrive.diagnosis.likelihood.evidence import AxisEvidence
+from feeddrive.diagnosis.motion.axis_evidence import AxisEvidence
+from feeddrive.diagnosis.motion.band import white_noise
 from feeddrive.effects.base import Effect, TransmissionEffect
 from feeddrive.plant.plant import Plant
 from feeddrive.recording.checks.flaws import quantisation_step

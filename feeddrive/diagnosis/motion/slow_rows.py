@@ -31,7 +31,7 @@ import math
 import numpy as np
 from scipy.ndimage import binary_dilation, uniform_filter1d
 
-from feeddrive.diagnosis.likelihood.band import Band, sensor_noise, white_noise
+from feeddrive.diagnosis.motion.band import Band, sensor_noise, white_noise
 from feeddrive.errors import InputError
 from feeddrive.plant.analysis.modes import braked_modes, inertia_at_motor, lag_per_acceleration
 from feeddrive.plant.plant import Plant

@@ -1,0 +1,91 @@
+"""A set fitted beside the declared values: in turn with them, channels balanced, from those declared, beyond one."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from feeddrive.diagnosis.calibration.beyond import beyond_tolerance, fitted_together
+from feeddrive.diagnosis.calibration.calibrate import (
+    at_declared,
+    of_hours,
+    recalibrated,
+    recalibrated_by_rest,
+    with_new_slopes,
+)
+from feeddrive.diagnosis.calibration.known import TOLERANCE
+from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS
+from feeddrive.diagnosis.likelihood.fit import Fit, fit
+from feeddrive.diagnosis.likelihood.problem import UNEXPLAINED, Problem
+
+
+def refitted(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
+    """Declared values and effects fitted in turn, with new slopes of the values.
+
+    Values gone beyond their tolerances may have stood in for what was missing: they begin as declared as well.
+    """
+    if problem.calibration is None:
+        return balanced(problem, found if not found.held else fit(problem, found.effects, iterations=0))
+    there = recalibrated_by_rest(problem, found.effects)
+    result = there, fit(there, found.effects, iterations=JOINT_ITERATIONS)
+    assert there.calibration is not None
+    # That of hours has begun as declared, and other weights are no lower error.
+    if not of_hours(there) and np.max(np.abs(there.calibration.coordinates), initial=0.0) > TOLERANCE:
+        anew = recalibrated(at_declared(problem), found.effects)
+        other = anew, fit(anew, found.effects, iterations=JOINT_ITERATIONS)
+        result = min(result, other, key=lambda one: one[1].squared_error)
+    return balanced(*result)
+
+
+def balanced(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
+    """Each channel weighed by what is left of it, and the set fitted so."""
+    if of_hours(problem):
+        return problem, found
+    for _ in range(JOINT_ITERATIONS):
+        there = problem.balanced(found.effects)
+        if there is problem:
+            break
+        problem, found = there, fit(there, found.effects, iterations=JOINT_ITERATIONS)
+    return problem, found
+
+
+def where_friction_brakes(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
+    """A set beside values with which friction takes power; begun as declared where it would push the axis.
+
+    A drag that stood in for what a name now takes leaves nothing to take it from, and steps stay where friction takes
+    power only from where it does.
+    """
+    if problem.calibration is None or of_hours(problem) or problem.possible(found.effects):
+        return problem, found
+    there, effects = fitted_together(at_declared(problem), found.effects)
+    return there, fit(there, effects)
+
+
+def begun_as_declared(problem: Problem, found: Fit) -> tuple[Problem, Fit] | None:
+    """A set beside the values as declared, where one has gone beyond its tolerance and much is left; else None.
+
+    Such values stand in for what is missing, which hides beside them. Or one of them is beyond its tolerance, and then
+    all that is missing beside the declared ones is that: so both are asked, and the likelier goes on.
+    """
+    known = problem.calibration
+    if known is None or of_hours(problem) or np.max(np.abs(known.coordinates), initial=0.0) <= TOLERANCE:
+        return None
+    if problem.plain_error(found.effects) < UNEXPLAINED or problem.budget.skips("rounds beside the declared values"):
+        return None
+    there = with_new_slopes(at_declared(problem), found.effects)
+    return there, fit(there, found.effects, iterations=JOINT_ITERATIONS)
+
+
+def with_value_beyond(problem: Problem, found: Fit) -> tuple[Problem, Fit] | None:
+    """A set with the declared value as an effect that is beyond its tolerance; None where none is.
+
+    Free of its tolerance a value can only lower the error. Where it does not, slopes alone said so: beside a free play
+    a step of a value moves the contacts, and what the slope then tells holds for that step.
+    """
+    beyond = beyond_tolerance(problem, found)
+    if beyond is None:
+        return None
+    freed, effect = beyond
+    there, result = refitted(freed, fit(freed, (*found.effects, effect)))
+    alike = there.weighed(problem.evidence[0].left)
+    error = (result if alike is there else fit(alike, result.effects, iterations=0)).squared_error
+    return (there, result) if error < found.squared_error else None
