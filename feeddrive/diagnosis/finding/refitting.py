@@ -78,8 +78,9 @@ def begun_as_declared(problem: Problem, found: Fit) -> tuple[Problem, Fit] | Non
 def with_value_beyond(problem: Problem, found: Fit) -> tuple[Problem, Fit] | None:
     """A set with the declared value as an effect that is beyond its tolerance; None where none is.
 
-    Free of its tolerance a value can only lower the error. Where it does not, slopes alone said so: beside a free play
-    a step of a value moves the contacts, and what the slope then tells holds for that step.
+    Free of its tolerance a value can only lower the error, a row being worth as much in both sets. Where it does not,
+    slopes alone said so: beside a free play a step of a value moves the contacts, and what the slope then tells holds
+    for that step.
     """
     beyond = beyond_tolerance(problem, found)
     if beyond is None:
@@ -88,4 +89,7 @@ def with_value_beyond(problem: Problem, found: Fit) -> tuple[Problem, Fit] | Non
     there, result = refitted(freed, fit(freed, (*found.effects, effect)))
     alike = there.weighed(problem.evidence[0].left)
     error = (result if alike is there else fit(alike, result.effects, iterations=0)).squared_error
-    return (there, result) if error < found.squared_error else None
+    assert problem.calibration is not None and there.calibration is not None
+    before = problem.at_values(problem.calibration.coordinates, there.calibration.variance)
+    left = before.residual(found.effects)
+    return (there, result) if error < float(left @ left) else None

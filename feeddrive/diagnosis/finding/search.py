@@ -131,7 +131,7 @@ def search(
             if _members(found) not in met:
                 met.add(_members(found))
                 continue
-        # nothing likelier is near, or what was met: they only take each other's place, or it was met beside other values
+        # nothing likelier is near, or what was met: only each other's place is taken, or other values stand beside it
         others = [*filter(is_another, found.effects), *soft_everywhere(problem, found)]
         if others:  # the search goes on with the name that the law has run to
             denied |= dict.fromkeys((effect.name for effect in others), ANOTHER)
