@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from feeddrive.diagnosis.calibration.beyond import beyond_tolerance
 from feeddrive.diagnosis.calibration.calibrate import calibrated, calibrated_list, with_kept
 from feeddrive.diagnosis.calibration.encoder_scores import encoder_scores
+from feeddrive.diagnosis.calibration.known import known_values
 from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.likelihood.tolerances import SURE
 from feeddrive.diagnosis.preparation import prepared
 from feeddrive.diagnosis.suspicion.logged import declared_hold
 from feeddrive.plant.file.plant_file import read_plant
@@ -20,6 +24,25 @@ from tests.recovery.fleet.case import ENCODER_NULLS, case
 
 COARSE = ENCODER_NULLS + 14_021
 """A machine of 1570 kg with 14 bits and a scale of 1 nm, at 500 Hz: its steps show 40 times the noise of its scale."""
+
+
+LIGHT_TORQUE = ENCODER_NULLS + 18_601
+"""A machine of 572 kg with 18 bits and a scale of 0.1 µm: one variance for all values puts its mass four deviations off
+and its damping five."""
+
+
+@pytest.mark.slow
+def test_a_value_that_one_variance_places_beyond_its_tolerance_is_not_named(tmp_path: Path) -> None:
+    plant_file, fitted, judged = case(LIGHT_TORQUE).write(tmp_path)
+    recordings = [read_recording(path) for path in (fitted, judged)]
+    plant = read_plant(plant_file)
+    problem = calibrated(prepared(plant, recordings[:1], recordings[1:], 0.75, declared_hold(plant, recordings))[0])
+    found = fit(problem, ())
+    told = known_values(problem, found)
+    assert told is not None
+    mass = [value.key for value in told.values].index("table_mass")
+    assert told.least() - told.least(mass) > SURE**2  # where the search has it, it would be
+    assert beyond_tolerance(problem, found) is None
 
 
 @pytest.fixture(scope="module")

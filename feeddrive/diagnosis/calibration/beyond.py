@@ -8,7 +8,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from feeddrive.diagnosis.calibration.calibrate import ENOUGH, PASSES, moved, recalibrated, with_kept
+from feeddrive.diagnosis.calibration.calibrate import (
+    ENOUGH,
+    PASSES,
+    at_declared,
+    moved,
+    recalibrated,
+    with_kept,
+    with_new_slopes,
+)
 from feeddrive.diagnosis.calibration.calibration import Calibration
 from feeddrive.diagnosis.calibration.declared import (
     CalibratedValue,
@@ -17,11 +25,12 @@ from feeddrive.diagnosis.calibration.declared import (
     is_said_by,
     said_share,
 )
-from feeddrive.diagnosis.calibration.known import TOLERANCE, known_values
+from feeddrive.diagnosis.calibration.known import TOLERANCE, Known, known_values
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.likelihood.set_evidence import regained
 from feeddrive.diagnosis.likelihood.tolerances import BEYOND, SURE
+from feeddrive.diagnosis.motion.preparing import weighed_by
 from feeddrive.effects.base import Effect, Value, number
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray
@@ -40,20 +49,50 @@ def beyond_tolerance(problem: Problem, found: Fit) -> tuple[Problem, Effect] | N
         The problem without it among the values that are fitted, and the effect, from its likeliest value.
     """
     known = known_values(problem, found)
-    if known is None or problem.calibration is None:
-        return None
-    least, able = known.least(), [i for i, value in enumerate(known.values) if value.name]
-    gained = {i: least - known.least(i) for i in able}
+    gained = _gained(known)
     most = max(gained.values(), default=0.0)
-    if most < SURE**2:
+    if known is None or most < SURE**2 or max(_gained(placed_by_scatter(problem, found)).values()) < SURE**2:
         return None
-    alike = [i for i in able if gained[i] > most - AGAINST]
+    alike = [i for i, gain in gained.items() if gain > most - AGAINST]
     costs = {i: known.likeliest(i, BEYOND / known.values[i].deviation) for i in alike}
     place = min(alike, key=lambda i: costs[i][1])
     there = _with_free_value(problem, found.effects, place)
     freed, (effect,) = said_by_effects(there, [as_effect(problem.plant, known.values[place], 0.0)])
     freed, together = fitted_together(freed, (*found.effects, effect))
     return freed, together[-1]
+
+
+def _gained(known: Known | None) -> dict[int, float]:
+    """Places of the values that an effect says to be other to what each, free of its tolerance, lowers T by."""
+    if known is None:
+        return {}
+    least = known.least()
+    return {i: least - known.least(i) for i, value in enumerate(known.values) if value.name}
+
+
+def placed_by_scatter(problem: Problem, found: Fit) -> Known | None:
+    """What the recordings tell beside declared values that are most likely by the scatter of what tells of them.
+
+    One variance for all directions lets values that are alike to the recordings run far along what the noise makes of
+    them, to where slopes and the encoder's weights say that it is they who are other. So they begin as declared, with
+    the weights of the machine that was declared.
+    """
+    there = at_declared(problem)
+    declared = there.machine(found.effects)
+    there = replace(there, evidence=tuple(weighed_by(e, declared) for e in there.evidence))
+    effects = found.effects
+    for _ in range(PASSES):
+        there = with_new_slopes(there, effects)
+        result = fit(there, effects)
+        effects, known = result.effects, known_values(there, result)
+        if known is None:
+            return None
+        u, _ = known.likeliest(0, 1.0)
+        coordinates = np.array([known.c(i, float(one)) for i, one in enumerate(u)])
+        if np.max(np.abs(coordinates - known.at), initial=0.0) < ENOUGH:
+            break
+        there = there.at_values(coordinates)
+    return known
 
 
 def _with_free_value(problem: Problem, effects: Sequence[Effect], place: int) -> Problem:
