@@ -9,6 +9,7 @@
 | r_S | residual over the noise with the set S fitted, what declared values within tolerance may do taken out | 1 |
 | θ, W | coordinates, of size one; 1 is the scale of p | 1 |
 | p(θ) | Cauchy about the absent effect: a size of n costs 2 log n, an absurd one of any number is still a number | 1 |
+| p(θ) of a value that is other than declared | lognormal about the declared one, of deviation `BEYOND` | 1 |
 | H | J'J of the slopes of the prediction with θ | 1 |
 | d | difference of the residuals of two sets that are compared | 1 |
 | Γ | covariance of the residual that is less: its spectrum, its level where d is large, sums over blocks | 1 |
