@@ -45,7 +45,14 @@ from feeddrive.diagnosis.suspicion.logged import sentence as held_for
 from feeddrive.diagnosis.suspicion.logged_rows import with_recorder_that_holds
 from feeddrive.diagnosis.suspicion.quality import Quality, flawed, read_otherwise
 from feeddrive.diagnosis.suspicion.recording_faults import refuse_faulty
-from feeddrive.diagnosis.suspicion.suspects import Suspect, again, beyond_its_constant, is_better, suspected
+from feeddrive.diagnosis.suspicion.suspects import (
+    Suspect,
+    again,
+    beyond_its_constant,
+    is_better,
+    is_worth_a_search,
+    suspected,
+)
 from feeddrive.diagnosis.suspicion.torque_channel import without_torque_sentence
 from feeddrive.diagnosis.unexplained.unexplained import explain_rest, without_stand_ins
 from feeddrive.effects.base import Effect
@@ -297,10 +304,13 @@ def _without_fault(
             other = begin((mended[0], mended[1]))
         except InputError:  # what it makes of the recordings is none of any machine
             return begun, settled
-        left = again(calibrated(other.problem), fault.kind)
+        problem = calibrated(other.problem)
+        left = again(problem, fault.kind)
         if left is None or abs(left.size) < left.deviation:
             break
         fault = replace(fault, size=fault.size + left.size, deviation=left.deviation)
+    if not is_worth_a_search(fault, problem, settled.searched.search):
+        return begun, settled
     again_settled = settle(other)
     if not is_better(fault, again_settled.searched.search, settled.searched.search):
         return begun, settled

@@ -126,6 +126,8 @@ def test_a_value_beyond_its_tolerance_is_named_where_that_lowers_the_error(
     taken = refitting.with_value_beyond(problem, found)
     assert taken is not None and [effect.name for effect in taken[1].effects] == ["payload"]
     assert taken[1].squared_error < found.squared_error
+    # one value of hundreds of rows, so that blocks left out say as all do, to a hundredth
+    assert taken[2].gain == pytest.approx(1 - taken[1].squared_error / found.squared_error, abs=0.01)
     # slopes that say so of what is idle, while the mass is held as declared
     monkeypatch.setattr(refitting, "beyond_tolerance", lambda *_: (freed, EFFECTS["drive_delay"].of(delay=0.0)))
     assert refitting.with_value_beyond(problem, found) is None

@@ -13,15 +13,21 @@ import numpy as np
 import pytest
 
 from feeddrive.diagnosis.diagnose import diagnose
-from feeddrive.diagnosis.judging.result import Diagnosis
+from feeddrive.diagnosis.finding.search import Search
+from feeddrive.diagnosis.judging.result import Diagnosis, Trial
+from feeddrive.diagnosis.likelihood.fit import fit
 from feeddrive.diagnosis.likelihood.outputs import diagnosis_record
+from feeddrive.diagnosis.preparation import prepared
+from feeddrive.diagnosis.suspicion import suspects
 from feeddrive.diagnosis.suspicion.logged_rows import rhythm
 from feeddrive.diagnosis.suspicion.quality import Quality
-from feeddrive.diagnosis.suspicion.suspects import DRIFT, Suspect
+from feeddrive.diagnosis.suspicion.suspects import DRIFT, GAIN, Suspect, is_worth_a_search, suspected
+from feeddrive.effects.base import Effect
+from feeddrive.effects.chain.payload import Payload
 from feeddrive.plant.file.plant_file import read_plant
 from feeddrive.plant.plant import Plant
 from feeddrive.recording import Recording
-from tests.recovery.rigid_runs import PLANT, Truth, rigid_run
+from tests.recovery.rigid_runs import NOISE, PLANT, Truth, rigid_run
 
 KEYS = "mass|coulomb|smoothing_velocity|viscous"
 EXACT = re.sub(rf'^({KEYS}) = (".*")$', r'\1 = { value = \2, source = "simulated" }', PLANT, flags=re.M)
@@ -128,6 +134,45 @@ def test_a_machine_that_lacks_something_is_not_taken_for_a_recorder(rigid: Plant
     result, _ = diagnose(rigid, [one], [other])
     assert {effect.name for effect in result.effects} == {"payload", "torque_ripple"}
     assert [found.kind for found in result.quality if found.mended] == []
+
+
+def searched(rigid: Plant, run: Recording, *effects: Effect, gain: float = 0.0) -> Search:
+    """A search of one recording that ended with some effects as they are, the first of which had brought a gain."""
+    problem, _, _ = prepared(rigid, [run], [run], 0.75)
+    found, trials = fit(problem, effects, iterations=0), [Trial(1, one.name, gain, 0.0, True) for one in effects[:1]]
+    return Search(problem, found, tuple(trials), (), {}, begun=(problem, fit(problem, ())))
+
+
+def test_a_fault_is_not_thanked_for_a_fit_that_is_not_at_its_end(rigid: Plant) -> None:
+    run, _ = runs(31, Truth(mass=9.0))
+    # a part of the payload that is there: the rest is a step of the payload, be there another column or none
+    found = searched(rigid, run, Payload.of(mass=7.0))
+    assert found.problem.plain_error(found.fit.effects) > 2
+    for one in suspects._asked(found.problem, found.fit):
+        assert not one.comparison.pays
+
+
+def test_a_fault_is_asked_alone_only_where_it_leaves_less_without_a_name(rigid: Plant) -> None:
+    run, _ = runs(33, Truth())
+    noisy = run["motor_torque"] + 3 * NOISE * np.random.default_rng(34).standard_normal(len(run))
+    # less than a twentieth of the squared error, which a search without a name would have to win (`is_better`)
+    small, large = (with_torque(run, factor * noisy) for factor in (1.0085, 1.1))
+    assert suspected(searched(rigid, small)) is None
+    # a name may be spared for it
+    assert suspected(searched(rigid, small, Payload.of(mass=0.0))) is not None
+    found = suspected(searched(rigid, large))
+    assert found is not None and found.kind == "channel_gain"
+
+
+def test_a_mended_recording_is_searched_where_the_fault_leaves_as_little_as_an_effect(rigid: Plant) -> None:
+    heavy, _ = runs(35, Truth(mass=9.0))
+    off, _ = runs(35, Truth())
+    fault = Suspect(GAIN, 0.1)
+    for run, worth in ((heavy, False), (with_torque(off, np.exp(0.1) * off["motor_torque"]), True)):
+        found = searched(rigid, run, Payload.of(mass=4.0))
+        mended, _, _ = prepared(rigid, [fault.mended(run)], [run], 0.75)
+        assert is_worth_a_search(fault, mended, found) == worth
+        assert is_worth_a_search(replace(fault, beside=True), mended, found)
 
 
 def test_an_offset_and_a_constant_force_are_said_together(rigid: Plant) -> None:

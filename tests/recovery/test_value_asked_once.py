@@ -14,6 +14,7 @@ from feeddrive.diagnosis.finding import refitting
 from feeddrive.diagnosis.finding import search as of_search
 from feeddrive.diagnosis.finding.refitting import with_value_beyond
 from feeddrive.diagnosis.finding.search import search
+from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import Problem
 from feeddrive.diagnosis.preparation import prepared
@@ -38,9 +39,10 @@ def test_a_set_that_the_search_comes_back_to_is_asked_again_and_no_value_taken_t
     stand_ins = [ripple, force, ripple]  # for deviations: nothing is there, so that the next round drops them
     asked: list[tuple[str, ...]] = []
 
-    def beyond(there: Problem, found: Fit) -> tuple[Problem, Fit]:
+    def beyond(there: Problem, found: Fit) -> tuple[Problem, Fit, Comparison]:
         asked.append(tuple(effect.name for effect in found.effects))
-        return there, fit(there, (*found.effects, stand_ins[len(asked) - 1]))
+        idle = fit(there, (*found.effects, stand_ins[len(asked) - 1]))
+        return there, idle, Comparison(0.0, 0.0, 0.0)
 
     monkeypatch.setattr(of_search, "with_value_beyond", beyond)
     found = search(begun(tmp_path, Truth()))

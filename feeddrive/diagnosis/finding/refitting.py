@@ -14,8 +14,10 @@ from feeddrive.diagnosis.calibration.calibrate import (
 )
 from feeddrive.diagnosis.calibration.known import TOLERANCE
 from feeddrive.diagnosis.finding.attempt import JOINT_ITERATIONS
+from feeddrive.diagnosis.likelihood.cross_validation import Comparison
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import UNEXPLAINED, Problem
+from feeddrive.diagnosis.likelihood.set_evidence import Standing, gain_between
 
 
 def refitted(problem: Problem, found: Fit) -> tuple[Problem, Fit]:
@@ -75,8 +77,8 @@ def begun_as_declared(problem: Problem, found: Fit) -> tuple[Problem, Fit] | Non
     return there, fit(there, found.effects, iterations=JOINT_ITERATIONS)
 
 
-def with_value_beyond(problem: Problem, found: Fit) -> tuple[Problem, Fit] | None:
-    """A set with the declared value as an effect that is beyond its tolerance; None where none is.
+def with_value_beyond(problem: Problem, found: Fit) -> tuple[Problem, Fit, Comparison] | None:
+    """A set with the declared value as an effect that is beyond its tolerance, and what it brings; None where none is.
 
     Free of its tolerance a value can only lower the error, a row being worth as much in both sets. Where it does not,
     slopes alone said so: beside a free play a step of a value moves the contacts, and what the slope then tells holds
@@ -88,8 +90,10 @@ def with_value_beyond(problem: Problem, found: Fit) -> tuple[Problem, Fit] | Non
     freed, effect = beyond
     there, result = refitted(freed, fit(freed, (*found.effects, effect)))
     alike = there.weighed(problem.evidence[0].left)
-    error = (result if alike is there else fit(alike, result.effects, iterations=0)).squared_error
+    same = result if alike is there else fit(alike, result.effects, iterations=0)
     assert problem.calibration is not None and there.calibration is not None
     before = problem.at_values(problem.calibration.coordinates, there.calibration.variance)
-    left = before.residual(found.effects)
-    return (there, result) if error < float(left @ left) else None
+    without = fit(before, found.effects, iterations=0)
+    if same.squared_error >= without.squared_error:
+        return None
+    return there, result, gain_between(Standing(before, without), Standing(alike, same))

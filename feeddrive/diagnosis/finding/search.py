@@ -141,8 +141,8 @@ def search(
         beyond = None if left_out else with_value_beyond(problem, found)
         if beyond is not None and _members(beyond[1]) not in met:
             met |= {_members(found), _members(beyond[1])}
-            problem, found = beyond
-            trials.append(Trial(number, found.effects[-1].name, 0.0, 0.0, True))
+            problem, found, by = beyond
+            trials.append(Trial(number, found.effects[-1].name, by.gain, by.standard_error, True))
         elif not others:
             break
     problem, found, small = _ended(problem, found)
@@ -162,9 +162,13 @@ def _asked(
 
 
 def _of_no_name(problem: Problem, found: Fit, asked: _Asked) -> tuple[Problem, Fit] | None:
-    """A set beside a lead map, or the curve of a law, where that is likelier than any further name; else None."""
+    """A set beside a lead map, or the curve of a law, where that is likelier than any further name; else None.
+
+    A map that says nothing beside the likeliest name is none: over part of a stroke its curves are near a line.
+    """
     taken, count = asked.taken, asked.now.count
-    if log_odds_of_map(problem, found, count) > max(taken.odds if taken is not None else 0.0, 0.0):
+    likelier_map = log_odds_of_map(problem, found, count) > max(taken.odds if taken is not None else 0.0, 0.0)
+    if likelier_map and (taken is None or log_odds_of_map(taken.problem, taken.fit, count) > 0):
         opened = replace(problem, evidence=tuple(e.with_map(True) for e in problem.evidence))
         return opened, fit(opened, found.effects)
     return None if taken is None else _of_another_form(taken, count)

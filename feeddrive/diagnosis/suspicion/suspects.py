@@ -13,9 +13,9 @@ left out is compared as for any effect (`cross_validation`), and two questions a
     alone    with nothing found, is it worth as much as the best single effect was?
     beside   with all effects found, does it pay?
 
-Where either is so the recording is mended and searched again. The mend is kept where fewer fitted values, that of the
-fault among them, then say as much, or where no more names leave less. An effect of one value that says as much as a
-fault stays, as nobody can tell.
+Where either is so the recording is mended, and searched again where fits say what slopes have said. The mend is kept
+where fewer fitted values, that of the fault among them, then say as much, or where no more names leave less. An effect
+of one value that says as much as a fault stays, as nobody can tell.
 """
 
 from __future__ import annotations
@@ -26,9 +26,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from feeddrive.diagnosis.calibration.beyond import said_by_effects
 from feeddrive.diagnosis.calibration.calibrate import calibrated, calibrated_list
 from feeddrive.diagnosis.calibration.known import known_values
 from feeddrive.diagnosis.certainty.noise_colour import score_covariance
+from feeddrive.diagnosis.finding.refitting import refitted
 from feeddrive.diagnosis.finding.search import Search
 from feeddrive.diagnosis.likelihood.cross_validation import (
     LEAST_GAIN,
@@ -77,6 +79,7 @@ class Suspect:
         deviation: of c.
         comparison: what it brings on blocks left out.
         rate: r of a drift: largest torque over the duration, of the recordings that were fitted [N m/s].
+        beside: whether it pays beside all that was found.
     """
 
     kind: str
@@ -84,6 +87,7 @@ class Suspect:
     deviation: float = math.inf
     comparison: Comparison = NOT_ASKED
     rate: float = 0.0
+    beside: bool = False
 
     def mended(self, recording: Recording) -> Recording:
         """The recording without the fault."""
@@ -139,24 +143,56 @@ def beyond_its_constant(problem: Problem, found: Fit) -> tuple[Quality, ...]:
 
 
 def suspected(found: Search) -> Suspect | None:
-    """The fault of the recorder that is worth a search of the mended recordings; None where none is."""
+    """The fault of the recorder that is worth mending the recordings; None where none is."""
     if found.begun is None:
         return None
-    problem, empty = found.begun
-    if empty.effects:  # it went on from another search
-        problem = calibrated(replace(problem, calibration=None))
-        empty = fit(problem, ())
+    problem, empty = _begun(found)
     asked = [*_asked(problem, empty), *_asked(found.problem, found.fit)]
     first = max((trial.gain for trial in found.trials if trial.round == 1), default=0.0)
     alone, beside = asked[: len(asked) // 2], asked[len(asked) // 2 :]
+    if not found.fit.effects:  # no name to spare, so that it is kept for what it leaves alone (`is_better`)
+        first, beside = max(first, 1 - 1 / SAME_ERROR), []
     able = [one for one in alone if one.comparison.gain > first - max(LEAST_GAIN, 2 * one.comparison.standard_error)]
-    able = [one for one in (*able, *beside) if one.comparison.pays and _is_sure(one)]
-    return max(able, key=lambda one: one.comparison.gain, default=None)
+    able, beside = ([one for one in some if one.comparison.pays and _is_sure(one)] for some in (able, beside))
+    best = max((*able, *beside), key=lambda one: one.comparison.gain, default=None)
+    return best and replace(best, beside=any(one.kind == best.kind for one in beside))
 
 
 def again(problem: Problem, kind: str) -> Suspect | None:
     """What is left of a fault in recordings that were mended, nothing being found in them."""
     return next((one for one in _asked(problem, fit(problem, ())) if one.kind == kind), None)
+
+
+def is_worth_a_search(fault: Suspect, mended: Problem, found: Search) -> bool:
+    """Whether recordings that were mended of a fault are to be searched.
+
+    Beside what was found it pays, or alone it leaves as little as the best effect that was found does. Slopes have said
+    so; here each has the declared values as they are most likely beside it.
+
+    Args:
+        fault: as suspected.
+        mended: the mended recordings, the declared values calibrated and nothing found.
+        found: in the recordings as they are.
+    """
+    if fault.beside:
+        return True
+    problem, _ = _begun(found)
+    least = math.inf
+    for effect in found.fit.effects:
+        stated, said = said_by_effects(problem, [effect])
+        there, alone = refitted(stated, fit(stated, said))
+        least = min(least, there.plain_error(alone.effects))
+    return mended.plain_error(()) <= SAME_ERROR * least
+
+
+def _begun(found: Search) -> tuple[Problem, Fit]:
+    """The recordings with their declared values calibrated, and nothing found."""
+    assert found.begun is not None
+    problem, empty = found.begun
+    if empty.effects:  # it went on from another search
+        problem = calibrated(replace(problem, calibration=None))
+        empty = fit(problem, ())
+    return problem, empty
 
 
 def is_better(fault: Suspect, mended: Search, found: Search) -> bool:
@@ -190,15 +226,20 @@ def _asked(problem: Problem, found: Fit) -> list[Suspect]:
 
 
 def _beside(problem: Problem, found: Fit, kind: str, column: FloatArray) -> Suspect:
-    """A suspect whose slope with the prediction is a column, (m,)."""
+    """A suspect whose slope with the prediction is a column, (m,).
+
+    A fit that is not at its end has a linear step of its own, which any column would be thanked for: it is taken first.
+    """
     blocks = block_numbers(problem)
+    own = linear_step(found.jacobian, found.residual)
+    found = replace(found, residual=found.residual - found.jacobian @ own, coordinates=found.coordinates + own)
     wide = np.column_stack([found.jacobian, column])
     step = linear_step(wide, found.residual)
     residual = found.residual - wide @ step
     prior = prior_of(found.free, problem.plant, found.coordinates)
     size = float(step[-1])
-    own = max(abs(size), LEAST[kind])
-    prior = Prior(np.append(prior.beyond, size), np.append(prior.width, own))
+    width = max(abs(size), LEAST[kind])
+    prior = Prior(np.append(prior.beyond, size), np.append(prior.width, width))
     without = left_out_residual(problem, found, blocks)
     errors = left_out(residual, wide, blocks, prior)
     comparison = compare_left_out(without, errors, blocks, least_gain(problem, without, errors))
