@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from types import SimpleNamespace
@@ -24,6 +25,7 @@ from feeddrive.diagnosis.likelihood.set_evidence import (
     log_volume,
     odds_between,
 )
+from feeddrive.diagnosis.likelihood.tolerances import BEYOND
 from feeddrive.diagnosis.numbers.number_rows import MeasuredRows
 from feeddrive.effects.base import Effect
 from feeddrive.effects.chain.payload import Payload
@@ -113,6 +115,23 @@ def test_volume_is_that_of_the_integral_over_the_prior() -> None:
     exact = np.log(quad(density, at - 8 * deviation, at + 8 * deviation)[0])
     found = log_volume((effect,), PLANT, np.array([at]), np.array([[1.0]]), deviation**2)
     assert found == pytest.approx(exact, abs=deviation**2)  # the second order of the prior over its width
+
+
+def test_a_declared_value_that_is_other_is_as_likely_as_any_miss_whatever_its_size() -> None:
+    """A mass over the declared one is lognormal, of the width of any value's miss; in kilograms that is no size."""
+    declared, size = PLANT.chain.values["table_mass"], Payload.parameter("mass").size
+    at = 0.4 * declared / size
+    deviation = 0.01 * at
+
+    def density(theta: float) -> float:
+        share = 1 + theta * size / declared
+        lognormal = math.exp(-0.5 * (math.log(share) / BEYOND) ** 2) / (math.sqrt(2 * math.pi) * BEYOND * share)
+        return math.exp(-0.5 * ((theta - at) / deviation) ** 2) * lognormal * size / declared
+
+    exact = np.log(quad(density, at - 8 * deviation, at + 8 * deviation)[0])
+    effect = FIRST.with_values(mass=at * size)
+    found = log_volume((effect,), PLANT, np.array([at]), np.array([[1.0]]), deviation**2)
+    assert found == pytest.approx(exact, abs=1e-3)  # the second order of the prior over its width, 0.01 of the value
 
 
 def test_prior_of_all_sets_of_a_size_falls_as_candidates_grow() -> None:

@@ -18,7 +18,13 @@ from feeddrive.diagnosis.calibration.calibrate import (
     with_new_slopes,
 )
 from feeddrive.diagnosis.calibration.calibration import Calibration
-from feeddrive.diagnosis.calibration.declared import CalibratedValue, as_effect, calibrated_values
+from feeddrive.diagnosis.calibration.declared import (
+    CalibratedValue,
+    as_effect,
+    calibrated_values,
+    is_said_by,
+    said_share,
+)
 from feeddrive.diagnosis.calibration.known import TOLERANCE, Known, known_values
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.problem import Problem
@@ -26,8 +32,6 @@ from feeddrive.diagnosis.likelihood.set_evidence import regained
 from feeddrive.diagnosis.likelihood.tolerances import BEYOND, SURE
 from feeddrive.diagnosis.motion.preparing import weighed_by
 from feeddrive.effects.base import Effect, Value, number
-from feeddrive.effects.chain.inertia_deviation import declared_inertia
-from feeddrive.effects.friction.friction_deviation import FrictionDeviation
 from feeddrive.plant.plant import Plant
 from feeddrive.typing import FloatArray
 
@@ -143,7 +147,7 @@ def given_back(problem: Problem, effect: Effect) -> Problem:
     if known is None:
         return problem
     old = {value.key: i for i, value in enumerate(known.values)}
-    values = [v for v in calibrated_values(problem.plant) if v.key in old or (v.name and _is_said_by(v, effect))]
+    values = [v for v in calibrated_values(problem.plant) if v.key in old or (v.name and is_said_by(v, effect))]
     from_old = [old.get(value.key, len(old)) for value in values]  # the last column is one of zeros
 
     def placed(rows: FloatArray) -> FloatArray:
@@ -194,16 +198,11 @@ def said_by_effects(problem: Problem, effects: Sequence[Effect]) -> tuple[Proble
         return problem, tuple(effects)
     result, kept = list(effects), [True] * len(known.values)
     for i, (value, coordinate) in enumerate(zip(known.values, known.coordinates, strict=True)):
-        at = [n for n, e in enumerate(result) if value.name and _is_said_by(value, e)]
+        at = [n for n, e in enumerate(result) if value.name and is_said_by(value, e)]
         if at:
             result[at[-1]] = _joined(result[at[-1]], as_effect(plant, value, float(coordinate)))
             kept[i] = False
     return (problem if all(kept) else with_kept(problem, kept)), tuple(result)
-
-
-def _is_said_by(value: CalibratedValue, effect: Effect) -> bool:
-    place = str(effect.port) if isinstance(effect, FrictionDeviation) else effect.place
-    return (effect.name, place) == (value.name, value.place)
 
 
 def _joined(one: Effect, other: Effect) -> Effect:
@@ -218,7 +217,7 @@ def _joined(one: Effect, other: Effect) -> Effect:
 
 def is_within_tolerance(effect: Effect, plant: Plant) -> bool | None:
     """Whether an effect puts a declared value no further than its tolerance; None where it is about none."""
-    about = [value for value in calibrated_values(plant) if value.name and _is_said_by(value, effect)]
+    about = [value for value in calibrated_values(plant) if value.name and is_said_by(value, effect)]
     if not about:
         return None
     return all(abs(_coordinate(plant, value, effect)) <= TOLERANCE for value in about)
@@ -226,11 +225,5 @@ def is_within_tolerance(effect: Effect, plant: Plant) -> bool | None:
 
 def _coordinate(plant: Plant, value: CalibratedValue, effect: Effect) -> float:
     """Logarithm of a value over the declared one, over its deviation, with an effect in; minus infinity below zero."""
-    if isinstance(effect, FrictionDeviation):
-        factor = number(effect.values["viscous_factor" if value.key.endswith("viscous") else "coulomb_factor"])
-    elif "factor" in effect.values:
-        factor = number(effect.values["factor"])
-    else:
-        declared = declared_inertia(plant.chain.values, value.place) if "inertia" in effect.values else value.declared
-        factor = 1 + number(next(iter(effect.values.values()))) / declared
-    return math.log(factor) / value.deviation if factor > 0 else -math.inf
+    _, share, _ = said_share(plant, value, effect)
+    return math.log(share) / value.deviation if share > 0 else -math.inf

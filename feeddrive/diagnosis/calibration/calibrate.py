@@ -79,9 +79,11 @@ def recalibrated(problem: Problem, effects: Sequence[Effect], rough: bool = Fals
     if known is None or not known.values:
         return problem
     sloped = with_new_slopes(problem, effects, rough)
-    assert sloped.calibration is not None and sloped.whitener is not None
-    if not np.all(np.isfinite(sloped.whitener.columns)):
+    assert sloped.calibration is not None
+    slopes = [rows for channels in sloped.calibration.slopes.values() for rows in channels.values()]
+    if not all(np.all(np.isfinite(rows)) for rows in slopes):  # a machine near this one cannot be simulated
         return problem
+    assert sloped.whitener is not None
     residual = sloped.unwhitened(effects)
     # what is left once the values are as they are most likely tells how much a row is worth
     left = residual - sloped.whitener.columns @ (sloped.whitener.most_likely(residual) - known.coordinates)

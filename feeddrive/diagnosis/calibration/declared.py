@@ -31,7 +31,7 @@ from feeddrive.diagnosis.likelihood.tolerances import (
     deviation_of,
     written_share,
 )
-from feeddrive.effects.base import Effect, FrictionEffect, Port, Value
+from feeddrive.effects.base import Effect, FrictionEffect, Port, Value, number
 from feeddrive.effects.chain.inertia_deviation import InertiaDeviation, declared_inertia
 from feeddrive.effects.chain.payload import Payload
 from feeddrive.effects.chain.stiffness_deviation import StiffnessDeviation
@@ -211,3 +211,21 @@ def as_effect(plant: Plant, value: CalibratedValue, coordinate: float) -> Effect
                 port, coulomb_factor=factor if coulomb else 1.0, viscous_factor=1.0 if coulomb else factor
             )
     raise ValueError(f"no effect says that {value.words} is other than declared")
+
+
+def is_said_by(value: CalibratedValue, effect: Effect) -> bool:
+    """Whether an effect says that a value is other than declared."""
+    place = str(effect.port) if isinstance(effect, FrictionDeviation) else effect.place
+    return (effect.name, place) == (value.name, value.place)
+
+
+def said_share(plant: Plant, value: CalibratedValue, effect: Effect) -> tuple[str, float, float]:
+    """What an effect says of a value: the key that says it, the value over the declared one, its slope with that."""
+    if isinstance(effect, FrictionDeviation):
+        key = "viscous_factor" if value.key.endswith(_VISCOUS[0]) else "coulomb_factor"
+    else:
+        key = next(iter(effect.values))
+    if key.endswith("factor"):
+        return key, number(effect.values[key]), 1.0
+    declared = declared_inertia(plant.chain.values, value.place) if key == "inertia" else value.declared
+    return key, 1 + number(effect.values[key]) / declared, 1 / declared

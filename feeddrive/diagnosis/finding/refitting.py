@@ -80,8 +80,9 @@ def begun_as_declared(problem: Problem, found: Fit) -> tuple[Problem, Fit] | Non
 def with_value_beyond(problem: Problem, found: Fit) -> tuple[Problem, Fit, Comparison] | None:
     """A set with the declared value as an effect that is beyond its tolerance, and what it brings; None where none is.
 
-    Free of its tolerance a value can only lower the error. Where it does not, slopes alone said so: beside a free play
-    a step of a value moves the contacts, and what the slope then tells holds for that step.
+    Free of its tolerance a value can only lower the error, a row being worth as much in both sets. Where it does not,
+    slopes alone said so: beside a free play a step of a value moves the contacts, and what the slope then tells holds
+    for that step.
     """
     beyond = beyond_tolerance(problem, found)
     if beyond is None:
@@ -90,6 +91,9 @@ def with_value_beyond(problem: Problem, found: Fit) -> tuple[Problem, Fit, Compa
     there, result = refitted(freed, fit(freed, (*found.effects, effect)))
     alike = there.weighed(problem.evidence[0].left)
     same = result if alike is there else fit(alike, result.effects, iterations=0)
-    if same.squared_error >= found.squared_error:
+    assert problem.calibration is not None and there.calibration is not None
+    before = problem.at_values(problem.calibration.coordinates, there.calibration.variance)
+    without = fit(before, found.effects, iterations=0)
+    if same.squared_error >= without.squared_error:
         return None
-    return there, result, gain_between(Standing(problem, found), Standing(alike, same))
+    return there, result, gain_between(Standing(before, without), Standing(alike, same))

@@ -103,7 +103,7 @@ def search(
     rounds: list[tuple[Attempt, ...]] = [*start.rounds] if start is not None else []
     denied = {**start.impossible} if start is not None else {}
     impossible: dict[str, str] = {**denied}
-    met: set[tuple[str, ...]] = set()
+    met: set[tuple[tuple[str, str, str], ...]] = set()
     near: tuple[Near, ...] = ()
     problem, found = balanced(problem, found)
     while len(rounds) < MOST_ROUNDS and not (rounds and problem.budget.skips("further rounds of the search")):
@@ -128,10 +128,10 @@ def search(
         if after is not None:
             problem, found = after
             progress(f"found so far: {', '.join(effect.name for effect in found.effects)}")
-            if _members(found) in met:  # they only take each other's place
-                break
-            met.add(_members(found))
-            continue
+            if _members(found) not in met:
+                met.add(_members(found))
+                continue
+        # nothing likelier is near, or what was met: only each other's place is taken, or other values stand beside it
         others = [*filter(is_another, found.effects), *soft_everywhere(problem, found)]
         if others:  # the search goes on with the name that the law has run to
             denied |= dict.fromkeys((effect.name for effect in others), ANOTHER)
@@ -139,8 +139,8 @@ def search(
             problem, found = refitted(problem, fit(problem, _without(found, others)))
         left_out = problem.budget.skips("declared values beyond their tolerances")
         beyond = None if left_out else with_value_beyond(problem, found)
-        if beyond is not None:
-            met.add(_members(found))  # back at it, it would be asked the same once more
+        if beyond is not None and _members(beyond[1]) not in met:
+            met |= {_members(found), _members(beyond[1])}
             problem, found, by = beyond
             trials.append(Trial(number, found.effects[-1].name, by.gain, by.standard_error, True))
         elif not others:
@@ -222,9 +222,9 @@ def _ended(problem: Problem, found: Fit) -> tuple[Problem, Fit, list[Effect]]:
     return problem, found, small
 
 
-def _members(found: Fit) -> tuple[str, ...]:
-    """Names of a set."""
-    return tuple(sorted(effect.name for effect in found.effects))
+def _members(found: Fit) -> tuple[tuple[str, str, str], ...]:
+    """Names of a set, and where they act."""
+    return tuple(sorted((effect.name, str(effect.port), effect.place) for effect in found.effects))
 
 
 def _without(found: Fit, gone: list[Effect]) -> list[Effect]:

@@ -9,6 +9,7 @@
 | r_S | residual over the noise with the set S fitted, what declared values within tolerance may do taken out | 1 |
 | θ, W | coordinates, of size one; 1 is the scale of p | 1 |
 | p(θ) | Cauchy about the absent effect: a size of n costs 2 log n, an absurd one of any number is still a number | 1 |
+| p(θ) of a value that is other than declared | lognormal about the declared one, of deviation `BEYOND` | 1 |
 | H | J'J of the slopes of the prediction with θ | 1 |
 | d | difference of the residuals of two sets that are compared | 1 |
 | Γ | covariance of the residual that is less: its spectrum, its level where d is large, sums over blocks | 1 |
@@ -35,6 +36,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.special import betaln
 
+from feeddrive.diagnosis.calibration.declared import calibrated_values, is_said_by, said_share
 from feeddrive.diagnosis.certainty.imitations import lost_motion
 from feeddrive.diagnosis.certainty.uncertainty import score_variances
 from feeddrive.diagnosis.likelihood.coordinate_kinds import Linear
@@ -54,8 +56,13 @@ from feeddrive.diagnosis.likelihood.cross_validation import (
 from feeddrive.diagnosis.likelihood.fit import Fit, fit
 from feeddrive.diagnosis.likelihood.folds import block_numbers
 from feeddrive.diagnosis.likelihood.problem import Problem
+from feeddrive.diagnosis.likelihood.tolerances import BEYOND
 from feeddrive.diagnosis.motion.predictability import has_play
 from feeddrive.effects.base import Effect, number
+from feeddrive.effects.chain.inertia_deviation import InertiaDeviation
+from feeddrive.effects.chain.payload import Payload
+from feeddrive.effects.chain.stiffness_deviation import StiffnessDeviation
+from feeddrive.effects.friction.friction_deviation import FrictionDeviation
 from feeddrive.effects.transmission.backlash import Backlash
 from feeddrive.effects.transmission.preload_loss import PreloadLoss
 from feeddrive.errors import InputError
@@ -64,6 +71,9 @@ from feeddrive.typing import BoolArray, FloatArray
 
 PLACES = frozenset({"centre"})
 """Coordinates that are places on the axis: one some hundred strokes away is no place, and the law there is another."""
+
+SAYS_OTHER = (Payload, InertiaDeviation, StiffnessDeviation, FrictionDeviation)
+"""Effects that say that a declared value is other: likely is what any value misses by (`BEYOND`), not a size."""
 
 TINY = 1e-9
 """In place of a width of nothing over its size [1]: no data tell a femtometre from none."""
@@ -91,12 +101,39 @@ def log_volume(
         variance: c.
     """
     middle = prior_middle(effects, plant)
-    beyond = np.where(np.isnan(middle), 0.0, coordinates - middle)
-    sized = int(np.sum(~np.isnan(middle)))
+    declared, steepness = _declared_shares(effects, plant, coordinates)
+    sized = ~np.isnan(middle) & np.isnan(declared)
+    beyond = np.where(sized, coordinates - middle, 0.0)
     lost = _log_prior_of_lost_motion(effects, plant, coordinates)
-    _, volume = np.linalg.slogdet(normal / variance + np.eye(len(normal)))
+    known = ~np.isnan(declared)
+    narrow = np.where(known, steepness / BEYOND, 1.0)
+    _, volume = np.linalg.slogdet(normal / variance + np.diag(narrow**2))
     # a Cauchy density over a normal one of the same scale is sqrt(2 / pi) at the middle
-    return float(0.5 * sized * np.log(2 / np.pi) - np.sum(np.log1p(beyond**2)) - 0.5 * volume + lost)
+    size = 0.5 * np.sum(sized) * np.log(2 / np.pi) - np.sum(np.log1p(beyond**2))
+    other = np.sum(np.log(narrow[known]) - 0.5 * (declared[known] / BEYOND) ** 2)
+    return float(size + other - 0.5 * volume + lost)
+
+
+def _declared_shares(effects: Sequence[Effect], plant: Plant, coordinates: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Logarithm of the declared value over itself as declared that a coordinate stands for, and its slope with it.
+
+    NaN for the coordinates of other effects, and of values declared as exact; (k,) each.
+    """
+    shares, slopes = np.full(len(coordinates), np.nan), np.full(len(coordinates), np.nan)
+    values, at = None, 0
+    for effect in effects:
+        own = coordinates_of(effect, plant)
+        size = sum(len(one.read(effect)) for one in own)
+        if len(own) == size and isinstance(effect, SAYS_OTHER):
+            values = calibrated_values(plant) if values is None else values
+            (there,) = write_coordinates([effect], plant, coordinates[at : at + size])
+            said = {value.key: said_share(plant, value, there) for value in values if is_said_by(value, effect)}
+            for key, share, slope in said.values():
+                for i, one in enumerate(own):
+                    if isinstance(one, Linear) and one.key == key and share > 0:
+                        shares[at + i], slopes[at + i] = math.log(share), slope * one.size / share
+        at += size
+    return shares, slopes
 
 
 def _log_prior_of_lost_motion(effects: Sequence[Effect], plant: Plant, coordinates: FloatArray) -> float:
