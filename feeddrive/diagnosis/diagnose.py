@@ -180,7 +180,7 @@ def _reported(
         quality=(
             *begun.quality,
             *beyond_its_constant(found.problem, found.fit),
-            *read_otherwise(effects, plant),
+            *read_otherwise(effects, plant, any("motor_torque" in e.channels for e in begun.problem.evidence)),
             *flawed((*recordings, *validation)),
         ),
         calibrated=calibrated_results(found.problem, found.fit),

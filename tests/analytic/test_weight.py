@@ -9,6 +9,7 @@ import pytest
 
 from feeddrive.diagnosis.calibration.declared import calibrated_values, with_values
 from feeddrive.diagnosis.certainty.same_by_law import twins_of
+from feeddrive.diagnosis.suspicion.quality import read_otherwise
 from feeddrive.effects.base import Effect
 from feeddrive.effects.catalogue import EFFECTS
 from feeddrive.errors import InputError
@@ -109,6 +110,14 @@ def test_a_rigid_axis_tells_a_hanging_mass_from_an_inertia(tmp_path: Path) -> No
     assert [twin.name for twin in twins_of(PAYLOAD, level, ())] == ["inertia_deviation"]
     assert not twins_of(PAYLOAD, inclined, ())
     assert pulled(inclined.with_effects(PAYLOAD)) == pytest.approx(90 * FALL, rel=CLOSE)
+
+
+def test_a_force_is_no_offset_of_a_torque_that_was_not_recorded() -> None:
+    """With a scale alone a constant force shows by what the transmission gives way."""
+    plant, found = read_plant(find_plant("bench_axis")), [EFFECTS["constant_force"].of(force=6.0)]
+    (offset,) = read_otherwise(found, plant, has_torque=True)
+    assert (offset.kind, offset.channel) == ("channel_offset", "motor_torque")
+    assert read_otherwise(found, plant, has_torque=False) == ()
 
 
 def test_a_counterbalance_that_pulls_down_is_refused(tmp_path: Path) -> None:

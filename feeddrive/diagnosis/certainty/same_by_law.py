@@ -49,8 +49,9 @@ def twins_of(effect: Effect, plant: Plant, evidence: Sequence[Evidence]) -> tupl
         reason = "in a rigid structure an inertia of motor or screw is a mass on the table"
         mend = 'use structure = "three_inertias" and record the table position to tell them apart'
         return (Twin("inertia_deviation", f"{reason}; {mend}"),)
+    has_torque = any("motor_torque" in e.channels for e in evidence)
     return tuple(
         Twin(one.kind, f"{one.sentence}; {one.mend}")
-        for one in read_otherwise([effect], plant)
+        for one in read_otherwise([effect], plant, has_torque)
         if one.alternatives and one.kind != effect.name and effect.name != "drive_delay"
     )

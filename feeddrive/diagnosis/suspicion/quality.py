@@ -103,8 +103,14 @@ def flawed(recordings: Sequence[Recording]) -> tuple[Quality, ...]:
     return tuple(result)
 
 
-def read_otherwise(effects: Sequence[Effect], plant: Plant) -> tuple[Quality, ...]:
-    """What the recorder may have done instead of, or as, an effect that was found."""
+def read_otherwise(effects: Sequence[Effect], plant: Plant, has_torque: bool) -> tuple[Quality, ...]:
+    """What the recorder may have done instead of, or as, an effect that was found.
+
+    Args:
+        effects: found.
+        plant: as declared.
+        has_torque: whether a torque or a current was recorded, which alone can have an offset.
+    """
     if not plant.has_motion:
         return ()
     hangs = any(isinstance(effect, ConstantForce | Weight) for effect in plant.effects)
@@ -115,7 +121,7 @@ def read_otherwise(effects: Sequence[Effect], plant: Plant) -> tuple[Quality, ..
                 found.append(_late(effect))
             case "drive_delay" if number(effect.values["delay"]) > 0:
                 found.append(_all_late(effect))
-            case "constant_force" if not hangs:
+            case "constant_force" if has_torque and not hangs:
                 found.append(_offset(effect, plant))
             case "lead_error_cumulative" if abs(number(effect.values["slope"])) > WORST_SCREW:
                 found.append(_scaled(effect))
