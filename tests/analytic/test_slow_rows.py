@@ -111,21 +111,6 @@ def test_rows_are_left_out_where_a_faster_loop_moves_between_them() -> None:
     assert faster[600:1900].all()
 
 
-def test_rows_of_motion_that_is_hardly_known_weigh_less_where_they_are_fitted() -> None:
-    """A turn of some milliseconds between rows of 2 ms: fitted by less than the others, judged by none."""
-    time = 2e-3 * np.arange(4000)
-    angle = -30.0 * 0.012 * np.log(np.cosh((time - 4.0) / 0.012))  # speed -30 tanh((t - 4) / 12 ms)
-    made = replace(recording(angle, -np.tanh((time - 4.0) / 0.012)), time=time, sample_time=2e-3)
-    fitted, judged = (prepare(made, PLANT, share, 5e-4) for share in (1.0, 0.0))
-    less = fitted.counted & ~judged.counted
-    assert less[1990:2010].any() and not less[:1900].any() and not less[2100:].any()
-    assert fitted.known is not None and judged.known is None
-    assert np.all((fitted.known[less] > np.sqrt(0.49)) & (fitted.known[less] < 1)) and fitted.known[1000] == 1
-    unit = fitted.unit("motor_torque")
-    ones = {"motor_torque": np.full(len(time), unit)}
-    assert fitted.weighted(ones, less) == pytest.approx(fitted.known[less], rel=1e-12)
-
-
 def test_rows_are_left_out_while_the_load_rings_after_motion_that_is_not_known() -> None:
     """A turn within a row sets the load ringing; dampers a fifth as strong keep it so five times as long."""
     time = 4e-3 * np.arange(3000)

@@ -36,8 +36,6 @@ class AxisEvidence(Evidence):
         drawn: motions with the encoder's error once more; as `gains`.
         weights: channel to the weight of every sample, (n,): noise over noise and what the encoder's error makes of a
             free play there; channels left out are predicted alike everywhere.
-        known: weight of every sample in all channels, (n,): noise over noise and what motion between rows, which is not
-            known, makes there (`slow_rows`); None where all weigh alike.
         told: part of the motion that the torque tells and the encoder does not, (n,) [rad]; None for none.
         lead_map: what a lead map may be of the table position, in the band, (n, k); None without a table position.
         law_curves: as `curves`.
@@ -58,7 +56,6 @@ class AxisEvidence(Evidence):
     acting: FloatArray | None = None
     torque_rows: tuple[int, int] | None = None
     weights: dict[str, FloatArray] = field(default_factory=dict)
-    known: FloatArray | None = None
     lead_map: FloatArray | None = None
     law_curves: dict[str, list[dict[str, FloatArray]]] = field(default_factory=dict)
     told: FloatArray | None = None
@@ -100,10 +97,9 @@ class AxisEvidence(Evidence):
 
     def without_open(self, name: str, part: FloatArray, rows: BoolArray) -> FloatArray:
         """One channel over its noise and by its weights, (k,), without the zero of a scale."""
-        if name not in self.weights and self.known is None:
+        if name not in self.weights:
             return super().without_open(name, part, rows)
-        weights = self.weights[name][rows] if name in self.weights else np.ones(len(part))
-        weights = weights if self.known is None else weights * self.known[rows]
+        weights = self.weights[name][rows]
         weighed = weights * part / self.unit(name)
         return weighed - weights * float(weights @ weighed / (weights @ weights)) if name in self.floating else weighed
 

@@ -17,7 +17,6 @@ from feeddrive.diagnosis.motion.slow_rows import (
     is_slow,
     known_motion,
     missed_between_rows,
-    missed_over_noise,
     refuse_unknown_motion,
     sentence,
 )
@@ -40,10 +39,6 @@ without noise is compared as far as its rows tell the motion between them."""
 
 SHORTEST = 3.0
 """Shortest recording [s] that leaves something between the cut ends."""
-
-MOST_MISSED = 1.0
-"""Rms of what is missed of a row's motion over the noise of the sensor, both in the band, beyond which it is left out:
-what is missed is of one sign as long as the motion is, and a mode is named for it that more of it is taken for."""
 
 LEAST_ZERO = 1e-4
 """Difference [m] of the zeros of table and motor that moves the nut: 0.1 mm of screw give way 0.5 nm per kilonewton."""
@@ -69,10 +64,8 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
     names = _compared(recording)
     band = comparison_band(plant, 1 / recording.sample_time)
     acting = {name: _as_acting(name, recording, hold) for name in names}
-    sure, sound, recording = _counted(recording, plant, band, hold)
-    noise = _noise(names, recording, plant, band, sure, bool(scaled_from))
-    fitted = _fitted(recording, share)
-    counted, known = _with_less_sure(sure, sound & fitted, recording, plant, band)
+    counted, recording = _counted(recording, plant, band, hold)
+    noise = _noise(names, recording, plant, band, counted, bool(scaled_from))
     zero = _zero_of_angle(recording, plant)
     measured = {name: band.filter(series) for name, series in acting.items()}
     # what is judged is not to lend its torque to the motion that it is judged by
@@ -85,7 +78,7 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
         measured,
         noise,
         counted,
-        fitted,
+        _fitted(recording, share),
         band.edge,
         BLOCK,
         band.thinning,
@@ -95,7 +88,6 @@ def prepare(recording: Recording, plant: Plant, share: float, hold: float | None
         band,
         scaled_from,
         zero,
-        known=known,
         acting=acting.get("motor_torque") if not scaled_from else None,
         lead_map=band.filter(lead_map(recording["table_position"], plant.chain.radius)) if has_scale else None,
     ).with_encoder(encoder)
@@ -123,33 +115,20 @@ def _as_acting(name: str, recording: Recording, hold: float | None) -> FloatArra
 
 def _counted(
     recording: Recording, plant: Plant, band: Band, hold: float | None
-) -> tuple[BoolArray, BoolArray, Recording]:  # fmt: skip
-    """Samples that count, (n,): sound, not at the ends, of known motion; those sound; the recording with a note."""
+) -> tuple[BoolArray, Recording]:  # fmt: skip
+    """Samples that count, (n,): sound, not at the ends, of known motion; and the recording with a note on that."""
     time = from_zero(recording)
     counted: BoolArray = (time >= END_CUT) & (time <= time[-1] - END_CUT)
-    sound = counted & sound_rows(recording, plant.torque_limit, band)
-    known = np.ones(len(time), dtype=bool)
     if is_slow(recording):
         known = known_motion(recording, plant, band)
         refuse_unknown_motion(known, counted, recording)
         recording = replace(recording, notes=(*recording.notes, sentence(known, recording)))
+        counted &= known
     elif hold is not None:  # the loop is faster than the rows: what it does between them is not known either
-        known = known_motion(recording, plant, band)
-    refuse_little_left(sound & known, recording)
-    return sound & known, sound, recording
-
-
-def _with_less_sure(
-    sure: BoolArray, others: BoolArray, recording: Recording, plant: Plant, band: Band
-) -> tuple[BoolArray, FloatArray | None]:
-    """Samples that count, those among others too of whose motion enough is known, and what all weigh; None if alike.
-
-    A sample weighs by the noise over both, noise and what is missed.
-    """
-    if not (others & ~sure).any():
-        return sure, None
-    missed = np.where(sure, 0.0, missed_over_noise(recording, plant, band))
-    return sure | (others & (missed <= MOST_MISSED)), 1 / np.sqrt(1 + missed**2)
+        counted &= known_motion(recording, plant, band)
+    counted &= sound_rows(recording, plant.torque_limit, band)
+    refuse_little_left(counted, recording)
+    return counted, recording
 
 
 def _noise(

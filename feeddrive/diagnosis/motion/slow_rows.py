@@ -29,7 +29,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from scipy.ndimage import binary_dilation, maximum_filter1d, uniform_filter1d
+from scipy.ndimage import binary_dilation, uniform_filter1d
 
 from feeddrive.diagnosis.motion.band import Band, sensor_noise, white_noise
 from feeddrive.errors import InputError
@@ -66,44 +66,16 @@ def known_motion(recording: Recording, plant: Plant, band: Band) -> BoolArray:
         plant: whose inertia and stiffness apply.
         band: of the comparison.
     """
-    unknown, reach = _unknown(recording, plant), _reach(band)
-    left_out = unknown > 0
-    left_out |= _ringing(unknown * _most_shown(recording, plant, band), plant, recording) > 1
-    return ~np.asarray(binary_dilation(left_out | _vibrating(recording, reach), iterations=reach))
-
-
-def missed_over_noise(recording: Recording, plant: Plant, band: Band) -> FloatArray:
-    """Rms in the band of what motion between rows, which is not known, makes of the channel that shows most, (n,).
-
-    Over the noise of its sensor. What a motion is beyond half the rate of the rows folds back into the band by the
-    band's share of it, if it is as strong there as below. Infinite at rows between which the torque jumps.
-
-    Args:
-        recording: with a motor angle.
-        plant: whose inertia and stiffness apply.
-        band: of the comparison.
-    """
-    unknown, reach = _unknown(recording, plant), _reach(band)
-    about = 2 * math.ceil(reach / 2) + 1  # the mean and then the largest of it, each half as far as the filter reaches
-    local = np.sqrt(np.maximum(uniform_filter1d(unknown**2, about), 0.0))  # a running sum may end below zero
-    local = np.where(binary_dilation(unknown > 0, iterations=reach), local, 0.0)
-    over_noise = local * band.noise_gain * _most_shown(recording, plant, band)
-    missed = maximum_filter1d(_ringing(over_noise, plant, recording), about)
-    return np.where(binary_dilation(_vibrating(recording, reach), iterations=reach), np.inf, missed)
-
-
-def _reach(band: Band) -> int:
-    """Rows as far as the filter reaches."""
-    return int(np.ceil(band.sample_rate / band.edge))
-
-
-def _unknown(recording: Recording, plant: Plant) -> FloatArray:
-    """Error of the acceleration at rows where it shows in a channel, 0 elsewhere, (n,) [rad/s²]."""
     missed = np.zeros(len(recording))
     missed[2:-2] = np.abs(np.diff(recording["motor_angle"], 4)) / (12 * recording.sample_time**2)
     steps = ROUGH * math.sqrt(70 / 12) * quantisation_step(recording["motor_angle"])  # fourth differences of its steps
     least = max(_least_acceleration(recording, plant), steps / (12 * recording.sample_time**2))
-    return np.where(missed > least, missed, 0.0)
+    unknown: BoolArray = missed > least
+    unknown |= _ringing(np.where(unknown, missed, 0.0) * _most_shown(recording, plant, band), plant, recording)
+    reach = int(np.ceil(band.sample_rate / band.edge))
+    if "motor_torque" in recording:
+        unknown |= _vibrating(recording["motor_torque"], band.sample_rate, reach)
+    return ~np.asarray(binary_dilation(unknown, iterations=reach))
 
 
 def missed_between_rows(recording: Recording, plant: Plant, counted: BoolArray) -> dict[str, float]:
@@ -122,22 +94,22 @@ def missed_between_rows(recording: Recording, plant: Plant, counted: BoolArray) 
     return made
 
 
-def _ringing(over_noise: FloatArray, plant: Plant, recording: Recording) -> FloatArray:
-    """What was missed over the noise, and what modes that the rows show as slower ones still answer of it, (n,).
+def _ringing(over_noise: FloatArray, plant: Plant, recording: Recording) -> BoolArray:
+    """Rows at which modes that the rows show as slower ones still answer motion that is not known, (n,).
 
     Args:
-        over_noise: what was missed, 0 where nothing was, (n,).
+        over_noise: what was missed over the noise in the band, 0 where nothing was, (n,).
         plant: that rings.
         recording: the rows.
     """
     fastest = math.pi / recording.sample_time
     decays = [-pole.real for pole in braked_modes(plant, plant.middle).poles if pole.real < 0 and pole.imag > fastest]
     if not decays:
-        return over_noise
+        return np.zeros(len(over_noise), dtype=bool)
     decayed: FloatArray = min(decays) * recording.sample_time * np.arange(len(over_noise), dtype=np.float64)
     with np.errstate(divide="ignore"):
         begun = np.maximum.accumulate(np.log(over_noise) + decayed)
-    return np.asarray(np.exp(begun - decayed))
+    return np.asarray(begun > decayed)
 
 
 def _most_shown(recording: Recording, plant: Plant, band: Band) -> float:
@@ -155,11 +127,8 @@ def _share(made: float, noise: float) -> float:
     return made / noise if noise > 0 else 0.0
 
 
-def _vibrating(recording: Recording, reach: int) -> BoolArray:
+def _vibrating(torque: FloatArray, rate: float, reach: int) -> BoolArray:
     """Rows between which the torque jumps, (n,)."""
-    if "motor_torque" not in recording:
-        return np.zeros(len(recording), dtype=bool)
-    torque, rate = recording["motor_torque"], 1 / recording.sample_time
     squares = np.zeros(len(torque))
     squares[2:-2] = np.diff(torque, 4) ** 2 / 70  # of white noise, its power
     power = np.maximum(uniform_filter1d(squares, reach), 0.0)  # a running sum loses digits of what is much larger

@@ -80,17 +80,14 @@ def presliding(scene: Scene) -> list[list[Effect]]:
 
 
 def backlash(scene: Scene) -> list[list[Effect]]:
-    """Widths about the lag of the table, and one that no passage in which it leaves its flank crosses.
-
-    The torque shows at contacts what the scale's own noise hides in the lag: a third and a tenth of the least as well.
-    """
+    """Widths about the lag of the table, and one that no passage in which it leaves its flank crosses."""
     at = scene.longest
     residual, rows = scene.residuals[at], scene.problem.evidence[at].fit_rows
     widths = [1e-6, 3e-6, 1e-5, 3e-5, 1e-4]
     if "table_position" in residual:
         lag = residual["table_position"][rows]
         flank = float(np.std(lag))  # the table lags by half the play, either way
-        widths = [2 * flank, 1.4 * flank, 0.7 * flank, 3 * flank, 2 * float(np.ptp(lag)), 0.2 * flank, 0.07 * flank]
+        widths = [2 * flank, 1.4 * flank, 0.7 * flank, 3 * flank, 2 * float(np.ptp(lag))]
     return [[Backlash.of(width=min(width, 5e-3)) for width in widths]]
 
 
