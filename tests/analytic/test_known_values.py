@@ -72,7 +72,7 @@ def test_an_interval_is_what_the_others_tolerance_leaves(nut: float, bearing: fl
 
 def test_the_likeliest_machine_leaves_the_others_as_declared() -> None:
     found = known(of(0.5, 1.0))
-    u, _ = found.likeliest(0, 10.0)
+    u, _ = found.likeliest({0: 10.0})
     assert found.values[0].factor(found.c(0, float(u[0]))) == pytest.approx(0.5, rel=0.03)
     assert abs(u[1]) < 0.2
 

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from scipy.special import chdtri
 
 from feeddrive.diagnosis.calibration.calibrate import (
     ENOUGH,
@@ -40,34 +41,46 @@ AGAINST = 2 * math.log(20.0)
 
 
 def beyond_tolerance(problem: Problem, found: Fit) -> tuple[Problem, Effect] | None:
-    """The declared value that is surest to be beyond its tolerance, as an effect; None where none is asserted.
+    """The effect on declared values that is surest to put them beyond their tolerances; None where none is asserted.
 
-    One is beyond its tolerance where no values within theirs explain the recordings, and some do that are all but it
-    within theirs. Of values that are alike to the recordings the likeliest is taken; `other_places` says the others.
+    One does where no values within their tolerances explain the recordings, and some do that are all but its own, as
+    the search has them and as they are placed by scatter. Of effects that are alike to the recordings the likeliest is
+    taken; `other_places` says the others.
 
     Returns:
-        The problem without it among the values that are fitted, and the effect, from its likeliest value.
+        The problem without its values among those that are fitted, and the effect, from its likeliest values.
     """
     known = known_values(problem, found)
     gained = _gained(known)
-    most = max(gained.values(), default=0.0)
-    if known is None or most < SURE**2 or max(_gained(placed_by_scatter(problem, found)).values()) < SURE**2:
+    if known is None or not any(gain > _sure(places) for places, gain in gained.items()):
         return None
-    alike = [i for i, gain in gained.items() if gain > most - AGAINST]
-    costs = {i: known.likeliest(i, BEYOND / known.values[i].deviation) for i in alike}
-    place = min(alike, key=lambda i: costs[i][1])
-    there = _with_free_value(problem, found.effects, place)
-    freed, (effect,) = said_by_effects(there, [as_effect(problem.plant, known.values[place], 0.0)])
+    placed, most = _gained(placed_by_scatter(problem, found)), max(gained.values())
+    alike = [places for places, gain in gained.items() if gain > most - AGAINST]
+    alike = [places for places in alike if min(gained[places], placed.get(places, 0.0)) > _sure(places)]
+    if not alike:
+        return None
+    costs = {places: known.likeliest({i: BEYOND / known.values[i].deviation for i in places})[1] for places in alike}
+    chosen = min(alike, key=costs.__getitem__)
+    there = _with_free_values(problem, found.effects, chosen)
+    freed, (effect,) = said_by_effects(there, [as_effect(problem.plant, known.values[chosen[0]], 0.0)])
     freed, together = fitted_together(freed, (*found.effects, effect))
     return freed, together[-1]
 
 
-def _gained(known: Known | None) -> dict[int, float]:
-    """Places of the values that an effect says to be other to what each, free of its tolerance, lowers T by."""
+def _sure(places: Sequence[int]) -> float:
+    """What T is lowered by, by chance, by values that are free of their tolerances, as seldom as `SURE` deviations."""
+    return float(chdtri(len(places), math.erfc(SURE / math.sqrt(2))))
+
+
+def _gained(known: Known | None) -> dict[tuple[int, ...], float]:
+    """Places of the values that one effect says to be other, to what they lower T by where they are free."""
     if known is None:
         return {}
-    least = known.least()
-    return {i: least - known.least(i) for i, value in enumerate(known.values) if value.name}
+    least, stated = known.least(), dict[tuple[str, str], tuple[int, ...]]()
+    for i, value in enumerate(known.values):
+        if value.name:
+            stated[value.name, value.place] = (*stated.get((value.name, value.place), ()), i)
+    return {places: least - known.least(*places) for places in stated.values()}
 
 
 def placed_by_scatter(problem: Problem, found: Fit) -> Known | None:
@@ -87,7 +100,7 @@ def placed_by_scatter(problem: Problem, found: Fit) -> Known | None:
         effects, known = result.effects, known_values(there, result)
         if known is None:
             return None
-        u, _ = known.likeliest(0, 1.0)
+        u, _ = known.likeliest({})
         coordinates = np.array([known.c(i, float(one)) for i, one in enumerate(u)])
         if np.max(np.abs(coordinates - known.at), initial=0.0) < ENOUGH:
             break
@@ -95,18 +108,18 @@ def placed_by_scatter(problem: Problem, found: Fit) -> Known | None:
     return known
 
 
-def _with_free_value(problem: Problem, effects: Sequence[Effect], place: int) -> Problem:
-    """The problem with one of its values free of its tolerance, all fitted in common steps.
+def _with_free_values(problem: Problem, effects: Sequence[Effect], places: Sequence[int]) -> Problem:
+    """The problem with some of its values free of their tolerances, all fitted in common steps.
 
-    The others have stood in for it and go back with it: in turn, neither gets far.
+    The others have stood in for them and go back with them: in turn, neither gets far.
     """
     known = problem.calibration
     assert known is not None
-    value = known.values[place]
     wider = np.ones(len(known.values))
-    wider[place] = max(BEYOND / value.deviation, 1.0)
     values = [*known.values]
-    values[place] = replace(value, deviation=value.deviation * float(wider[place]))
+    for place in places:
+        wider[place] = max(BEYOND / values[place].deviation, 1.0)
+        values[place] = replace(values[place], deviation=values[place].deviation * float(wider[place]))
     slopes = {of: {name: rows * wider for name, rows in one.items()} for of, one in known.slopes.items()}
     more = known.number_slopes * wider if known.number_slopes.size else known.number_slopes
     free = Calibration(tuple(values), known.coordinates / wider, slopes, known.variance, more)

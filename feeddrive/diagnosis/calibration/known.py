@@ -23,6 +23,7 @@ Statist. 37 (1988) 87 (intervals by profile).
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -93,10 +94,11 @@ class Known:
         """Covariance of u under the tolerances as deviations, (k, k)."""
         return np.asarray(np.linalg.inv(self.slopes.T @ self.slopes + np.eye(len(self.right_side))), dtype=np.float64)
 
-    def likeliest(self, place: int, deviation: float) -> tuple[FloatArray, float]:
-        """Most likely u, (k,), with one value's deviation another one [of its own], and -2 log evidence of that."""
+    def likeliest(self, wider: Mapping[int, float]) -> tuple[FloatArray, float]:
+        """Most likely u, (k,), with other deviations of some values [of their own], and -2 log evidence of that."""
         prior = np.ones(len(self.right_side))
-        prior[place] = deviation**-2
+        for place, deviation in wider.items():
+            prior[place] = deviation**-2
         normal = self.slopes.T @ self.slopes + np.diag(prior)
         u = np.asarray(np.linalg.solve(normal, self.slopes.T @ self.right_side), dtype=np.float64)
         left = self.slopes @ u - self.right_side
