@@ -252,6 +252,22 @@ def test_glitches_stand_where_the_axes_reverse(tmp_path: Path) -> None:
             assert abs(1e6 * found[f"glitch {sign} at {q}°"]) < 0.1 * height
 
 
+def test_a_point_at_the_reversal_itself_has_not_turned_yet(tmp_path: Path) -> None:
+    """The radius jumps from +height to -height behind a reversal; the point that stands on it is still before."""
+    rows = ["# radius = 150 mm", "angle [deg],radial [µm],direction [1]"]
+    for direction in (1, -1):
+        for k in range(721):
+            way = k / 2 % 360  # since 0 degrees
+            height = 3.2 if way in (0, 180) else 3.0  # and noise would make it the largest
+            rest = height * (1 if 0 < way <= 180 else -1) * abs(math.cos(math.radians(way)))
+            rows.append(f"{direction * k / 2},{rest!r},{direction}")
+    found = fd.iso230(written(tmp_path, "\n".join(rows) + "\n")).figures_si()
+    for sign in "+-":
+        # the smooth path, 1.9 µm sin and no cos, leaves the height at 0 and 180 degrees as it is
+        assert 1e6 * found[f"glitch {sign} at 0°"] == pytest.approx(3.0, abs=0.05)
+        assert 1e6 * found[f"glitch {sign} at 180°"] == pytest.approx(-3.0, abs=0.05)
+
+
 def staircase(lead_slope: float, play: float, noise: float = 0.0) -> fd.Recording:
     """A set-point from stop to stop, three runs to and fro over five targets and 5 mm beyond, and a scale with play."""
     rate, places = 500.0, [0.0, 0.1, 0.2, 0.3, 0.4]

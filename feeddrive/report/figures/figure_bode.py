@@ -179,8 +179,8 @@ def _label(case: Case, family: Family) -> str:
         parts.append(f"x = {format_quantity(case.position, 'm')}")
     if len({one.payload for one in cases}) > 1:
         parts.append(f"{case.payload:+g} kg")
-    if len({one.velocity for one in cases}) > 1:
-        parts.append(f"at {format_quantity(case.velocity, 'm/s')}" if case.velocity else "at rest")
+    if len({one.motion for one in cases}) > 1:
+        parts.append(case.motion)
     return ", ".join(parts) or "linear"
 
 
