@@ -395,6 +395,17 @@ def test_what_a_plant_explains(tmp_path: Path) -> None:
     assert share.without["guide_friction"].explains == pytest.approx(share.left.explains, rel=1e-6)
 
 
+def test_a_plant_that_explains_nothing_says_so_in_plain_digits(tmp_path: Path) -> None:
+    """What rounding leaves of nothing was 0.0002919 nm and -0 %."""
+    found = fd.iso230(staircase(30e-6, 4e-6), plant=fd.load("bench_axis"))
+    found.save(tmp_path / "out")
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    alone = found.tables()[-1].rows[1]
+    assert list(alone) == ["the plant alone", "0.000 µm", "0.000 µm", "0.000 µm", ""]
+    assert "The plant explains 0 % of the squared mean deviations." in page
+    assert " nm<" not in page and "-0 %" not in page and "-0.0 %" not in page
+
+
 def test_page_holds_graph_and_figures(tmp_path: Path) -> None:
     axis = fd.load(written(tmp_path, PLANT, "plant.toml"))
     fd.iso230(staircase(30e-6, 4e-6), plant=axis).save(tmp_path / "out")

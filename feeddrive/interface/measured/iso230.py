@@ -31,7 +31,7 @@ from feeddrive.recording import Recording
 from feeddrive.recording.channels import CHANNEL_UNITS
 from feeddrive.recording.files.opening import first_bytes, head_of
 from feeddrive.recording.traces.opened import could_be_trace
-from feeddrive.units.quantity import format_quantity
+from feeddrive.units.quantity import format_quantity, percent
 
 if TYPE_CHECKING:
     from feeddrive.report.figures.drawing import ReportFigure
@@ -84,10 +84,10 @@ class Iso230(Shown):
             return (self.listing(), *short)
         one = self.share
         named = {"measured": (one.measured, ""), "the plant alone": (one.predicted, "")}
-        named["left"] = (one.left, f"{100 * one.left.explains:.1f} %")
-        named |= {f"left without {key}": (left, f"{100 * left.explains:.1f} %") for key, left in one.without.items()}
+        named["left"] = (one.left, percent(one.left.explains, 1))
+        named |= {f"left without {key}": (left, percent(left.explains, 1)) for key, left in one.without.items()}
         rows = [
-            [name, *(format_quantity(v, "m") for v in (left.systematic, left.mean_range, left.reversal)), explains]
+            [name, *(f"{1e6 * v:.3f} µm" for v in (left.systematic, left.mean_range, left.reversal)), explains]
             for name, (left, explains) in named.items()
         ]
         title = "What the plant explains of the mean deviations"
