@@ -199,6 +199,10 @@ def test_drift_of_a_curve_that_is_known(tmp_path: Path) -> None:
     # within 5 % of the range of the value at the stop: exp(-t/90) - exp(-480/90) <= 0.05 (1 - exp(-480/90))
     t = -90 * math.log(0.05 * heated + math.exp(-480 / 90))
     assert found["settled at 0 mm after"] == 60 * 10 * math.ceil(t / 10)
+    assert found["heating until"] == 480 * 60
+    # without a stop the last reading is taken for it, and says so
+    forgot = fd.iso230(written(tmp_path, drift_table().replace("# stop = 480 min\n", "")))
+    assert ["heating until", "12 h"] in [list(row) for row in forgot.listing().rows]
 
 
 def test_drift_in_rows(tmp_path: Path) -> None:

@@ -262,7 +262,7 @@ def unit_of(key: str) -> str:
     """SI unit of a figure."""
     if key.startswith("slope"):
         return "m/m"
-    if key.startswith("settled"):
+    if key.startswith(("settled", "heating")):
         return "s"
     return "rad" if key == "lag" else "1" if key == "gain" else "m"
 
@@ -287,7 +287,7 @@ def _linear_figures(test: LinearTest) -> dict[str, float]:
 
 def _drift_figures(test: DriftTest) -> dict[str, float]:
     heating = test.heating
-    found: dict[str, float] = {}
+    found = {"heating until": test.stop}  # the end of the readings where no stop is given
     for one in heating.targets:
         at = format_quantity(one.position, "m")
         found |= {
