@@ -52,6 +52,7 @@ def test_curves_of_the_open_loop_are_named_apart() -> None:
     for one in fd.tune(fd.load("bench_axis"))._figures():
         names = one.figure.axes[0].get_legend_handles_labels()[1]
         assert names == ["at 3 m/min", "at rest without friction", "at rest with the table held"]
+        assert len({line.get_linestyle() for line in one.figure.axes[0].get_legend().get_lines()}) == 3
 
 
 def test_drive_of_a_scenario_and_json_alone(capsys: pytest.CaptureFixture[str]) -> None:
