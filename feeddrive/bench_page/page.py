@@ -31,6 +31,7 @@ from feeddrive.servo.margins import GROWTH
 from feeddrive.servo.mechanics_response import Case, grid
 from feeddrive.simulate.setpoints.trial_motions import HEIGHT, RADIUS, STEP_AT, Trial, circle_about, step_at
 from feeddrive.tuning.reasons import current_loop_lines
+from feeddrive.units.quantity import shown_unit
 
 _SCRIPTS = ("linear.js", "loop.js", "engine.js", "bench.js", "drawing.js", "page.js")
 _LOWEST, _HIGHEST = 1.0, 4000.0
@@ -213,6 +214,8 @@ def _effects(plant: Plant, names: Sequence[str], found: Sequence[str]) -> list[d
             if one.key not in _FIXED_KEYS and f"{effect.label}.{one.key}" in names
         ]
         sliders = [one for one in sliders if one["value"]]
+        for one in sliders:
+            one["per"], _, one["unit"] = shown_unit(one["value"], one["unit"])
         if sliders:
             made.append(
                 {"name": effect.name, "label": _label(effect), "found": effect.name in found, "sliders": sliders}
