@@ -203,19 +203,13 @@ def _effects(plant: Plant, names: Sequence[str], found: Sequence[str]) -> list[d
     values = parameter_values(plant)
     made = []
     for effect in plant.effects[:-1]:
-        sliders = [
-            {
-                "place": names.index(f"{effect.label}.{one.key}"),
-                "key": one.key,
-                "unit": one.unit,
-                "value": values[names.index(f"{effect.label}.{one.key}")],
-            }
-            for one in effect.parameters
-            if one.key not in _FIXED_KEYS and f"{effect.label}.{one.key}" in names
-        ]
-        sliders = [one for one in sliders if one["value"]]
-        for one in sliders:
-            one["per"], _, one["unit"] = shown_unit(one["value"], one["unit"])
+        sliders = []
+        for one in effect.parameters:
+            name = f"{effect.label}.{one.key}"
+            if one.key in _FIXED_KEYS or name not in names or not values[names.index(name)]:
+                continue
+            per, _, unit = shown_unit(values[names.index(name)], one.unit)
+            sliders.append({"place": names.index(name), "key": one.key, "unit": unit, "per": per})
         if sliders:
             made.append(
                 {"name": effect.name, "label": _label(effect), "found": effect.name in found, "sliders": sliders}
